@@ -1,0 +1,52 @@
+/* What every layer needs: memory through the context's allocator, the log, text, files, clock. */
+#ifndef CAMBER_BASE_H
+#define CAMBER_BASE_H
+
+#include "camber.h"
+
+#include <stdarg.h>
+
+#if defined(__GNUC__)
+#define CAMBER_PRINTF(format_index, first) __attribute__((format(printf, format_index, first)))
+#else
+#define CAMBER_PRINTF(format_index, first)
+#endif
+
+struct camber_context {
+    camber_context_desc desc;
+    uint64_t next_serial; /* identifies polylines to meshes that keep them uploaded */
+};
+
+/* Memory is not cleared by camber_alloc; camber_alloc_zero clears it. NULL and a logged error on failure, also
+ * where count * size overflows. count 0 gives a block that can be freed. */
+void *camber_alloc(camber_context *context, size_t count, size_t size_bytes);
+void *camber_alloc_zero(camber_context *context, size_t count, size_t size_bytes);
+/* Grows *capacity (elements) so that at least needed fit, by half or more. The block may move. false on
+ * failure, and then the old block stays. items is the address of a pointer to elements. */
+bool camber_grow(camber_context *context, void *items, size_t *capacity, size_t needed, size_t size_bytes);
+void camber_free(camber_context *context, void *block);
+char *camber_copy_string(camber_context *context, const char *text);
+
+void camber_log(camber_context *context, camber_log_level level, const char *format, ...) CAMBER_PRINTF(3, 4);
+/* Logs an error and returns status, so that a failure is one line: return camber_fail(...). */
+camber_status camber_fail(camber_context *context, camber_status status, const char *format, ...) CAMBER_PRINTF(3, 4);
+void camber_progress(camber_context *context, const char *stage, double fraction);
+
+/* Milliseconds of a monotonic clock. */
+double camber_now_ms(void);
+
+/* Reads a whole file; *bytes is freed with camber_free and has a 0 behind its end. Returns
+ * CAMBER_ERROR_NOT_FOUND, CAMBER_ERROR_INPUT (a directory), CAMBER_ERROR_IO, CAMBER_ERROR_MEMORY. */
+camber_status camber_read_file(camber_context *context, const char *path, char **bytes, size_t *size_bytes);
+
+/* ---- Cache: small files by name in the context's cache folder; every failure is a miss ---- */
+
+/* A 64-bit FNV-1a hash, to be chained from CAMBER_HASH_START. */
+#define CAMBER_HASH_START 14695981039346656037ull
+uint64_t camber_hash(uint64_t hash, const void *bytes, size_t size_bytes);
+/* *bytes is freed with camber_free. */
+bool camber_cache_load(camber_context *context, const char *name, char **bytes, size_t *size_bytes);
+/* Written beside and renamed: readers see a whole file or none. */
+void camber_cache_save(camber_context *context, const char *name, const void *bytes, size_t size_bytes);
+
+#endif

@@ -1,0 +1,461 @@
+/* camber: polylines to anti-aliased pictures. OpenCL kernels tessellate, GLES shaders draw.
+ *
+ *     polylines -> tessellation -> mesh -> renderer -> rows of RGBA8
+ *
+ * This header is the manual of libcamber. libcamber-map (camber_map.h) stands on it.
+ *
+ * Errors. What can fail returns a camber_status. Results go to the last parameter, which is left
+ * untouched on failure. The story of a failure (what, where, and the cure, in one line) goes to the
+ * log callback of the context. Misuse (a NULL object, a count that contradicts a pointer) asserts.
+ *
+ * Ownership. X_create makes an object, X_destroy frees it and accepts NULL. Inputs are read during the
+ * call only, unless a comment says that the object keeps a pointer. An object must outlive those made
+ * from it: context > device, surface > renderer > mesh.
+ *
+ * Descriptions. Every desc and params struct is valid when zeroed; each field says what zero means.
+ *
+ * Threads. There is no global state. A context and all that was made from it may be used by one thread
+ * at a time; different contexts are independent. A surface's GL context is made current on the calling
+ * thread by each call that needs it.
+ *
+ * Units. Pixels are device pixels, x to the right, y down; pixel centres lie at .5.
+ */
+#ifndef CAMBER_H
+#define CAMBER_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define CAMBER_VERSION_MAJOR 0
+#define CAMBER_VERSION_MINOR 1
+#define CAMBER_VERSION_PATCH 0
+
+#if !defined(CAMBER_API) && defined(__GNUC__)
+#define CAMBER_API __attribute__((visibility("default")))
+#elif !defined(CAMBER_API)
+#define CAMBER_API
+#endif
+
+/* ---- Status ------------------------------------------------------------------------------------ */
+
+typedef enum camber_status {
+    CAMBER_OK = 0,
+    CAMBER_ERROR_MEMORY,    /* an allocation failed, on the host or on the device */
+    CAMBER_ERROR_ARGUMENT,  /* a value that the user chose is out of range or does not parse */
+    CAMBER_ERROR_INPUT,     /* input data is not what it claims to be, or is cut off */
+    CAMBER_ERROR_NOT_FOUND, /* no such file */
+    CAMBER_ERROR_DEVICE,    /* no usable OpenCL device or GL back end, or a program does not build */
+    CAMBER_ERROR_IO,        /* reading or writing failed, a full disk among the causes */
+    CAMBER_ERROR_LIMIT,     /* more than 32-bit vertex indices, a buffer or a target can hold */
+} camber_status;
+
+/* A short English name of the status; never NULL. */
+CAMBER_API const char *camber_status_name(camber_status status);
+
+/* "0.1.0" of the library in use. */
+CAMBER_API const char *camber_version(void);
+
+/* ---- Context: allocator, log, cache -------------------------------------------------------------- */
+
+typedef enum camber_log_level {
+    CAMBER_LOG_ERROR = 0, /* the story of a failure that a status reports */
+    CAMBER_LOG_WARNING,   /* something was left out or repaired; said once a cause */
+    CAMBER_LOG_INFO,      /* what was chosen and how long it took */
+} camber_log_level;
+
+/* message: one line without a newline, valid during the call. */
+typedef void camber_log_fn(void *user, camber_log_level level, const char *message);
+
+/* How far a long call is: fraction in 0 to 1, or below 0 where the end is not known. Called from the
+ * thread that made the call. */
+typedef void camber_progress_fn(void *user, const char *stage, double fraction);
+
+typedef struct camber_context_desc {
+    /* realloc's contract, with size 0 meaning free. NULL: the C library's. */
+    void *(*reallocate)(void *user, void *block, size_t size_bytes);
+    void *allocator_user;
+    camber_log_fn *log; /* NULL: silence */
+    void *log_user;
+    camber_progress_fn *progress; /* NULL: none */
+    void *progress_user;
+    /* Folder for compiled kernels. NULL: $XDG_CACHE_HOME/camber, else ~/.cache/camber; "": no cache.
+     * A folder that cannot be written is not an error. */
+    const char *cache_dir;
+} camber_context_desc;
+
+typedef struct camber_context camber_context;
+
+/* Returns CAMBER_ERROR_MEMORY. desc may be NULL. */
+CAMBER_API camber_status camber_context_create(const camber_context_desc *desc, camber_context **context);
+CAMBER_API void camber_context_destroy(camber_context *context);
+
+/* ---- Polylines ----------------------------------------------------------------------------------- */
+
+typedef struct camber_polylines_desc {
+    const float *points; /* point_count pairs of x, y in pixels */
+    size_t point_count;
+    const uint32_t *offsets; /* polyline_count + 1 indices into points, ascending, from 0 to point_count */
+    size_t polyline_count;
+    const uint32_t *rows; /* polyline_count indices into the strokes, below 2^24. NULL: all 0 */
+    /* false: a polyline whose first and last points are equal is a ring, and its seam is a join.
+     * true: such a polyline has caps at its ends like any other. */
+    bool keep_open;
+} camber_polylines_desc;
+
+/* What cleaning found. Nothing is dropped without being counted here. */
+typedef struct camber_polylines_stats {
+    size_t polylines;            /* as given */
+    size_t points;               /* as given */
+    size_t kept_points;          /* that are tessellated */
+    size_t kept_segments;        /* that are tessellated */
+    size_t rings;                /* polylines that close */
+    size_t dots;                 /* polylines of one distinct point: drawn as a dot by round and square caps */
+    size_t empty_polylines;      /* polylines without a point */
+    size_t repeated_points;      /* dropped: no farther than 1e-18 px from the point before */
+    size_t invalid_points;       /* dropped: NaN, infinite, or beyond 1e9 px; the polyline is split there */
+} camber_polylines_stats;
+
+typedef struct camber_polylines camber_polylines;
+
+/* Cleans and copies polylines into the form that the kernels read. A polyline that is split at invalid
+ * points keeps its index and its row.
+ * Returns CAMBER_ERROR_INPUT (offsets not ascending, a row of 2^24 or more), CAMBER_ERROR_MEMORY,
+ * CAMBER_ERROR_LIMIT (more than 2^32 - 1024 points). Cost: one pass, about 2 ns a point. */
+CAMBER_API camber_status camber_polylines_create(camber_context *context, const camber_polylines_desc *desc,
+                                                 camber_polylines **polylines);
+CAMBER_API void camber_polylines_destroy(camber_polylines *polylines);
+CAMBER_API camber_polylines_stats camber_polylines_get_stats(const camber_polylines *polylines);
+
+/* Arrays in the form of camber_polylines_desc that the callee allocates; free with camber_lines_free. */
+typedef struct camber_lines {
+    float *points;
+    uint32_t *offsets;
+    size_t point_count;
+    size_t polyline_count;
+} camber_lines;
+
+/* Reads the interchange file: little-endian uint32 0x4c594c50, polyline count n, point count p; n + 1
+ * uint32 offsets; p pairs of float32 x, y. bytes is the whole file; name stands in messages.
+ * Returns CAMBER_ERROR_INPUT (wrong magic, cut off, bytes left over, offsets that do not ascend),
+ * CAMBER_ERROR_MEMORY. */
+CAMBER_API camber_status camber_lines_parse(camber_context *context, const void *bytes, size_t size_bytes,
+                                            const char *name, camber_lines *lines);
+CAMBER_API void camber_lines_free(camber_context *context, camber_lines *lines);
+
+/* Where output goes: returns false when the bytes could not be taken (the caller knows why). */
+typedef struct camber_sink {
+    bool (*write)(void *user, const void *bytes, size_t size_bytes);
+    void *user;
+} camber_sink;
+
+/* Writes the interchange file. Returns CAMBER_ERROR_IO when the sink refuses. */
+CAMBER_API camber_status camber_lines_write(camber_context *context, const camber_lines *lines, camber_sink sink);
+
+/* ---- Strokes: how wide, which joins and caps ------------------------------------------------------ */
+
+typedef enum camber_join {
+    CAMBER_JOIN_ROUND = 0,
+    CAMBER_JOIN_MITER, /* a bevel where the miter limit is exceeded */
+    CAMBER_JOIN_BEVEL,
+} camber_join;
+
+typedef enum camber_cap {
+    CAMBER_CAP_BUTT = 0,
+    CAMBER_CAP_ROUND,
+    CAMBER_CAP_SQUARE,
+} camber_cap;
+
+/* A row of the style table as the tessellation needs it. */
+typedef struct camber_stroke {
+    /* The widest that the mesh will be drawn with: casing, not fill. 0 to 16384 px. */
+    float width_px;
+    camber_join join;
+    camber_cap cap;
+    /* Miter length over width, as in SVG: 1 / cos(turn / 2). 0: 2. */
+    float miter_limit;
+} camber_stroke;
+
+/* ---- OpenCL devices ------------------------------------------------------------------------------- */
+
+typedef enum camber_device_type {
+    CAMBER_DEVICE_TYPE_OTHER = 0,
+    CAMBER_DEVICE_TYPE_CPU,
+    CAMBER_DEVICE_TYPE_GPU,
+} camber_device_type;
+
+typedef struct camber_device_info {
+    char name[128];
+    char platform[128];
+    char version[128]; /* "OpenCL 3.0 ..." */
+    char driver[64];
+    camber_device_type type;
+    uint32_t compute_units;
+    uint64_t memory_bytes;
+    uint64_t largest_buffer_bytes;
+    bool gl_sharing; /* cl_khr_gl_sharing */
+} camber_device_info;
+
+/* Fills up to capacity infos and sets *count to the number of devices present, which may be larger and may
+ * be 0. infos may be NULL where capacity is 0. */
+CAMBER_API camber_status camber_device_list(camber_context *context, size_t capacity, camber_device_info *infos,
+                                            size_t *count);
+
+typedef struct camber_device_desc {
+    /* "cpu", "gpu", or part of a device's or platform's name, case ignored. NULL: a GPU, else a CPU. */
+    const char *match;
+} camber_device_desc;
+
+typedef struct camber_device camber_device;
+typedef struct camber_surface camber_surface;
+
+/* Opens a device and its kernels, from the cache where they are there. surface may be NULL; where it is
+ * given, buffers can be shared with its GL context (camber_renderer_create tells how).
+ * Returns CAMBER_ERROR_DEVICE (no platform, no device that matches, a kernel that does not build: the log has
+ * the build log), CAMBER_ERROR_MEMORY. Cost: 0.2 to 0.6 s the first time, 10 ms from the cache. */
+CAMBER_API camber_status camber_device_create(camber_context *context, const camber_device_desc *desc,
+                                              camber_surface *surface, camber_device **device);
+CAMBER_API void camber_device_destroy(camber_device *device);
+CAMBER_API camber_device_info camber_device_get_info(const camber_device *device);
+
+/* ---- Surfaces: a GL context without a window ------------------------------------------------------- */
+
+typedef enum camber_backend {
+    CAMBER_BACKEND_AUTO = 0, /* EGL, else OSMesa */
+    CAMBER_BACKEND_EGL,      /* surfaceless, else the first device platform */
+    CAMBER_BACKEND_OSMESA,
+} camber_backend;
+
+typedef struct camber_surface_desc {
+    camber_backend backend;
+} camber_surface_desc;
+
+typedef struct camber_surface_info {
+    const char *backend;  /* "EGL surfaceless", "EGL device", "OSMesa" */
+    const char *renderer; /* GL_RENDERER */
+    const char *version;  /* GL_VERSION */
+    uint32_t largest_target_px;
+    bool software; /* the renderer is a software rasteriser */
+    bool buffer_storage;
+} camber_surface_info;
+
+/* Returns CAMBER_ERROR_DEVICE when the library or the driver is not there. */
+CAMBER_API camber_status camber_surface_create(camber_context *context, const camber_surface_desc *desc,
+                                               camber_surface **surface);
+CAMBER_API void camber_surface_destroy(camber_surface *surface);
+/* The strings live as long as the surface. */
+CAMBER_API camber_surface_info camber_surface_get_info(const camber_surface *surface);
+
+/* ---- Renderer -------------------------------------------------------------------------------------- */
+
+typedef enum camber_sharing {
+    CAMBER_SHARING_AUTO = 0,  /* the first of the following that works */
+    CAMBER_SHARING_GL,        /* cl_khr_gl_sharing: OpenCL writes the GL buffer on the GPU */
+    CAMBER_SHARING_ZERO_COPY, /* a persistent map of the GL buffer is the OpenCL buffer */
+    CAMBER_SHARING_COPY,      /* through host memory; works anywhere */
+} camber_sharing;
+
+typedef struct camber_renderer_desc {
+    /* Asking for one path and not AUTO fails with CAMBER_ERROR_DEVICE where it does not work. */
+    camber_sharing sharing;
+} camber_renderer_desc;
+
+typedef struct camber_renderer camber_renderer;
+
+/* desc may be NULL. Returns CAMBER_ERROR_DEVICE (a shader that does not build), CAMBER_ERROR_MEMORY. */
+CAMBER_API camber_status camber_renderer_create(camber_device *device, camber_surface *surface,
+                                                const camber_renderer_desc *desc, camber_renderer **renderer);
+CAMBER_API void camber_renderer_destroy(camber_renderer *renderer);
+CAMBER_API camber_sharing camber_renderer_get_sharing(const camber_renderer *renderer);
+/* "cl_khr_gl_sharing", "zero copy" or "copy". */
+CAMBER_API const char *camber_sharing_name(camber_sharing sharing);
+
+/* ---- Meshes ---------------------------------------------------------------------------------------- */
+
+typedef enum camber_method {
+    CAMBER_METHOD_STRIP = 0, /* two vertices a point, cut along the bisectors: one strip a polyline */
+    CAMBER_METHOD_KITE,      /* bodies and two triangles a round join */
+    CAMBER_METHOD_FAN,       /* bodies and a fan of triangles a round join */
+} camber_method;
+
+CAMBER_API const char *camber_method_name(camber_method method);
+
+typedef struct camber_tessellation_desc {
+    const camber_stroke *strokes; /* stroke_count rows; every row of the polylines must be below it */
+    size_t stroke_count;
+    camber_method method;
+    float fan_tolerance_px; /* farthest that a fan's chord lies from its arc. 0: 0.25 */
+} camber_tessellation_desc;
+
+/* How far the geometry reaches past the stroke's edge, so that every pixel an edge touches is shaded: exact
+ * coverage reaches sqrt(1/2) px from the edge. */
+#define CAMBER_PAD_PX 0.75f
+
+/* A vertex, 36 bytes. A segment runs from A to B, u is its direction, L its length. The vertex lies at
+ *     P + u * clamp(along * g, -limit_px, +limit_px) + (-u.y, u.x) * across * g
+ * with g = half the width that is drawn + CAMBER_PAD_PX, and P = B where at_end, else A. All vertices but
+ * those that no triangle ends with (is provoked by) carry the segment that the triangle draws. */
+typedef struct camber_vertex {
+    float x, y;      /* P, px */
+    float dx, dy;    /* B - A, px; 0, 0 for a dot, whose u is 1, 0 */
+    float along;     /* in units of g */
+    float limit_px;  /* bound on the offset along the segment; 3e38: none */
+    int16_t across;  /* in units of g / 16384 */
+    uint16_t flags;  /* bits 0-2: camber_end at A; 3-5: camber_end at B; 6: at_end */
+    int16_t turn_a;  /* tan(turn angle / 4) * 32767 at A, positive from x to y (clockwise as drawn) */
+    int16_t turn_b;  /* the same at B */
+    uint32_t row;    /* of the polyline */
+} camber_vertex;
+
+/* What the fragment shader does past an end of a segment. */
+typedef enum camber_end {
+    CAMBER_END_ROUND = 0,   /* distance to the end point: the paper's arc */
+    CAMBER_END_BUTT,        /* nothing past the end */
+    CAMBER_END_SQUARE,      /* nothing past half a width beyond the end */
+    CAMBER_END_MITER,       /* the edges run on; the geometry is cut at the bisector */
+    CAMBER_END_BEVEL,       /* cut by the line through the two outer corners */
+    CAMBER_END_SPLIT_ROUND, /* round, on this segment's side of the bisector only: turns past 127 degrees */
+    CAMBER_END_SPLIT_BEVEL, /* bevel, likewise */
+} camber_end;
+
+#define CAMBER_RESTART_INDEX 0xffffffffu
+
+typedef struct camber_mesh_info {
+    camber_method method;
+    bool strips; /* indices are triangle strips with CAMBER_RESTART_INDEX between; else triangles */
+    size_t vertex_count;
+    size_t index_count;
+    size_t triangle_count; /* not degenerate */
+    size_t joins;          /* points with a join, by kind: */
+    size_t tight_joins;    /* the inner side has no room: (h + pad) tan(turn / 2) > half the shorter neighbour */
+    size_t split_joins;    /* turns past 127 degrees */
+    size_t undrawn_dots;   /* dots with butt caps, which have no area */
+    double classify_ms, scan_ms, emit_ms; /* of the last tessellation, on the device's queue */
+} camber_mesh_info;
+
+typedef struct camber_mesh camber_mesh;
+
+/* An empty mesh. renderer may be NULL: the mesh can be read then, not drawn. */
+CAMBER_API camber_status camber_mesh_create(camber_device *device, camber_renderer *renderer, camber_mesh **mesh);
+CAMBER_API void camber_mesh_destroy(camber_mesh *mesh);
+
+/* Tessellates on the device, replacing what the mesh held. Output is in input order and byte-identical from
+ * run to run. The mesh keeps the uploaded polylines, so that another call with the same object and other
+ * strokes uploads nothing.
+ * Returns CAMBER_ERROR_ARGUMENT (a width or a limit that is not a number or out of range, a row without a
+ * stroke), CAMBER_ERROR_LIMIT (2^32 - 1 vertices or more), CAMBER_ERROR_MEMORY, CAMBER_ERROR_DEVICE. */
+CAMBER_API camber_status camber_tessellate(camber_mesh *mesh, const camber_polylines *polylines,
+                                           const camber_tessellation_desc *desc);
+CAMBER_API camber_mesh_info camber_mesh_get_info(const camber_mesh *mesh);
+
+/* A mesh in host memory; free with camber_mesh_data_free. */
+typedef struct camber_mesh_data {
+    camber_mesh_info info;
+    camber_vertex *vertices; /* info.vertex_count */
+    uint32_t *indices;       /* info.index_count */
+} camber_mesh_data;
+
+CAMBER_API camber_status camber_mesh_read(camber_mesh *mesh, camber_mesh_data *data);
+/* The CPU twin: the same bytes as camber_tessellate where the device rounds correctly. Needs no device. */
+CAMBER_API camber_status camber_tessellate_on_host(camber_context *context, const camber_polylines *polylines,
+                                                   const camber_tessellation_desc *desc, camber_mesh_data *data);
+CAMBER_API void camber_mesh_data_free(camber_context *context, camber_mesh_data *data);
+
+/* ---- Drawing --------------------------------------------------------------------------------------- */
+
+/* Straight (not premultiplied), each 0 to 1. */
+typedef struct camber_color {
+    float r, g, b, a;
+} camber_color;
+
+/* How a row is drawn in one pass. */
+typedef struct camber_paint {
+    float width_px; /* 0: nothing is drawn; at most the stroke's width */
+    camber_color color;
+} camber_paint;
+
+typedef enum camber_overlap {
+    /* A translucent pass covers each pixel once, however often its lines cross it: coverage is gathered
+     * first and composited once. A run of polylines with equal alpha is flattened together. */
+    CAMBER_OVERLAP_FLATTEN = 0,
+    CAMBER_OVERLAP_ACCUMULATE, /* overlaps of translucent lines darken */
+} camber_overlap;
+
+typedef enum camber_coverage {
+    CAMBER_COVERAGE_EXACT = 0, /* the exact area of a pixel under a straight edge */
+    CAMBER_COVERAGE_LINEAR,    /* a ramp one pixel wide across the edge: cheaper, about twice the error */
+} camber_coverage;
+
+/* Draws polylines [first_polyline, first_polyline + polyline_count) of a mesh, in order. */
+typedef struct camber_pass {
+    camber_mesh *mesh;
+    size_t first_polyline;
+    size_t polyline_count;      /* 0: to the last */
+    const camber_paint *paints; /* paint_count; a row at or past it is not drawn */
+    size_t paint_count;
+    camber_overlap overlap;
+} camber_pass;
+
+typedef struct camber_frame {
+    uint32_t width, height;  /* px; 1 to 65535 each */
+    camber_color background; /* zero: transparent */
+    const camber_pass *passes;
+    size_t pass_count;
+    camber_coverage coverage;
+    /* The picture is drawn in pieces where a side is longer than this. 0: the largest target, or less where
+     * that would take more than 64 MB. */
+    uint32_t largest_piece_px;
+} camber_frame;
+
+typedef struct camber_frame_stats {
+    size_t draw_calls;
+    size_t pieces;
+    double draw_ms; /* clear, draw, finish */
+    double read_ms;
+} camber_frame_stats;
+
+/* Takes row_count rows of width * 4 bytes, premultiplied RGBA8, from the top down; a return of false stops the
+ * drawing. */
+typedef bool camber_rows_fn(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count);
+
+/* Draws a frame and hands its rows over. rows may be NULL: the frame is drawn and finished, not read back.
+ * stats may be NULL. Returns CAMBER_ERROR_ARGUMENT (a size out of range), CAMBER_ERROR_DEVICE (the GL
+ * reported an error), CAMBER_ERROR_MEMORY, CAMBER_ERROR_IO (rows returned false). */
+CAMBER_API camber_status camber_render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows,
+                                       void *user, camber_frame_stats *stats);
+
+/* ---- PNG ------------------------------------------------------------------------------------------- */
+
+typedef struct camber_png_text {
+    const char *key;  /* 1 to 79 Latin-1 characters */
+    const char *text; /* UTF-8 */
+} camber_png_text;
+
+typedef struct camber_png_desc {
+    uint32_t width, height; /* px, 1 to 65535 */
+    bool opaque;            /* alpha is dropped: RGB instead of RGBA */
+    const camber_png_text *texts;
+    size_t text_count;
+    int compression; /* zlib's level 1 to 9. 0: 3 */
+} camber_png_desc;
+
+typedef struct camber_png camber_png;
+
+/* Writes the head of a PNG. Then camber_png_write_rows until all rows are there, then camber_png_finish. */
+CAMBER_API camber_status camber_png_create(camber_context *context, const camber_png_desc *desc, camber_sink sink,
+                                           camber_png **png);
+/* rgba: premultiplied, row_count rows of width * 4 bytes; written unpremultiplied, as PNG wants it. */
+CAMBER_API camber_status camber_png_write_rows(camber_png *png, const uint8_t *rgba, uint32_t row_count);
+/* Writes the end. CAMBER_ERROR_IO when rows are missing or the sink refuses. */
+CAMBER_API camber_status camber_png_finish(camber_png *png);
+CAMBER_API void camber_png_destroy(camber_png *png);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,147 @@
+/* camber-map: files, projection and style on top of libcamber.
+ *
+ *     style + files -> features -> map -> view -> scene (polylines, strokes, passes) -> camber.h
+ *
+ * The rules of camber.h (errors, ownership, descriptions, threads) hold here too.
+ */
+#ifndef CAMBER_MAP_H
+#define CAMBER_MAP_H
+
+#include "camber.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- Style: a MapLibre style document ------------------------------------------------------------ */
+
+typedef enum camber_theme {
+    CAMBER_THEME_LIGHT = 0,
+    CAMBER_THEME_DARK,
+} camber_theme;
+
+typedef struct camber_style camber_style;
+
+/* Parses and compiles a style document (its background and line layers). name stands in messages. Layers of
+ * other types and properties that are not drawn are warned of, each once.
+ * Returns CAMBER_ERROR_INPUT (not JSON: line and column are said; a wrong type or value: its JSON pointer is
+ * said), CAMBER_ERROR_MEMORY. */
+CAMBER_API camber_status camber_style_parse(camber_context *context, const char *json, size_t size_bytes,
+                                            const char *name, camber_style **style);
+/* The built-in road style. */
+CAMBER_API camber_status camber_style_builtin(camber_context *context, camber_theme theme, camber_style **style);
+CAMBER_API void camber_style_destroy(camber_style *style);
+
+/* ---- Features: lines and the attributes that a style names --------------------------------------- */
+
+typedef struct camber_source_desc {
+    const char *path;  /* anything OGR opens, "/vsigzip/..." included; a .gz is opened through it */
+    const char *layer; /* NULL: OSM's "lines"; a vector tile set's road layer; else every layer with lines */
+    const char *where; /* OGR attribute filter. NULL: none */
+} camber_source_desc;
+
+typedef struct camber_features_stats {
+    size_t features;          /* read, lines kept */
+    size_t polylines;         /* kept, after parts were split and tile pieces joined */
+    size_t points;            /* kept */
+    size_t skipped_features;  /* points, and polygons where no layer of the style wants outlines */
+    size_t damaged_features;  /* that came with a failure, or whose geometry does not parse */
+    size_t invalid_points;    /* dropped: NaN or infinite */
+    size_t clamped_points;    /* moved to latitude 85.051129 */
+    size_t antimeridian_splits;
+    size_t joined_pieces;     /* vector tiles: pieces of one feature joined at a tile border */
+} camber_features_stats;
+
+typedef struct camber_features camber_features;
+
+/* An empty set that keeps the attributes that the style names. The style must outlive it. */
+CAMBER_API camber_status camber_features_create(camber_context *context, const camber_style *style,
+                                                camber_features **features);
+/* Reads one more file into the set. Warnings are logged once a cause.
+ * Returns CAMBER_ERROR_NOT_FOUND, CAMBER_ERROR_INPUT (unreadable, cut off, no line layer, no such layer),
+ * CAMBER_ERROR_ARGUMENT (where does not parse), CAMBER_ERROR_IO, CAMBER_ERROR_MEMORY. */
+CAMBER_API camber_status camber_features_read(camber_features *features, const camber_source_desc *desc);
+CAMBER_API void camber_features_destroy(camber_features *features);
+CAMBER_API camber_features_stats camber_features_get_stats(const camber_features *features);
+/* Whether any of the data is OpenStreetMap's, whose licence asks for attribution. */
+CAMBER_API bool camber_features_is_osm(const camber_features *features);
+
+/* "GPKG", ... the short name of OGR's n-th vector driver that reads, NULL past the last. The string is
+ * OGR's. */
+CAMBER_API const char *camber_format_name(size_t n);
+/* "GDAL 3.6.2, ..." */
+CAMBER_API const char *camber_gdal_version(void);
+
+/* ---- View ----------------------------------------------------------------------------------------- */
+
+typedef enum camber_view_kind {
+    CAMBER_VIEW_FIT = 0, /* what the style draws, with a margin of 2 % */
+    CAMBER_VIEW_BBOX,    /* bbox inside the picture */
+    CAMBER_VIEW_CENTER,  /* center and zoom */
+} camber_view_kind;
+
+typedef struct camber_view_desc {
+    camber_view_kind kind;
+    double west, south, east, north; /* degrees; west > east: across the antimeridian */
+    double longitude, latitude;      /* of the centre, degrees */
+    double zoom;                     /* MapLibre's: the world is 512 CSS px wide at 0 */
+    double bearing_deg;              /* clockwise: the direction that is up in the picture */
+    uint32_t width, height;          /* CSS px. 0: 1024 */
+    double ratio;                    /* device px a CSS px. 0: 1 */
+} camber_view_desc;
+
+/* ---- Scene: a view of features in a style, ready to tessellate and draw --------------------------- */
+
+typedef struct camber_scene_desc {
+    camber_view_desc view;
+    double simplify_px; /* a point is dropped where the line stays this close to it, device px. 0: none */
+} camber_scene_desc;
+
+typedef struct camber_scene_info {
+    double longitude, latitude, zoom; /* of the view's centre */
+    uint32_t width, height;           /* device px */
+    size_t layers;                    /* of the style that draw something here */
+    size_t features;                  /* of which something lies in the view, a layer */
+    size_t polylines, points;         /* to tessellate */
+    size_t points_in;                 /* of these features, before simplification and clipping */
+    bool opaque;                      /* the background covers the picture */
+} camber_scene_info;
+
+typedef struct camber_scene camber_scene;
+
+/* Evaluates the style, projects, culls. The features must outlive the scene.
+ * Returns CAMBER_ERROR_ARGUMENT (a view out of range), CAMBER_ERROR_MEMORY. Nothing to draw is no error. */
+CAMBER_API camber_status camber_scene_create(const camber_features *features, const camber_scene_desc *desc,
+                                             camber_scene **scene);
+CAMBER_API void camber_scene_destroy(camber_scene *scene);
+CAMBER_API camber_scene_info camber_scene_get_info(const camber_scene *scene);
+
+/* The parts, owned by the scene. */
+CAMBER_API const camber_polylines *camber_scene_polylines(const camber_scene *scene);
+CAMBER_API const camber_lines *camber_scene_lines(const camber_scene *scene);
+CAMBER_API const camber_stroke *camber_scene_strokes(const camber_scene *scene, size_t *count);
+/* The frame with all passes drawing mesh, which holds the tessellated scene. Valid until the next call on
+ * this scene. */
+CAMBER_API camber_frame camber_scene_frame(camber_scene *scene, camber_mesh *mesh);
+
+/* ---- GLB ------------------------------------------------------------------------------------------- */
+
+typedef struct camber_glb_desc {
+    const camber_stroke *strokes; /* go to extras, with the paints */
+    const camber_paint *paints;   /* NULL: none; else stroke_count */
+    size_t stroke_count;
+    const char *copyright; /* asset.copyright. NULL: none */
+} camber_glb_desc;
+
+/* Writes a binary glTF 2.0 that any reader loads: triangles, or strips whose restarts are degenerate
+ * triangles; x right, y up, z 0, one unit a pixel. POSITION is the stroke's true outline at the strokes'
+ * widths; _CENTER, _SEGMENT, _EXTRUDE, _TURN and _ROW are what camber's shaders draw from (docs in glb.c).
+ * Returns CAMBER_ERROR_IO when the sink refuses, CAMBER_ERROR_LIMIT (4 GB or more), CAMBER_ERROR_MEMORY. */
+CAMBER_API camber_status camber_glb_write(camber_context *context, const camber_mesh_data *mesh,
+                                          const camber_glb_desc *desc, camber_sink sink);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

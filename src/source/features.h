@@ -1,0 +1,52 @@
+/* Features in memory: lines in world coordinates, attributes as dictionary-coded columns.
+ *
+ * Features that agree in layer, geometry kind and every kept attribute form one class, so that a style's
+ * filters are evaluated once a class and not once a feature: a city of 50,000 ways has a few hundred.
+ */
+#ifndef CAMBER_FEATURES_H
+#define CAMBER_FEATURES_H
+
+#include "camber_map.h"
+#include "style/style.h"
+
+typedef enum camber_geometry_kind {
+    CAMBER_GEOMETRY_LINE = 0,
+    CAMBER_GEOMETRY_POLYGON, /* its outline */
+} camber_geometry_kind;
+
+typedef struct camber_feature_class {
+    uint32_t layer; /* index into layer_names */
+    camber_geometry_kind geometry;
+    size_t first_value; /* into values: style->property_count of them, in the style's order */
+} camber_feature_class;
+
+struct camber_features {
+    camber_context *context;
+    const camber_style *style;
+
+    /* World coordinates: Web Mercator, x and y in 0 to 1 from the north-west, y down; pairs. */
+    double *points;
+    size_t point_count, point_capacity;
+    /* Polyline i has the points [offsets[i], offsets[i + 1]). polyline_count + 1 entries once not empty. */
+    size_t *offsets;
+    size_t polyline_count, polyline_capacity;
+    uint32_t *polyline_feature; /* polyline_count: the feature that it is a part of, ascending */
+
+    uint32_t *feature_class; /* feature_count */
+    size_t feature_count, feature_capacity;
+
+    camber_feature_class *classes;
+    size_t class_count, class_capacity;
+    camber_value *values; /* class_count * style->property_count; strings belong to this set */
+    size_t value_count, value_capacity;
+
+    char **layer_names; /* source layers, in the order they were met */
+    size_t layer_count, layer_capacity;
+
+    bool is_osm;
+    camber_features_stats stats;
+
+    void *interned; /* features.c: strings and classes, hashed */
+};
+
+#endif

@@ -350,7 +350,8 @@ CAMBER_API void camber_mesh_destroy(camber_mesh *mesh);
  * stroke), CAMBER_ERROR_LIMIT (2^32 - 1 vertices or more), CAMBER_ERROR_MEMORY, CAMBER_ERROR_DEVICE. */
 CAMBER_API camber_status camber_tessellate(camber_mesh *mesh, const camber_polylines *polylines,
                                            const camber_tessellation_desc *desc);
-CAMBER_API camber_mesh_info camber_mesh_get_info(const camber_mesh *mesh);
+/* The counts of joins and triangles are made at the first call after a tessellation: about 1 ns a point. */
+CAMBER_API camber_mesh_info camber_mesh_get_info(camber_mesh *mesh);
 
 /* A mesh in host memory; free with camber_mesh_data_free. */
 typedef struct camber_mesh_data {

@@ -1,0 +1,182 @@
+/* Join maths, the one place where a formula of a join stands. Only + - * / sqrt, each correctly rounded, so that
+ * device and twin agree to the last bit where the device rounds correctly.
+ *
+ * u and w are the directions into and out of a point, t the angle from u to w, positive from x to y. The half
+ * turn's cosine c and sine s give all that a join needs:
+ *
+ *     tan(t/2) = s / c          how far along u the bisector cuts the edge
+ *     tan(t/4) = s / (1 + c)    in -1 to 1 for every turn: what is stored, as 16 bits
+ *     1 / c                     the miter length over the width
+ */
+#ifndef CAMBER_JOIN_MATHS_H
+#define CAMBER_JOIN_MATHS_H
+
+#include "layout.h"
+
+typedef struct camber_turn {
+    float c, s;          /* cosine (>= 0) and sine (signed) of half the turn */
+    float dot;           /* cosine of the turn */
+    float half_shorter;  /* half the shorter of the two segments, px */
+} camber_turn;
+
+/* From the vectors into (dx, dy) and out of (ex, ey) a point, px. Lengths below 1e-18 px count as that. */
+CAMBER_FN camber_turn camber_turn_between(float dx, float dy, float ex, float ey) {
+    const float d2 = dx * dx + dy * dy, e2 = ex * ex + ey * ey;
+    const float d = CAMBER_SQRT(d2 > 1e-36f ? d2 : 1e-36f), e = CAMBER_SQRT(e2 > 1e-36f ? e2 : 1e-36f);
+    const float ux = dx / d, uy = dy / d, wx = ex / e, wy = ey / e;
+    const float dot = ux * wx + uy * wy, cross = ux * wy - uy * wx;
+    /* Of c and s the larger comes from a root that loses nothing, the smaller from cross = 2 s c. */
+    const float larger = CAMBER_SQRT(0.5f + 0.5f * CAMBER_FABS(dot));
+    const float smaller = 0.5f * cross / larger;
+    camber_turn turn;
+    turn.dot = dot;
+    turn.c = dot >= 0.0f ? larger : CAMBER_FABS(smaller);
+    turn.s = dot >= 0.0f ? smaller : (cross < 0.0f ? -larger : larger);
+    turn.half_shorter = 0.5f * (d < e ? d : e);
+    return turn;
+}
+
+/* tan(t/4) as 16 bits. */
+CAMBER_FN camber_u32 camber_turn_pack(camber_turn turn) {
+    const float q = turn.s / (1.0f + turn.c) * 32767.0f;
+    const float rounded = q + (q < 0.0f ? -0.5f : 0.5f);
+    return (camber_u32)(camber_i32)(rounded > 32767.0f ? 32767.0f : rounded < -32767.0f ? -32767.0f : rounded) & 0xffffu;
+}
+
+CAMBER_FN float camber_turn_unpack(camber_u32 join) {
+    const camber_i32 q = (camber_i32)(join & 0xffffu);
+    return (float)(q >= 32768 ? q - 65536 : q) * (1.0f / 32767.0f);
+}
+
+/* tan(t/2) from q = tan(t/4). Large, not infinite, at a full reversal. */
+CAMBER_FN float camber_turn_tan_half(float q) {
+    const float below = 1.0f - q * q;
+    return 2.0f * q / (below > 1e-6f ? below : 1e-6f);
+}
+
+CAMBER_FN camber_u32 camber_join_kind(camber_u32 join) {
+    return join >> CAMBER_JOIN_KIND_SHIFT & 7u;
+}
+
+CAMBER_FN camber_u32 camber_join_end(camber_u32 join) {
+    return join >> CAMBER_JOIN_END_SHIFT & 7u;
+}
+
+CAMBER_FN camber_u32 camber_join_triangles(camber_u32 join) {
+    return join >> CAMBER_JOIN_TRIANGLES_SHIFT & 127u;
+}
+
+/* camber_end past a cap: round 0, butt 1, square 2. */
+CAMBER_FN camber_u32 camber_cap_end(camber_u32 cap) {
+    return cap == 1u ? 0u : cap == 2u ? 2u : 1u;
+}
+
+/* Triangles of a round join as a fan: steps of the row's angle until they pass the turn. cos falls from 0 to
+ * half a circle, so comparing cosines compares angles. */
+CAMBER_FN camber_u32 camber_fan_triangles(camber_turn turn, camber_row row) {
+    float x = row.fan_cos, y = row.fan_sin;
+    camber_u32 n = 1;
+    while (n < CAMBER_JOIN_TRIANGLES_MAX && x > turn.dot && y > 0.0f) {
+        const float next = x * row.fan_cos - y * row.fan_sin;
+        y = x * row.fan_sin + y * row.fan_cos;
+        x = next;
+        n++;
+    }
+    return n;
+}
+
+/* The join word of a point where two segments meet.
+ *
+ *     cut: each segment's quad ends on the bisector M-C       tight: the inner side has no room, each quad keeps
+ *     and holds its own part of the join                      its own M; they overlap in the opaque inside
+ *
+ *        ______________ C                                        ______________ C
+ *        in            /|                                        in            /|
+ *        --------------P |                                       ------------P--|
+ *        ____________/   |                                       ______Ma__/    |
+ *                    M   |                                              Mb|_out_|
+ *                    |out|
+ *
+ *     split: past |tan(t/2)| = 2 (127 degrees) C runs away; both end past P, and the fragment shader gives each
+ *     its side of the bisector
+ */
+CAMBER_FN camber_u32 camber_join_word(camber_turn turn, camber_row row, camber_u32 method) {
+    const float sine = CAMBER_FABS(turn.s);
+    const camber_u32 miter = row.join == 1u && turn.c * row.miter_limit >= 1.0f;
+    const camber_u32 bevel = row.join != 0u && !miter;
+    const camber_u32 split = !miter && sine > 2.0f * turn.c;
+    const camber_u32 tight = row.reach_px * sine > turn.half_shorter * turn.c;
+    camber_u32 end = miter ? 3u : bevel ? 4u : 0u;
+    camber_u32 triangles = 0;
+    if (method == CAMBER_STRIP) {
+        end = split ? (bevel ? 6u : 5u) : end;
+    } else if (sine > 0.0f) {
+        /* Past 120 degrees the kite's tip runs away: two kites of half the angle. */
+        const camber_u32 kites = !miter && sine > 1.7320508f * turn.c ? 4u : 2u;
+        triangles = method == CAMBER_FAN && row.join == 0u ? camber_fan_triangles(turn, row) : kites;
+    }
+    const camber_u32 kind = split ? CAMBER_KIND_SPLIT : tight ? CAMBER_KIND_TIGHT : CAMBER_KIND_CUT;
+    return camber_turn_pack(turn) | kind << CAMBER_JOIN_KIND_SHIFT | end << CAMBER_JOIN_END_SHIFT |
+           triangles << CAMBER_JOIN_TRIANGLES_SHIFT;
+}
+
+/* The join word of an end of an open polyline, or of a dot. */
+CAMBER_FN camber_u32 camber_cap_word(camber_u32 cap, camber_u32 dot) {
+    const camber_u32 kind = !dot ? CAMBER_KIND_CAP : cap == 0u ? CAMBER_KIND_UNDRAWN : CAMBER_KIND_DOT;
+    return kind << CAMBER_JOIN_KIND_SHIFT | camber_cap_end(cap) << CAMBER_JOIN_END_SHIFT;
+}
+
+/* How far along its segment an edge vertex lies, in units of the reach, and the bound on that in px. end: +1 at
+ * the segment's end, -1 at its start; side: +1 or -1. */
+typedef struct camber_edge {
+    float along, limit_px;
+} camber_edge;
+
+CAMBER_FN camber_edge camber_edge_at(camber_u32 join, float half_shorter, float end, float side, camber_u32 method) {
+    const camber_u32 kind = camber_join_kind(join);
+    camber_edge edge;
+    edge.along = end;
+    edge.limit_px = CAMBER_NO_LIMIT_PX;
+    if (kind < CAMBER_KIND_CUT) {
+        /* A cap: a butt end needs the pad only, however wide the line is drawn. */
+        edge.limit_px = camber_join_end(join) == 1u ? CAMBER_PAD_PX : CAMBER_NO_LIMIT_PX;
+        return edge;
+    }
+    const float q = camber_turn_unpack(join);
+    const float tan_half = camber_turn_tan_half(q);
+    const camber_u32 inner = side * q > 0.0f;
+    const camber_u32 cut = kind != CAMBER_KIND_SPLIT;
+    if (method == CAMBER_STRIP)
+        edge.along = cut ? -end * side * tan_half : end;
+    else
+        edge.along = method == CAMBER_KITE && cut && inner ? -end * side * tan_half : 0.0f;
+    edge.limit_px = cut && inner ? half_shorter : CAMBER_NO_LIMIT_PX;
+    return edge;
+}
+
+/* How many vertices and indices a point emits, vertices | indices << 16. Lists of a point, in order:
+ *   strip       in L, R | restart where the strip breaks | out L, R
+ *   kite, fan   in L, R | join | P | out L, R       P only where there is a join
+ */
+CAMBER_FN camber_u32 camber_join_counts(camber_u32 join, camber_u32 before, camber_u32 info, camber_u32 method) {
+    const camber_u32 kind = camber_join_kind(join);
+    const camber_u32 first = info & CAMBER_POINT_FIRST, last = info & CAMBER_POINT_LAST;
+    if (kind == CAMBER_KIND_GHOST || kind == CAMBER_KIND_UNDRAWN)
+        return 0;
+    if (method == CAMBER_STRIP) {
+        if (kind == CAMBER_KIND_DOT || (kind > CAMBER_KIND_CUT && !first && !last))
+            return 4u | 5u << 16;
+        return 2u | (last ? 3u : 2u) << 16;
+    }
+    if (kind == CAMBER_KIND_DOT)
+        return 4u | 6u << 16;
+    if (first)
+        return kind == CAMBER_KIND_CAP ? 2u : 3u;
+    const camber_u32 triangles = camber_join_triangles(join);
+    const camber_u32 centred = (kind != CAMBER_KIND_CAP ? 1u : 0u) + (camber_join_kind(before) != CAMBER_KIND_CAP ? 1u : 0u);
+    const camber_u32 join_vertices = triangles ? triangles - 1u : 0u;
+    const camber_u32 vertices = kind == CAMBER_KIND_CAP ? 2u : 5u + join_vertices;
+    return vertices | (3u * (2u + centred) + 3u * triangles) << 16;
+}
+
+#endif

@@ -1,0 +1,86 @@
+/* Layouts that host and device share. Scalar C that both compilers read; the build declares the dialect
+ * (__OPENCL_VERSION__ is OpenCL's own). Sizes are asserted on both sides. */
+#ifndef CAMBER_LAYOUT_H
+#define CAMBER_LAYOUT_H
+
+#ifdef __OPENCL_VERSION__
+#pragma OPENCL FP_CONTRACT OFF
+typedef uint camber_u32;
+typedef int camber_i32;
+typedef ulong camber_u64;
+#define CAMBER_FN static inline
+#define CAMBER_SQRT(x) sqrt(x)
+#define CAMBER_FABS(x) fabs(x)
+#define CAMBER_PAD_PX 0.75f
+#else
+#include "camber.h"
+#include <math.h>
+typedef uint32_t camber_u32;
+typedef int32_t camber_i32;
+typedef uint64_t camber_u64;
+#define CAMBER_FN static inline
+#define CAMBER_SQRT(x) sqrtf(x)
+#define CAMBER_FABS(x) fabsf(x)
+#endif
+
+/* Points a work-group, and the block of the scan. Point arrays are padded with ghosts to a multiple of it, so
+ * that no kernel needs a guard. */
+#define CAMBER_BLOCK 256
+
+/* A point's info word: row << CAMBER_POINT_ROW_SHIFT | flags. 0 is a ghost: a neighbour to look at, or padding,
+ * that emits nothing. A ring is stored as ghost of its last but one point, its points with the first repeated
+ * at the end, ghost of its second point: so neighbours are always i - 1 and i + 1. */
+#define CAMBER_POINT_REAL 1u
+#define CAMBER_POINT_FIRST 2u
+#define CAMBER_POINT_LAST 4u
+#define CAMBER_POINT_RING 8u
+#define CAMBER_POINT_ROW_SHIFT 8
+
+/* A row of the style table as the kernels read it. */
+typedef struct camber_row {
+    float reach_px;    /* half the width + CAMBER_PAD_PX: the unit of extrusion at the widest */
+    float miter_limit; /* 1 / cos(turn / 2) */
+    float fan_cos;     /* of the fan's step angle */
+    float fan_sin;
+    float fan_scale; /* 1 / cos(step / 2): chords touch the padded arc instead of cutting it */
+    camber_u32 join; /* camber_join */
+    camber_u32 cap;  /* camber_cap */
+    camber_u32 unused;
+} camber_row;
+
+/* Words of a vertex: see camber_vertex in camber.h. */
+#define CAMBER_VERTEX_WORDS 9
+
+/* A point's join word, what classify writes and scan and emit read:
+ *   bits 0-15 tan(turn / 4) * 32767, two's complement; 16-18 kind; 19-21 camber_end; 22-28 join triangles. */
+#define CAMBER_JOIN_KIND_SHIFT 16
+#define CAMBER_JOIN_END_SHIFT 19
+#define CAMBER_JOIN_TRIANGLES_SHIFT 22
+#define CAMBER_JOIN_TRIANGLES_MAX 64 /* so that a block's index count fits 16 bits */
+
+#define CAMBER_KIND_GHOST 0u
+#define CAMBER_KIND_DOT 1u   /* a polyline of one point */
+#define CAMBER_KIND_CAP 2u   /* an end of an open polyline */
+#define CAMBER_KIND_CUT 3u   /* a join cut along its bisector */
+#define CAMBER_KIND_TIGHT 4u /* cut on the outer side; the inner side has no room */
+#define CAMBER_KIND_SPLIT 5u /* too sharp to cut: both segments end here */
+#define CAMBER_KIND_UNDRAWN 6u /* a dot with butt caps: no area */
+
+/* The methods, as camber_method, and the ends, as camber_end: numbers that the preprocessor can compare. */
+#define CAMBER_STRIP 0
+#define CAMBER_KITE 1
+#define CAMBER_FAN 2
+
+#define CAMBER_NO_LIMIT_PX 3.0e38f
+
+#ifdef __OPENCL_VERSION__
+typedef char camber_row_is_32_bytes[sizeof(camber_row) == 32 ? 1 : -1];
+#else
+_Static_assert(sizeof(camber_row) == 32, "the device reads rows of 32 bytes");
+_Static_assert(sizeof(camber_vertex) == 4 * CAMBER_VERTEX_WORDS, "the device writes vertices of 36 bytes");
+_Static_assert(CAMBER_METHOD_STRIP == CAMBER_STRIP && CAMBER_METHOD_KITE == CAMBER_KITE &&
+                   CAMBER_METHOD_FAN == CAMBER_FAN,
+               "the build passes the method to the device as a number");
+#endif
+
+#endif

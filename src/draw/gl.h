@@ -1,0 +1,81 @@
+/* The GL that camber calls, loaded at run time: EGL's and OSMesa's libraries both export gl* symbols, so none is linked. */
+#ifndef CAMBER_GL_H
+#define CAMBER_GL_H
+
+#include "base/base.h"
+
+#include <GLES3/gl3.h>
+#include <GLES2/gl2ext.h>
+
+#define CAMBER_GL_FUNCTIONS(X)                                                                                         \
+    X(GLenum, GetError, (void))                                                                                        \
+    X(const GLubyte *, GetString, (GLenum))                                                                            \
+    X(const GLubyte *, GetStringi, (GLenum, GLuint))                                                                   \
+    X(void, GetIntegerv, (GLenum, GLint *))                                                                            \
+    X(void, Enable, (GLenum))                                                                                          \
+    X(void, Disable, (GLenum))                                                                                         \
+    X(void, BlendFunc, (GLenum, GLenum))                                                                               \
+    X(void, Viewport, (GLint, GLint, GLsizei, GLsizei))                                                                \
+    X(void, ClearColor, (GLfloat, GLfloat, GLfloat, GLfloat))                                                          \
+    X(void, Clear, (GLbitfield))                                                                                       \
+    X(void, Finish, (void))                                                                                            \
+    X(void, PixelStorei, (GLenum, GLint))                                                                              \
+    X(void, ReadPixels, (GLint, GLint, GLsizei, GLsizei, GLenum, GLenum, void *))                                      \
+    X(GLuint, CreateShader, (GLenum))                                                                                  \
+    X(void, ShaderSource, (GLuint, GLsizei, const GLchar *const *, const GLint *))                                     \
+    X(void, CompileShader, (GLuint))                                                                                   \
+    X(void, GetShaderiv, (GLuint, GLenum, GLint *))                                                                    \
+    X(void, GetShaderInfoLog, (GLuint, GLsizei, GLsizei *, GLchar *))                                                  \
+    X(void, DeleteShader, (GLuint))                                                                                    \
+    X(GLuint, CreateProgram, (void))                                                                                   \
+    X(void, AttachShader, (GLuint, GLuint))                                                                            \
+    X(void, LinkProgram, (GLuint))                                                                                     \
+    X(void, GetProgramiv, (GLuint, GLenum, GLint *))                                                                   \
+    X(void, GetProgramInfoLog, (GLuint, GLsizei, GLsizei *, GLchar *))                                                 \
+    X(void, DeleteProgram, (GLuint))                                                                                   \
+    X(void, UseProgram, (GLuint))                                                                                      \
+    X(GLint, GetUniformLocation, (GLuint, const GLchar *))                                                             \
+    X(void, Uniform1i, (GLint, GLint))                                                                                 \
+    X(void, Uniform2f, (GLint, GLfloat, GLfloat))                                                                      \
+    X(void, Uniform4f, (GLint, GLfloat, GLfloat, GLfloat, GLfloat))                                                    \
+    X(void, GenVertexArrays, (GLsizei, GLuint *))                                                                      \
+    X(void, DeleteVertexArrays, (GLsizei, const GLuint *))                                                             \
+    X(void, BindVertexArray, (GLuint))                                                                                 \
+    X(void, EnableVertexAttribArray, (GLuint))                                                                         \
+    X(void, VertexAttribPointer, (GLuint, GLint, GLenum, GLboolean, GLsizei, const void *))                            \
+    X(void, VertexAttribIPointer, (GLuint, GLint, GLenum, GLsizei, const void *))                                      \
+    X(void, GenBuffers, (GLsizei, GLuint *))                                                                           \
+    X(void, DeleteBuffers, (GLsizei, const GLuint *))                                                                  \
+    X(void, BindBuffer, (GLenum, GLuint))                                                                              \
+    X(void, BufferData, (GLenum, GLsizeiptr, const void *, GLenum))                                                    \
+    X(void, BufferSubData, (GLenum, GLintptr, GLsizeiptr, const void *))                                               \
+    X(void *, MapBufferRange, (GLenum, GLintptr, GLsizeiptr, GLbitfield))                                              \
+    X(void, DrawArrays, (GLenum, GLint, GLsizei))                                                                      \
+    X(void, DrawElements, (GLenum, GLsizei, GLenum, const void *))                                                     \
+    X(void, GenTextures, (GLsizei, GLuint *))                                                                          \
+    X(void, DeleteTextures, (GLsizei, const GLuint *))                                                                 \
+    X(void, ActiveTexture, (GLenum))                                                                                   \
+    X(void, BindTexture, (GLenum, GLuint))                                                                             \
+    X(void, TexParameteri, (GLenum, GLenum, GLint))                                                                    \
+    X(void, TexStorage2D, (GLenum, GLsizei, GLenum, GLsizei, GLsizei))                                                 \
+    X(void, TexSubImage2D, (GLenum, GLint, GLint, GLint, GLsizei, GLsizei, GLenum, GLenum, const void *))              \
+    X(void, GenFramebuffers, (GLsizei, GLuint *))                                                                      \
+    X(void, DeleteFramebuffers, (GLsizei, const GLuint *))                                                             \
+    X(void, BindFramebuffer, (GLenum, GLuint))                                                                         \
+    X(void, FramebufferTexture2D, (GLenum, GLenum, GLenum, GLuint, GLint))                                             \
+    X(GLenum, CheckFramebufferStatus, (GLenum))
+
+/* In the driver's extensions, not in every one. */
+typedef void camber_gl_buffer_storage_fn(GLenum target, GLsizeiptr size, const void *data, GLbitfield flags);
+
+typedef struct camber_gl {
+#define CAMBER_GL_MEMBER(result, name, parameters) result(*name) parameters;
+    CAMBER_GL_FUNCTIONS(CAMBER_GL_MEMBER)
+#undef CAMBER_GL_MEMBER
+    camber_gl_buffer_storage_fn *BufferStorage; /* NULL: absent */
+} camber_gl;
+
+/* Any function, before it is cast to its type. */
+typedef void camber_function(void);
+
+#endif

@@ -1,0 +1,217 @@
+/* Drawing one pass into one piece: directly where it is opaque or accumulates, else run by run through a layer that is
+ * flattened onto the picture. */
+#include "draw/renderer.h"
+
+#include <string.h>
+
+enum { ROW_TEXTURE_WIDTH = 2048, TEXELS_A_ROW = 2 };
+
+/* Polylines of equal alpha that follow each other. */
+typedef struct pass_run {
+    size_t first, end; /* polylines */
+    float alpha;       /* of the flattened layer; 1: straight onto the picture */
+    bool one_color;    /* its layer is one channel of coverage, and color is put over it */
+    camber_color color;
+} pass_run;
+
+static bool is_drawn(const camber_pass *pass, uint32_t row) {
+    return row < pass->paint_count && pass->paints[row].width_px > 0.0f && pass->paints[row].color.a > 0.0f;
+}
+
+/* The row texture of a run: rows of other alphas are left out, and a layer's rows are drawn opaque. */
+static void fill_rows(camber_renderer *renderer, const camber_pass *pass, const pass_run *run, bool layered) {
+    for (size_t i = 0; i < pass->paint_count; i++) {
+        const camber_paint *paint = pass->paints + i;
+        float *texel = renderer->row_texels + 4 * TEXELS_A_ROW * i;
+        const bool drawn = is_drawn(pass, (uint32_t)i) && (!layered || paint->color.a == run->alpha);
+        const float alpha = layered ? 1.0f : paint->color.a;
+        const float color[4] = {paint->color.r * alpha, paint->color.g * alpha, paint->color.b * alpha, alpha};
+        memset(texel, 0, 4 * TEXELS_A_ROW * sizeof *texel);
+        texel[0] = drawn ? 0.5f * paint->width_px : -1.0f;
+        for (int c = 0; c < 4; c++)
+            texel[4 + c] = layered && run->one_color ? 1.0f : color[c];
+    }
+}
+
+static camber_status reserve_rows(camber_renderer *renderer, size_t row_count) {
+    const camber_gl *gl = &renderer->share.surface->gl;
+    /* At least two rows of texels, so that one row of the table always ends inside a row of the texture. */
+    const size_t texels = TEXELS_A_ROW * (row_count ? row_count : 1);
+    const size_t height = (texels + ROW_TEXTURE_WIDTH - 1) / ROW_TEXTURE_WIDTH;
+    if (height > renderer->share.surface->info.largest_target_px)
+        return camber_fail(renderer->share.device->context, CAMBER_ERROR_LIMIT, "%zu rows of style; merge equal ones", row_count);
+    if (!camber_grow(renderer->share.device->context, &renderer->row_texels, &renderer->row_capacity,
+                     height * ROW_TEXTURE_WIDTH, 4 * sizeof *renderer->row_texels))
+        return CAMBER_ERROR_MEMORY;
+    if (renderer->row_texture && renderer->row_height >= (GLsizei)height)
+        return CAMBER_OK;
+    gl->DeleteTextures(1, &renderer->row_texture);
+    gl->GenTextures(1, &renderer->row_texture);
+    gl->BindTexture(GL_TEXTURE_2D, renderer->row_texture);
+    renderer->row_width = ROW_TEXTURE_WIDTH;
+    renderer->row_height = (GLsizei)height;
+    gl->TexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA32F, renderer->row_width, renderer->row_height);
+    gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    return CAMBER_OK;
+}
+
+static void upload_rows(camber_renderer *renderer, size_t row_count) {
+    const camber_gl *gl = &renderer->share.surface->gl;
+    const size_t texels = TEXELS_A_ROW * row_count;
+    const GLsizei whole = (GLsizei)(texels / ROW_TEXTURE_WIDTH), rest = (GLsizei)(texels % ROW_TEXTURE_WIDTH);
+    gl->BindTexture(GL_TEXTURE_2D, renderer->row_texture);
+    if (whole)
+        gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, ROW_TEXTURE_WIDTH, whole, GL_RGBA, GL_FLOAT, renderer->row_texels);
+    if (rest)
+        gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, whole, rest, 1, GL_RGBA, GL_FLOAT,
+                          renderer->row_texels + 4 * (size_t)whole * ROW_TEXTURE_WIDTH);
+}
+
+static void bind_mesh(camber_renderer *renderer, const camber_mesh *mesh) {
+    const camber_gl *gl = &renderer->share.surface->gl;
+    const GLsizei stride = sizeof(camber_vertex);
+    gl->BindVertexArray(renderer->vertex_array);
+    gl->BindBuffer(GL_ARRAY_BUFFER, mesh->buffers[CAMBER_BUFFER_VERTICES].gl_name);
+    gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, mesh->buffers[CAMBER_BUFFER_INDICES].gl_name);
+    for (GLuint i = 0; i < 7; i++)
+        gl->EnableVertexAttribArray(i);
+#define AT(member) ((const void *)offsetof(camber_vertex, member))
+    gl->VertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, stride, AT(x));
+    gl->VertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, stride, AT(dx));
+    gl->VertexAttribPointer(2, 2, GL_FLOAT, GL_FALSE, stride, AT(along));
+    gl->VertexAttribPointer(3, 1, GL_SHORT, GL_FALSE, stride, AT(across));
+    gl->VertexAttribIPointer(4, 1, GL_UNSIGNED_SHORT, stride, AT(flags));
+    gl->VertexAttribPointer(5, 2, GL_SHORT, GL_TRUE, stride, AT(turn_a));
+    gl->VertexAttribIPointer(6, 1, GL_UNSIGNED_INT, stride, AT(row));
+#undef AT
+}
+
+/* Draws the polylines of a run with the rows that are in the texture. */
+static camber_status draw_run(camber_renderer *renderer, camber_mesh *mesh, const pass_run *run, const camber_piece *piece) {
+    /* A count is a signed 32-bit number, and restarts lie wherever a strip ends: cut at a polyline's. */
+    enum { INDICES_MAX = 1 << 30 };
+    const camber_gl *gl = &renderer->share.surface->gl;
+    const camber_shader *shader;
+    const unsigned variant = (piece->coverage == CAMBER_COVERAGE_LINEAR ? CAMBER_VARIANT_LINEAR : 0u) |
+                             (mesh->sharp_joins ? CAMBER_VARIANT_SHARP_JOINS : 0u) |
+                             (mesh->flat_caps ? CAMBER_VARIANT_FLAT_CAPS : 0u);
+    camber_status status = camber_renderer_stroke_shader(renderer, variant, &shader);
+    if (status != CAMBER_OK)
+        return status;
+    gl->UseProgram(shader->program);
+    gl->Uniform2f(shader->origin, (GLfloat)piece->x, (GLfloat)piece->y);
+    gl->Uniform2f(shader->scale, 2.0f / (GLfloat)piece->width, 2.0f / (GLfloat)piece->height);
+    gl->BindTexture(GL_TEXTURE_2D, renderer->row_texture);
+    bind_mesh(renderer, mesh);
+    for (size_t first = run->first; first < run->end;) {
+        size_t end = run->end;
+        uint64_t from, to;
+        status = camber_mesh_first_index(mesh, first, &from);
+        if (status == CAMBER_OK)
+            status = camber_mesh_first_index(mesh, end, &to);
+        while (status == CAMBER_OK && to - from > INDICES_MAX && end - first > 1) {
+            end = first + (end - first) / 2;
+            status = camber_mesh_first_index(mesh, end, &to);
+        }
+        if (status != CAMBER_OK)
+            return status;
+        if (to > from) {
+            gl->DrawElements(mesh->mesh_info.strips ? GL_TRIANGLE_STRIP : GL_TRIANGLES, (GLsizei)(to - from), GL_UNSIGNED_INT,
+                             (const void *)(uintptr_t)(4 * from));
+            ++*piece->draw_calls;
+        }
+        first = end;
+    }
+    gl->BindVertexArray(0);
+    return CAMBER_OK;
+}
+
+static camber_status draw_layered(camber_renderer *renderer, const camber_pass *pass, const pass_run *run,
+                                  const camber_piece *piece) {
+    const camber_gl *gl = &renderer->share.surface->gl;
+    const GLsizei width = (GLsizei)piece->width, height = (GLsizei)piece->height;
+    const int layer = run->one_color ? CAMBER_TARGET_COVERAGE : CAMBER_TARGET_LAYER;
+    const camber_shader *shader;
+    camber_status status = camber_renderer_bind_target(renderer, layer, width, height);
+    if (status != CAMBER_OK)
+        return status;
+    gl->ClearColor(0.0f, 0.0f, 0.0f, 0.0f);
+    gl->Clear(GL_COLOR_BUFFER_BIT);
+    /* One channel has no alpha of its own to blend by: a + b - ab is ONE, ONE_MINUS_SRC_COLOR. */
+    gl->BlendFunc(GL_ONE, run->one_color ? GL_ONE_MINUS_SRC_COLOR : GL_ONE_MINUS_SRC_ALPHA);
+    status = draw_run(renderer, pass->mesh, run, piece);
+    if (status == CAMBER_OK)
+        status = camber_renderer_flatten_shader(renderer, run->one_color, &shader);
+    if (status == CAMBER_OK)
+        status = camber_renderer_bind_target(renderer, CAMBER_TARGET_PICTURE, width, height);
+    if (status != CAMBER_OK)
+        return status;
+    const float a = run->alpha;
+    gl->BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    gl->UseProgram(shader->program);
+    if (run->one_color)
+        gl->Uniform4f(shader->layer_color, run->color.r * a, run->color.g * a, run->color.b * a, a);
+    else
+        gl->Uniform4f(shader->layer_color, a, a, a, a);
+    gl->BindTexture(GL_TEXTURE_2D, renderer->targets[layer].texture);
+    gl->BindVertexArray(renderer->vertex_array);
+    gl->DrawArrays(GL_TRIANGLES, 0, 3);
+    gl->BindVertexArray(0);
+    ++*piece->draw_calls;
+    return CAMBER_OK;
+}
+
+static bool same_color(camber_color a, camber_color b) {
+    return a.r == b.r && a.g == b.g && a.b == b.b;
+}
+
+/* The longest run from a polyline on. Rows that are not drawn belong to any run. */
+static pass_run next_run(const camber_pass *pass, size_t first, size_t end) {
+    const uint32_t *rows = pass->mesh->polyline_rows;
+    const bool layered = pass->overlap == CAMBER_OVERLAP_FLATTEN;
+    pass_run run = {.first = first, .end = first, .alpha = 1.0f, .one_color = true};
+    bool met = false;
+    for (; run.end < end; run.end++) {
+        if (!is_drawn(pass, rows[run.end]))
+            continue;
+        const camber_color color = pass->paints[rows[run.end]].color;
+        if (met && layered && color.a != run.alpha)
+            break;
+        if (!met) {
+            run.alpha = layered ? color.a : 1.0f;
+            run.color = color;
+        }
+        run.one_color = run.one_color && same_color(color, run.color);
+        met = true;
+    }
+    if (!met)
+        run.alpha = 0.0f; /* nothing to draw */
+    return run;
+}
+
+camber_status camber_renderer_draw_pass(camber_renderer *renderer, const camber_pass *pass, const camber_piece *piece) {
+    const camber_gl *gl = &renderer->share.surface->gl;
+    camber_mesh *mesh = pass->mesh;
+    if (mesh->empty)
+        return CAMBER_OK;
+    size_t end = pass->polyline_count ? pass->first_polyline + pass->polyline_count : mesh->polyline_count;
+    end = end < mesh->polyline_count ? end : mesh->polyline_count;
+    camber_status status = reserve_rows(renderer, pass->paint_count);
+    for (size_t first = pass->first_polyline; first < end && status == CAMBER_OK;) {
+        const pass_run run = next_run(pass, first, end);
+        const bool layered = run.alpha < 1.0f;
+        first = run.end;
+        if (run.alpha <= 0.0f)
+            continue;
+        fill_rows(renderer, pass, &run, layered);
+        upload_rows(renderer, pass->paint_count);
+        if (layered) {
+            status = draw_layered(renderer, pass, &run, piece);
+        } else {
+            gl->BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+            status = draw_run(renderer, mesh, &run, piece);
+        }
+    }
+    return status;
+}

@@ -1,0 +1,54 @@
+/* The renderer: shader variants, targets, and the frame. */
+#ifndef CAMBER_RENDERER_H
+#define CAMBER_RENDERER_H
+
+#include "draw/share.h"
+
+/* Variants of the stroke shader, as bits. */
+enum { CAMBER_VARIANT_LINEAR = 1, CAMBER_VARIANT_SHARP_JOINS = 2, CAMBER_VARIANT_FLAT_CAPS = 4, CAMBER_VARIANTS = 8 };
+
+typedef struct camber_shader {
+    GLuint program; /* 0: not built yet */
+    GLint origin, scale, layer_color;
+} camber_shader;
+
+/* A texture to draw into, of the size of a piece. */
+typedef struct camber_target {
+    GLuint texture, framebuffer;
+    GLsizei width, height;
+} camber_target;
+
+enum { CAMBER_TARGET_PICTURE, CAMBER_TARGET_COVERAGE, CAMBER_TARGET_LAYER, CAMBER_TARGETS };
+
+struct camber_renderer {
+    camber_share share;
+    const camber_share_path *path;
+    camber_shader strokes[CAMBER_VARIANTS];
+    camber_shader flatten[2]; /* by whether the layer is one channel of coverage */
+    camber_target targets[CAMBER_TARGETS];
+    GLuint vertex_array;
+    GLuint row_texture;
+    GLsizei row_width, row_height; /* texels */
+    float *row_texels;             /* 4 floats a texel */
+    size_t row_capacity;
+};
+
+/* shaders.c */
+camber_status camber_renderer_stroke_shader(camber_renderer *renderer, unsigned variant, const camber_shader **shader);
+camber_status camber_renderer_flatten_shader(camber_renderer *renderer, bool coverage, const camber_shader **shader);
+
+/* targets.c: binds a target of at least this size, cleared to nothing drawn. */
+camber_status camber_renderer_bind_target(camber_renderer *renderer, int which, GLsizei width, GLsizei height);
+
+/* pass.c: one piece of the picture. */
+typedef struct camber_piece {
+    uint32_t x, y, width, height; /* in the picture, px */
+    camber_coverage coverage;
+    size_t *draw_calls;
+} camber_piece;
+camber_status camber_renderer_draw_pass(camber_renderer *renderer, const camber_pass *pass, const camber_piece *piece);
+
+/* Logs what GL reports; CAMBER_OK where it reports nothing. */
+camber_status camber_renderer_check(camber_renderer *renderer, const char *what);
+
+#endif

@@ -1,0 +1,85 @@
+/* Shader programs, each built when it is first used. */
+#include "draw/renderer.h"
+
+#include "base/embedded.h"
+
+#include <stdio.h>
+
+enum { LOG_SIZE = 2048 };
+
+static GLuint compile(camber_renderer *renderer, GLenum kind, const char *head, const char *source) {
+    const camber_gl *gl = &renderer->share.surface->gl;
+    const GLchar *parts[] = {"#version 300 es\n", head, "#line 1\n", source};
+    const GLuint shader = gl->CreateShader(kind);
+    GLint built = 0;
+    gl->ShaderSource(shader, 4, parts, NULL);
+    gl->CompileShader(shader);
+    gl->GetShaderiv(shader, GL_COMPILE_STATUS, &built);
+    if (built)
+        return shader;
+    char log[LOG_SIZE] = "";
+    gl->GetShaderInfoLog(shader, LOG_SIZE, NULL, log);
+    camber_log(renderer->share.device->context, CAMBER_LOG_ERROR, "a shader does not compile on %s; update its driver: %s",
+               renderer->share.surface->info.renderer, log);
+    gl->DeleteShader(shader);
+    return 0;
+}
+
+static camber_status build(camber_renderer *renderer, const char *head, const char *vertex, const char *fragment,
+                           camber_shader *shader) {
+    const camber_gl *gl = &renderer->share.surface->gl;
+    const GLuint parts[2] = {compile(renderer, GL_VERTEX_SHADER, head, vertex),
+                             compile(renderer, GL_FRAGMENT_SHADER, head, fragment)};
+    const GLuint program = gl->CreateProgram();
+    GLint linked = 0;
+    if (parts[0] && parts[1]) {
+        gl->AttachShader(program, parts[0]);
+        gl->AttachShader(program, parts[1]);
+        gl->LinkProgram(program);
+        gl->GetProgramiv(program, GL_LINK_STATUS, &linked);
+        if (!linked) {
+            char log[LOG_SIZE] = "";
+            gl->GetProgramInfoLog(program, LOG_SIZE, NULL, log);
+            camber_log(renderer->share.device->context, CAMBER_LOG_ERROR, "shaders do not link on %s; update its driver: %s",
+                       renderer->share.surface->info.renderer, log);
+        }
+    }
+    for (int i = 0; i < 2; i++)
+        if (parts[i])
+            gl->DeleteShader(parts[i]);
+    if (!linked) {
+        gl->DeleteProgram(program);
+        return CAMBER_ERROR_DEVICE;
+    }
+    /* Samplers stay at unit 0, where GL starts them. */
+    *shader = (camber_shader){program, gl->GetUniformLocation(program, "u_origin"), gl->GetUniformLocation(program, "u_scale"),
+                              gl->GetUniformLocation(program, "u_color")};
+    return CAMBER_OK;
+}
+
+camber_status camber_renderer_stroke_shader(camber_renderer *renderer, unsigned variant, const camber_shader **shader) {
+    camber_shader *wanted = renderer->strokes + variant;
+    if (!wanted->program) {
+        char head[128];
+        snprintf(head, sizeof head, "#define LINEAR %d\n#define SHARP_JOINS %d\n#define FLAT_CAPS %d\n",
+                 (variant & CAMBER_VARIANT_LINEAR) != 0, (variant & CAMBER_VARIANT_SHARP_JOINS) != 0,
+                 (variant & CAMBER_VARIANT_FLAT_CAPS) != 0);
+        const camber_status status = build(renderer, head, camber_stroke_vert, camber_stroke_frag, wanted);
+        if (status != CAMBER_OK)
+            return status;
+    }
+    *shader = wanted;
+    return CAMBER_OK;
+}
+
+camber_status camber_renderer_flatten_shader(camber_renderer *renderer, bool coverage, const camber_shader **shader) {
+    camber_shader *wanted = renderer->flatten + coverage;
+    if (!wanted->program) {
+        const camber_status status = build(renderer, coverage ? "#define COVERAGE 1\n" : "#define COVERAGE 0\n",
+                                           camber_flatten_vert, camber_flatten_frag, wanted);
+        if (status != CAMBER_OK)
+            return status;
+    }
+    *shader = wanted;
+    return CAMBER_OK;
+}

@@ -1,0 +1,29 @@
+/* How OpenCL's output reaches GL: one file a path (share_gl.c, share_zero_copy.c, share_copy.c). */
+#ifndef CAMBER_SHARE_H
+#define CAMBER_SHARE_H
+
+#include "draw/surface.h"
+
+/* The user of camber_buffer_ops. */
+typedef struct camber_share {
+    camber_device *device;
+    camber_surface *surface;
+} camber_share;
+
+typedef struct camber_share_path {
+    camber_sharing sharing;
+    bool (*is_possible)(const camber_share *share);
+    camber_buffer_ops ops;
+} camber_share_path;
+
+extern const camber_share_path camber_share_gl;
+extern const camber_share_path camber_share_zero_copy;
+extern const camber_share_path camber_share_copy;
+
+/* Frees both sides of a buffer. */
+void camber_share_release(void *user, camber_buffer *buffer);
+
+/* Chooses a path, the first that works for AUTO, by writing a buffer through it. */
+camber_status camber_share_choose(camber_share *share, camber_sharing wanted, const camber_share_path **path);
+
+#endif

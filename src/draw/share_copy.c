@@ -1,0 +1,56 @@
+/* A copy through host memory, which works between any OpenCL and any GL. */
+#include "draw/share.h"
+
+static bool is_possible(const camber_share *share) {
+    (void)share;
+    return true;
+}
+
+static camber_status reserve(void *user, camber_buffer *buffer, size_t size_bytes) {
+    const camber_share *share = user;
+    const camber_gl *gl = &share->surface->gl;
+    if (size_bytes <= buffer->capacity_bytes)
+        return CAMBER_OK;
+    camber_share_release(user, buffer);
+    cl_int code;
+    buffer->mem = clCreateBuffer(share->device->cl, CL_MEM_READ_WRITE, size_bytes, NULL, &code);
+    if (code != CL_SUCCESS) {
+        buffer->mem = NULL;
+        return camber_fail_cl(share->device->context, "mesh buffer", code);
+    }
+    gl->GenBuffers(1, &buffer->gl_name);
+    gl->BindBuffer(GL_ARRAY_BUFFER, buffer->gl_name);
+    gl->BufferData(GL_ARRAY_BUFFER, (GLsizeiptr)size_bytes, NULL, GL_DYNAMIC_DRAW);
+    gl->BindBuffer(GL_ARRAY_BUFFER, 0);
+    if (gl->GetError() != GL_NO_ERROR)
+        return camber_fail(share->device->context, CAMBER_ERROR_MEMORY, "a GL buffer of %zu bytes; draw less at once", size_bytes);
+    buffer->capacity_bytes = size_bytes;
+    return CAMBER_OK;
+}
+
+static camber_status begin(void *user, camber_buffer *buffers, size_t count) {
+    (void)user;
+    (void)buffers;
+    (void)count;
+    return CAMBER_OK;
+}
+
+static camber_status finish(void *user, camber_buffer *buffers, size_t count, bool written) {
+    const camber_share *share = user;
+    const camber_gl *gl = &share->surface->gl;
+    for (size_t i = 0; i < count && written; i++) {
+        cl_int code;
+        void *bytes = clEnqueueMapBuffer(share->device->queue, buffers[i].mem, CL_TRUE, CL_MAP_READ, 0, buffers[i].used_bytes,
+                                         0, NULL, NULL, &code);
+        if (code != CL_SUCCESS)
+            return camber_fail_cl(share->device->context, "clEnqueueMapBuffer", code);
+        gl->BindBuffer(GL_ARRAY_BUFFER, buffers[i].gl_name);
+        gl->BufferSubData(GL_ARRAY_BUFFER, 0, (GLsizeiptr)buffers[i].used_bytes, bytes);
+        gl->BindBuffer(GL_ARRAY_BUFFER, 0);
+        clEnqueueUnmapMemObject(share->device->queue, buffers[i].mem, bytes, 0, NULL, NULL);
+        clFinish(share->device->queue);
+    }
+    return CAMBER_OK;
+}
+
+const camber_share_path camber_share_copy = {CAMBER_SHARING_COPY, is_possible, {reserve, begin, finish, camber_share_release}};

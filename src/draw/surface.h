@@ -1,0 +1,34 @@
+/* Surfaces: one file a back end (surface_egl.c, surface_osmesa.c), and nothing else knows that it exists. */
+#ifndef CAMBER_SURFACE_H
+#define CAMBER_SURFACE_H
+
+#include "draw/gl.h"
+#include "tess/tess.h"
+
+typedef struct camber_surface_ops {
+    camber_backend backend;
+    /* Loads the library and makes a context, current on this thread. Logs on failure. */
+    camber_status (*create)(camber_surface *surface);
+    bool (*make_current)(camber_surface *surface);
+    camber_function *(*load)(camber_surface *surface, const char *name);
+    camber_gl_handles (*handles)(const camber_surface *surface); /* NULL: none */
+    void (*destroy)(camber_surface *surface);
+} camber_surface_ops;
+
+extern const camber_surface_ops camber_surface_egl;
+extern const camber_surface_ops camber_surface_osmesa;
+
+struct camber_surface {
+    camber_context *context;
+    const camber_surface_ops *ops;
+    void *state;       /* the back end's */
+    const char *name;  /* set by create: "EGL surfaceless", ... */
+    camber_gl gl;
+    camber_surface_info info;
+};
+
+/* Every public call that draws begins with it: the two libraries share one dispatch, and another surface may have
+ * been current. */
+camber_status camber_surface_make_current(camber_surface *surface);
+
+#endif

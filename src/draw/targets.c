@@ -1,0 +1,43 @@
+/* What is drawn into: the picture, and the layers that are flattened before they reach it. */
+#include "draw/renderer.h"
+
+static void release(const camber_gl *gl, camber_target *target) {
+    gl->DeleteFramebuffers(1, &target->framebuffer);
+    gl->DeleteTextures(1, &target->texture);
+    *target = (camber_target){0};
+}
+
+static camber_status resize(camber_renderer *renderer, int which, GLsizei width, GLsizei height) {
+    const camber_gl *gl = &renderer->share.surface->gl;
+    camber_target *target = renderer->targets + which;
+    if (target->width == width && target->height == height)
+        return CAMBER_OK;
+    release(gl, target);
+    gl->GenTextures(1, &target->texture);
+    gl->BindTexture(GL_TEXTURE_2D, target->texture);
+    gl->TexStorage2D(GL_TEXTURE_2D, 1, which == CAMBER_TARGET_COVERAGE ? GL_R8 : GL_RGBA8, width, height);
+    gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    gl->GenFramebuffers(1, &target->framebuffer);
+    gl->BindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
+    gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target->texture, 0);
+    if (gl->CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE || gl->GetError() != GL_NO_ERROR) {
+        release(gl, target);
+        return camber_fail(renderer->share.device->context, CAMBER_ERROR_MEMORY,
+                           "%s gives no target of %d x %d px; draw smaller pieces", renderer->share.surface->info.renderer,
+                           (int)width, (int)height);
+    }
+    target->width = width;
+    target->height = height;
+    return CAMBER_OK;
+}
+
+camber_status camber_renderer_bind_target(camber_renderer *renderer, int which, GLsizei width, GLsizei height) {
+    const camber_gl *gl = &renderer->share.surface->gl;
+    const camber_status status = resize(renderer, which, width, height);
+    if (status != CAMBER_OK)
+        return status;
+    gl->BindFramebuffer(GL_FRAMEBUFFER, renderer->targets[which].framebuffer);
+    gl->Viewport(0, 0, width, height);
+    return CAMBER_OK;
+}

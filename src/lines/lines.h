@@ -1,0 +1,26 @@
+/* Polylines in the form that the kernels read: kernels/layout.h tells the words. */
+#ifndef CAMBER_LINES_H
+#define CAMBER_LINES_H
+
+#include "base/base.h"
+#include "kernels/layout.h"
+
+struct camber_polylines {
+    camber_context *context;
+    uint64_t serial; /* unique in the context: a mesh knows by it what it has uploaded */
+    /* slot_count + 2 each: a ghost before and after the slots. slot_count is a multiple of CAMBER_BLOCK. */
+    float *x, *y;
+    uint32_t *info;
+    size_t slot_count;
+    /* Slots of polyline i: [first_slots[i], first_slots[i + 1]), counted without the leading ghost. */
+    uint32_t *first_slots;
+    uint32_t *polyline_rows;
+    size_t polyline_count;
+    uint32_t row_count; /* highest row + 1 */
+    camber_polylines_stats stats;
+};
+
+/* The polyline whose slots hold slot. */
+size_t camber_polylines_find(const camber_polylines *polylines, size_t slot);
+
+#endif

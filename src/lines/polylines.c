@@ -1,0 +1,179 @@
+#include "lines/lines.h"
+
+#include <assert.h>
+#include <string.h>
+
+/* Farther away a float's steps are larger than a city block; the view cuts long before. */
+static const float FARTHEST_PX = 1e9f;
+
+static bool is_valid(const float *point) {
+    return fabsf(point[0]) <= FARTHEST_PX && fabsf(point[1]) <= FARTHEST_PX; /* false for NaN */
+}
+
+static bool is_repeated(const float *a, const float *b) {
+    const float dx = b[0] - a[0], dy = b[1] - a[1];
+    return dx * dx + dy * dy <= 1e-36f;
+}
+
+static camber_status check_desc(camber_context *context, const camber_polylines_desc *desc) {
+    assert(desc->polyline_count == 0 || desc->offsets);
+    assert(desc->point_count == 0 || desc->points);
+    size_t before = 0;
+    for (size_t i = 0; desc->polyline_count && i <= desc->polyline_count; i++) {
+        if (desc->offsets[i] < before || desc->offsets[i] > desc->point_count)
+            return camber_fail(context, CAMBER_ERROR_INPUT,
+                               "polyline %zu: its offset %u does not lie between %zu and %zu; offsets must ascend", i,
+                               desc->offsets[i], before, desc->point_count);
+        before = desc->offsets[i];
+    }
+    for (size_t i = 0; desc->rows && i < desc->polyline_count; i++)
+        if (desc->rows[i] >= 1u << 24)
+            return camber_fail(context, CAMBER_ERROR_INPUT, "polyline %zu: its row %u is not below %u; merge equal rows", i,
+                               desc->rows[i], 1u << 24);
+    /* A ring takes two ghosts, and it has three points or more: 5/3 slots a point at most. */
+    if (desc->point_count > (UINT32_MAX - 1024u) / 5 * 3 || desc->polyline_count > UINT32_MAX - 1024u)
+        return camber_fail(context, CAMBER_ERROR_LIMIT,
+                           "%zu points in %zu polylines are more than 32-bit slots hold; draw them in parts",
+                           desc->point_count, desc->polyline_count);
+    return CAMBER_OK;
+}
+
+static void put_slot(camber_polylines *p, const float *point, uint32_t info) {
+    const size_t i = ++p->slot_count; /* the leading ghost is index 0 */
+    p->x[i] = point[0];
+    p->y[i] = point[1];
+    p->info[i] = info;
+}
+
+/* One run of valid points: repeated points go, its ends are marked, a ring gets its ghosts. */
+static void put_run(camber_polylines *p, const float *points, size_t count, uint32_t row, bool may_close) {
+    const uint32_t real = row << CAMBER_POINT_ROW_SHIFT | CAMBER_POINT_REAL;
+    const float *last = points + 2 * (count - 1);
+    const bool closes = may_close && count > 2 && points[0] == last[0] && points[1] == last[1];
+    const size_t ghost = p->slot_count + 1;
+    if (closes)
+        put_slot(p, points, 0);
+    const size_t first = p->slot_count + 1;
+    const float *kept = points;
+    put_slot(p, points, real | CAMBER_POINT_FIRST);
+    for (size_t i = 1; i < count; i++) {
+        if (is_repeated(kept, points + 2 * i)) {
+            p->stats.repeated_points++;
+            continue;
+        }
+        kept = points + 2 * i;
+        put_slot(p, kept, real);
+    }
+    const size_t end = p->slot_count, kept_count = end - first + 1;
+    p->info[end] |= CAMBER_POINT_LAST;
+    p->stats.kept_points += kept_count;
+    p->stats.kept_segments += kept_count - 1;
+    p->stats.dots += kept_count == 1;
+    if (!closes || kept_count < 3)
+        return; /* a ghost that turns out not to be needed stays one */
+    /* The last point may have gone as a repetition of one next to it: close exactly all the same. */
+    p->x[end] = p->x[first];
+    p->y[end] = p->y[first];
+    p->info[first] |= CAMBER_POINT_RING;
+    p->info[end] |= CAMBER_POINT_RING;
+    p->x[ghost] = p->x[end - 1];
+    p->y[ghost] = p->y[end - 1];
+    put_slot(p, (const float[2]){p->x[first + 1], p->y[first + 1]}, 0);
+    p->stats.rings++;
+}
+
+static void put_polyline(camber_polylines *p, const camber_polylines_desc *desc, size_t polyline) {
+    const float *points = desc->points + 2 * (size_t)desc->offsets[polyline];
+    const size_t count = desc->offsets[polyline + 1] - desc->offsets[polyline];
+    const uint32_t row = desc->rows ? desc->rows[polyline] : 0;
+    p->polyline_rows[polyline] = row;
+    p->row_count = row + 1 > p->row_count ? row + 1 : p->row_count;
+    p->stats.empty_polylines += count == 0;
+    size_t first = 0;
+    for (size_t i = 0; i <= count; i++) {
+        if (i < count && is_valid(points + 2 * i))
+            continue;
+        if (i > first)
+            put_run(p, points + 2 * first, i - first, row, !desc->keep_open && first == 0 && i == count);
+        p->stats.invalid_points += i < count;
+        first = i + 1;
+    }
+}
+
+/* Ghosts to the end of the last block and one past it. They repeat a valid position: no kernel meets a NaN. */
+static void put_padding(camber_polylines *p) {
+    const size_t used = p->slot_count + 1;
+    p->slot_count = (p->slot_count + CAMBER_BLOCK - 1) / CAMBER_BLOCK * CAMBER_BLOCK;
+    const size_t padding = p->slot_count + 2 - used;
+    memset(p->x + used, 0, padding * sizeof *p->x);
+    memset(p->y + used, 0, padding * sizeof *p->y);
+    memset(p->info + used, 0, padding * sizeof *p->info);
+}
+
+camber_status camber_polylines_create(camber_context *context, const camber_polylines_desc *desc,
+                                      camber_polylines **polylines) {
+    camber_status status = check_desc(context, desc);
+    if (status != CAMBER_OK)
+        return status;
+    camber_polylines *p = camber_alloc_zero(context, 1, sizeof *p);
+    if (!p)
+        return CAMBER_ERROR_MEMORY;
+    p->context = context;
+    p->serial = context->next_serial++;
+    p->polyline_count = desc->polyline_count;
+    p->stats.polylines = desc->polyline_count;
+    p->stats.points = desc->point_count;
+    size_t rings = 0;
+    for (size_t i = 0; i < desc->polyline_count; i++)
+        rings += desc->offsets[i + 1] - desc->offsets[i] > 2;
+    const size_t slots = desc->point_count + 2 * (desc->keep_open ? 0 : rings) + 2 + CAMBER_BLOCK;
+    status = CAMBER_ERROR_MEMORY;
+    p->x = camber_alloc(context, slots, sizeof *p->x);
+    p->y = camber_alloc(context, slots, sizeof *p->y);
+    p->info = camber_alloc(context, slots, sizeof *p->info);
+    p->first_slots = camber_alloc(context, desc->polyline_count + 1, sizeof *p->first_slots);
+    p->polyline_rows = camber_alloc(context, desc->polyline_count, sizeof *p->polyline_rows);
+    if (!p->x || !p->y || !p->info || !p->first_slots || !p->polyline_rows)
+        goto done;
+    p->x[0] = p->y[0] = 0;
+    p->info[0] = 0;
+    for (size_t i = 0; i < desc->polyline_count; i++) {
+        p->first_slots[i] = (uint32_t)p->slot_count;
+        put_polyline(p, desc, i);
+    }
+    p->first_slots[desc->polyline_count] = (uint32_t)p->slot_count;
+    put_padding(p);
+    *polylines = p;
+    return CAMBER_OK;
+done:
+    camber_polylines_destroy(p);
+    return status;
+}
+
+void camber_polylines_destroy(camber_polylines *polylines) {
+    if (!polylines)
+        return;
+    camber_context *context = polylines->context;
+    camber_free(context, polylines->polyline_rows);
+    camber_free(context, polylines->first_slots);
+    camber_free(context, polylines->info);
+    camber_free(context, polylines->y);
+    camber_free(context, polylines->x);
+    camber_free(context, polylines);
+}
+
+camber_polylines_stats camber_polylines_get_stats(const camber_polylines *polylines) {
+    return polylines->stats;
+}
+
+size_t camber_polylines_find(const camber_polylines *polylines, size_t slot) {
+    size_t low = 0, high = polylines->polyline_count;
+    while (high - low > 1) {
+        const size_t middle = low + (high - low) / 2;
+        if (polylines->first_slots[middle] <= slot)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}

@@ -1,0 +1,204 @@
+/* Finding and opening OpenCL devices. */
+#include "tess/tess.h"
+
+#include <CL/cl_gl.h>
+#include <ctype.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { PLATFORMS_MAX = 16, DEVICES_MAX = 64 };
+
+/* clGetPlatformIDs' answer where the loader finds no driver: an extension's number, not in cl.h. */
+#define PLATFORM_NOT_FOUND_KHR (-1001)
+
+static const char *cl_error_name(cl_int code) {
+    switch (code) {
+    case CL_DEVICE_NOT_FOUND: return "CL_DEVICE_NOT_FOUND";
+    case CL_DEVICE_NOT_AVAILABLE: return "CL_DEVICE_NOT_AVAILABLE";
+    case CL_COMPILER_NOT_AVAILABLE: return "CL_COMPILER_NOT_AVAILABLE";
+    case CL_MEM_OBJECT_ALLOCATION_FAILURE: return "CL_MEM_OBJECT_ALLOCATION_FAILURE";
+    case CL_OUT_OF_RESOURCES: return "CL_OUT_OF_RESOURCES";
+    case CL_OUT_OF_HOST_MEMORY: return "CL_OUT_OF_HOST_MEMORY";
+    case CL_BUILD_PROGRAM_FAILURE: return "CL_BUILD_PROGRAM_FAILURE";
+    case CL_INVALID_VALUE: return "CL_INVALID_VALUE";
+    case CL_INVALID_BUFFER_SIZE: return "CL_INVALID_BUFFER_SIZE";
+    case CL_INVALID_BINARY: return "CL_INVALID_BINARY";
+    case CL_INVALID_WORK_GROUP_SIZE: return "CL_INVALID_WORK_GROUP_SIZE";
+    case PLATFORM_NOT_FOUND_KHR: return "CL_PLATFORM_NOT_FOUND_KHR";
+    default: return "error";
+    }
+}
+
+camber_status camber_fail_cl(camber_context *context, const char *call, cl_int code) {
+    const bool memory = code == CL_MEM_OBJECT_ALLOCATION_FAILURE || code == CL_OUT_OF_HOST_MEMORY ||
+                        code == CL_OUT_OF_RESOURCES || code == CL_INVALID_BUFFER_SIZE;
+    return camber_fail(context, memory ? CAMBER_ERROR_MEMORY : CAMBER_ERROR_DEVICE, "%s: OpenCL %s (%d); %s", call,
+                       cl_error_name(code), code,
+                       memory ? "draw less at once or use a device with more memory" : "try another device");
+}
+
+typedef struct found_device {
+    cl_platform_id platform;
+    cl_device_id id;
+} found_device;
+
+static size_t find_devices(found_device found[DEVICES_MAX]) {
+    cl_platform_id platforms[PLATFORMS_MAX];
+    cl_uint platform_count = 0;
+    size_t count = 0;
+    if (clGetPlatformIDs(PLATFORMS_MAX, platforms, &platform_count) != CL_SUCCESS)
+        return 0;
+    for (cl_uint p = 0; p < platform_count && p < PLATFORMS_MAX; p++) {
+        cl_device_id ids[DEVICES_MAX];
+        cl_uint id_count = 0;
+        if (clGetDeviceIDs(platforms[p], CL_DEVICE_TYPE_ALL, DEVICES_MAX, ids, &id_count) != CL_SUCCESS)
+            continue;
+        for (cl_uint d = 0; d < id_count && d < DEVICES_MAX && count < DEVICES_MAX; d++)
+            found[count++] = (found_device){platforms[p], ids[d]};
+    }
+    return count;
+}
+
+static bool has_word(const char *text, const char *word) {
+    const size_t length = strlen(word);
+    for (const char *at = strstr(text, word); at; at = strstr(at + 1, word))
+        if ((at == text || at[-1] == ' ') && (at[length] == ' ' || at[length] == 0))
+            return true;
+    return false;
+}
+
+static camber_device_info describe(found_device found) {
+    camber_device_info info = {0};
+    cl_device_type type = 0;
+    cl_ulong memory = 0, largest = 0;
+    char extensions[16384] = "";
+    clGetPlatformInfo(found.platform, CL_PLATFORM_NAME, sizeof info.platform - 1, info.platform, NULL);
+    clGetDeviceInfo(found.id, CL_DEVICE_NAME, sizeof info.name - 1, info.name, NULL);
+    clGetDeviceInfo(found.id, CL_DEVICE_VERSION, sizeof info.version - 1, info.version, NULL);
+    clGetDeviceInfo(found.id, CL_DRIVER_VERSION, sizeof info.driver - 1, info.driver, NULL);
+    clGetDeviceInfo(found.id, CL_DEVICE_TYPE, sizeof type, &type, NULL);
+    clGetDeviceInfo(found.id, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof info.compute_units, &info.compute_units, NULL);
+    clGetDeviceInfo(found.id, CL_DEVICE_GLOBAL_MEM_SIZE, sizeof memory, &memory, NULL);
+    clGetDeviceInfo(found.id, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof largest, &largest, NULL);
+    clGetDeviceInfo(found.id, CL_DEVICE_EXTENSIONS, sizeof extensions - 1, extensions, NULL);
+    info.memory_bytes = memory;
+    info.largest_buffer_bytes = largest;
+    info.type = type & CL_DEVICE_TYPE_GPU   ? CAMBER_DEVICE_TYPE_GPU
+                : type & CL_DEVICE_TYPE_CPU ? CAMBER_DEVICE_TYPE_CPU
+                                            : CAMBER_DEVICE_TYPE_OTHER;
+    info.gl_sharing = has_word(extensions, "cl_khr_gl_sharing");
+    return info;
+}
+
+camber_status camber_device_list(camber_context *context, size_t capacity, camber_device_info *infos, size_t *count) {
+    (void)context;
+    found_device found[DEVICES_MAX];
+    *count = find_devices(found);
+    for (size_t i = 0; i < *count && i < capacity; i++)
+        infos[i] = describe(found[i]);
+    return CAMBER_OK;
+}
+
+static bool contains_ignoring_case(const char *text, const char *part) {
+    for (; *text; text++) {
+        size_t i = 0;
+        while (part[i] && tolower((unsigned char)text[i]) == tolower((unsigned char)part[i]))
+            i++;
+        if (!part[i])
+            return true;
+    }
+    return *part == 0;
+}
+
+static bool matches(const camber_device_info *info, const char *match) {
+    if (contains_ignoring_case("cpu", match) && strlen(match) == 3)
+        return info->type == CAMBER_DEVICE_TYPE_CPU;
+    if (contains_ignoring_case("gpu", match) && strlen(match) == 3)
+        return info->type == CAMBER_DEVICE_TYPE_GPU;
+    return contains_ignoring_case(info->name, match) || contains_ignoring_case(info->platform, match);
+}
+
+static int rank(const camber_device_info *info) {
+    return info->type == CAMBER_DEVICE_TYPE_GPU ? 2 : info->type == CAMBER_DEVICE_TYPE_CPU ? 1 : 0;
+}
+
+static camber_status choose(camber_device *device, const char *match) {
+    found_device found[DEVICES_MAX];
+    const size_t count = find_devices(found);
+    if (count == 0)
+        return camber_fail(device->context, CAMBER_ERROR_DEVICE,
+                           "no OpenCL device: no platform answers; install a driver (Debian: pocl-opencl-icd)");
+    char names[1024] = "";
+    int best = -1;
+    for (size_t i = 0; i < count; i++) {
+        const camber_device_info info = describe(found[i]);
+        const size_t used = strlen(names);
+        snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", info.name);
+        if ((match && !matches(&info, match)) || rank(&info) <= best)
+            continue;
+        best = rank(&info);
+        device->platform = found[i].platform;
+        device->id = found[i].id;
+        device->info = info;
+    }
+    if (best < 0)
+        return camber_fail(device->context, CAMBER_ERROR_DEVICE, "no OpenCL device matches '%s'; there are: %s", match, names);
+    return CAMBER_OK;
+}
+
+static camber_status open_cl(camber_device *device, camber_surface *surface) {
+    cl_int code;
+    const camber_gl_handles gl = surface && device->info.gl_sharing ? camber_surface_handles(surface) : (camber_gl_handles){0};
+    const cl_context_properties shared[] = {CL_CONTEXT_PLATFORM, (cl_context_properties)device->platform,
+                                            CL_GL_CONTEXT_KHR, gl.context, gl.display_kind, gl.display, 0};
+    const cl_context_properties alone[] = {CL_CONTEXT_PLATFORM, (cl_context_properties)device->platform, 0};
+    if (gl.context) {
+        device->cl = clCreateContext(shared, 1, &device->id, NULL, NULL, &code);
+        device->gl_context = code == CL_SUCCESS;
+    }
+    if (!device->gl_context) {
+        device->cl = clCreateContext(alone, 1, &device->id, NULL, NULL, &code);
+        if (code != CL_SUCCESS)
+            return camber_fail_cl(device->context, "clCreateContext", code);
+    }
+    device->queue = clCreateCommandQueue(device->cl, device->id, CL_QUEUE_PROFILING_ENABLE, &code);
+    if (code != CL_SUCCESS)
+        return camber_fail_cl(device->context, "clCreateCommandQueue", code);
+    cl_bool unified = CL_FALSE;
+    clGetDeviceInfo(device->id, CL_DEVICE_HOST_UNIFIED_MEMORY, sizeof unified, &unified, NULL);
+    device->host_memory = device->info.type == CAMBER_DEVICE_TYPE_CPU && unified;
+    return CAMBER_OK;
+}
+
+camber_status camber_device_create(camber_context *context, const camber_device_desc *desc, camber_surface *surface,
+                                   camber_device **device) {
+    camber_device *made = camber_alloc_zero(context, 1, sizeof *made);
+    if (!made)
+        return CAMBER_ERROR_MEMORY;
+    made->context = context;
+    camber_status status = choose(made, desc ? desc->match : NULL);
+    if (status == CAMBER_OK)
+        status = open_cl(made, surface);
+    if (status != CAMBER_OK) {
+        camber_device_destroy(made);
+        return status;
+    }
+    *device = made;
+    return CAMBER_OK;
+}
+
+void camber_device_destroy(camber_device *device) {
+    if (!device)
+        return;
+    for (int i = 0; i < 3; i++)
+        camber_program_destroy(device->context, device->programs[i]);
+    if (device->queue)
+        clReleaseCommandQueue(device->queue);
+    if (device->cl)
+        clReleaseContext(device->cl);
+    camber_free(device->context, device);
+}
+
+camber_device_info camber_device_get_info(const camber_device *device) {
+    return device->info;
+}

@@ -1,0 +1,152 @@
+/* Building the kernels, and keeping what was built in the user's cache folder. */
+#include "tess/tess.h"
+
+#include "base/embedded.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const char *const OPTIONS = "-cl-std=CL1.2 -DCAMBER_METHOD=%d%s";
+
+/* Everything that a binary depends on. */
+static uint64_t cache_key(const camber_device_info *info, const char *options) {
+    uint64_t key = camber_hash(CAMBER_HASH_START, camber_kernels_source, camber_kernels_source_size);
+    const char *parts[] = {info->platform, info->name, info->version, info->driver, options};
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
+        key = camber_hash(key, parts[i], strlen(parts[i]) + 1);
+    return key;
+}
+
+static void cache_name(uint64_t key, char name[64]) {
+    snprintf(name, 64, "kernels-%016llx.bin", (unsigned long long)key);
+}
+
+/* The binary behind its own hash: what a crash or a full disk left is told from a whole one. */
+static bool load(camber_device *device, camber_program *program, const char *options) {
+    char name[64], *bytes = NULL;
+    size_t size = 0;
+    uint64_t hash;
+    cl_int code = CL_INVALID_BINARY, binary_code = CL_INVALID_BINARY;
+    cache_name(program->key, name);
+    if (!camber_cache_load(device->context, name, &bytes, &size))
+        return false;
+    if (size > sizeof hash) {
+        memcpy(&hash, bytes, sizeof hash);
+        const unsigned char *binary = (const unsigned char *)bytes + sizeof hash;
+        const size_t binary_size = size - sizeof hash;
+        if (hash == camber_hash(CAMBER_HASH_START, binary, binary_size))
+            program->cl = clCreateProgramWithBinary(device->cl, 1, &device->id, &binary_size, &binary, &binary_code, &code);
+    }
+    camber_free(device->context, bytes);
+    if (code == CL_SUCCESS && binary_code == CL_SUCCESS &&
+        clBuildProgram(program->cl, 1, &device->id, options, NULL, NULL) == CL_SUCCESS)
+        return true;
+    if (program->cl)
+        clReleaseProgram(program->cl);
+    program->cl = NULL;
+    return false;
+}
+
+static camber_status fail_build(camber_device *device, cl_program program, const char *call, cl_int code) {
+    static const size_t LOG_MAX = 3000;
+    size_t size = 0;
+    clGetProgramBuildInfo(program, device->id, CL_PROGRAM_BUILD_LOG, 0, NULL, &size);
+    char *log = camber_alloc_zero(device->context, size + 1, 1);
+    if (log)
+        clGetProgramBuildInfo(program, device->id, CL_PROGRAM_BUILD_LOG, size, log, NULL);
+    camber_fail(device->context, CAMBER_ERROR_DEVICE, "%s: the kernels do not build on %s (%d); update its driver or try another device: %.*s",
+                call, device->info.name, code, (int)LOG_MAX, log ? log : "");
+    camber_free(device->context, log);
+    return CAMBER_ERROR_DEVICE;
+}
+
+static camber_status build(camber_device *device, camber_program *program, const char *options) {
+    cl_int code;
+    const char *source = camber_kernels_source;
+    const size_t size = camber_kernels_source_size;
+    program->cl = clCreateProgramWithSource(device->cl, 1, &source, &size, &code);
+    if (code != CL_SUCCESS)
+        return camber_fail_cl(device->context, "clCreateProgramWithSource", code);
+    code = clBuildProgram(program->cl, 1, &device->id, options, NULL, NULL);
+    if (code != CL_SUCCESS)
+        return fail_build(device, program->cl, "clBuildProgram", code);
+    program->to_save = true;
+    return CAMBER_OK;
+}
+
+static camber_status make_kernels(camber_device *device, camber_program *program) {
+    const struct {
+        const char *name;
+        cl_kernel *kernel;
+    } stages[] = {{"classify", &program->classify}, {"scan", &program->scan}, {"emit", &program->emit}};
+    for (size_t i = 0; i < sizeof stages / sizeof *stages; i++) {
+        cl_int code;
+        *stages[i].kernel = clCreateKernel(program->cl, stages[i].name, &code);
+        if (code != CL_SUCCESS)
+            return fail_build(device, program->cl, stages[i].name, code);
+    }
+    return CAMBER_OK;
+}
+
+camber_status camber_device_program(camber_device *device, camber_method method, camber_program **program) {
+    if (device->programs[method]) {
+        *program = device->programs[method];
+        return CAMBER_OK;
+    }
+    camber_program *made = camber_alloc_zero(device->context, 1, sizeof *made);
+    if (!made)
+        return CAMBER_ERROR_MEMORY;
+    /* Where the device can round like the twin, ask it to. */
+    cl_device_fp_config rounding = 0;
+    clGetDeviceInfo(device->id, CL_DEVICE_SINGLE_FP_CONFIG, sizeof rounding, &rounding, NULL);
+    const bool correct = (rounding & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
+    char options[128];
+    snprintf(options, sizeof options, OPTIONS, (int)method, correct ? " -cl-fp32-correctly-rounded-divide-sqrt" : "");
+    made->key = cache_key(&device->info, options);
+    camber_status status = CAMBER_OK;
+    if (!load(device, made, options))
+        status = build(device, made, options);
+    if (status == CAMBER_OK)
+        status = make_kernels(device, made);
+    if (status != CAMBER_OK) {
+        camber_program_destroy(device->context, made);
+        return status;
+    }
+    device->programs[method] = made;
+    *program = made;
+    return CAMBER_OK;
+}
+
+void camber_program_save(camber_device *device, camber_program *program) {
+    size_t size = 0;
+    if (!program->to_save)
+        return;
+    program->to_save = false;
+    if (clGetProgramInfo(program->cl, CL_PROGRAM_BINARY_SIZES, sizeof size, &size, NULL) != CL_SUCCESS || size == 0)
+        return;
+    uint64_t hash;
+    unsigned char *bytes = camber_alloc(device->context, size + sizeof hash, 1);
+    if (!bytes)
+        return;
+    unsigned char *binary = bytes + sizeof hash;
+    if (clGetProgramInfo(program->cl, CL_PROGRAM_BINARIES, sizeof binary, &binary, NULL) == CL_SUCCESS) {
+        char name[64];
+        hash = camber_hash(CAMBER_HASH_START, binary, size);
+        memcpy(bytes, &hash, sizeof hash);
+        cache_name(program->key, name);
+        camber_cache_save(device->context, name, bytes, size + sizeof hash);
+    }
+    camber_free(device->context, bytes);
+}
+
+void camber_program_destroy(camber_context *context, camber_program *program) {
+    if (!program)
+        return;
+    cl_kernel kernels[] = {program->classify, program->scan, program->emit};
+    for (size_t i = 0; i < sizeof kernels / sizeof *kernels; i++)
+        if (kernels[i])
+            clReleaseKernel(kernels[i]);
+    if (program->cl)
+        clReleaseProgram(program->cl);
+    camber_free(context, program);
+}

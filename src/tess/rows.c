@@ -1,0 +1,83 @@
+/* The style table of the kernels, and what both tessellations count. */
+#include "tess/tess.h"
+
+#include "kernels/join.h"
+
+#include <assert.h>
+
+static const float WIDEST_PX = 16384.0f;
+
+static camber_status check_stroke(camber_context *context, const camber_stroke *stroke, size_t row) {
+    if (!(stroke->width_px >= 0.0f && stroke->width_px <= WIDEST_PX))
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "stroke %zu: a width of %g px; it must be 0 to %g", row,
+                           (double)stroke->width_px, (double)WIDEST_PX);
+    if (!(stroke->miter_limit >= 0.0f))
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "stroke %zu: a miter limit of %g; it must be 0 or more", row,
+                           (double)stroke->miter_limit);
+    if ((unsigned)stroke->join > CAMBER_JOIN_BEVEL || (unsigned)stroke->cap > CAMBER_CAP_SQUARE)
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "stroke %zu: join %d, cap %d; see camber_join and camber_cap", row,
+                           (int)stroke->join, (int)stroke->cap);
+    return CAMBER_OK;
+}
+
+static camber_row make_row(const camber_stroke *stroke, float tolerance_px) {
+    const double reach = (double)stroke->width_px / 2 + (double)CAMBER_PAD_PX;
+    /* A chord over the angle a lies reach * (1 - cos(a / 2)) inside its arc. */
+    const double below = 1 - (double)tolerance_px / reach;
+    const double least = 3.14159265358979 / CAMBER_JOIN_TRIANGLES_MAX;
+    double step = 2 * acos(below > 0 ? below : 0);
+    step = step < least ? least : step > 1.5707963 ? 1.5707963 : step;
+    return (camber_row){
+        .reach_px = (float)reach,
+        .miter_limit = stroke->miter_limit > 0.0f ? stroke->miter_limit : 2.0f,
+        .fan_cos = (float)cos(step),
+        .fan_sin = (float)sin(step),
+        .fan_scale = (float)(1 / cos(step / 2)),
+        .join = (camber_u32)stroke->join,
+        .cap = (camber_u32)stroke->cap,
+    };
+}
+
+camber_status camber_rows_create(camber_context *context, const camber_polylines *polylines,
+                                 const camber_tessellation_desc *desc, camber_row **rows) {
+    assert(desc->stroke_count == 0 || desc->strokes);
+    if (polylines->row_count > desc->stroke_count)
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "a polyline has row %u, and there are %zu strokes; give one a row",
+                           polylines->row_count - 1, desc->stroke_count);
+    const float tolerance = desc->fan_tolerance_px == 0.0f ? 0.25f : desc->fan_tolerance_px;
+    if (!(tolerance > 0.0f) || (unsigned)desc->method > CAMBER_METHOD_FAN)
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "a fan tolerance of %g px, method %d; see camber_tessellation_desc",
+                           (double)tolerance, (int)desc->method);
+    for (size_t i = 0; i < desc->stroke_count; i++) {
+        const camber_status status = check_stroke(context, desc->strokes + i, i);
+        if (status != CAMBER_OK)
+            return status;
+    }
+    camber_row *made = camber_alloc_zero(context, desc->stroke_count + 1, sizeof *made);
+    if (!made)
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < desc->stroke_count; i++)
+        made[i] = make_row(desc->strokes + i, tolerance);
+    *rows = made;
+    return CAMBER_OK;
+}
+
+const char *camber_method_name(camber_method method) {
+    switch (method) {
+    case CAMBER_METHOD_STRIP: return "strip";
+    case CAMBER_METHOD_KITE: return "kite";
+    case CAMBER_METHOD_FAN: return "fan";
+    }
+    return "unknown";
+}
+
+void camber_mesh_info_count(camber_mesh_info *info, uint32_t join, uint32_t point) {
+    const uint32_t kind = camber_join_kind(join);
+    info->undrawn_dots += kind == CAMBER_KIND_UNDRAWN;
+    /* A ring's seam is one join, told at its last point. */
+    if (kind < CAMBER_KIND_CUT || kind > CAMBER_KIND_SPLIT || point & CAMBER_POINT_FIRST)
+        return;
+    info->joins++;
+    info->tight_joins += kind == CAMBER_KIND_TIGHT;
+    info->split_joins += kind == CAMBER_KIND_SPLIT;
+}

@@ -1,0 +1,111 @@
+/* Tessellation: OpenCL devices and programs, the three stages, meshes, and the CPU twin. */
+#ifndef CAMBER_TESS_H
+#define CAMBER_TESS_H
+
+#include "base/base.h"
+#include "lines/lines.h"
+
+#include <CL/cl.h>
+
+/* ---- Devices ---- */
+
+struct camber_device {
+    camber_context *context;
+    cl_platform_id platform;
+    cl_device_id id;
+    cl_context cl;
+    cl_command_queue queue;
+    camber_device_info info;
+    bool host_memory;  /* the device works in the host's memory */
+    bool gl_context;   /* cl was made for a GL context: GL buffers can be shared */
+    struct camber_program *programs[3]; /* by camber_method, built when first used */
+};
+
+/* What a surface tells OpenCL about its GL context, for cl_khr_gl_sharing. Zero: it cannot be told. */
+typedef struct camber_gl_handles {
+    cl_context_properties context, display, display_kind; /* kind: CL_EGL_DISPLAY_KHR */
+} camber_gl_handles;
+camber_gl_handles camber_surface_handles(const camber_surface *surface); /* src/draw/surface.c */
+
+/* Logs "CALL: OpenCL error NAME (code); cure" and gives the status it stands for. */
+camber_status camber_fail_cl(camber_context *context, const char *call, cl_int code);
+
+/* ---- Programs ---- */
+
+typedef struct camber_program {
+    cl_program cl;
+    cl_kernel classify, scan, emit;
+    uint64_t key;   /* of the cache */
+    bool to_save;   /* built from source: its binary is saved once the kernels have run */
+} camber_program;
+
+/* The kernels of a method, built or loaded at first use. */
+camber_status camber_device_program(camber_device *device, camber_method method, camber_program **program);
+/* Saves the binary if it is new. Called after the kernels have run: only then does PoCL's hold machine code. */
+void camber_program_save(camber_device *device, camber_program *program);
+void camber_program_destroy(camber_context *context, camber_program *program);
+
+/* ---- Output buffers, which GL may share: src/draw/share_*.c ---- */
+
+typedef struct camber_buffer {
+    cl_mem mem;
+    size_t capacity_bytes;
+    unsigned gl_name; /* 0: OpenCL memory only */
+    void *map;        /* zero copy: the persistent map */
+    size_t used_bytes;
+} camber_buffer;
+
+typedef struct camber_buffer_ops {
+    /* Makes room for at least size_bytes; what the buffer held is lost. */
+    camber_status (*reserve)(void *user, camber_buffer *buffer, size_t size_bytes);
+    /* Around OpenCL commands on the buffers. At finish the queue has been finished; written: what the buffers hold
+     * has changed. */
+    camber_status (*begin)(void *user, camber_buffer *buffers, size_t count);
+    camber_status (*finish)(void *user, camber_buffer *buffers, size_t count, bool written);
+    void (*release)(void *user, camber_buffer *buffer);
+} camber_buffer_ops;
+
+/* ---- Meshes ---- */
+
+struct camber_mesh {
+    camber_device *device;
+    camber_renderer *renderer; /* NULL: cannot be drawn */
+    const camber_buffer_ops *ops;
+    void *ops_user;
+    camber_buffer buffers[2]; /* vertices, indices */
+
+    /* The polylines last tessellated, on the device. */
+    uint64_t uploaded_serial;
+    cl_mem x, y, info, rows, joins, offsets, sums, bases;
+    size_t slot_capacity, row_capacity;
+    size_t slot_count;
+
+    /* Of the polylines: polyline_count + 1 slots, where a polyline's indices begin; polyline_count rows. */
+    uint32_t *first_slots, *polyline_rows;
+    size_t polyline_count, polyline_capacity, row_list_capacity;
+    uint64_t *host_bases; /* first vertex and first index of each block, and the totals behind the last */
+    size_t base_capacity;
+    camber_mesh_info mesh_info;
+    bool joins_counted; /* mesh_info's counts of joins and triangles are there */
+    bool sharp_joins;   /* a row has miter or bevel joins */
+    bool flat_caps;     /* a row has butt or square caps */
+    bool empty; /* nothing tessellated yet, or nothing came of it */
+};
+
+enum { CAMBER_BUFFER_VERTICES, CAMBER_BUFFER_INDICES };
+
+camber_status camber_mesh_create_on(camber_device *device, const camber_buffer_ops *ops, void *ops_user,
+                                    camber_mesh **mesh);
+/* First index of a polyline in the mesh's index buffer; polyline_count gives the end. */
+camber_status camber_mesh_first_index(camber_mesh *mesh, size_t polyline, uint64_t *first_index);
+
+/* ---- Rows ---- */
+
+/* Checks a desc against the polylines and makes the kernels' style table; freed with camber_free. */
+camber_status camber_rows_create(camber_context *context, const camber_polylines *polylines,
+                                 const camber_tessellation_desc *desc, camber_row **rows);
+
+/* Adds a point's join word to the counts of a mesh's info. */
+void camber_mesh_info_count(camber_mesh_info *info, uint32_t join, uint32_t point);
+
+#endif

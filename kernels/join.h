@@ -88,14 +88,15 @@ CAMBER_FN camber_u32 camber_fan_triangles(camber_turn turn, camber_row row) {
 /* The join word of a point where two segments meet.
  *
  *     cut: each segment's quad ends on the bisector M-C       tight: the inner side has no room, each quad keeps
- *     and holds its own part of the join                      its own M; they overlap in the opaque inside
+ *     and holds its own part of the join                      its own M. Ma-C misses P: the fragment shader cuts
+ *                                                             at P and the bisector what lies past them
  *
  *        ______________ C                                        ______________ C
  *        in            /|                                        in            /|
- *        --------------P |                                       ------------P--|
- *        ____________/   |                                       ______Ma__/    |
- *                    M   |                                              Mb|_out_|
- *                    |out|
+ *        -------------P |                                        -------------P |
+ *        ____________/  |                                        _________Ma Mb_|
+ *                   M   |                                                  |out|
+ *                   |out|
  *
  *     split: past |tan(t/2)| = 2 (127 degrees) C runs away; both end past P, and the fragment shader gives each
  *     its side of the bisector
@@ -109,7 +110,7 @@ CAMBER_FN camber_u32 camber_join_word(camber_turn turn, camber_row row, camber_u
     camber_u32 end = miter ? 3u : bevel ? 4u : 0u;
     camber_u32 triangles = 0;
     if (method == CAMBER_STRIP) {
-        end = split ? (bevel ? 6u : 5u) : end;
+        end = split || tight ? (miter ? 7u : bevel ? 6u : 5u) : end;
     } else if (sine > 0.0f) {
         /* Past 120 degrees the kite's tip runs away: two kites of half the angle. */
         const camber_u32 kites = !miter && sine > 1.7320508f * turn.c ? 4u : 2u;

@@ -12,7 +12,7 @@ uniform vec2 u_origin;
 
 layout(location = 0) out mediump vec4 o_color;
 
-const uint ROUND = 0u, BUTT = 1u, SQUARE = 2u, MITER = 3u, BEVEL = 4u, SPLIT_ROUND = 5u, SPLIT_BEVEL = 6u;
+const uint ROUND = 0u, BUTT = 1u, SQUARE = 2u, MITER = 3u, BEVEL = 4u, SPLIT_ROUND = 5u, SPLIT_BEVEL = 6u, SPLIT_MITER = 7u;
 
 // An edge by its unit normal, larger component p, smaller q: half the pixel's extent along the normal, the part of it
 // where the covered area grows linearly, 1 / p and 1 / (2 p q).
@@ -61,7 +61,7 @@ bool is_round(uint kind) {
     return kind == ROUND || kind == SPLIT_ROUND;
 }
 
-// Past a split join a segment has its own side of the bisector only.
+// Past a split end a segment has its own side of the bisector only; on the inner side, nothing past the end.
 bool is_foreign(End e, float y) {
     return e.kind >= SPLIT_ROUND && e.past > 0.0 && e.c * e.past + e.s * y > 0.0;
 }
@@ -81,7 +81,8 @@ float cut_join(float area, End e, float y, vec2 u, float half_width) {
     bool bevel = e.kind == BEVEL || e.kind == SPLIT_BEVEL;
     vec2 normal = bevel ? vec2(sine, outer * e.c) : vec2(2.0 * sine * e.c, outer * (e.c * e.c - sine * sine));
     float inside = (bevel ? half_width * e.c : half_width) - dot(vec2(e.past, y), normal);
-    bool applies = bevel || (e.kind == MITER && e.past > -1.0 && y * outer > 0.0);
+    bool miter = e.kind == MITER || e.kind == SPLIT_MITER;
+    bool applies = bevel || (miter && e.past > -1.0 && y * outer > 0.0);
     // The frame of an end looks out of it; the pixel's own axes are a rotation away, mirrored at A.
     float second = covered(inside, edge_of(vec2(normal.x * u.x - normal.y * u.y, normal.x * u.y + normal.y * u.x)));
     return applies ? inside_both(area, second, outer * normal.y) : area;

@@ -318,8 +318,11 @@ typedef enum camber_end {
     CAMBER_END_SQUARE,      /* nothing past half a width beyond the end */
     CAMBER_END_MITER,       /* the edges run on; the geometry is cut at the bisector */
     CAMBER_END_BEVEL,       /* cut by the line through the two outer corners */
-    CAMBER_END_SPLIT_ROUND, /* round, on this segment's side of the bisector only: turns past 127 degrees */
-    CAMBER_END_SPLIT_BEVEL, /* bevel, likewise */
+    /* The same, on this segment's side of the bisector only: where the geometry is not cut along it, at strip's tight
+     * joins and turns past 127 degrees. */
+    CAMBER_END_SPLIT_ROUND,
+    CAMBER_END_SPLIT_BEVEL,
+    CAMBER_END_SPLIT_MITER,
 } camber_end;
 
 #define CAMBER_RESTART_INDEX 0xffffffffu

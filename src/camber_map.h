@@ -101,9 +101,9 @@ typedef struct camber_scene_info {
     double longitude, latitude, zoom; /* of the view's centre */
     uint32_t width, height;           /* device px */
     size_t layers;                    /* of the style that draw something here */
-    size_t features;                  /* of which something lies in the view, a layer */
+    size_t features;                  /* of which something lies in the view, once for layers that share lines */
     size_t polylines, points;         /* to tessellate */
-    size_t points_in;                 /* of these features, before simplification and clipping */
+    size_t points_in;                 /* of these features' polylines, before simplification and clipping */
     bool opaque;                      /* the background covers the picture */
 } camber_scene_info;
 
@@ -135,7 +135,7 @@ typedef struct camber_glb_desc {
 
 /* Writes a binary glTF 2.0 that any reader loads: triangles, or strips whose restarts are degenerate
  * triangles; x right, y up, z 0, one unit a pixel. POSITION is the stroke's true outline at the strokes'
- * widths; _CENTER, _SEGMENT, _EXTRUDE, _TURN and _ROW are what camber's shaders draw from (docs in glb.c).
+ * widths; _CENTER, _SEGMENT, _EXTRUDE, _TURN, _FLAGS and _ROW are what camber's shaders draw from (docs in glb.c).
  * Returns CAMBER_ERROR_IO when the sink refuses, CAMBER_ERROR_LIMIT (4 GB or more), CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_glb_write(camber_context *context, const camber_mesh_data *mesh,
                                           const camber_glb_desc *desc, camber_sink sink);

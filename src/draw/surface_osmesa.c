@@ -1,9 +1,17 @@
 /* OSMesa: Mesa drawing into memory, with desktop GL's core profile. Gone from newer Mesa, so it comes second. */
 #include "draw/surface.h"
 
-#include <GL/osmesa.h>
 #include <dlfcn.h>
 #include <string.h>
+
+/* Of GL/osmesa.h, which goes with the library from newer systems. */
+#define OSMESA_FORMAT 0x22
+#define OSMESA_RGBA GL_RGBA
+#define OSMESA_PROFILE 0x33
+#define OSMESA_CORE_PROFILE 0x34
+#define OSMESA_CONTEXT_MAJOR_VERSION 0x36
+#define OSMESA_CONTEXT_MINOR_VERSION 0x37
+typedef struct osmesa_context *OSMesaContext;
 
 typedef struct osmesa_state {
     void *library;

@@ -41,10 +41,10 @@ typedef enum camber_layer_kind {
 typedef struct camber_style_layer {
     char *id;
     camber_layer_kind kind;
-    char *source;       /* name in the style's sources. NULL: any input */
-    char *source_layer; /* NULL: any */
-    char *filter_key;   /* the filter as compact JSON, "" for none: equal keys draw equal features */
-    double min_zoom, max_zoom; /* drawn where min <= zoom < max; 0 and 24 by default */
+    char *source;              /* name in the style's sources. NULL: any input */
+    char *source_layer;        /* NULL: any */
+    char *filter_key;          /* the filter as compact JSON, "" for none: equal keys draw equal features */
+    double min_zoom, max_zoom; /* drawn where min <= zoom < max; 0 and 24 by default; 24: no end */
     bool visible;
     camber_expression *filter; /* NULL: everything */
     camber_cap cap;

@@ -127,6 +127,10 @@ static camber_status write_buffer(camber_mesh *mesh, cl_mem mem, const void *byt
 static camber_status upload(camber_mesh *mesh, const camber_polylines *polylines) {
     if (mesh->uploaded_serial == polylines->serial)
         return CAMBER_OK;
+    if (polylines->slot_count == 0) {
+        mesh->uploaded_serial = mesh->polyline_count = mesh->slot_count = 0;
+        return CAMBER_OK;
+    }
     camber_status status = reserve_input(mesh, polylines->slot_count);
     mesh->uploaded_serial = 0;
     const size_t words = polylines->slot_count + 2, blocks = polylines->slot_count / CAMBER_BLOCK;
@@ -348,8 +352,9 @@ camber_status camber_mesh_read(camber_mesh *mesh, camber_mesh_data *data) {
     camber_mesh_data made = {.info = camber_mesh_get_info(mesh)};
     camber_status status = CAMBER_OK;
     made.vertices = camber_alloc(context, made.info.vertex_count, sizeof *made.vertices);
-    made.indices = camber_alloc(context, made.info.index_count, sizeof *made.indices);
-    if (!made.vertices || !made.indices)
+    if (made.vertices)
+        made.indices = camber_alloc(context, made.info.index_count, sizeof *made.indices);
+    if (!made.indices)
         status = CAMBER_ERROR_MEMORY;
     if (status == CAMBER_OK && !mesh->empty) {
         status = mesh->ops->begin(mesh->ops_user, mesh->buffers, 2);

@@ -1,0 +1,259 @@
+#include "cli/input.h"
+#include "cli/style_source.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define WIDTH_PX 2.0 /* of --polylines without --width-px */
+
+/* ---- Polylines in pixels ---- */
+
+/* The whole file or standard input; *bytes is freed with free. */
+static int read_all(camber_report *report, const char *path, char **bytes, size_t *size_bytes) {
+    const bool standard = strcmp(path, "-") == 0;
+    FILE *file = standard ? stdin : fopen(path, "rb");
+    if (!file)
+        return camber_report_fail(report, errno == ENOENT || errno == ENOTDIR ? CAMBER_EXIT_NO_INPUT : CAMBER_EXIT_IO,
+                                  "%s: %s; check the name", path, strerror(errno));
+    char *block = NULL;
+    size_t size = 0, capacity = 0, read = 0;
+    bool held = true;
+    do {
+        if (size == capacity) {
+            char *grown = capacity < SIZE_MAX / 4 ? realloc(block, capacity = capacity ? capacity * 2 : 65536) : NULL;
+            held = grown != NULL;
+            block = held ? grown : block;
+        }
+        read = held ? fread(block + size, 1, capacity - size, file) : 0;
+        size += read;
+    } while (read > 0);
+    const int cause = ferror(file) ? errno : 0;
+    if (!standard)
+        fclose(file);
+    if (held && !cause) {
+        *bytes = block;
+        *size_bytes = size;
+        return CAMBER_EXIT_DONE;
+    }
+    free(block);
+    if (!held)
+        return camber_report_fail(report, CAMBER_EXIT_INTERNAL, "%s: too large for the memory; give it a smaller file",
+                                  path);
+    if (cause == EISDIR)
+        return camber_report_fail(report, CAMBER_EXIT_DATA, "%s: is a folder; name a file", path);
+    return camber_report_fail(report, CAMBER_EXIT_IO, "%s: %s; copy it elsewhere and try again", path, strerror(cause));
+}
+
+static int open_polylines(camber_input *input) {
+    camber_session *session = input->session;
+    const char *path = session->options->polylines;
+    char *bytes = NULL;
+    size_t size_bytes = 0;
+    const int status = read_all(session->report, path, &bytes, &size_bytes);
+    if (status != CAMBER_EXIT_DONE)
+        return status;
+    const camber_status parsed = camber_lines_parse(session->context, bytes, size_bytes,
+                                                    strcmp(path, "-") == 0 ? "standard input" : path, &input->lines);
+    free(bytes);
+    if (parsed != CAMBER_OK)
+        return camber_report_status(session->report, parsed);
+    input->points_in = input->lines.point_count;
+    for (size_t i = 0; i < input->lines.polyline_count; i++) {
+        const uint32_t count = input->lines.offsets[i + 1] - input->lines.offsets[i];
+        input->segments_in += count > 1 ? count - 1 : 0;
+    }
+    const double width_px = session->options->width_px > 0 ? session->options->width_px : WIDTH_PX;
+    input->stroke = (camber_stroke){(float)width_px, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0};
+    input->paint = (camber_paint){(float)width_px, {0, 0, 0, 1}};
+    return CAMBER_EXIT_DONE;
+}
+
+static camber_status project_polylines(camber_input *input) {
+    camber_polylines_destroy(input->polylines);
+    input->polylines = NULL;
+    const camber_polylines_desc desc = {.points = input->lines.points,
+                                        .point_count = input->lines.point_count,
+                                        .offsets = input->lines.offsets,
+                                        .polyline_count = input->lines.polyline_count,
+                                        .keep_open = true};
+    return camber_polylines_create(input->session->context, &desc, &input->polylines);
+}
+
+static camber_frame polylines_frame(camber_input *input, camber_mesh *mesh) {
+    const camber_view_desc *view = &input->session->options->view;
+    input->pass = (camber_pass){.mesh = mesh, .paints = &input->paint, .paint_count = 1};
+    return (camber_frame){.width = (uint32_t)(view->width * view->ratio + 0.5),
+                          .height = (uint32_t)(view->height * view->ratio + 0.5),
+                          .background = {1, 1, 1, 1},
+                          .passes = &input->pass,
+                          .pass_count = 1};
+}
+
+/* ---- Maps ---- */
+
+#ifdef CAMBER_MAP
+static int open_style(camber_input *input) {
+    camber_session *session = input->session;
+    const camber_options *options = session->options;
+    if (!options->style) {
+        const camber_theme theme = options->theme < 0 ? CAMBER_THEME_LIGHT : (camber_theme)options->theme;
+        return camber_report_status(session->report, camber_style_builtin(session->context, theme, &input->style));
+    }
+    char *bytes = NULL;
+    size_t size_bytes = 0;
+    const int status = read_all(session->report, options->style, &bytes, &size_bytes);
+    if (status != CAMBER_EXIT_DONE)
+        return status;
+    const char *name = strcmp(options->style, "-") == 0 ? "standard input" : options->style;
+    const camber_status parsed = camber_style_parse(session->context, bytes, size_bytes, name, &input->style);
+    int exit_status = camber_report_status(session->report, parsed);
+    if (parsed == CAMBER_OK && options->input_count == 0)
+        exit_status = camber_style_source(session->report, name, bytes, size_bytes, &input->source);
+    free(bytes);
+    return exit_status;
+}
+
+static int read_file(camber_input *input, const char *path) {
+    camber_session *session = input->session;
+    char *copy = NULL;
+    if (strcmp(path, "-") == 0) {
+        const int status = camber_spool_input(session->report, session->guard, &copy);
+        if (status != CAMBER_EXIT_DONE)
+            return status;
+    }
+    const camber_source_desc desc = {
+        .path = copy ? copy : path, .layer = session->options->layer, .where = session->options->where};
+    session->report->spool = copy;
+    const camber_status status = camber_features_read(input->features, &desc);
+    session->report->spool = NULL;
+    camber_spool_remove(session->guard, copy);
+    return camber_report_status(session->report, status);
+}
+
+static int open_map(camber_input *input) {
+    camber_session *session = input->session;
+    const double start_ms = camber_clock_ms();
+    int status = open_style(input);
+    if (status == CAMBER_EXIT_DONE)
+        status = camber_report_status(session->report,
+                                      camber_features_create(session->context, input->style, &input->features));
+    for (size_t i = 0; i < session->options->input_count && status == CAMBER_EXIT_DONE; i++)
+        status = read_file(input, session->options->inputs[i]);
+    if (status == CAMBER_EXIT_DONE && input->source)
+        status = read_file(input, input->source);
+    if (status != CAMBER_EXIT_DONE)
+        return status;
+    input->osm = camber_features_is_osm(input->features);
+    const camber_features_stats stats = camber_features_get_stats(input->features);
+    input->points_in = stats.points;
+    input->segments_in = stats.points > stats.polylines ? stats.points - stats.polylines : 0;
+    input->read_ms = camber_clock_ms() - start_ms;
+    return CAMBER_EXIT_DONE;
+}
+
+static camber_status project_map(camber_input *input) {
+    camber_scene_destroy(input->scene);
+    input->scene = NULL;
+    const camber_scene_desc desc = {.view = input->session->options->view,
+                                    .simplify_px = input->session->options->simplify_px};
+    return camber_scene_create(input->features, &desc, &input->scene);
+}
+#endif
+
+/* ---- Both ---- */
+
+int camber_input_open(camber_input *input, camber_session *session) {
+    *input = (camber_input){.session = session};
+#ifdef CAMBER_MAP
+    if (!session->options->polylines)
+        return open_map(input);
+#endif
+    return open_polylines(input);
+}
+
+void camber_input_close(camber_input *input) {
+    if (!input->session)
+        return;
+#ifdef CAMBER_MAP
+    camber_scene_destroy(input->scene);
+    camber_features_destroy(input->features);
+    camber_style_destroy(input->style);
+    free(input->source);
+#endif
+    camber_polylines_destroy(input->polylines);
+    camber_lines_free(input->session->context, &input->lines);
+    *input = (camber_input){0};
+}
+
+int camber_input_project(camber_input *input) {
+    const double start_ms = camber_clock_ms();
+    camber_status status;
+#ifdef CAMBER_MAP
+    if (input->features)
+        status = project_map(input);
+    else
+#endif
+        status = project_polylines(input);
+    input->scene_ms = camber_clock_ms() - start_ms;
+    return camber_report_status(input->session->report, status);
+}
+
+void camber_input_warn_empty(const camber_input *input, const char *consequence) {
+    if (camber_polylines_get_stats(camber_input_polylines(input)).polylines == 0)
+        camber_report_warn(input->session->report, "%s; %s",
+                           input->features ? "nothing that the style draws is in the view" : "no polylines",
+                           consequence);
+}
+
+const camber_polylines *camber_input_polylines(const camber_input *input) {
+#ifdef CAMBER_MAP
+    if (input->scene)
+        return camber_scene_polylines(input->scene);
+#endif
+    return input->polylines;
+}
+
+const camber_lines *camber_input_lines(const camber_input *input) {
+#ifdef CAMBER_MAP
+    if (input->scene)
+        return camber_scene_lines(input->scene);
+#endif
+    return &input->lines;
+}
+
+const camber_stroke *camber_input_strokes(const camber_input *input, size_t *count) {
+#ifdef CAMBER_MAP
+    if (input->scene)
+        return camber_scene_strokes(input->scene, count);
+#endif
+    *count = 1;
+    return &input->stroke;
+}
+
+camber_frame camber_input_frame(camber_input *input, camber_mesh *mesh) {
+    camber_frame frame;
+#ifdef CAMBER_MAP
+    if (input->scene)
+        frame = camber_scene_frame(input->scene, mesh);
+    else
+#endif
+        frame = polylines_frame(input, mesh);
+    frame.coverage = (camber_coverage)input->session->options->coverage;
+    return frame;
+}
+
+bool camber_input_opaque(const camber_input *input) {
+#ifdef CAMBER_MAP
+    if (input->scene)
+        return camber_scene_get_info(input->scene).opaque;
+#endif
+    return input->polylines != NULL; /* on white */
+}
+
+camber_status camber_input_tessellate(const camber_input *input, camber_mesh *mesh) {
+    camber_tessellation_desc desc = {.method = camber_session_method(input->session)};
+    desc.strokes = camber_input_strokes(input, &desc.stroke_count);
+    return camber_tessellate(mesh, camber_input_polylines(input), &desc);
+}

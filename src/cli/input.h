@@ -1,0 +1,48 @@
+/* What a verb works on: a view of a map, or a file of polylines in pixels. */
+#ifndef CAMBER_CLI_INPUT_H
+#define CAMBER_CLI_INPUT_H
+
+#include "cli/session.h"
+
+#define CAMBER_ATTRIBUTION "(c) OpenStreetMap contributors"
+
+typedef struct camber_input {
+    camber_session *session;
+    bool osm;                      /* the data asks for CAMBER_ATTRIBUTION */
+    size_t points_in, segments_in; /* as read */
+    double read_ms, scene_ms;
+
+    /* Polylines in pixels. */
+    camber_lines lines;
+    camber_polylines *polylines;
+    camber_stroke stroke;
+    camber_paint paint;
+    camber_pass pass;
+
+    /* A map. */
+    char *source; /* the file that the style names, where there is no INPUT */
+    camber_style *style;
+    camber_features *features;
+    camber_scene *scene;
+} camber_input;
+
+/* Reads the files that the options name. Returns an exit status, its line printed; the input can be closed in any
+ * case. */
+int camber_input_open(camber_input *input, camber_session *session);
+void camber_input_close(camber_input *input);
+
+/* Makes what the kernels read: projects a map, cleans polylines; again at every call. */
+int camber_input_project(camber_input *input);
+/* Warns where that is nothing: "nothing ... is in the view; " and what comes of it. */
+void camber_input_warn_empty(const camber_input *input, const char *consequence);
+/* The parts, after camber_input_project and until the next. */
+const camber_polylines *camber_input_polylines(const camber_input *input);
+const camber_lines *camber_input_lines(const camber_input *input);
+const camber_stroke *camber_input_strokes(const camber_input *input, size_t *count);
+camber_frame camber_input_frame(camber_input *input, camber_mesh *mesh);
+bool camber_input_opaque(const camber_input *input);
+
+/* Tessellates with the method of the options. */
+camber_status camber_input_tessellate(const camber_input *input, camber_mesh *mesh);
+
+#endif

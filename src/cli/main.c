@@ -1,0 +1,58 @@
+/* The tool `camber`. */
+#include "cli/verbs.h"
+
+#include <signal.h>
+
+static int run(camber_session *session) {
+    switch (session->options->verb) {
+#ifdef CAMBER_MAP
+    case CAMBER_VERB_RENDER: return camber_verb_render(session);
+    case CAMBER_VERB_TESSELLATE: return camber_verb_tessellate(session);
+#else
+    case CAMBER_VERB_RENDER:
+    case CAMBER_VERB_TESSELLATE: break; /* no word for them in this build */
+#endif
+    case CAMBER_VERB_VALIDATE: return camber_verb_validate(session);
+    case CAMBER_VERB_BENCH: return camber_verb_bench(session);
+    case CAMBER_VERB_INFO: return camber_verb_info(session);
+    case CAMBER_VERB_NONE: break;
+    }
+    return CAMBER_EXIT_INTERNAL;
+}
+
+static int run_guarded(camber_session *session) {
+    camber_guard guard;
+    const bool guarded = camber_guard_start(&guard, session->report->bars);
+    session->guard = &guard;
+    const int status = run(session);
+    camber_session_close(session);
+    camber_report_erase_bar(session->report);
+    if (guarded)
+        camber_guard_stop(&guard);
+    return status;
+}
+
+int main(int argc, char **argv) {
+    const double start_ms = camber_clock_ms();
+    camber_options options;
+    camber_report report;
+    char message[4096];
+    int status = camber_options_parse(argc, argv, &options, message, sizeof message);
+    camber_report_open(&report, &options);
+    /* A reader that has gone shows as a failed write, which is told of like any other. */
+    signal(SIGPIPE, SIG_IGN);
+    if (status != CAMBER_EXIT_DONE) {
+        status = camber_report_fail(&report, status, "%s", message);
+    } else if (options.help) {
+        camber_options_help(options.verb, stdout);
+        status = camber_report_flush(&report);
+    } else if (options.version) {
+        printf("camber %s\n", camber_version());
+        status = camber_report_flush(&report);
+    } else {
+        camber_session session = {.options = &options, .report = &report, .start_ms = start_ms};
+        status = run_guarded(&session);
+    }
+    camber_options_free(&options);
+    return status;
+}

@@ -1,0 +1,484 @@
+#include "cli/options.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+enum {
+    RENDER = 1 << CAMBER_VERB_RENDER,
+    TESSELLATE = 1 << CAMBER_VERB_TESSELLATE,
+    VALIDATE = 1 << CAMBER_VERB_VALIDATE,
+    BENCH = 1 << CAMBER_VERB_BENCH,
+    INFO = 1 << CAMBER_VERB_INFO,
+    WRITING = RENDER | TESSELLATE | BENCH,
+    READING = RENDER | TESSELLATE | VALIDATE | BENCH,
+    EVERY = READING | INFO,
+#ifdef CAMBER_MAP
+    MAPS = READING,
+#else
+    MAPS = 0,
+#endif
+};
+
+typedef struct verb_spec {
+    const char *name;
+    camber_verb verb;
+    const char *operands;
+    const char *summary;
+} verb_spec;
+
+static const verb_spec verbs[] = {
+#ifdef CAMBER_MAP
+    {"render", CAMBER_VERB_RENDER, "INPUT... -o OUT.png", "draws a map"},
+    {"tessellate", CAMBER_VERB_TESSELLATE, "INPUT... -o OUT.glb", "writes the GPU-ready mesh"},
+    {"validate", CAMBER_VERB_VALIDATE, "[INPUT... | --polylines FILE]", "checks the kernels against the CPU twin"},
+    {"bench", CAMBER_VERB_BENCH, "INPUT... | --polylines FILE", "times every stage"},
+#else
+    {"validate", CAMBER_VERB_VALIDATE, "[--polylines FILE]", "checks the kernels against the CPU twin"},
+    {"bench", CAMBER_VERB_BENCH, "--polylines FILE", "times every stage"},
+#endif
+    {"info", CAMBER_VERB_INFO, "", "OpenCL devices, GL back ends, buffer sharing, versions, readable formats"},
+};
+
+typedef enum option_kind {
+    KIND_FLAG,   /* bool */
+    KIND_TEXT,   /* const char * */
+    KIND_NUMBER, /* double, least to most */
+    KIND_COUNT,  /* uint32_t, least to most */
+    KIND_CHOICE, /* int: the place in argument, whose words are parted by | */
+    KIND_SIZE,
+    KIND_BBOX,
+    KIND_CENTER,
+} option_kind;
+
+typedef struct option_spec {
+    const char *name;
+    char letter; /* 0: none */
+    option_kind kind;
+    int verbs; /* 1 << camber_verb of those that take it */
+    size_t offset;
+    const char *argument;
+    const char *help;
+    double least, most;
+} option_spec;
+
+#define FIELD(member) offsetof(camber_options, member)
+
+/* Parsing, --help and the check of the man page all read this table. */
+static const option_spec specs[] = {
+    {"output", 'o', KIND_TEXT, WRITING, FIELD(output), "OUT", "the file to write; -: standard output", 0, 0},
+    {"force", 'f', KIND_FLAG, WRITING, FIELD(force), NULL, "replace OUT where it exists", 0, 0},
+    {"format", 0, KIND_CHOICE, WRITING, FIELD(format), "png|glb", "of OUT, where its extension does not tell", 0, 0},
+    {"size", 0, KIND_SIZE, READING, 0, "WxH", "of the picture in CSS px (1024x1024; 2048x2048 with --polylines)", 0, 0},
+    {"ratio", 0, KIND_NUMBER, READING, FIELD(view.ratio), "R", "device pixels a CSS px (1)", 1e-3, 1e3},
+    {"bbox", 0, KIND_BBOX, MAPS, 0, "W,S,E,N", "show this box, degrees; W > E crosses the antimeridian", 0, 0},
+    {"center", 0, KIND_CENTER, MAPS, 0, "LON,LAT", "show what lies around this place, with --zoom", 0, 0},
+    {"zoom", 0, KIND_NUMBER, MAPS, FIELD(zoom), "Z", "MapLibre's: the world is 512 CSS px wide at 0", -2, 30},
+    {"bearing", 0, KIND_NUMBER, MAPS, FIELD(view.bearing_deg), "DEG", "the direction that is up, clockwise (0)", -1e6,
+     1e6},
+    {"pitch", 0, KIND_NUMBER, MAPS, FIELD(pitch_deg), "DEG", "0: this version draws maps flat", -90, 90},
+    {"style", 0, KIND_TEXT, MAPS, FIELD(style), "FILE", "a MapLibre style (the built-in road style)", 0, 0},
+    {"theme", 0, KIND_CHOICE, MAPS, FIELD(theme), "light|dark", "of the built-in style (light)", 0, 0},
+    {"layer", 0, KIND_TEXT, MAPS, FIELD(layer), "NAME", "read this layer of INPUT only", 0, 0},
+    {"where", 0, KIND_TEXT, MAPS, FIELD(where), "SQL", "an OGR attribute filter", 0, 0},
+    {"polylines", 0, KIND_TEXT, BENCH | VALIDATE, FIELD(polylines), "FILE", "polylines in pixels instead of a map", 0,
+     0},
+    {"width-px", 0, KIND_NUMBER, BENCH | VALIDATE, FIELD(width_px), "W", "of --polylines, device pixels (2)", 1e-3,
+     16384},
+    {"dump", 0, KIND_TEXT, BENCH, FIELD(dump), "FILE", "write the polylines in pixels, as --polylines reads them", 0,
+     0},
+    {"runs", 0, KIND_COUNT, BENCH, FIELD(runs), "N", "timed runs, after 3 that are not (9)", 1, 100000},
+    {"method", 0, KIND_CHOICE, READING, FIELD(method), "strip|kite|fan",
+     "how lines become triangles (strip; validate: all)", 0, 0},
+    {"coverage", 0, KIND_CHOICE, READING, FIELD(coverage), "exact|linear", "how edges are smoothed (exact)", 0, 0},
+    {"simplify-px", 0, KIND_NUMBER, READING, FIELD(simplify_px), "T",
+     "drop points that the line stays this close to (0: none)", 0, 1e6},
+    {"device", 0, KIND_TEXT, EVERY, FIELD(device), "TEXT", "OpenCL: cpu, gpu, or part of a device's name", 0, 0},
+    {"backend", 0, KIND_CHOICE, EVERY, FIELD(backend), "auto|egl|osmesa", "where GL comes from (auto)", 0, 0},
+    {"sharing", 0, KIND_CHOICE, RENDER | BENCH | INFO, FIELD(sharing), "auto|gl|zero-copy|copy",
+     "how OpenCL's buffers reach GL (auto)", 0, 0},
+    {"threads", 0, KIND_COUNT, EVERY, FIELD(threads), "N", "of OpenCL and GL on a CPU (all cores)", 1, 1024},
+    {"json", 0, KIND_FLAG, EVERY, FIELD(json), NULL, "one JSON object on standard output", 0, 0},
+    {"quiet", 'q', KIND_FLAG, EVERY, FIELD(quiet), NULL, "errors only", 0, 0},
+    {"verbose", 'v', KIND_FLAG, EVERY, FIELD(verbose), NULL, "say what is chosen and how long it takes", 0, 0},
+    {"help", 'h', KIND_FLAG, EVERY, FIELD(help), NULL, "this text", 0, 0},
+    {"version", 0, KIND_FLAG, EVERY, FIELD(version), NULL, "the version", 0, 0},
+};
+
+#define SPEC_COUNT (sizeof specs / sizeof *specs)
+#define VERB_COUNT (sizeof verbs / sizeof *verbs)
+
+/* ---- Help ---- */
+
+static void print_options(int mask, FILE *file) {
+    for (size_t i = 0; i < SPEC_COUNT; i++) {
+        const option_spec *spec = &specs[i];
+        if (!(spec->verbs & mask))
+            continue;
+        char left[64];
+        const char letter[] = {'-', spec->letter, ',', ' ', 0};
+        snprintf(left, sizeof left, "%s--%s%s%s", spec->letter ? letter : "    ", spec->name, spec->argument ? " " : "",
+                 spec->argument ? spec->argument : "");
+        fprintf(file, strlen(left) < 32 ? "  %-32s%s\n" : "  %s\n                                  %s\n", left,
+                spec->help);
+    }
+}
+
+void camber_options_help(camber_verb verb, FILE *file) {
+    for (size_t i = 0; i < VERB_COUNT; i++)
+        if (verbs[i].verb == verb) {
+            fprintf(file, "camber %s %s\n%s\n\n", verbs[i].name, verbs[i].operands, verbs[i].summary);
+            print_options(1 << verb, file);
+            fputs("\n`man camber` has examples and the exit statuses.\n", file);
+            return;
+        }
+    fputs("camber VERB [OPTION...] [INPUT...]\nturns map lines into anti-aliased pictures\n\n", file);
+    for (size_t i = 0; i < VERB_COUNT; i++)
+        fprintf(file, "  %-12s%s\n", verbs[i].name, verbs[i].summary);
+#ifdef CAMBER_MAP
+    fputs("\nINPUT: what OGR reads (OSM PBF and XML, GeoJSON, Shapefile, GeoPackage, ...); -: standard input.\n", file);
+#endif
+    fputs("\nOptions of the verbs (`camber VERB --help` lists a verb's own):\n", file);
+    print_options(EVERY, file);
+    fputs("\nExit status: 0 done, 1 a check failed, 2 usage, 65 bad data, 66 no such input, 69 no device,\n"
+          "70 internal error, 73 OUT exists or cannot be created, 74 input or output error, 130 SIGINT, 143 SIGTERM.\n",
+          file);
+}
+
+/* ---- Values ---- */
+
+typedef struct parser {
+    camber_options *options;
+    char *message;
+    size_t message_size;
+} parser;
+
+static int usage(const parser *p, const char *format, ...) {
+    va_list list;
+    va_start(list, format);
+    vsnprintf(p->message, p->message_size, format, list);
+    va_end(list);
+    return CAMBER_EXIT_USAGE;
+}
+
+/* Finite decimal numbers only: strtod alone also takes blanks, hexadecimal, inf and nan. *text moves behind. */
+static bool parse_number(const char **text, double *value) {
+    const size_t span = strspn(*text, "0123456789+-.eE");
+    char *end;
+    const double number = strtod(*text, &end);
+    if (span == 0 || end == *text || end > *text + span || !isfinite(number))
+        return false;
+    *text = end;
+    *value = number;
+    return true;
+}
+
+/* Exactly count numbers with commas between. */
+static bool parse_numbers(const char *text, size_t count, double *values) {
+    for (size_t i = 0; i < count; i++) {
+        if (i > 0 && *text++ != ',')
+            return false;
+        if (!parse_number(&text, &values[i]))
+            return false;
+    }
+    return *text == 0;
+}
+
+/* Up to nine digits: enough to tell that it is too large. */
+static bool parse_count(const char **text, uint32_t *value) {
+    const size_t digits = strspn(*text, "0123456789");
+    if (digits < 1 || digits > 9)
+        return false;
+    *value = (uint32_t)strtoul(*text, NULL, 10);
+    *text += digits;
+    return true;
+}
+
+static int parse_choice(const parser *p, const option_spec *spec, const char *text, int *value) {
+    const size_t size = strlen(text);
+    int place = 0;
+    for (const char *word = spec->argument; *word; place++) {
+        const size_t length = strcspn(word, "|");
+        if (length == size && strncmp(word, text, size) == 0) {
+            *value = place;
+            return CAMBER_EXIT_DONE;
+        }
+        word += length + (word[length] == '|');
+    }
+    return usage(p, "--%s %s: not one of %s; choose one of them", spec->name, text, spec->argument);
+}
+
+static int parse_view(const parser *p, const option_spec *spec, const char *text) {
+    camber_options *options = p->options;
+    double n[4];
+    if (spec->kind == KIND_BBOX) {
+        if (!parse_numbers(text, 4, n) || fabs(n[0]) > 180 || fabs(n[2]) > 180 || fabs(n[1]) > 90 || fabs(n[3]) > 90 ||
+            n[1] >= n[3] || n[0] == n[2])
+            return usage(p, "--bbox %s: not a box; give west,south,east,north in degrees, south below north", text);
+        options->has_bbox = true;
+        options->view.west = n[0];
+        options->view.south = n[1];
+        options->view.east = n[2];
+        options->view.north = n[3];
+        return CAMBER_EXIT_DONE;
+    }
+    if (spec->kind == KIND_CENTER) {
+        if (!parse_numbers(text, 2, n) || fabs(n[0]) > 180 || fabs(n[1]) > 90)
+            return usage(p, "--center %s: not a place; give longitude,latitude in degrees", text);
+        options->has_center = true;
+        options->view.longitude = n[0];
+        options->view.latitude = n[1];
+        return CAMBER_EXIT_DONE;
+    }
+    const char *rest = text;
+    if (!parse_count(&rest, &options->view.width) || (*rest != 'x' && *rest != 'X') ||
+        (rest++, !parse_count(&rest, &options->view.height)) || *rest != 0)
+        return usage(p, "--size %s: not a size; give WIDTHxHEIGHT in CSS px, as in 1024x768", text);
+    if (options->view.width < 1 || options->view.height < 1)
+        return usage(p, "--size %s: a side of 0; both sides are 1 or more", text);
+    return CAMBER_EXIT_DONE;
+}
+
+static int parse_value(const parser *p, const option_spec *spec, const char *text) {
+    char *field = (char *)p->options + spec->offset;
+    switch (spec->kind) {
+    case KIND_FLAG: *(bool *)(void *)field = true; return CAMBER_EXIT_DONE;
+    case KIND_TEXT:
+        if (*text == 0)
+            return usage(p, "--%s: empty; give %s", spec->name, spec->argument);
+        *(const char **)(void *)field = text;
+        return CAMBER_EXIT_DONE;
+    case KIND_NUMBER: {
+        double number;
+        if (!parse_numbers(text, 1, &number) || number < spec->least || number > spec->most)
+            return usage(p, "--%s %s: out of range; give a number from %g to %g", spec->name, text, spec->least,
+                         spec->most);
+        *(double *)(void *)field = number;
+        return CAMBER_EXIT_DONE;
+    }
+    case KIND_COUNT: {
+        uint32_t count;
+        const char *rest = text;
+        if (!parse_count(&rest, &count) || *rest || count < spec->least || count > spec->most)
+            return usage(p, "--%s %s: out of range; give a whole number from %g to %g", spec->name, text, spec->least,
+                         spec->most);
+        *(uint32_t *)(void *)field = count;
+        return CAMBER_EXIT_DONE;
+    }
+    case KIND_CHOICE: return parse_choice(p, spec, text, (int *)(void *)field);
+    case KIND_SIZE:
+    case KIND_BBOX:
+    case KIND_CENTER: break;
+    }
+    return parse_view(p, spec, text);
+}
+
+/* ---- Arguments ---- */
+
+static const char *verb_name(camber_verb verb) {
+    for (size_t i = 0; i < VERB_COUNT; i++)
+        if (verbs[i].verb == verb)
+            return verbs[i].name;
+    return "";
+}
+
+static bool takes(const option_spec *spec, camber_verb verb) {
+    if (verb == CAMBER_VERB_NONE)
+        return strcmp(spec->name, "help") == 0 || strcmp(spec->name, "version") == 0;
+    return spec->verbs & 1 << verb;
+}
+
+static int unknown_option(const parser *p, const char *name) {
+    const camber_verb verb = p->options->verb;
+    const char *gap = verb == CAMBER_VERB_NONE ? "" : " ";
+    return usage(p, "%s: no such option of camber%s%s; `camber%s%s --help` lists them", name, gap, verb_name(verb), gap,
+                 verb_name(verb));
+}
+
+/* --name, --name=value, --name value. *at moves over a value in an argument of its own. */
+static int parse_long(const parser *p, int argc, char **argv, int *at) {
+    const char *name = argv[*at] + 2;
+    const size_t length = strcspn(name, "=");
+    for (size_t i = 0; i < SPEC_COUNT; i++) {
+        const option_spec *spec = &specs[i];
+        if (strlen(spec->name) != length || strncmp(spec->name, name, length) != 0 || !takes(spec, p->options->verb))
+            continue;
+        if (!spec->argument && name[length])
+            return usage(p, "--%s: takes no value; leave out the rest", spec->name);
+        if (!spec->argument || name[length])
+            return parse_value(p, spec, name + length + (name[length] == '='));
+        if (*at + 1 >= argc)
+            return usage(p, "--%s: no value; give %s", spec->name, spec->argument);
+        return parse_value(p, spec, argv[++*at]);
+    }
+    return unknown_option(p, argv[*at]);
+}
+
+/* -q, -qf, -o OUT, -oOUT. */
+static int parse_short(const parser *p, int argc, char **argv, int *at) {
+    for (const char *letter = argv[*at] + 1; *letter; letter++) {
+        const option_spec *spec = NULL;
+        for (size_t i = 0; i < SPEC_COUNT && !spec; i++)
+            if (specs[i].letter == *letter && takes(&specs[i], p->options->verb))
+                spec = &specs[i];
+        if (!spec)
+            return unknown_option(p, argv[*at]);
+        if (spec->argument && letter[1])
+            return parse_value(p, spec, letter + 1);
+        if (spec->argument && *at + 1 >= argc)
+            return usage(p, "-%c: no value; give %s", spec->letter, spec->argument);
+        if (spec->argument)
+            return parse_value(p, spec, argv[++*at]);
+        const int status = parse_value(p, spec, "");
+        if (status != CAMBER_EXIT_DONE)
+            return status;
+    }
+    return CAMBER_EXIT_DONE;
+}
+
+static int parse_verb(const parser *p, const char *text) {
+    for (size_t i = 0; i < VERB_COUNT; i++)
+        if (strcmp(verbs[i].name, text) == 0) {
+            p->options->verb = verbs[i].verb;
+            return CAMBER_EXIT_DONE;
+        }
+    char names[128] = "";
+    for (size_t i = 0; i < VERB_COUNT; i++)
+        snprintf(names + strlen(names), sizeof names - strlen(names), "%s%s", i ? ", " : "", verbs[i].name);
+    return usage(p, "%s: no such verb; it is one of %s", text, names);
+}
+
+/* ---- What must hold between options ---- */
+
+static bool has_extension(const char *path, const char *extension) {
+    const size_t length = strlen(path);
+    const size_t tail = strlen(extension);
+    return length > tail && strcasecmp(path + length - tail, extension) == 0;
+}
+
+static int check_output(const parser *p) {
+    camber_options *options = p->options;
+    const bool glb = options->verb == CAMBER_VERB_TESSELLATE;
+    const char *format = glb ? "glb" : "png";
+    if (!options->output && options->verb != CAMBER_VERB_BENCH)
+        return usage(p, "%s: no output; give -o OUT.%s", verb_name(options->verb), format);
+    if (!options->output)
+        return CAMBER_EXIT_DONE;
+    const bool out = strcmp(options->output, "-") == 0;
+    if (out && options->json)
+        return usage(p, "--json and -o -: both want standard output; give one of them");
+    if (options->dump && strcmp(options->dump, "-") == 0 && out)
+        return usage(p, "--dump - and -o -: both want standard output; give one of them");
+    const bool png_name = has_extension(options->output, ".png");
+    const bool glb_name = has_extension(options->output, ".glb");
+    if (options->format < 0 && !out && !png_name && !glb_name)
+        return usage(p, "%s: its extension tells no format; name it OUT.%s, or give --format %s", options->output,
+                     format, format);
+    if ((glb ? png_name : glb_name) || (options->format >= 0 && options->format != glb))
+        return usage(p, "%s: %s writes %s; camber %s writes %s", options->output, verb_name(options->verb), format,
+                     glb ? "render" : "tessellate", glb ? "png" : "glb");
+    return CAMBER_EXIT_DONE;
+}
+
+static int check_view(const parser *p) {
+    camber_options *options = p->options;
+    camber_view_desc *view = &options->view;
+    if (options->has_bbox && (options->has_center || !isnan(options->zoom)))
+        return usage(p, "--bbox and --center or --zoom: they exclude each other; give the box or the centre");
+    if (options->has_center != !isnan(options->zoom))
+        return usage(p, "--%s alone: give --center LON,LAT and --zoom Z together",
+                     options->has_center ? "center" : "zoom");
+    if (options->pitch_deg < 0 || options->pitch_deg > 0)
+        return usage(p, "--pitch %g: this version draws maps flat; leave it out", options->pitch_deg);
+    view->kind = options->has_bbox ? CAMBER_VIEW_BBOX : options->has_center ? CAMBER_VIEW_CENTER : CAMBER_VIEW_FIT;
+    view->zoom = options->has_center ? options->zoom : 0;
+    if (view->width == 0)
+        view->width = view->height = options->polylines ? 2048 : 1024;
+    const double width = floor(view->width * view->ratio + 0.5);
+    const double height = floor(view->height * view->ratio + 0.5);
+    if (width < 1 || height < 1 || width > 65535 || height > 65535 || width * height > 2147483648.0)
+        return usage(p, "%ux%u at ratio %g: out of range; after --ratio a side is 1 to 65535 px, all 2^31 at most",
+                     view->width, view->height, view->ratio);
+    return CAMBER_EXIT_DONE;
+}
+
+static int check_inputs(const parser *p) {
+    const camber_options *options = p->options;
+    const char *verb = verb_name(options->verb);
+#ifndef CAMBER_MAP
+    if (options->input_count)
+        return usage(p, "%s: this build reads no maps (CAMBER_MAP=OFF); give --polylines FILE", options->inputs[0]);
+#endif
+    if (options->verb == CAMBER_VERB_INFO && options->input_count)
+        return usage(p, "%s: info takes no input; leave it out", options->inputs[0]);
+    if (options->polylines && options->input_count)
+        return usage(p, "--polylines and %s: both are inputs; give one of them", options->inputs[0]);
+    if (options->polylines && (options->style || options->theme >= 0 || options->layer || options->where ||
+                               options->has_bbox || options->has_center || options->view.bearing_deg != 0.0))
+        return usage(p, "--polylines: is in pixels already and has no style, layer or view; leave those out");
+    if (options->polylines && options->simplify_px > 0)
+        return usage(p, "--simplify-px with --polylines: this version simplifies maps only; leave it out");
+    if (options->width_px > 0 && !options->polylines)
+        return usage(p, "--width-px: is for --polylines; a map's widths are its style's");
+    if (options->style && options->theme >= 0)
+        return usage(p, "--theme: is for the built-in style; leave it out with --style");
+    size_t streams = options->polylines && strcmp(options->polylines, "-") == 0;
+    for (size_t i = 0; i < options->input_count; i++)
+        streams += strcmp(options->inputs[i], "-") == 0;
+    streams += options->style && strcmp(options->style, "-") == 0;
+    if (streams > 1)
+        return usage(p, "-: standard input can be read once; name the other file");
+    const bool needs = options->verb != CAMBER_VERB_INFO && options->verb != CAMBER_VERB_VALIDATE;
+    if (needs && !options->input_count && !options->polylines && !options->style)
+        return usage(p, "%s: no input; give %s", verb,
+                     options->verb == CAMBER_VERB_BENCH ? "a file with lines or --polylines FILE"
+                                                        : "a file with lines, such as city.osm.pbf");
+    return CAMBER_EXIT_DONE;
+}
+
+static int check(const parser *p) {
+    const camber_options *options = p->options;
+    if (options->verb == CAMBER_VERB_NONE)
+        return usage(p, "no verb given; `camber --help` lists them");
+    int status = check_inputs(p);
+    if (status == CAMBER_EXIT_DONE)
+        status = check_view(p);
+    if (status == CAMBER_EXIT_DONE && 1 << options->verb & WRITING)
+        status = check_output(p);
+    if (status == CAMBER_EXIT_DONE && options->dump && strcmp(options->dump, "-") == 0 && options->json)
+        return usage(p, "--json and --dump -: both want standard output; give one of them");
+    return status;
+}
+
+int camber_options_parse(int argc, char **argv, camber_options *options, char *message, size_t message_size) {
+    *options = (camber_options){.format = -1, .theme = -1, .method = -1, .view = {.ratio = 1}, .zoom = NAN, .runs = 9};
+    const parser p = {options, message, message_size};
+    options->inputs = calloc((size_t)argc + 1, sizeof *options->inputs);
+    if (!options->inputs)
+        return usage(&p, "out of memory for %d arguments; give fewer", argc);
+    int status = CAMBER_EXIT_DONE;
+    bool only_operands = false;
+    for (int at = 1; at < argc && status == CAMBER_EXIT_DONE; at++) {
+        const char *text = argv[at];
+        const bool dashed = !only_operands && text[0] == '-' && text[1];
+        if (dashed && strcmp(text, "--") == 0)
+            only_operands = true;
+        else if (dashed && text[1] == '-')
+            status = parse_long(&p, argc, argv, &at);
+        else if (dashed)
+            status = parse_short(&p, argc, argv, &at);
+        else if (options->verb == CAMBER_VERB_NONE)
+            status = parse_verb(&p, text);
+        else
+            options->inputs[options->input_count++] = text;
+    }
+    if (status == CAMBER_EXIT_DONE && !options->help && !options->version)
+        status = check(&p);
+    return status;
+}
+
+void camber_options_free(camber_options *options) {
+    free(options->inputs);
+}

@@ -1,0 +1,58 @@
+/* The command line as values. */
+#ifndef CAMBER_CLI_OPTIONS_H
+#define CAMBER_CLI_OPTIONS_H
+
+#include "camber.h"
+#include "camber_map.h"
+
+#include <stdio.h>
+
+/* Exit statuses: sysexits.h's where it has one, named here since POSIX does not know that header. */
+enum {
+    CAMBER_EXIT_DONE = 0,
+    CAMBER_EXIT_CHECK = 1, /* a check of validate failed */
+    CAMBER_EXIT_USAGE = 2,
+    CAMBER_EXIT_DATA = 65,
+    CAMBER_EXIT_NO_INPUT = 66,
+    CAMBER_EXIT_UNAVAILABLE = 69, /* no usable device or GL back end */
+    CAMBER_EXIT_INTERNAL = 70,
+    CAMBER_EXIT_CREATE = 73, /* OUT exists or cannot be created */
+    CAMBER_EXIT_IO = 74,
+};
+
+typedef enum camber_verb {
+    CAMBER_VERB_NONE = 0,
+    CAMBER_VERB_RENDER,
+    CAMBER_VERB_TESSELLATE,
+    CAMBER_VERB_VALIDATE,
+    CAMBER_VERB_BENCH,
+    CAMBER_VERB_INFO,
+} camber_verb;
+
+/* Choices hold the value's place in the list that --help shows, which is that of the enum in camber.h;
+ * -1: not given. Texts are those of argv; NULL: not given. */
+typedef struct camber_options {
+    camber_verb verb;
+    const char **inputs; /* input_count */
+    size_t input_count;
+    bool help, version, json, quiet, verbose, force;
+    const char *output, *dump, *polylines, *style, *layer, *where, *device;
+    int format; /* 0: png, 1: glb */
+    int theme, method, coverage, backend, sharing;
+    camber_view_desc view; /* width and height are set by camber_options_parse */
+    bool has_bbox, has_center;
+    double zoom, pitch_deg; /* zoom: NAN where not given */
+    double simplify_px, width_px;
+    uint32_t threads; /* 0: as many as there are */
+    uint32_t runs;
+} camber_options;
+
+/* Parses argv. Returns CAMBER_EXIT_DONE, or CAMBER_EXIT_USAGE with one line in message. --help and --version
+ * win over what is missing. The caller frees with camber_options_free in any case. */
+int camber_options_parse(int argc, char **argv, camber_options *options, char *message, size_t message_size);
+void camber_options_free(camber_options *options);
+
+/* The help of the tool (CAMBER_VERB_NONE) or of a verb. */
+void camber_options_help(camber_verb verb, FILE *file);
+
+#endif

@@ -1,0 +1,265 @@
+#define _XOPEN_SOURCE 700 /* realpath */
+
+#include "cli/output.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* Beside path, hidden, and short enough wherever path itself is. */
+static char *temporary_name(const char *path, unsigned attempt, const char *suffix) {
+    const char *slash = strrchr(path, '/');
+    const size_t folder = slash ? (size_t)(slash - path) + 1 : 0;
+    const size_t size = folder + 64;
+    char *name = malloc(size);
+    if (name)
+        snprintf(name, size, "%.*s.camber-%ld-%u%s", (int)folder, path, (long)getpid(), attempt, suffix);
+    return name;
+}
+
+/* Creates a file beside path that the guard knows. Returns its descriptor, or -1 with errno. */
+static int create_beside(camber_guard *guard, const char *path, const char *suffix, mode_t mode, char **made) {
+    for (unsigned attempt = 0; attempt < 100; attempt++) {
+        char *name = temporary_name(path, attempt, suffix);
+        if (!name) {
+            errno = ENOMEM;
+            return -1;
+        }
+        camber_guard_lock(guard);
+        int descriptor = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+        int cause = errno;
+        if (descriptor >= 0 && !camber_guard_add(guard, name)) {
+            close(descriptor);
+            unlink(name);
+            descriptor = -1;
+            cause = EMFILE;
+        }
+        camber_guard_unlock(guard);
+        if (descriptor >= 0) {
+            *made = name;
+            return descriptor;
+        }
+        free(name);
+        errno = cause;
+        if (cause != EEXIST)
+            return -1;
+    }
+    return -1;
+}
+
+static void remove_temporary(camber_guard *guard, char *path) {
+    camber_guard_lock(guard);
+    unlink(path);
+    camber_guard_remove(guard, path);
+    camber_guard_unlock(guard);
+    free(path);
+}
+
+static bool disk_refuses(int cause) {
+    return cause == ENOSPC || cause == EDQUOT || cause == EIO;
+}
+
+static int cannot_create(camber_output *output, int cause) {
+    const char *cure = "name another file";
+    if (cause == ENOENT || cause == ENOTDIR)
+        cure = "make its folder first";
+    else if (cause == EACCES || cause == EPERM || cause == EROFS)
+        cure = "name a folder that you may write to";
+    else if (disk_refuses(cause))
+        cure = "free some space or write elsewhere";
+    return camber_report_fail(output->report, disk_refuses(cause) ? CAMBER_EXIT_IO : CAMBER_EXIT_CREATE,
+                              "%s: cannot be created (%s); %s", output->path, strerror(cause), cure);
+}
+
+static int open_stream(camber_output *output, int descriptor) {
+    output->file = descriptor < 0 ? NULL : fdopen(descriptor, "wb");
+    if (output->file)
+        return CAMBER_EXIT_DONE;
+    const int cause = errno;
+    if (descriptor >= 0)
+        close(descriptor);
+    return cannot_create(output, cause);
+}
+
+/* What stands at path already: nothing of it is touched here, except that a device or a pipe is opened. */
+static int look_at_existing(camber_output *output, mode_t *mode, bool *in_place) {
+    struct stat info;
+    const char *path = output->path;
+    if (!output->force)
+        return camber_report_fail(output->report, CAMBER_EXIT_CREATE,
+                                  "%s: exists; name another file, or replace it with --force", path);
+    if (stat(path, &info) != 0) { /* a link to nowhere: it is replaced */
+        output->target = strdup(path);
+        return CAMBER_EXIT_DONE;
+    }
+    if (S_ISDIR(info.st_mode))
+        return camber_report_fail(output->report, CAMBER_EXIT_CREATE, "%s: is a folder; name a file in it", path);
+    if (!S_ISREG(info.st_mode)) {
+        *in_place = true;
+        return open_stream(output, open(path, O_WRONLY | O_CLOEXEC));
+    }
+    *mode = info.st_mode & 0777;
+    output->target = realpath(path, NULL);
+    return CAMBER_EXIT_DONE;
+}
+
+int camber_output_open(camber_output *output, camber_report *report, camber_guard *guard, const char *path,
+                       bool force) {
+    *output = (camber_output){.path = path, .report = report, .guard = guard, .force = force};
+    if (strcmp(path, "-") == 0) {
+        output->path = "standard output";
+        if (isatty(STDOUT_FILENO))
+            return camber_report_fail(report, CAMBER_EXIT_USAGE,
+                                      "standard output: is a terminal; redirect it to a file or a pipe");
+        return open_stream(output, dup(STDOUT_FILENO));
+    }
+    struct stat info;
+    mode_t mode = 0;
+    bool in_place = false;
+    if (lstat(path, &info) == 0) {
+        const int status = look_at_existing(output, &mode, &in_place);
+        if (status != CAMBER_EXIT_DONE || in_place)
+            return status;
+    } else if (errno != ENOENT) {
+        return cannot_create(output, errno);
+    } else {
+        output->target = strdup(path);
+    }
+    if (!output->target)
+        return cannot_create(output, ENOMEM);
+    if (output->target[strlen(output->target) - 1] == '/')
+        return camber_report_fail(report, CAMBER_EXIT_CREATE, "%s: names a folder; name a file in it", path);
+    const int descriptor = create_beside(guard, output->target, ".tmp", 0666, &output->temporary);
+    if (descriptor >= 0 && mode)
+        fchmod(descriptor, mode); /* best effort: the new file is as readable as the one it replaces */
+    return open_stream(output, descriptor);
+}
+
+static bool write_bytes(void *user, const void *bytes, size_t size_bytes) {
+    camber_output *output = user;
+    output->size_bytes += size_bytes;
+    if (output->error == 0 && fwrite(bytes, 1, size_bytes, output->file) != size_bytes)
+        output->error = errno ? errno : EIO;
+    return output->error == 0;
+}
+
+camber_sink camber_output_sink(camber_output *output) {
+    return (camber_sink){.write = write_bytes, .user = output};
+}
+
+int camber_output_status(camber_output *output, camber_status status) {
+    if (output->error == 0)
+        return camber_report_status(output->report, status);
+    const char *cure = disk_refuses(output->error) ? "free some space or write elsewhere"
+                       : output->error == EPIPE    ? "its reader has gone; keep it running"
+                                                   : "write elsewhere";
+    return camber_report_fail(output->report, CAMBER_EXIT_IO, "%s: %s; %s", output->path, strerror(output->error),
+                              cure);
+}
+
+/* Gives the temporary file its name. Without force a file that has appeared meanwhile stays: link refuses it. */
+static int give_name(camber_output *output) {
+    if (output->force)
+        return rename(output->temporary, output->target) == 0 ? 0 : errno;
+    if (link(output->temporary, output->target) == 0) {
+        unlink(output->temporary);
+        return 0;
+    }
+    if (errno == EEXIST || disk_refuses(errno))
+        return errno;
+    /* A file system without hard links: the gap between the look and the rename is all that can be had. */
+    if (access(output->target, F_OK) == 0)
+        return EEXIST;
+    return rename(output->temporary, output->target) == 0 ? 0 : errno;
+}
+
+int camber_output_publish(camber_output *output) {
+    if (fflush(output->file) != 0 && output->error == 0)
+        output->error = errno;
+    /* Pipes and devices have nothing to sync; a file system that cannot says EINVAL. */
+    if (output->error == 0 && output->temporary && fsync(fileno(output->file)) != 0 && errno != EINVAL)
+        output->error = errno;
+    const int closed = fclose(output->file);
+    output->file = NULL;
+    if (closed != 0 && output->error == 0)
+        output->error = errno;
+    if (output->error)
+        return camber_output_status(output, CAMBER_ERROR_IO);
+    if (!output->temporary)
+        return CAMBER_EXIT_DONE;
+    camber_guard_lock(output->guard);
+    const int cause = give_name(output);
+    if (cause == 0)
+        camber_guard_remove(output->guard, output->temporary);
+    camber_guard_unlock(output->guard);
+    if (cause == EEXIST)
+        return camber_report_fail(output->report, CAMBER_EXIT_CREATE,
+                                  "%s: has appeared meanwhile; name another file, or replace it with --force",
+                                  output->path);
+    if (cause)
+        return cannot_create(output, cause);
+    free(output->temporary);
+    output->temporary = NULL;
+    return CAMBER_EXIT_DONE;
+}
+
+void camber_output_discard(camber_output *output) {
+    if (output->file)
+        fclose(output->file);
+    if (output->temporary)
+        remove_temporary(output->guard, output->temporary);
+    free(output->target);
+    *output = (camber_output){0};
+}
+
+/* ---- Standard input ---- */
+
+/* Drivers of OGR that go by the extension: SQLite files are tiles, or a GeoPackage with its mark at 68. */
+static const char *suffix_of(const char *head, size_t size) {
+    if (size >= 2 && memcmp(head, "\x1f\x8b", 2) == 0)
+        return ".gz";
+    if (size < 72 || memcmp(head, "SQLite format 3", 16) != 0)
+        return "";
+    return memcmp(head + 68, "GP", 2) == 0 ? ".gpkg" : ".mbtiles";
+}
+
+int camber_spool_input(camber_report *report, camber_guard *guard, char **path) {
+    char block[65536];
+    size_t size = fread(block, 1, sizeof block, stdin);
+    const char *folder = getenv("TMPDIR");
+    char beside[PATH_MAX];
+    snprintf(beside, sizeof beside, "%s/", folder && *folder ? folder : "/tmp");
+    char *made = NULL;
+    const int descriptor = create_beside(guard, beside, suffix_of(block, size), 0600, &made);
+    FILE *file = descriptor < 0 ? NULL : fdopen(descriptor, "wb");
+    if (!file) {
+        const int cause = errno;
+        if (made) {
+            close(descriptor);
+            remove_temporary(guard, made);
+        }
+        return camber_report_fail(report, CAMBER_EXIT_IO, "standard input: no copy in %s (%s); set TMPDIR", beside,
+                                  strerror(cause));
+    }
+    bool written = true;
+    for (; size > 0 && written; size = fread(block, 1, sizeof block, stdin))
+        written = fwrite(block, 1, size, file) == size;
+    const bool closed = fclose(file) == 0;
+    if (written && closed && !ferror(stdin)) {
+        *path = made;
+        return CAMBER_EXIT_DONE;
+    }
+    const int cause = errno;
+    remove_temporary(guard, made);
+    return camber_report_fail(report, CAMBER_EXIT_IO, "standard input: copy to %s: %s; set TMPDIR to a larger folder",
+                              beside, strerror(cause));
+}
+
+void camber_spool_remove(camber_guard *guard, char *path) {
+    if (path)
+        remove_temporary(guard, path);
+}

@@ -1,0 +1,15 @@
+/* A frame as a PNG. */
+#ifndef CAMBER_CLI_PICTURE_H
+#define CAMBER_CLI_PICTURE_H
+
+#include "cli/input.h"
+
+typedef struct camber_picture_times {
+    camber_frame_stats frame;
+    double write_ms; /* compression and writing */
+} camber_picture_times;
+
+/* Draws and writes as the rows come. Returns an exit status, its line printed. times may be NULL. */
+int camber_picture_write(camber_input *input, camber_mesh *mesh, camber_output *output, camber_picture_times *times);
+
+#endif

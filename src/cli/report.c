@@ -1,0 +1,174 @@
+#include "cli/report.h"
+
+#include <errno.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <time.h>
+#include <unistd.h>
+
+#define BAR_CELLS 30
+#define BAR_EVERY_MS 50
+
+void camber_report_open(camber_report *report, const camber_options *options) {
+    *report = (camber_report){
+        .quiet = options->quiet, .verbose = options->verbose, .bars = !options->quiet && isatty(STDERR_FILENO)};
+}
+
+/* A name of a file may hold anything: an error stays one line and sends nothing to the terminal. */
+static void print_line(camber_report *report, const char *prefix, const char *text) {
+    camber_report_erase_bar(report);
+    fputs(prefix, stderr);
+    for (const char *c = text; *c; c++)
+        fputc((unsigned char)*c < 0x20 || *c == 0x7f ? '?' : *c, stderr);
+    fputc('\n', stderr);
+}
+
+void camber_report_erase_bar(camber_report *report) {
+    if (report->bar_drawn)
+        fputs("\r\033[K", stderr);
+    report->bar_drawn = false;
+    report->bar_ms = 0;
+}
+
+void camber_report_progress(void *user, const char *stage, double fraction) {
+    camber_report *report = user;
+    const double now_ms = camber_clock_ms();
+    if (!report->bars || (report->bar_drawn && now_ms - report->bar_ms < BAR_EVERY_MS))
+        return;
+    report->bar_drawn = true;
+    report->bar_ms = now_ms;
+    if (!(fraction >= 0)) {
+        fprintf(stderr, "\r\033[K%-14s ...", stage);
+        return;
+    }
+    char bar[BAR_CELLS + 1];
+    const int cells = fraction < 1 ? (int)(fraction * BAR_CELLS) : BAR_CELLS;
+    memset(bar, '#', (size_t)cells);
+    memset(bar + cells, ' ', (size_t)(BAR_CELLS - cells));
+    bar[BAR_CELLS] = 0;
+    fprintf(stderr, "\r\033[K%-14s [%s] %3d %%", stage, bar, fraction < 1 ? (int)(fraction * 100) : 100);
+}
+
+/* The message with standard input called so where its copy is meant. */
+static void name_input(const camber_report *report, const char *message, char *text, size_t size) {
+    const char *found = report->spool ? strstr(message, report->spool) : NULL;
+    if (found)
+        snprintf(text, size, "%.*sstandard input%s", (int)(found - message), message, found + strlen(report->spool));
+    else
+        snprintf(text, size, "%s", message);
+}
+
+void camber_report_log(void *user, camber_log_level level, const char *original) {
+    camber_report *report = user;
+    char message[4096];
+    name_input(report, original, message, sizeof message);
+    if (level == CAMBER_LOG_ERROR) {
+        if (report->sealed)
+            return;
+        snprintf(report->error, sizeof report->error, "%s", message);
+    } else if (level == CAMBER_LOG_WARNING && !report->quiet) {
+        print_line(report, "camber: warning: ", message);
+    } else if (level == CAMBER_LOG_INFO && report->verbose) {
+        print_line(report, "camber: info: ", message);
+    }
+}
+
+int camber_report_fail(camber_report *report, int exit_status, const char *format, ...) {
+    char text[4096];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    print_line(report, "camber: ", text);
+    return exit_status;
+}
+
+int camber_report_status(camber_report *report, camber_status status) {
+    int exit_status = CAMBER_EXIT_INTERNAL;
+    switch (status) {
+    case CAMBER_OK: return CAMBER_EXIT_DONE;
+    case CAMBER_ERROR_ARGUMENT: exit_status = CAMBER_EXIT_USAGE; break;
+    case CAMBER_ERROR_INPUT: exit_status = CAMBER_EXIT_DATA; break;
+    case CAMBER_ERROR_NOT_FOUND: exit_status = CAMBER_EXIT_NO_INPUT; break;
+    case CAMBER_ERROR_DEVICE: exit_status = CAMBER_EXIT_UNAVAILABLE; break;
+    case CAMBER_ERROR_IO: exit_status = CAMBER_EXIT_IO; break;
+    case CAMBER_ERROR_MEMORY:
+    case CAMBER_ERROR_LIMIT: break;
+    }
+    return camber_report_fail(report, exit_status, "%s", report->error[0] ? report->error : camber_status_name(status));
+}
+
+void camber_report_warn(camber_report *report, const char *format, ...) {
+    char text[4096];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    camber_report_log(report, CAMBER_LOG_WARNING, text);
+}
+
+void camber_report_say(camber_report *report, const char *format, ...) {
+    if (report->quiet)
+        return;
+    char text[4096];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    print_line(report, "", text);
+}
+
+json_t *camber_json_text(const char *text) {
+    json_t *string = json_string(text);
+    if (string)
+        return string;
+    char *copy = strdup(text);
+    if (!copy)
+        return NULL;
+    for (char *c = copy; *c; c++)
+        if ((unsigned char)*c >= 0x80)
+            *c = '?';
+    string = json_string(copy);
+    free(copy);
+    return string;
+}
+
+json_t *camber_json_count(size_t count) {
+    return json_integer((json_int_t)count);
+}
+
+json_t *camber_json_ms(double milliseconds) {
+    return json_real((double)(long long)(milliseconds * 1000 + 0.5) / 1000);
+}
+
+int camber_report_json(camber_report *report, json_t *object) {
+    if (!object)
+        return camber_report_fail(report, CAMBER_EXIT_INTERNAL, "JSON: out of memory; give it more");
+    const int failed = json_dumpf(object, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(12));
+    json_decref(object);
+    fputc('\n', stdout);
+    const int status = camber_report_flush(report);
+    if (status == CAMBER_EXIT_DONE && failed)
+        return camber_report_fail(report, CAMBER_EXIT_INTERNAL, "JSON: could not be written; give it more memory");
+    return status;
+}
+
+int camber_report_flush(camber_report *report) {
+    if (fflush(stdout) == 0 && !ferror(stdout))
+        return CAMBER_EXIT_DONE;
+    return camber_report_fail(report, CAMBER_EXIT_IO, "standard output: %s; write to a file or a pipe that takes it",
+                              strerror(errno));
+}
+
+double camber_clock_ms(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
+}
+
+size_t camber_peak_rss_bytes(void) {
+    struct rusage usage;
+    return getrusage(RUSAGE_SELF, &usage) == 0 ? (size_t)usage.ru_maxrss * 1024 : 0;
+}

@@ -1,0 +1,26 @@
+/* The built-in scenes of validate: the same on every machine. */
+#ifndef CAMBER_CLI_SCENES_H
+#define CAMBER_CLI_SCENES_H
+
+#include "camber.h"
+
+#define CAMBER_SCENE_ROWS 4
+
+/* Freed with camber_builtin_free. */
+typedef struct camber_builtin {
+    const char *name;
+    float *points; /* pairs */
+    size_t point_count, point_capacity;
+    uint32_t *offsets; /* polyline_count + 1 */
+    uint32_t *rows;    /* below CAMBER_SCENE_ROWS */
+    size_t polyline_count, polyline_capacity;
+    uint64_t random; /* state of the generator */
+    bool failed;     /* out of memory */
+} camber_builtin;
+
+size_t camber_builtin_count(void);
+/* Makes scene number below camber_builtin_count. false: out of memory. */
+bool camber_builtin_make(size_t number, camber_builtin *scene);
+void camber_builtin_free(camber_builtin *scene);
+
+#endif

@@ -1,0 +1,34 @@
+/* What a verb runs on: the context, the device, the surface and the renderer that the options ask for. */
+#ifndef CAMBER_CLI_SESSION_H
+#define CAMBER_CLI_SESSION_H
+
+#include "cli/output.h"
+
+typedef enum camber_needs {
+    CAMBER_NEEDS_CONTEXT,
+    CAMBER_NEEDS_DEVICE,
+    CAMBER_NEEDS_RENDERER,
+} camber_needs;
+
+typedef struct camber_session {
+    const camber_options *options;
+    camber_report *report;
+    camber_guard *guard;
+    camber_context *context;
+    camber_surface *surface;
+    camber_device *device;
+    camber_renderer *renderer;
+    double start_ms;
+} camber_session;
+
+/* Opens what is needed and not open yet. Returns an exit status, its line printed. */
+int camber_session_need(camber_session *session, camber_needs needs);
+void camber_session_close(camber_session *session);
+
+/* The method that the options ask for, or the default. */
+camber_method camber_session_method(const camber_session *session);
+
+/* "gl_renderer": ..., "device": ..., "sharing": ... of what is open. */
+void camber_session_describe(const camber_session *session, json_t *object);
+
+#endif

@@ -1,0 +1,238 @@
+#include "cli/picture.h"
+#include "cli/verbs.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define WARM_UPS 3
+
+/* Times of a run; every member is a series. */
+typedef struct run_times {
+    double tessellate, draw, frame, classify, scan, emit;
+} run_times;
+
+#define TIMES (sizeof(run_times) / sizeof(double))
+
+typedef struct summary {
+    double min, median, max;
+} summary;
+
+typedef struct job {
+    camber_session *session;
+    camber_input input;
+    camber_output output, dump;
+    camber_mesh *mesh;
+    uint8_t *pixels;
+    run_times *runs;
+    summary summaries[TIMES]; /* in the order of run_times */
+    camber_frame_stats stats;
+    uint32_t width, height;
+} job;
+
+static bool keep_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
+    const job *j = user;
+    const size_t row_bytes = (size_t)j->width * 4;
+    memcpy(j->pixels + first_row * row_bytes, rgba, row_count * row_bytes);
+    return true;
+}
+
+/* A whole frame, from the lines to pixels in memory, and then its parts alone with their input resident. */
+static int time_run(job *j, run_times *times) {
+    const double start_ms = camber_clock_ms();
+    const int projected = camber_input_project(&j->input);
+    if (projected != CAMBER_EXIT_DONE)
+        return projected;
+    camber_status status = camber_input_tessellate(&j->input, j->mesh);
+    camber_frame frame = camber_input_frame(&j->input, j->mesh);
+    if (status == CAMBER_OK)
+        status = camber_render(j->session->renderer, &frame, keep_rows, j, NULL);
+    times->frame = camber_clock_ms() - start_ms;
+    const double resident_ms = camber_clock_ms();
+    if (status == CAMBER_OK)
+        status = camber_input_tessellate(&j->input, j->mesh);
+    times->tessellate = camber_clock_ms() - resident_ms;
+    const camber_mesh_info info = camber_mesh_get_info(j->mesh);
+    times->classify = info.classify_ms;
+    times->scan = info.scan_ms;
+    times->emit = info.emit_ms;
+    frame = camber_input_frame(&j->input, j->mesh); /* a scene's is valid until the next call on it */
+    if (status == CAMBER_OK)
+        status = camber_render(j->session->renderer, &frame, NULL, NULL, &j->stats);
+    times->draw = j->stats.draw_ms;
+    return camber_report_status(j->session->report, status);
+}
+
+static int ascending(const void *a, const void *b) {
+    double x, y;
+    memcpy(&x, a, sizeof x);
+    memcpy(&y, b, sizeof y);
+    return (x > y) - (x < y);
+}
+
+static bool summarise(job *j, size_t count) {
+    double *series = calloc(count, sizeof *series);
+    if (!series)
+        return false;
+    for (size_t member = 0; member < TIMES; member++) {
+        for (size_t i = 0; i < count; i++)
+            memcpy(&series[i], (const char *)&j->runs[i] + member * sizeof(double), sizeof(double));
+        qsort(series, count, sizeof *series, ascending);
+        j->summaries[member] =
+            (summary){series[0], count % 2 ? series[count / 2] : (series[count / 2 - 1] + series[count / 2]) / 2,
+                      series[count - 1]};
+    }
+    free(series);
+    return true;
+}
+
+static int open_outputs(job *j) {
+    camber_session *session = j->session;
+    const camber_options *options = session->options;
+    int status = CAMBER_EXIT_DONE;
+    if (options->output)
+        status = camber_output_open(&j->output, session->report, session->guard, options->output, options->force);
+    if (status == CAMBER_EXIT_DONE && options->dump)
+        status = camber_output_open(&j->dump, session->report, session->guard, options->dump, options->force);
+    return status;
+}
+
+static int write_dump(job *j) {
+    const camber_status status =
+        camber_lines_write(j->session->context, camber_input_lines(&j->input), camber_output_sink(&j->dump));
+    return status == CAMBER_OK ? camber_output_publish(&j->dump) : camber_output_status(&j->dump, status);
+}
+
+static int measure(job *j) {
+    camber_session *session = j->session;
+    const uint32_t runs = session->options->runs;
+    int status = camber_input_project(&j->input);
+    if (status != CAMBER_EXIT_DONE)
+        return status;
+    camber_input_warn_empty(&j->input, "nothing is timed");
+    const camber_frame frame = camber_input_frame(&j->input, j->mesh);
+    j->width = frame.width;
+    j->height = frame.height;
+    j->pixels = malloc((size_t)frame.width * frame.height * 4);
+    j->runs = calloc(runs, sizeof *j->runs);
+    if (!j->pixels || !j->runs)
+        return camber_report_status(session->report, CAMBER_ERROR_MEMORY);
+    run_times unused;
+    for (uint32_t i = 0; i < WARM_UPS + runs && status == CAMBER_EXIT_DONE; i++) {
+        camber_report_progress(session->report, "timing", (double)i / (WARM_UPS + runs));
+        status = time_run(j, i < WARM_UPS ? &unused : &j->runs[i - WARM_UPS]);
+    }
+    camber_report_erase_bar(session->report);
+    if (status == CAMBER_EXIT_DONE && !summarise(j, runs))
+        return camber_report_status(session->report, CAMBER_ERROR_MEMORY);
+    return status;
+}
+
+static int run(job *j) {
+    camber_session *session = j->session;
+    int status = open_outputs(j);
+    if (status == CAMBER_EXIT_DONE)
+        status = camber_session_need(session, CAMBER_NEEDS_RENDERER);
+    if (status == CAMBER_EXIT_DONE)
+        status = camber_input_open(&j->input, session);
+    if (status == CAMBER_EXIT_DONE)
+        status =
+            camber_report_status(session->report, camber_mesh_create(session->device, session->renderer, &j->mesh));
+    if (status == CAMBER_EXIT_DONE)
+        status = measure(j);
+    if (status == CAMBER_EXIT_DONE && session->options->dump)
+        status = write_dump(j);
+    if (status == CAMBER_EXIT_DONE && session->options->output)
+        status = camber_picture_write(&j->input, j->mesh, &j->output, NULL);
+    return status;
+}
+
+static json_t *summary_json(const summary *s) {
+    return json_pack("{s:o, s:o, s:o}", "min", camber_json_ms(s->min), "median", camber_json_ms(s->median), "max",
+                     camber_json_ms(s->max));
+}
+
+static size_t mesh_bytes(const camber_mesh_info *mesh) {
+    return mesh->vertex_count * sizeof(camber_vertex) + mesh->index_count * sizeof(uint32_t);
+}
+
+static int print_json(const job *j) {
+    const camber_session *session = j->session;
+    const camber_polylines_stats lines = camber_polylines_get_stats(camber_input_polylines(&j->input));
+    const camber_mesh_info mesh = camber_mesh_get_info(j->mesh);
+    json_t *object =
+        json_pack("{s:s, s:s, s:I, s:I, s:I}", "draw", "gl", "method", camber_method_name(mesh.method), "width",
+                  (json_int_t)j->width, "height", (json_int_t)j->height, "runs", (json_int_t)session->options->runs);
+    if (!object)
+        return camber_report_json(session->report, NULL);
+    camber_session_describe(session, object);
+    const struct {
+        const char *name;
+        size_t count;
+    } counts[] = {
+        {"polylines", lines.polylines},
+        {"points_in", j->input.points_in},
+        {"segments_in", j->input.segments_in},
+        {"points", lines.kept_points},
+        {"segments", lines.kept_segments},
+        {"joins", mesh.joins},
+        {"vertices", mesh.vertex_count},
+        {"triangles", mesh.triangle_count},
+        {"bytes", mesh_bytes(&mesh)},
+        {"draw_calls", j->stats.draw_calls},
+        {"peak_rss_bytes", camber_peak_rss_bytes()},
+    };
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
+        json_object_set_new(object, counts[i].name, camber_json_count(counts[i].count));
+    json_object_set_new(object, "tessellate_ms", summary_json(&j->summaries[0]));
+    json_object_set_new(object, "draw_ms", summary_json(&j->summaries[1]));
+    json_object_set_new(object, "frame_ms", summary_json(&j->summaries[2]));
+    json_t *stages = json_object();
+    json_object_set_new(stages, "classify", summary_json(&j->summaries[3]));
+    json_object_set_new(stages, "scan", summary_json(&j->summaries[4]));
+    json_object_set_new(stages, "emit", summary_json(&j->summaries[5]));
+    json_object_set_new(object, "stage_ms", stages);
+    return camber_report_json(session->report, object);
+}
+
+/* The table is what the verb is for: on standard output, unless the picture or the polylines go there. */
+static int print_text(const job *j) {
+    camber_session *session = j->session;
+    const camber_options *options = session->options;
+    const bool taken =
+        (options->output && strcmp(options->output, "-") == 0) || (options->dump && strcmp(options->dump, "-") == 0);
+    FILE *file = taken ? stderr : stdout;
+    const camber_polylines_stats lines = camber_polylines_get_stats(camber_input_polylines(&j->input));
+    const camber_mesh_info mesh = camber_mesh_get_info(j->mesh);
+    const camber_device_info device = camber_device_get_info(session->device);
+    fprintf(file, "%s; %s; sharing: %s\n", device.name, camber_surface_get_info(session->surface).renderer,
+            camber_sharing_name(camber_renderer_get_sharing(session->renderer)));
+    fprintf(file, "%u x %u px, %s, %zu polylines, %zu points (%zu read), %zu segments (%zu read)\n", j->width,
+            j->height, camber_method_name(mesh.method), lines.polylines, lines.kept_points, j->input.points_in,
+            lines.kept_segments, j->input.segments_in);
+    fprintf(file, "%zu vertices, %zu triangles, %.1f MB, %zu draw calls, peak memory %.0f MB\n", mesh.vertex_count,
+            mesh.triangle_count, (double)mesh_bytes(&mesh) / 1e6, j->stats.draw_calls,
+            (double)camber_peak_rss_bytes() / 1e6);
+    static const char *const names[TIMES] = {"tessellate", "draw", "frame", "classify", "scan", "emit"};
+    fprintf(file, "\n%-12s %10s %10s %10s   ms, %u runs\n", "", "min", "median", "max", options->runs);
+    for (size_t i = 0; i < TIMES; i++)
+        fprintf(file, "%-12s %10.3f %10.3f %10.3f\n", names[i], j->summaries[i].min, j->summaries[i].median,
+                j->summaries[i].max);
+    if (j->summaries[0].median > 0)
+        fprintf(file, "\n%.1f million segments a second, tessellated\n",
+                (double)lines.kept_segments / j->summaries[0].median / 1e3);
+    return taken ? CAMBER_EXIT_DONE : camber_report_flush(session->report);
+}
+
+int camber_verb_bench(camber_session *session) {
+    job j = {.session = session};
+    int status = run(&j);
+    if (status == CAMBER_EXIT_DONE)
+        status = session->options->json ? print_json(&j) : print_text(&j);
+    free(j.runs);
+    free(j.pixels);
+    camber_mesh_destroy(j.mesh);
+    camber_input_close(&j.input);
+    camber_output_discard(&j.dump);
+    camber_output_discard(&j.output);
+    return status;
+}

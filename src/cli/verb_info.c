@@ -1,0 +1,175 @@
+#include "cli/verbs.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Whatever is missing is part of the answer, not a failure: the reason stands where the thing would. */
+
+static json_t *device_json(const camber_device_info *info) {
+    const char *type = info->type == CAMBER_DEVICE_TYPE_CPU   ? "cpu"
+                       : info->type == CAMBER_DEVICE_TYPE_GPU ? "gpu"
+                                                              : "other";
+    return json_pack("{s:o, s:o, s:o, s:o, s:s, s:I, s:I, s:I, s:b}", "name", camber_json_text(info->name), "platform",
+                     camber_json_text(info->platform), "version", camber_json_text(info->version), "driver",
+                     camber_json_text(info->driver), "type", type, "compute_units", (json_int_t)info->compute_units,
+                     "memory_bytes", (json_int_t)info->memory_bytes, "largest_buffer_bytes",
+                     (json_int_t)info->largest_buffer_bytes, "gl_sharing", info->gl_sharing);
+}
+
+/* The story of the last failure, which must not be told twice. */
+static json_t *take_error(camber_report *report, camber_status status) {
+    json_t *text = camber_json_text(report->error[0] ? report->error : camber_status_name(status));
+    report->error[0] = 0;
+    return text;
+}
+
+static void add_devices(camber_session *session, json_t *object) {
+    json_t *list = json_array();
+    json_object_set_new(object, "devices", list);
+    size_t count = 0;
+    camber_status status = camber_device_list(session->context, 0, NULL, &count);
+    camber_device_info *infos = status == CAMBER_OK && count ? calloc(count, sizeof *infos) : NULL;
+    const size_t capacity = infos ? count : 0;
+    if (infos)
+        status = camber_device_list(session->context, capacity, infos, &count);
+    for (size_t i = 0; status == CAMBER_OK && i < count && i < capacity; i++)
+        json_array_append_new(list, device_json(&infos[i]));
+    if (status != CAMBER_OK)
+        json_object_set_new(object, "devices_error", take_error(session->report, status));
+    free(infos);
+}
+
+static void add_backends(camber_session *session, json_t *object) {
+    static const struct {
+        camber_backend backend;
+        const char *name;
+    } backends[] = {{CAMBER_BACKEND_EGL, "egl"}, {CAMBER_BACKEND_OSMESA, "osmesa"}};
+    json_t *list = json_array();
+    json_object_set_new(object, "backends", list);
+    for (size_t i = 0; i < sizeof backends / sizeof *backends; i++) {
+        const camber_surface_desc desc = {.backend = backends[i].backend};
+        camber_surface *surface = NULL;
+        const camber_status status = camber_surface_create(session->context, &desc, &surface);
+        json_t *entry = json_pack("{s:s, s:b}", "backend", backends[i].name, "available", status == CAMBER_OK);
+        json_array_append_new(list, entry);
+        if (status != CAMBER_OK) {
+            json_object_set_new(entry, "error", take_error(session->report, status));
+            continue;
+        }
+        const camber_surface_info info = camber_surface_get_info(surface);
+        json_object_set_new(entry, "name", camber_json_text(info.backend));
+        json_object_set_new(entry, "gl_renderer", camber_json_text(info.renderer));
+        json_object_set_new(entry, "gl_version", camber_json_text(info.version));
+        json_object_set_new(entry, "largest_target_px", json_integer(info.largest_target_px));
+        json_object_set_new(entry, "software", json_boolean(info.software));
+        json_object_set_new(entry, "buffer_storage", json_boolean(info.buffer_storage));
+        camber_surface_destroy(surface);
+    }
+}
+
+/* What a picture would be drawn with, in the order that a verb opens it. */
+static void add_choice(camber_session *session, json_t *object) {
+    const camber_options *options = session->options;
+    const camber_surface_desc surface = {.backend = (camber_backend)options->backend};
+    camber_status status = camber_surface_create(session->context, &surface, &session->surface);
+    const camber_device_desc device = {.match = options->device};
+    if (status == CAMBER_OK)
+        status = camber_device_create(session->context, &device, session->surface, &session->device);
+    const camber_renderer_desc renderer = {.sharing = (camber_sharing)options->sharing};
+    if (status == CAMBER_OK)
+        status = camber_renderer_create(session->device, session->surface, &renderer, &session->renderer);
+    camber_session_describe(session, object);
+    if (status != CAMBER_OK)
+        json_object_set_new(object, "unavailable", take_error(session->report, status));
+}
+
+static void add_formats(json_t *object) {
+    json_t *list = json_array();
+    json_object_set_new(object, "formats", list);
+#ifdef CAMBER_MAP
+    json_object_set_new(object, "gdal", camber_json_text(camber_gdal_version()));
+    const char *name;
+    for (size_t i = 0; (name = camber_format_name(i)) != NULL; i++)
+        json_array_append_new(list, camber_json_text(name));
+#endif
+}
+
+static const char *text_of(const json_t *object, const char *key) {
+    const char *text = json_string_value(json_object_get(object, key));
+    return text ? text : "none";
+}
+
+static void print_formats(const json_t *object) {
+    const json_t *list = json_object_get(object, "formats");
+    if (json_array_size(list) == 0) {
+        puts("formats   polylines in pixels (this build reads no maps)");
+        return;
+    }
+    size_t column = 100;
+    for (size_t i = 0; i < json_array_size(list); i++) {
+        const char *name = json_string_value(json_array_get(list, i));
+        if (!name)
+            continue;
+        const bool wraps = column + strlen(name) + 2 > 100;
+        if (i > 0)
+            fputs(wraps ? ",\n" : ", ", stdout);
+        if (wraps)
+            column = (size_t)printf("%-10s", i > 0 ? "" : "formats");
+        column += (size_t)printf("%s", name) + 2;
+    }
+    puts("");
+}
+
+static void print_text(const json_t *object) {
+    printf("camber    %s\n", text_of(object, "camber"));
+    const json_t *list = json_object_get(object, "devices");
+    const json_t *entry;
+    size_t i;
+    json_array_foreach(list, i, entry) {
+        printf("device    %s (%s, %s, driver %s)\n", text_of(entry, "name"), text_of(entry, "platform"),
+               text_of(entry, "version"), text_of(entry, "driver"));
+        printf("          %s, %lld compute units, %.1f GB, largest buffer %.1f GB%s\n", text_of(entry, "type"),
+               (long long)json_integer_value(json_object_get(entry, "compute_units")),
+               (double)json_integer_value(json_object_get(entry, "memory_bytes")) / 1e9,
+               (double)json_integer_value(json_object_get(entry, "largest_buffer_bytes")) / 1e9,
+               json_is_true(json_object_get(entry, "gl_sharing")) ? ", cl_khr_gl_sharing" : "");
+    }
+    if (i == 0)
+        printf("device    none: %s\n", json_object_get(object, "devices_error")
+                                           ? text_of(object, "devices_error")
+                                           : "no OpenCL device here; install pocl-opencl-icd or a GPU's driver");
+    json_array_foreach(json_object_get(object, "backends"), i, entry) {
+        if (json_is_true(json_object_get(entry, "available")))
+            printf("GL        %s: %s, %s, targets up to %lld px\n", text_of(entry, "name"),
+                   text_of(entry, "gl_renderer"), text_of(entry, "gl_version"),
+                   (long long)json_integer_value(json_object_get(entry, "largest_target_px")));
+        else
+            printf("GL        %s: not available: %s\n", text_of(entry, "backend"), text_of(entry, "error"));
+    }
+    if (json_object_get(object, "unavailable"))
+        printf("sharing   none: %s\n", text_of(object, "unavailable"));
+    else
+        printf("sharing   %s, between %s and %s\n", text_of(object, "sharing"), text_of(object, "device"),
+               text_of(object, "gl_renderer"));
+    if (json_object_get(object, "gdal"))
+        printf("GDAL      %s\n", text_of(object, "gdal"));
+    print_formats(object);
+}
+
+int camber_verb_info(camber_session *session) {
+    const int status = camber_session_need(session, CAMBER_NEEDS_CONTEXT);
+    if (status != CAMBER_EXIT_DONE)
+        return status;
+    json_t *object = json_pack("{s:s}", "camber", camber_version());
+    if (!object)
+        return camber_report_json(session->report, NULL);
+    add_devices(session, object);
+    add_backends(session, object);
+    add_choice(session, object);
+    add_formats(object);
+    if (session->options->json)
+        return camber_report_json(session->report, object);
+    print_text(object);
+    json_decref(object);
+    return camber_report_flush(session->report);
+}

@@ -1,0 +1,127 @@
+#include "cli/picture.h"
+#include "cli/verbs.h"
+
+#ifdef CAMBER_MAP
+
+typedef struct job {
+    camber_session *session;
+    camber_input input;
+    camber_output output;
+    camber_mesh *mesh;
+    double tessellate_ms;
+    camber_picture_times times;
+    size_t written_bytes;
+} job;
+
+static int draw(job *j) {
+    camber_session *session = j->session;
+    int status = camber_output_open(&j->output, session->report, session->guard, session->options->output,
+                                    session->options->force);
+    if (status == CAMBER_EXIT_DONE)
+        status = camber_session_need(session, CAMBER_NEEDS_RENDERER);
+    if (status == CAMBER_EXIT_DONE)
+        status = camber_input_open(&j->input, session);
+    if (status == CAMBER_EXIT_DONE)
+        status = camber_input_project(&j->input);
+    if (status != CAMBER_EXIT_DONE)
+        return status;
+    camber_input_warn_empty(&j->input, "the picture is empty");
+    camber_report_progress(session->report, "tessellating", -1);
+    const double start_ms = camber_clock_ms();
+    camber_status made = camber_mesh_create(session->device, session->renderer, &j->mesh);
+    if (made == CAMBER_OK)
+        made = camber_input_tessellate(&j->input, j->mesh);
+    j->tessellate_ms = camber_clock_ms() - start_ms;
+    if (made != CAMBER_OK)
+        return camber_report_status(session->report, made);
+    status = camber_picture_write(&j->input, j->mesh, &j->output, &j->times);
+    j->written_bytes = j->output.size_bytes;
+    return status;
+}
+
+static int print_json(const job *j) {
+    const camber_session *session = j->session;
+    const camber_scene_info scene = camber_scene_get_info(j->input.scene);
+    const camber_polylines_stats lines = camber_polylines_get_stats(camber_input_polylines(&j->input));
+    const camber_mesh_info mesh = camber_mesh_get_info(j->mesh);
+    json_t *object =
+        json_pack("{s:o, s:I, s:I, s:o, s:f, s:f, s:f, s:s, s:s}", "output", camber_json_text(session->options->output),
+                  "width", (json_int_t)scene.width, "height", (json_int_t)scene.height, "output_bytes",
+                  camber_json_count(j->written_bytes), "longitude", scene.longitude, "latitude", scene.latitude, "zoom",
+                  scene.zoom, "method", camber_method_name(mesh.method), "coverage",
+                  session->options->coverage == CAMBER_COVERAGE_EXACT ? "exact" : "linear");
+    if (!object)
+        return camber_report_json(session->report, NULL);
+    camber_session_describe(session, object);
+    const struct {
+        const char *name;
+        size_t count;
+    } counts[] = {
+        {"layers", scene.layers},
+        {"features", scene.features},
+        {"polylines", scene.polylines},
+        {"points_in", scene.points_in},
+        {"points", lines.kept_points},
+        {"segments", lines.kept_segments},
+        {"joins", mesh.joins},
+        {"vertices", mesh.vertex_count},
+        {"triangles", mesh.triangle_count},
+        {"draw_calls", j->times.frame.draw_calls},
+        {"pieces", j->times.frame.pieces},
+        {"peak_rss_bytes", camber_peak_rss_bytes()},
+    };
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
+        json_object_set_new(object, counts[i].name, camber_json_count(counts[i].count));
+    const struct {
+        const char *name;
+        double ms;
+    } times[] = {
+        {"read_ms", j->input.read_ms},
+        {"project_ms", j->input.scene_ms},
+        {"tessellate_ms", j->tessellate_ms},
+        {"draw_ms", j->times.frame.draw_ms},
+        {"read_back_ms", j->times.frame.read_ms},
+        {"write_ms", j->times.write_ms},
+        {"total_ms", camber_clock_ms() - session->start_ms},
+    };
+    for (size_t i = 0; i < sizeof times / sizeof *times; i++)
+        json_object_set_new(object, times[i].name, camber_json_ms(times[i].ms));
+    json_object_set_new(object, "attribution", j->input.osm ? json_string(CAMBER_ATTRIBUTION) : json_null());
+    return camber_report_json(session->report, object);
+}
+
+static void print_text(const job *j) {
+    camber_session *session = j->session;
+    camber_report *report = session->report;
+    const camber_scene_info scene = camber_scene_get_info(j->input.scene);
+    const camber_mesh_info mesh = camber_mesh_get_info(j->mesh);
+    const char *path = session->options->output;
+    camber_report_say(report, "%s: %u x %u px, zoom %.2f at %.5f, %.5f", path[0] == '-' && !path[1] ? "picture" : path,
+                      scene.width, scene.height, scene.zoom, scene.longitude, scene.latitude);
+    camber_report_say(report, "%zu features, %zu polylines, %zu points, %zu triangles (%s), %zu draw calls",
+                      scene.features, scene.polylines, scene.points, mesh.triangle_count,
+                      camber_method_name(mesh.method), j->times.frame.draw_calls);
+    camber_report_say(report,
+                      "read %.1f ms, project %.1f, tessellate %.1f, draw %.1f, read back %.1f, write %.1f; "
+                      "in all %.1f ms and %.0f MB",
+                      j->input.read_ms, j->input.scene_ms, j->tessellate_ms, j->times.frame.draw_ms,
+                      j->times.frame.read_ms, j->times.write_ms, camber_clock_ms() - session->start_ms,
+                      (double)camber_peak_rss_bytes() / 1e6);
+    if (j->input.osm)
+        camber_report_say(report, "%s", CAMBER_ATTRIBUTION);
+}
+
+int camber_verb_render(camber_session *session) {
+    job j = {.session = session};
+    int status = draw(&j);
+    if (status == CAMBER_EXIT_DONE && session->options->json)
+        status = print_json(&j);
+    else if (status == CAMBER_EXIT_DONE)
+        print_text(&j);
+    camber_mesh_destroy(j.mesh);
+    camber_input_close(&j.input);
+    camber_output_discard(&j.output);
+    return status;
+}
+
+#endif

@@ -1,0 +1,133 @@
+#include "cli/input.h"
+#include "cli/verbs.h"
+
+#include <stdlib.h>
+
+#ifdef CAMBER_MAP
+
+typedef struct job {
+    camber_session *session;
+    camber_input input;
+    camber_output output;
+    camber_mesh *mesh;
+    camber_paint *paints;
+    camber_mesh_data data;
+    double tessellate_ms, write_ms;
+    size_t written_bytes;
+} job;
+
+/* A row's paint is that of the topmost pass that draws it: the fill where there is a casing. */
+static bool gather_paints(job *j, size_t count) {
+    j->paints = calloc(count ? count : 1, sizeof *j->paints);
+    if (!j->paints)
+        return false;
+    const camber_frame frame = camber_input_frame(&j->input, j->mesh);
+    for (size_t i = 0; i < frame.pass_count; i++)
+        for (size_t row = 0; row < frame.passes[i].paint_count && row < count; row++)
+            if (frame.passes[i].paints[row].width_px > 0)
+                j->paints[row] = frame.passes[i].paints[row];
+    return true;
+}
+
+static int write_mesh(job *j) {
+    camber_session *session = j->session;
+    const double start_ms = camber_clock_ms();
+    camber_glb_desc desc = {.copyright = j->input.osm ? CAMBER_ATTRIBUTION : NULL};
+    desc.strokes = camber_input_strokes(&j->input, &desc.stroke_count);
+    if (!gather_paints(j, desc.stroke_count))
+        return camber_report_status(session->report, CAMBER_ERROR_MEMORY);
+    desc.paints = j->paints;
+    camber_report_progress(session->report, "writing", -1);
+    const camber_status status = camber_glb_write(session->context, &j->data, &desc, camber_output_sink(&j->output));
+    if (status != CAMBER_OK)
+        return camber_output_status(&j->output, status);
+    j->written_bytes = j->output.size_bytes;
+    const int published = camber_output_publish(&j->output);
+    j->write_ms = camber_clock_ms() - start_ms;
+    camber_report_erase_bar(session->report);
+    return published;
+}
+
+static int run(job *j) {
+    camber_session *session = j->session;
+    int status = camber_output_open(&j->output, session->report, session->guard, session->options->output,
+                                    session->options->force);
+    if (status == CAMBER_EXIT_DONE)
+        status = camber_session_need(session, CAMBER_NEEDS_DEVICE);
+    if (status == CAMBER_EXIT_DONE)
+        status = camber_input_open(&j->input, session);
+    if (status == CAMBER_EXIT_DONE)
+        status = camber_input_project(&j->input);
+    if (status != CAMBER_EXIT_DONE)
+        return status;
+    camber_input_warn_empty(&j->input, "the mesh is empty");
+    camber_report_progress(session->report, "tessellating", -1);
+    const double start_ms = camber_clock_ms();
+    camber_status made = camber_mesh_create(session->device, NULL, &j->mesh);
+    if (made == CAMBER_OK)
+        made = camber_input_tessellate(&j->input, j->mesh);
+    if (made == CAMBER_OK)
+        made = camber_mesh_read(j->mesh, &j->data);
+    j->tessellate_ms = camber_clock_ms() - start_ms;
+    if (made != CAMBER_OK)
+        return camber_report_status(session->report, made);
+    return write_mesh(j);
+}
+
+static int print_json(const job *j) {
+    const camber_session *session = j->session;
+    const camber_scene_info scene = camber_scene_get_info(j->input.scene);
+    const camber_mesh_info *mesh = &j->data.info;
+    json_t *object = json_pack(
+        "{s:o, s:o, s:I, s:I, s:s, s:b, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "output",
+        camber_json_text(session->options->output), "output_bytes", camber_json_count(j->written_bytes), "width",
+        (json_int_t)scene.width, "height", (json_int_t)scene.height, "method", camber_method_name(mesh->method),
+        "strips", mesh->strips, "features", camber_json_count(scene.features), "polylines",
+        camber_json_count(scene.polylines), "points", camber_json_count(scene.points), "vertices",
+        camber_json_count(mesh->vertex_count), "indices", camber_json_count(mesh->index_count), "triangles",
+        camber_json_count(mesh->triangle_count), "joins", camber_json_count(mesh->joins));
+    if (!object)
+        return camber_report_json(session->report, NULL);
+    camber_session_describe(session, object);
+    json_object_set_new(object, "read_ms", camber_json_ms(j->input.read_ms));
+    json_object_set_new(object, "project_ms", camber_json_ms(j->input.scene_ms));
+    json_object_set_new(object, "tessellate_ms", camber_json_ms(j->tessellate_ms));
+    json_object_set_new(object, "write_ms", camber_json_ms(j->write_ms));
+    json_object_set_new(object, "total_ms", camber_json_ms(camber_clock_ms() - session->start_ms));
+    json_object_set_new(object, "peak_rss_bytes", camber_json_count(camber_peak_rss_bytes()));
+    json_object_set_new(object, "attribution", j->input.osm ? json_string(CAMBER_ATTRIBUTION) : json_null());
+    return camber_report_json(session->report, object);
+}
+
+static void print_text(const job *j) {
+    camber_session *session = j->session;
+    camber_report *report = session->report;
+    const camber_scene_info scene = camber_scene_get_info(j->input.scene);
+    const char *path = session->options->output;
+    camber_report_say(report, "%s: %zu vertices, %zu triangles (%s), %zu bytes",
+                      path[0] == '-' && !path[1] ? "mesh" : path, j->data.info.vertex_count,
+                      j->data.info.triangle_count, camber_method_name(j->data.info.method), j->written_bytes);
+    camber_report_say(report, "%zu features, %zu polylines, %zu points", scene.features, scene.polylines, scene.points);
+    camber_report_say(report, "read %.1f ms, project %.1f, tessellate %.1f, write %.1f; in all %.1f ms and %.0f MB",
+                      j->input.read_ms, j->input.scene_ms, j->tessellate_ms, j->write_ms,
+                      camber_clock_ms() - session->start_ms, (double)camber_peak_rss_bytes() / 1e6);
+    if (j->input.osm)
+        camber_report_say(report, "%s", CAMBER_ATTRIBUTION);
+}
+
+int camber_verb_tessellate(camber_session *session) {
+    job j = {.session = session};
+    int status = run(&j);
+    if (status == CAMBER_EXIT_DONE && session->options->json)
+        status = print_json(&j);
+    else if (status == CAMBER_EXIT_DONE)
+        print_text(&j);
+    camber_mesh_data_free(session->context, &j.data);
+    free(j.paints);
+    camber_mesh_destroy(j.mesh);
+    camber_input_close(&j.input);
+    camber_output_discard(&j.output);
+    return status;
+}
+
+#endif

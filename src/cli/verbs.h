@@ -1,0 +1,13 @@
+/* The verbs. Each returns an exit status, its line printed. */
+#ifndef CAMBER_CLI_VERBS_H
+#define CAMBER_CLI_VERBS_H
+
+#include "cli/session.h"
+
+int camber_verb_render(camber_session *session);
+int camber_verb_tessellate(camber_session *session);
+int camber_verb_validate(camber_session *session);
+int camber_verb_bench(camber_session *session);
+int camber_verb_info(camber_session *session);
+
+#endif

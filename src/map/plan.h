@@ -1,0 +1,64 @@
+/* The plan of a scene: which layers draw here, which of them share polylines, and with which paints.
+ *
+ *     layers (in drawing order) -> sets (layers that draw the same polylines) -> rows (distinct paints in a set)
+ */
+#ifndef CAMBER_PLAN_H
+#define CAMBER_PLAN_H
+
+#include "map/view.h"
+#include "source/features.h"
+
+#define CAMBER_NO_ROW UINT32_MAX
+
+/* Layers that agree in source layer, filter, cap and joins: one geometry, cut for the widest of them. */
+typedef struct camber_plan_set {
+    const camber_style_layer *layer; /* the first of them */
+    size_t layer_count;
+    size_t first_row, row_count;
+    size_t first_paint;                    /* into paints: row_count tuples of layer_count */
+    float width_px;                        /* the largest, device px */
+    size_t first_entry, entry_count;       /* into entries */
+    size_t first_polyline, polyline_count; /* of the scene; geometry.c fills these */
+} camber_plan_set;
+
+typedef struct camber_plan_layer {
+    const camber_style_layer *layer;
+    size_t set;
+    size_t slot; /* which of the set's layers it is */
+} camber_plan_layer;
+
+/* A polyline of the features that a set draws, with its row. */
+typedef struct camber_plan_entry {
+    uint32_t polyline, row;
+} camber_plan_entry;
+
+typedef struct camber_plan {
+    camber_context *context;
+    camber_color background;
+    bool misplaced_background; /* a translucent one above lines, which a frame cannot draw there */
+    camber_plan_layer *layers;
+    size_t layer_count;
+    camber_plan_set *sets; /* in the order of their first layers */
+    size_t set_count;
+    camber_paint *paints;
+    size_t paint_count, paint_capacity;
+    size_t row_count;
+    camber_plan_entry *entries;
+} camber_plan;
+
+/* Evaluates the style, once a set and class. Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT (2^24 rows).
+ * camber_plan_destroy frees also what a failure left. */
+camber_status camber_plan_create(const camber_features *features, const camber_view *view, camber_plan *plan);
+void camber_plan_destroy(camber_plan *plan);
+
+/* The paint of a row of the set in its slot-th layer. */
+static inline camber_paint camber_plan_paint(const camber_plan *plan, const camber_plan_set *set, size_t row,
+                                             size_t slot) {
+    return plan->paints[set->first_paint + (row - set->first_row) * set->layer_count + slot];
+}
+
+/* The plan of a view moved over what the style draws, with a margin of 2 %; the view stays where there is nothing
+ * to draw. What is drawn may depend on the zoom, so the view is fitted twice at most. */
+camber_status camber_plan_fit(const camber_features *features, camber_view *view, camber_plan *plan);
+
+#endif

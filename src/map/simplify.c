@@ -1,0 +1,104 @@
+#include "map/simplify.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
+/* Ranges are split at their farthest point; past this depth in the middle, so that a spiral made for the worst
+ * case costs n log n too. The result keeps its tolerance either way. */
+#define FARTHEST_SPLITS 48
+
+/* The squared distance of p from the segment a-b. */
+static double distance_squared(const double *p, const double *a, const double *b) {
+    const double dx = b[0] - a[0], dy = b[1] - a[1], px = p[0] - a[0], py = p[1] - a[1];
+    const double length_squared = dx * dx + dy * dy, along = px * dx + py * dy;
+    if (along <= 0.0 || length_squared == 0.0)
+        return px * px + py * py;
+    if (along >= length_squared)
+        return (p[0] - b[0]) * (p[0] - b[0]) + (p[1] - b[1]) * (p[1] - b[1]);
+    const double cross = px * dy - py * dx;
+    return cross * cross / length_squared;
+}
+
+/* The point strictly between first and last that lies farthest from their segment; first where all lie on it. */
+static size_t farthest(const double *points, size_t first, size_t last, double *largest) {
+    size_t found = first;
+    *largest = 0.0;
+    for (size_t i = first + 1; i < last; i++) {
+        const double d = distance_squared(points + 2 * i, points + 2 * first, points + 2 * last);
+        if (d > *largest) {
+            *largest = d;
+            found = i;
+        }
+    }
+    return found;
+}
+
+typedef struct range {
+    size_t first, last;
+    unsigned depth;
+} range;
+
+static void mark(const double *points, range whole, double tolerance_squared, unsigned char *keep) {
+    /* The larger half waits, the smaller is split on: no more than log2(count) ranges wait. */
+    range waiting[64];
+    size_t count = 0;
+    range now = whole;
+    for (;;) {
+        double largest;
+        size_t at = farthest(points, now.first, now.last, &largest);
+        if (largest <= tolerance_squared) {
+            if (count == 0)
+                return;
+            now = waiting[--count];
+            continue;
+        }
+        if (now.depth >= FARTHEST_SPLITS)
+            at = now.first + (now.last - now.first) / 2;
+        keep[at] = 1;
+        const range a = {now.first, at, now.depth + 1}, b = {at, now.last, now.depth + 1};
+        const bool a_larger = at - now.first > now.last - at;
+        waiting[count++] = a_larger ? a : b;
+        now = a_larger ? b : a;
+    }
+}
+
+/* A ring's own base line has no length: it is split at the point farthest from the seam first, and the point
+ * farthest from that line stays too, so that an area stays one however small. */
+static void mark_ring(const double *points, size_t count, double tolerance_squared, unsigned char *keep) {
+    double largest;
+    const size_t far = farthest(points, 0, count - 1, &largest);
+    if (far == 0)
+        return; /* all points are one */
+    keep[far] = 1;
+    mark(points, (range){0, far, 0}, tolerance_squared, keep);
+    mark(points, (range){far, count - 1, 0}, tolerance_squared, keep);
+    for (size_t i = 1; i + 1 < count; i++)
+        if (keep[i] && i != far)
+            return;
+    double before, after;
+    const size_t a = farthest(points, 0, far, &before), b = farthest(points, far, count - 1, &after);
+    if (before > 0.0 || after > 0.0)
+        keep[before >= after ? a : b] = 1;
+}
+
+size_t camber_simplify(double *points, size_t count, double tolerance, unsigned char *keep) {
+    if (count < 3 || !(tolerance > 0.0))
+        return count;
+    const double *last = points + 2 * (count - 1);
+    memset(keep, 0, count);
+    keep[0] = keep[count - 1] = 1;
+    if (count > 3 && points[0] == last[0] && points[1] == last[1])
+        mark_ring(points, count, tolerance * tolerance, keep);
+    else
+        mark(points, (range){0, count - 1, 0}, tolerance * tolerance, keep);
+    size_t kept = 0;
+    for (size_t i = 0; i < count; i++) {
+        if (!keep[i])
+            continue;
+        points[2 * kept] = points[2 * i];
+        points[2 * kept + 1] = points[2 * i + 1];
+        kept++;
+    }
+    return kept;
+}

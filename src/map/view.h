@@ -1,0 +1,67 @@
+/* The camera: world coordinates to device pixels, in double until the view's origin is subtracted. */
+#ifndef CAMBER_VIEW_H
+#define CAMBER_VIEW_H
+
+#include "base/base.h"
+#include "camber_map.h"
+
+/* Axis-aligned; empty where x0 > x1. */
+typedef struct camber_box {
+    double x0, y0, x1, y1;
+} camber_box;
+
+#define CAMBER_BOX_EMPTY ((camber_box){1.0, 1.0, 0.0, 0.0})
+
+typedef struct camber_view {
+    double x, y;            /* of the centre: world coordinates, 0 to 1 from the north-west, y down */
+    double zoom;            /* MapLibre's; below 0 where a fitted world is smaller than 512 CSS px */
+    double scale_px;        /* device px that the world is wide */
+    double cosine, sine;    /* of the bearing */
+    double ratio;           /* device px a CSS px */
+    uint32_t width, height; /* device px */
+} camber_view;
+
+/* Checks the desc and completes a BBOX or CENTER view; a FIT view starts as the whole world and wants
+ * camber_view_frame. Returns CAMBER_ERROR_ARGUMENT. */
+camber_status camber_view_create(camber_context *context, const camber_view_desc *desc, camber_view *view);
+
+/* Moves and zooms the view so that bounds take fill (0 to 1) of the tighter side, at most at max_zoom. The bounds
+ * are in the view's turned axes: u = x cos + y sin, v = y cos - x sin of world coordinates. */
+void camber_view_frame(camber_view *view, camber_box bounds, double fill, double max_zoom);
+
+/* The zoom to evaluate styles at: 0 to 24, the range of theirs. */
+double camber_view_style_zoom(const camber_view *view);
+
+/* Degrees; the longitude is -180 to 180. */
+void camber_view_center(const camber_view *view, double *longitude, double *latitude);
+
+/* World coordinates to device px from the view's top left. */
+static inline void camber_view_project(const camber_view *view, double world_x, double world_y, double *px) {
+    const double dx = (world_x - view->x) * view->scale_px, dy = (world_y - view->y) * view->scale_px;
+    px[0] = dx * view->cosine + dy * view->sine + 0.5 * view->width;
+    px[1] = dy * view->cosine - dx * view->sine + 0.5 * view->height;
+}
+
+/* Bounds in device px of a box in world coordinates. */
+camber_box camber_view_project_box(const camber_view *view, camber_box world);
+
+static inline void camber_box_add(camber_box *box, double x, double y) {
+    if (box->x0 > box->x1) {
+        *box = (camber_box){x, y, x, y};
+        return;
+    }
+    box->x0 = x < box->x0 ? x : box->x0;
+    box->x1 = x > box->x1 ? x : box->x1;
+    box->y0 = y < box->y0 ? y : box->y0;
+    box->y1 = y > box->y1 ? y : box->y1;
+}
+
+static inline bool camber_box_overlaps(camber_box a, camber_box b) {
+    return a.x0 <= b.x1 && b.x0 <= a.x1 && a.y0 <= b.y1 && b.y0 <= a.y1;
+}
+
+static inline bool camber_box_holds(camber_box outer, camber_box inner) {
+    return inner.x0 >= outer.x0 && inner.x1 <= outer.x1 && inner.y0 >= outer.y0 && inner.y1 <= outer.y1;
+}
+
+#endif

@@ -1,0 +1,276 @@
+/* stat64, which VSIStatBufL is. */
+#define _LARGEFILE64_SOURCE
+
+#include "base/embedded.h"
+#include "source/source.h"
+
+#include <cpl_conv.h>
+#include <cpl_string.h>
+#include <cpl_vsi.h>
+#include <ctype.h>
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void CPL_STDCALL camber_gdal_collect(CPLErr level, CPLErrorNum number, const char *message) {
+    camber_gdal_errors *errors = CPLGetErrorHandlerUserData();
+    if (level < CE_Failure)
+        return;
+    if (errors->failures++ == 0) {
+        errors->number = number;
+        snprintf(errors->message, sizeof errors->message, "%s", message);
+    }
+}
+
+/* ---- The OSM driver's configuration ---- */
+
+static bool is_key_character(char c) {
+    return isalnum((unsigned char)c) || c == '_' || c == ':' || c == '@' || c == '-' || c == '.';
+}
+
+/* The key goes into a comma-separated line of the configuration. */
+static bool is_key(const char *key, size_t length) {
+    for (size_t i = 0; i < length; i++)
+        if (!is_key_character(key[i]))
+            return false;
+    return length > 0;
+}
+
+typedef struct key_list {
+    camber_context *context;
+    char *text; /* "highway,bridge" */
+    size_t size, capacity;
+} key_list;
+
+static bool has_key(const key_list *list, const char *key, size_t length) {
+    for (const char *at = list->text; at; at = strchr(at, ',') ? strchr(at, ',') + 1 : NULL)
+        if (strncmp(at, key, length) == 0 && (at[length] == ',' || at[length] == 0))
+            return true;
+    return false;
+}
+
+static bool add_key(key_list *list, const char *key, size_t length) {
+    if (!is_key(key, length) || (list->size && has_key(list, key, length)))
+        return true;
+    if (!camber_grow(list->context, &list->text, &list->capacity, list->size + length + 2, 1))
+        return false;
+    if (list->size)
+        list->text[list->size++] = ',';
+    memcpy(list->text + list->size, key, length);
+    list->size += length;
+    list->text[list->size] = 0;
+    return true;
+}
+
+/* Every word of an attribute filter outside '...' may be a key; SQL's own words do no harm as keys. */
+static bool add_where_keys(key_list *list, const char *where) {
+    bool quoted = false;
+    for (const char *c = where; *c;) {
+        if (*c == '\'')
+            quoted = !quoted;
+        if (quoted || !is_key_character(*c)) {
+            c++;
+            continue;
+        }
+        const char *start = c;
+        while (is_key_character(*c))
+            c++;
+        if (!add_key(list, start, (size_t)(c - start)))
+            return false;
+    }
+    return true;
+}
+
+/* Replaces each @attributes@ of the template. */
+static char *fill_template(camber_context *context, const char *keys) {
+    static const char mark[] = "@attributes@";
+    const size_t mark_size = sizeof mark - 1, keys_size = strlen(keys);
+    size_t marks = 0;
+    for (const char *at = camber_osmconf; (at = strstr(at, mark)) != NULL; at += mark_size)
+        marks++;
+    char *filled = camber_alloc(context, camber_osmconf_size + marks * keys_size + 1, 1);
+    if (!filled)
+        return NULL;
+    char *out = filled;
+    const char *from = camber_osmconf;
+    for (const char *at; (at = strstr(from, mark)) != NULL; from = at + mark_size) {
+        memcpy(out, from, (size_t)(at - from));
+        out += at - from;
+        memcpy(out, keys, keys_size);
+        out += keys_size;
+    }
+    memcpy(out, from, strlen(from) + 1);
+    return filled;
+}
+
+static camber_status write_conf(camber_dataset *dataset, const camber_style *style) {
+    camber_context *context = dataset->context;
+    key_list list = {.context = context};
+    /* Never empty: the driver would fall back on nothing. */
+    bool made = add_key(&list, "highway", strlen("highway"));
+    for (size_t i = 0; made && i < style->property_count; i++)
+        made = strcmp(style->properties[i], CAMBER_PLAIN_PROPERTY) == 0 ||
+               add_key(&list, style->properties[i], strlen(style->properties[i]));
+    for (size_t i = 0; made && camber_osm_area_keys[i]; i++)
+        made = add_key(&list, camber_osm_area_keys[i], strlen(camber_osm_area_keys[i]));
+    if (made && dataset->desc->where)
+        made = add_where_keys(&list, dataset->desc->where);
+    if (made)
+        dataset->conf = fill_template(context, list.text);
+    camber_free(context, list.text);
+    if (!dataset->conf)
+        return CAMBER_ERROR_MEMORY;
+    snprintf(dataset->conf_path, sizeof dataset->conf_path, "/vsimem/camber-%p-%llu.ini", (void *)context,
+             (unsigned long long)context->next_serial++);
+    /* GDAL reads from our buffer, which lives as long as the dataset. */
+    VSILFILE *file = VSIFileFromMemBuffer(dataset->conf_path, (GByte *)dataset->conf, strlen(dataset->conf), FALSE);
+    if (!file)
+        return camber_fail(context, CAMBER_ERROR_MEMORY, "%s: out of memory for the OSM driver's configuration",
+                           dataset->desc->path);
+    VSIFCloseL(file);
+    return CAMBER_OK;
+}
+
+/* ---- Opening ---- */
+
+static bool ends_with(const char *text, const char *end) {
+    const size_t length = strlen(text), end_length = strlen(end);
+    return length >= end_length && EQUAL(text + length - end_length, end);
+}
+
+/* "PG:dbname=x", "https://...", standard input: not a path of the file system, and only its driver knows whether it
+ * is there. */
+static bool is_connection(const char *path) {
+    const char *colon = strchr(path, ':'), *slash = strchr(path, '/');
+    return STARTS_WITH(path, "/vsistdin") || (colon && (!slash || colon < slash));
+}
+
+static camber_status check_exists(camber_context *context, const char *path, bool *directory) {
+    VSIStatBufL about;
+    *directory = false;
+    if (VSIStatL(path, &about) == 0) {
+        *directory = VSI_ISDIR(about.st_mode);
+        return CAMBER_OK;
+    }
+    const int cause = errno;
+    if (cause == EACCES)
+        return camber_fail(context, CAMBER_ERROR_IO, "%s: cannot be read: %s; check its permissions", path,
+                           strerror(cause));
+    if (strcmp(path, "-") == 0 || is_connection(path))
+        return CAMBER_OK;
+    return camber_fail(context, CAMBER_ERROR_NOT_FOUND, "%s: no such file; check the path", path);
+}
+
+static camber_status fail_open(const camber_dataset *dataset, bool directory) {
+    const char *path = dataset->desc->path, *said = dataset->errors.message;
+    VSIStatBufL about;
+    if (directory)
+        return camber_fail(dataset->context, CAMBER_ERROR_INPUT,
+                           "%s: a directory without data that GDAL reads; name a file in it", path);
+    const bool there = VSIStatL(path, &about) == 0;
+    if (!there && strstr(said, "No such file"))
+        return camber_fail(dataset->context, CAMBER_ERROR_NOT_FOUND, "%s: no such file; check the path", path);
+    if (there && about.st_size == 0)
+        return camber_fail(dataset->context, CAMBER_ERROR_INPUT, "%s: the file is empty; get it again", path);
+    if (dataset->errors.failures == 0 || strstr(said, "not recognized as a supported file format"))
+        return camber_fail(dataset->context, CAMBER_ERROR_INPUT,
+                           "%s: not in a vector format that GDAL reads; camber info lists the formats", path);
+    return camber_fail(dataset->context, CAMBER_ERROR_INPUT, "%s: damaged or cut off: %s; get the file again", path,
+                       said);
+}
+
+/* Tiles' zoom: MBTiles tell it; a directory of tiles is named by it. */
+static int zoom_of(const camber_dataset *dataset) {
+    const char *driver = GDALGetDriverShortName(GDALGetDatasetDriver(dataset->handle)), *text = NULL;
+    if (EQUAL(driver, "MBTiles"))
+        text = GDALGetMetadataItem(dataset->handle, "ZOOM_LEVEL", NULL);
+    else if (EQUAL(driver, "MVT"))
+        text = CPLGetFilename(dataset->desc->path);
+    char *end = NULL;
+    const long zoom = text && isdigit((unsigned char)*text) ? strtol(text, &end, 10) : -1;
+    return end && *end == 0 && zoom >= 0 && zoom <= 30 ? (int)zoom : -1;
+}
+
+/* How GDAL is told: a .gz goes through its decompressor, - is standard input. */
+static char *gdal_path(camber_context *context, const char *path, bool directory) {
+    const size_t size = strlen(path) + sizeof "/vsistdin/";
+    char *made = camber_alloc(context, size, 1);
+    if (!made)
+        return NULL;
+    if (strcmp(path, "-") == 0)
+        snprintf(made, size, "/vsistdin/");
+    else if (ends_with(path, ".gz") && !STARTS_WITH(path, "/vsi") && !directory)
+        snprintf(made, size, "/vsigzip/%s", path);
+    else
+        snprintf(made, size, "%s", path);
+    return made;
+}
+
+camber_status camber_dataset_open(camber_context *context, const camber_source_desc *desc, const camber_style *style,
+                                  bool unsorted, camber_dataset *dataset) {
+    *dataset = (camber_dataset){.context = context, .desc = desc, .zoom = -1};
+    bool directory;
+    char *path = NULL, **options = NULL;
+    camber_status status = check_exists(context, desc->path, &directory);
+    if (status == CAMBER_OK)
+        status = write_conf(dataset, style);
+    if (status != CAMBER_OK)
+        goto done;
+    status = CAMBER_ERROR_MEMORY;
+    path = gdal_path(context, desc->path, directory);
+    if (!path)
+        goto done;
+    options = CSLSetNameValue(options, "CONFIG_FILE", dataset->conf_path);
+    if (unsorted)
+        options = CSLSetNameValue(options, "USE_CUSTOM_INDEXING", "NO");
+    /* We clip exactly where the pieces are joined, which needs the buffer. */
+    options = CSLSetNameValue(options, "CLIP", "NO");
+    CPLPushErrorHandlerEx(camber_gdal_collect, &dataset->errors);
+    /* A driver warns of options that it does not know, and that is collected: warnings are dropped. */
+    dataset->handle = GDALOpenEx(path, GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, NULL,
+                                 (const char *const *)options, NULL);
+    CPLPopErrorHandler();
+    if (!dataset->handle) {
+        status = fail_open(dataset, directory);
+        goto done;
+    }
+    dataset->osm = EQUAL(GDALGetDriverShortName(GDALGetDatasetDriver(dataset->handle)), "OSM");
+    dataset->zoom = zoom_of(dataset);
+    status = CAMBER_OK;
+done:
+    CSLDestroy(options);
+    camber_free(context, path);
+    if (status != CAMBER_OK)
+        camber_dataset_close(dataset);
+    return status;
+}
+
+void camber_dataset_close(camber_dataset *dataset) {
+    CPLPushErrorHandlerEx(camber_gdal_collect, &dataset->errors);
+    if (dataset->handle)
+        GDALClose(dataset->handle);
+    CPLPopErrorHandler();
+    dataset->handle = NULL;
+    if (dataset->conf)
+        VSIUnlink(dataset->conf_path);
+    camber_free(dataset->context, dataset->conf);
+    dataset->conf = NULL;
+}
+
+/* OSM's ids and its main tag as columns, as osmtogeojson, osm2pgsql and OGR write them, or the licence's own words. */
+bool camber_dataset_is_osm(const camber_dataset *dataset) {
+    static const char *const names[] = {"osm_id", "@id", "highway"};
+    if (dataset->osm)
+        return true;
+    const char *attribution = GDALGetMetadataItem(dataset->handle, "attribution", NULL);
+    if (attribution && strstr(attribution, "OpenStreetMap"))
+        return true;
+    for (int i = 0; i < GDALDatasetGetLayerCount(dataset->handle); i++) {
+        OGRFeatureDefnH schema = OGR_L_GetLayerDefn(GDALDatasetGetLayer(dataset->handle, i));
+        for (size_t k = 0; k < sizeof names / sizeof *names; k++)
+            if (OGR_FD_GetFieldIndex(schema, names[k]) >= 0)
+                return true;
+    }
+    return false;
+}

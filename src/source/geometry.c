@@ -1,0 +1,280 @@
+#include "source/mercator.h"
+#include "source/source.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Deeper than any real collection; a file that nests deeper is after the stack. */
+enum { MAX_DEPTH = 64 };
+
+/* ---- Projection of a layer ---- */
+
+/* Whether the first ordinate of a geographic system's data is the longitude; *known is false where the axes do
+ * not say. */
+static bool longitude_first(OGRSpatialReferenceH srs, bool *known) {
+    int count = 0;
+    const int *mapping = OSRGetDataAxisToSRSAxisMapping(srs, &count);
+    OGRAxisOrientation orientation = OAO_Other;
+    *known = mapping && count >= 2 && (mapping[0] == 1 || mapping[0] == 2) &&
+             OSRGetAxis(srs, NULL, mapping[0] - 1, &orientation) &&
+             (orientation == OAO_East || orientation == OAO_North);
+    return orientation == OAO_East;
+}
+
+static bool is_code(OGRSpatialReferenceH srs, const char *code) {
+    const char *authority = OSRGetAuthorityName(srs, NULL), *own = OSRGetAuthorityCode(srs, NULL);
+    return authority && own && strcmp(authority, "EPSG") == 0 && strcmp(own, code) == 0;
+}
+
+/* WGS 84 in any of its names, CRS84 among them. */
+static bool is_wgs84(OGRSpatialReferenceH srs) {
+    if (!OSRIsGeographic(srs))
+        return false;
+    const char *authority = OSRGetAuthorityName(srs, NULL), *code = OSRGetAuthorityCode(srs, NULL);
+    if (authority && code)
+        return is_code(srs, "4326") || is_code(srs, "4979") ||
+               (strcmp(authority, "OGC") == 0 && strcmp(code, "CRS84") == 0);
+    OGRSpatialReferenceH wgs84 = OSRNewSpatialReference(NULL);
+    OSRImportFromEPSG(wgs84, 4326);
+    const char *const options[] = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES", "CRITERION=EQUIVALENT", NULL};
+    const bool same = OSRIsSameEx(srs, wgs84, options) != 0;
+    OSRDestroySpatialReference(wgs84);
+    return same;
+}
+
+static camber_status transform_to_degrees(camber_parts *parts, OGRSpatialReferenceH srs, const char *name) {
+    OGRSpatialReferenceH degrees = OSRNewSpatialReference(NULL);
+    OSRImportFromEPSG(degrees, 4326);
+    OSRSetAxisMappingStrategy(degrees, OAMS_TRADITIONAL_GIS_ORDER);
+    parts->transform = OCTNewCoordinateTransformation(srs, degrees);
+    OSRDestroySpatialReference(degrees);
+    if (!parts->transform)
+        return camber_fail(parts->context, CAMBER_ERROR_INPUT,
+                           "%s: its coordinate system \"%s\" cannot be turned into longitude and latitude; convert "
+                           "the file to EPSG:4326",
+                           name, OSRGetName(srs) ? OSRGetName(srs) : "unnamed");
+    parts->projection = CAMBER_PROJECTION_TRANSFORM;
+    return CAMBER_OK;
+}
+
+camber_status camber_parts_set_srs(camber_parts *parts, OGRSpatialReferenceH srs, const char *name) {
+    OCTDestroyCoordinateTransformation(parts->transform);
+    parts->transform = NULL;
+    parts->projection = CAMBER_PROJECTION_DEGREES;
+    parts->latitude_first = false;
+    if (!srs)
+        return CAMBER_OK;
+    int count = 0;
+    const int *mapping = OSRGetDataAxisToSRSAxisMapping(srs, &count);
+    if (OSRIsProjected(srs) && is_code(srs, "3857") && mapping && count >= 2 && mapping[0] == 1 && mapping[1] == 2) {
+        parts->projection = CAMBER_PROJECTION_METRES;
+        return CAMBER_OK;
+    }
+    if (is_wgs84(srs)) {
+        bool known;
+        parts->latitude_first = !longitude_first(srs, &known);
+        if (known)
+            return CAMBER_OK;
+        parts->latitude_first = false;
+    }
+    return transform_to_degrees(parts, srs, name);
+}
+
+void camber_parts_free(camber_parts *parts) {
+    OCTDestroyCoordinateTransformation(parts->transform);
+    camber_free(parts->context, parts->raw);
+    camber_free(parts->context, parts->ends);
+    camber_free(parts->context, parts->points);
+    parts->transform = NULL;
+    parts->raw = parts->points = NULL;
+    parts->ends = NULL;
+}
+
+/* ---- One line ---- */
+
+/* Why a part begins or ends: a point alone between two cuts at the antimeridian lies on it and is drawn by its
+ * neighbours. */
+typedef struct line_state {
+    size_t first; /* point that the open part begins with */
+    bool open;    /* a part is open and has a point */
+    bool begun_by_cut;
+    double x, y; /* the last point */
+} line_state;
+
+/* Capacity for all that a line can add is there already: see add_line. */
+static void push(camber_parts *parts, line_state *line, double x, double y) {
+    if (!line->open) {
+        line->first = parts->point_count;
+        line->open = true;
+    }
+    parts->points[2 * parts->point_count] = x;
+    parts->points[2 * parts->point_count + 1] = y;
+    parts->point_count++;
+}
+
+static void end_part(camber_parts *parts, line_state *line, bool cut) {
+    if (!line->open)
+        return;
+    if (parts->point_count - line->first == 1 && (cut || line->begun_by_cut))
+        parts->point_count = line->first;
+    else
+        parts->ends[parts->part_count++] = parts->point_count;
+    line->open = false;
+    line->begun_by_cut = cut;
+}
+
+/* The short way from the last point to (x, y) crosses x = 0 or 1: ends the part there and begins one on the other
+ * side. Linear in world coordinates, as the segment is drawn. */
+static void cross_antimeridian(camber_parts *parts, line_state *line, double x, double y) {
+    const double out = x < line->x ? 1.0 : 0.0; /* the edge it leaves by */
+    const double beyond = x < line->x ? x + 1.0 : x - 1.0;
+    const double length = beyond - line->x;
+    const double crossing = length != 0 ? line->y + (y - line->y) * ((out - line->x) / length) : y;
+    if (line->x != out)
+        push(parts, line, out, crossing);
+    end_part(parts, line, true);
+    if (x != 1.0 - out)
+        push(parts, line, 1.0 - out, crossing);
+    parts->antimeridian_splits++;
+}
+
+/* Ordinates as the file has them to the world. false: not a number. */
+static bool to_world(camber_parts *parts, double east, double north, double *x, double *y) {
+    if (!isfinite(east) || !isfinite(north))
+        return false;
+    if (parts->projection == CAMBER_PROJECTION_METRES) {
+        camber_mercator_from_metres(east, north, x, y);
+        if (parts->whole)
+            return true;
+        if (*y < 0 || *y > 1) {
+            parts->clamped_points++;
+            *y = *y < 0 ? 0 : 1;
+        }
+    } else {
+        double latitude = parts->latitude_first ? east : north;
+        const double longitude = parts->latitude_first ? north : east;
+        if (fabs(latitude) > 90 || fabs(longitude) > 360)
+            parts->strange_points++;
+        if (fabs(latitude) > CAMBER_MERCATOR_LATITUDE) {
+            parts->clamped_points++;
+            latitude = copysign(CAMBER_MERCATOR_LATITUDE, latitude);
+        }
+        camber_mercator_project(longitude, latitude, x, y);
+    }
+    *x = camber_mercator_wrap(*x);
+    return true;
+}
+
+/* The line's ordinates to raw: count of x, then of y. */
+static bool fetch(camber_parts *parts, OGRGeometryH geometry, size_t count) {
+    /* A line adds its points, two more for each crossing of the antimeridian, and no more parts than points. */
+    if (count > SIZE_MAX / 64 - parts->point_count ||
+        !camber_grow(parts->context, &parts->raw, &parts->raw_capacity, 2 * count, sizeof *parts->raw) ||
+        !camber_grow(parts->context, &parts->points, &parts->point_capacity, parts->point_count + 3 * count,
+                     2 * sizeof *parts->points) ||
+        !camber_grow(parts->context, &parts->ends, &parts->part_capacity, parts->part_count + count + 1,
+                     sizeof *parts->ends))
+        return false;
+    double *x = parts->raw, *y = parts->raw + count;
+    OGR_G_GetPoints(geometry, x, sizeof *x, y, sizeof *y, NULL, 0);
+    /* A point that PROJ cannot place comes back as infinite. */
+    if (parts->projection == CAMBER_PROJECTION_TRANSFORM)
+        OCTTransform(parts->transform, (int)count, x, y, NULL);
+    return true;
+}
+
+static camber_status add_line(camber_parts *parts, OGRGeometryH geometry) {
+    const int points = OGR_G_GetPointCount(geometry);
+    if (points <= 0) {
+        parts->left_out = true;
+        return CAMBER_OK;
+    }
+    const size_t count = (size_t)points;
+    if (!fetch(parts, geometry, count))
+        return CAMBER_ERROR_MEMORY;
+    parts->raw_points += count;
+    line_state line = {0};
+    for (size_t i = 0; i < count; i++) {
+        double x, y;
+        if (!to_world(parts, parts->raw[i], parts->raw[count + i], &x, &y)) {
+            parts->invalid_points++;
+            end_part(parts, &line, false);
+            continue;
+        }
+        if (line.open && !parts->whole && fabs(x - line.x) > 0.5)
+            cross_antimeridian(parts, &line, x, y);
+        push(parts, &line, x, y);
+        line.x = x;
+        line.y = y;
+    }
+    end_part(parts, &line, false);
+    return CAMBER_OK;
+}
+
+/* ---- Any geometry ---- */
+
+static camber_status collect(camber_parts *parts, OGRGeometryH geometry, camber_geometry_kind kind, int depth);
+
+static camber_status collect_members(camber_parts *parts, OGRGeometryH geometry, camber_geometry_kind kind, int depth) {
+    const int count = OGR_G_GetGeometryCount(geometry);
+    for (int i = 0; i < count; i++) {
+        const camber_status status = collect(parts, OGR_G_GetGeometryRef(geometry, i), kind, depth + 1);
+        if (status != CAMBER_OK)
+            return status;
+    }
+    parts->left_out |= count == 0;
+    return CAMBER_OK;
+}
+
+static camber_status collect_rings(camber_parts *parts, OGRGeometryH polygon) {
+    const int count = OGR_G_GetGeometryCount(polygon);
+    for (int i = 0; i < count; i++) {
+        const camber_status status = add_line(parts, OGR_G_GetGeometryRef(polygon, i));
+        if (status != CAMBER_OK)
+            return status;
+    }
+    parts->left_out |= count == 0;
+    return CAMBER_OK;
+}
+
+/* Arcs become chords, by OGR's default of 4 degrees. */
+static camber_status collect_curve(camber_parts *parts, OGRGeometryH geometry, camber_geometry_kind kind, int depth) {
+    OGRGeometryH linear = OGR_G_GetLinearGeometry(geometry, 0, NULL);
+    camber_status status = CAMBER_OK;
+    if (!linear || OGR_GT_IsNonLinear(OGR_G_GetGeometryType(linear)))
+        parts->damaged = true;
+    else
+        status = collect(parts, linear, kind, depth + 1);
+    OGR_G_DestroyGeometry(linear);
+    return status;
+}
+
+static camber_status collect(camber_parts *parts, OGRGeometryH geometry, camber_geometry_kind kind, int depth) {
+    if (!geometry || depth > MAX_DEPTH) {
+        parts->damaged = true;
+        return CAMBER_OK;
+    }
+    const OGRwkbGeometryType type = wkbFlatten(OGR_G_GetGeometryType(geometry));
+    if (OGR_GT_IsNonLinear(type))
+        return collect_curve(parts, geometry, kind, depth);
+    switch (type) {
+    case wkbLineString: return kind == CAMBER_GEOMETRY_LINE ? add_line(parts, geometry) : CAMBER_OK;
+    case wkbPolygon:
+    case wkbTriangle:
+        if (kind == CAMBER_GEOMETRY_POLYGON)
+            return collect_rings(parts, geometry);
+        parts->left_out |= !parts->wants_polygons;
+        return CAMBER_OK;
+    case wkbMultiLineString:
+    case wkbMultiPolygon:
+    case wkbPolyhedralSurface:
+    case wkbTIN:
+    case wkbGeometryCollection: return collect_members(parts, geometry, kind, depth);
+    default: parts->left_out = true; return CAMBER_OK;
+    }
+}
+
+camber_status camber_parts_collect(camber_parts *parts, OGRGeometryH geometry, camber_geometry_kind kind) {
+    parts->point_count = parts->part_count = 0;
+    return collect(parts, geometry, kind, 0);
+}

@@ -1,0 +1,305 @@
+/* Joins the pieces of features that vector tiles cut.
+ *
+ * Ends that lie on borders are hashed by feature and place; the nearest end in another tile is the partner. Where
+ * both are cuts, they are no points of the feature and are dropped: their neighbours were neighbours. Chains of
+ * partners become polylines. All is linear in the number of points.
+ */
+#include "source/tiles.h"
+
+#include <math.h>
+#include <string.h>
+
+/* How far partners may lie apart, in units. A tile's lines are rounded to its grid, of 2048 or 4096 units as a rule,
+ * and a line that the buffer cuts is rounded once more, which moves where it crosses the border. */
+static const double REACH = 4;
+
+/* The same for pieces with one id, whose lines may cross the border at a flat angle: 1/128 of a tile. */
+static const double ID_REACH = 32;
+
+/* Partners that agree to the point are taken first, so that two lines that cross side by side keep apart. */
+static const double EXACT = 0.01;
+
+/* Candidates looked at in a cell; more share one only in files made to slow us down. */
+enum { MAX_CANDIDATES = 64 };
+
+#define NONE UINT32_MAX
+
+/* End e is the first point of piece e / 2, or its last where e is odd. */
+typedef struct joiner {
+    camber_tiles *tiles;
+    uint32_t *partner;
+    uint32_t *heads; /* of the lists of ends in a cell; head_count is a power of two */
+    size_t head_count;
+    uint32_t *next;
+} joiner;
+
+typedef struct join_pass {
+    bool by_id; /* else by class: what is left has no id, or one that its tile gave it */
+    double reach;
+} join_pass;
+
+static const double *end_point(const camber_tiles *tiles, uint32_t end) {
+    const camber_tile_piece *piece = &tiles->pieces[end / 2];
+    return tiles->points + 2 * (piece->first + (end & 1 ? piece->count - 1 : 0));
+}
+
+static uint32_t group_of(const camber_tiles *tiles, uint32_t end, bool by_id) {
+    const uint32_t feature = tiles->pieces[end / 2].feature;
+    return by_id ? feature : tiles->features[feature].class_index;
+}
+
+static int64_t cell_of(double unit, double cell) {
+    return (int64_t)floor(unit / cell);
+}
+
+static size_t head_of(const joiner *join, uint32_t group, int64_t column, int64_t row) {
+    const uint64_t hash = camber_tiles_mix(camber_tiles_mix(group, (uint64_t)column), (uint64_t)row);
+    return (size_t)hash & (join->head_count - 1);
+}
+
+static bool is_candidate(const joiner *join, uint32_t end, const join_pass *pass) {
+    const camber_tile_piece *piece = &join->tiles->pieces[end / 2];
+    return piece->count > 1 && piece->border[end & 1] && join->partner[end] == NONE &&
+           (!pass->by_id || join->tiles->features[piece->feature].has_id);
+}
+
+static bool may_join(const joiner *join, uint32_t a, uint32_t b, bool by_id) {
+    const camber_tiles *tiles = join->tiles;
+    const camber_tile_piece *p = &tiles->pieces[a / 2], *q = &tiles->pieces[b / 2];
+    if (p == q || join->partner[b] != NONE || group_of(tiles, a, by_id) != group_of(tiles, b, by_id))
+        return false;
+    /* Two features with ids of their own that end at one point of a border only meet there. */
+    if (!by_id && tiles->features[p->feature].has_id && tiles->features[q->feature].has_id &&
+        !(p->cut[a & 1] && q->cut[b & 1]))
+        return false;
+    return p->column != q->column || p->row != q->row || p->run || q->run;
+}
+
+static uint32_t nearest(const joiner *join, uint32_t end, const join_pass *pass) {
+    const double *at = end_point(join->tiles, end);
+    const uint32_t group = group_of(join->tiles, end, pass->by_id);
+    const double cell = 2 * pass->reach;
+    double best = pass->reach * pass->reach;
+    uint32_t found = NONE;
+    const int64_t left = cell_of(at[0] - pass->reach, cell), right = cell_of(at[0] + pass->reach, cell);
+    const int64_t top = cell_of(at[1] - pass->reach, cell), bottom = cell_of(at[1] + pass->reach, cell);
+    for (int64_t column = left; column <= right; column++) {
+        for (int64_t row = top; row <= bottom; row++) {
+            uint32_t other = join->heads[head_of(join, group, column, row)];
+            for (int i = 0; other != NONE && i < MAX_CANDIDATES; i++, other = join->next[other]) {
+                const double *there = end_point(join->tiles, other);
+                const double dx = there[0] - at[0], dy = there[1] - at[1], distance = dx * dx + dy * dy;
+                if (distance <= best && (found == NONE || distance < best) && may_join(join, end, other, pass->by_id)) {
+                    best = distance;
+                    found = other;
+                }
+            }
+        }
+    }
+    return found;
+}
+
+static void find_partners(joiner *join, const join_pass *pass) {
+    const uint32_t ends = (uint32_t)(2 * join->tiles->piece_count);
+    const double cell = 2 * pass->reach;
+    memset(join->heads, 0xff, join->head_count * sizeof *join->heads);
+    for (uint32_t end = 0; end < ends; end++) {
+        if (!is_candidate(join, end, pass))
+            continue;
+        const double *at = end_point(join->tiles, end);
+        const uint32_t group = group_of(join->tiles, end, pass->by_id);
+        const size_t head = head_of(join, group, cell_of(at[0], cell), cell_of(at[1], cell));
+        join->next[end] = join->heads[head];
+        join->heads[head] = end;
+    }
+    for (uint32_t end = 0; end < ends; end++) {
+        const uint32_t other = is_candidate(join, end, pass) ? nearest(join, end, pass) : NONE;
+        if (other != NONE) {
+            join->partner[end] = other;
+            join->partner[other] = end;
+        }
+    }
+}
+
+/* Both neighbours have what runs along their border: keeps one of each. Uses the lists, by piece. */
+static void drop_repeated_runs(joiner *join) {
+    camber_tiles *tiles = join->tiles;
+    memset(join->heads, 0xff, join->head_count * sizeof *join->heads);
+    for (uint32_t i = 0; i < tiles->piece_count; i++) {
+        camber_tile_piece *piece = &tiles->pieces[i];
+        if (!piece->run || piece->count == 0)
+            continue;
+        const bool by_id = tiles->features[piece->feature].has_id;
+        const uint32_t group = group_of(tiles, 2 * i, by_id);
+        const double *p = end_point(tiles, 2 * i), *q = end_point(tiles, 2 * i + 1);
+        /* The sums are the same from both ends; in sixteenths they are whole. */
+        const size_t head = head_of(join, group, (int64_t)((p[0] + q[0]) * 16), (int64_t)((p[1] + q[1]) * 16));
+        uint32_t other = join->heads[head];
+        bool repeated = false;
+        for (int k = 0; other != NONE && k < MAX_CANDIDATES && !repeated; k++, other = join->next[other]) {
+            const double *r = end_point(tiles, 2 * other), *s = end_point(tiles, 2 * other + 1);
+            const bool same = camber_tiles_same(p, r) && camber_tiles_same(q, s);
+            const bool turned = camber_tiles_same(p, s) && camber_tiles_same(q, r);
+            repeated = group_of(tiles, 2 * other, by_id) == group && (same || turned);
+        }
+        if (repeated) {
+            piece->count = 0;
+            continue;
+        }
+        join->next[i] = join->heads[head];
+        join->heads[head] = i;
+    }
+}
+
+/* ---- Chains ---- */
+
+typedef struct chain {
+    uint32_t start;   /* end that it is entered by */
+    uint32_t feature; /* the first that has a piece in it */
+} chain;
+
+typedef struct chain_list {
+    chain *chains;
+    size_t count;
+    bool *visited; /* a piece */
+    size_t joined;
+} chain_list;
+
+static void follow(const joiner *join, uint32_t start, chain_list *list) {
+    chain made = {start, NONE};
+    size_t pieces = 0;
+    uint32_t end = start;
+    do {
+        const uint32_t feature = join->tiles->pieces[end / 2].feature;
+        if (feature < made.feature)
+            made.feature = feature;
+        list->visited[end / 2] = true;
+        pieces++;
+        end = join->partner[end ^ 1];
+    } while (end != NONE && end != start);
+    list->chains[list->count++] = made;
+    list->joined += pieces - 1;
+}
+
+/* Chains that begin where a feature begins come first, so that they keep its direction; then those with turned
+ * pieces; rings are left. */
+static void find_chains(const joiner *join, chain_list *list) {
+    const camber_tiles *tiles = join->tiles;
+    for (int round = 0; round < 3; round++) {
+        for (uint32_t i = 0; i < tiles->piece_count; i++) {
+            const uint32_t start = round == 1 ? 2 * i + 1 : 2 * i;
+            if (tiles->pieces[i].count && !list->visited[i] && (round == 2 || join->partner[start] == NONE))
+                follow(join, start, list);
+        }
+    }
+}
+
+/* The chain's points, in world coordinates, to scratch. */
+static bool gather(const joiner *join, uint32_t start, size_t *count) {
+    camber_tiles *tiles = join->tiles;
+    size_t points = 0;
+    bool skip_entry = false;
+    uint32_t end = start;
+    do {
+        const camber_tile_piece *piece = &tiles->pieces[end / 2];
+        const uint32_t leave = end ^ 1, enter = join->partner[leave];
+        const bool joins = enter != NONE;
+        /* At a joint one point is left, or none where both were made by cutting. */
+        const bool skip_leave = joins && piece->cut[leave & 1];
+        if (!camber_grow(tiles->context, &tiles->scratch, &tiles->scratch_capacity, points + piece->count + 1,
+                         2 * sizeof *tiles->scratch))
+            return false;
+        for (size_t i = 0; i < piece->count; i++) {
+            if ((i == 0 && skip_entry) || (i + 1 == piece->count && skip_leave))
+                continue;
+            const double *from = tiles->points + 2 * (piece->first + (end & 1 ? piece->count - 1 - i : i));
+            tiles->scratch[2 * points] = from[0] / tiles->units;
+            tiles->scratch[2 * points + 1] = from[1] / tiles->units;
+            points++;
+        }
+        if (joins)
+            skip_entry = !skip_leave || tiles->pieces[enter / 2].cut[enter & 1];
+        end = enter;
+    } while (end != NONE && end != start);
+    if (end == start && points) {
+        memcpy(tiles->scratch + 2 * points, tiles->scratch, 2 * sizeof *tiles->scratch);
+        points++;
+    }
+    *count = points;
+    return true;
+}
+
+/* order: the chains sorted by feature, those of one feature as they were found. */
+static camber_status add_chains(const joiner *join, const chain_list *list, const uint32_t *order,
+                                camber_features *features) {
+    uint32_t feature = NONE;
+    for (size_t i = 0; i < list->count; i++) {
+        const chain *one = &list->chains[order[i]];
+        camber_status status = CAMBER_OK;
+        if (one->feature != feature)
+            status = camber_features_add_feature(features, join->tiles->features[one->feature].class_index);
+        feature = one->feature;
+        size_t count = 0;
+        if (status == CAMBER_OK && !gather(join, one->start, &count))
+            status = CAMBER_ERROR_MEMORY;
+        if (status == CAMBER_OK)
+            status = camber_features_add_polyline(features, join->tiles->scratch, count);
+        if (status != CAMBER_OK)
+            return status;
+    }
+    return CAMBER_OK;
+}
+
+static camber_status emit(const joiner *join, camber_features *features) {
+    camber_tiles *tiles = join->tiles;
+    camber_context *context = tiles->context;
+    chain_list list = {0};
+    camber_status status = CAMBER_ERROR_MEMORY;
+    list.chains = camber_alloc(context, tiles->piece_count, sizeof *list.chains);
+    list.visited = camber_alloc_zero(context, tiles->piece_count, sizeof *list.visited);
+    size_t *starts = camber_alloc_zero(context, tiles->feature_count + 1, sizeof *starts);
+    uint32_t *order = camber_alloc(context, tiles->piece_count, sizeof *order);
+    if (!list.chains || !list.visited || !starts || !order)
+        goto done;
+    find_chains(join, &list);
+    for (size_t i = 0; i < list.count; i++)
+        starts[list.chains[i].feature + 1]++;
+    for (size_t i = 0; i < tiles->feature_count; i++)
+        starts[i + 1] += starts[i];
+    for (size_t i = 0; i < list.count; i++)
+        order[starts[list.chains[i].feature]++] = (uint32_t)i;
+    status = add_chains(join, &list, order, features);
+    if (status == CAMBER_OK)
+        features->stats.joined_pieces += list.joined;
+done:
+    camber_free(context, order);
+    camber_free(context, starts);
+    camber_free(context, list.visited);
+    camber_free(context, list.chains);
+    return status;
+}
+
+camber_status camber_tiles_finish(camber_tiles *tiles, camber_features *features) {
+    camber_context *context = tiles->context;
+    joiner join = {.tiles = tiles, .head_count = 1024};
+    camber_status status = CAMBER_ERROR_MEMORY;
+    while (join.head_count < 2 * tiles->piece_count)
+        join.head_count *= 2;
+    join.heads = camber_alloc(context, join.head_count, sizeof *join.heads);
+    join.next = camber_alloc(context, 2 * tiles->piece_count, sizeof *join.next);
+    join.partner = camber_alloc(context, 2 * tiles->piece_count, sizeof *join.partner);
+    if (!join.heads || !join.next || !join.partner)
+        goto done;
+    for (size_t i = 0; i < 2 * tiles->piece_count; i++)
+        join.partner[i] = NONE;
+    drop_repeated_runs(&join);
+    const join_pass passes[] = {{true, EXACT}, {true, REACH}, {true, ID_REACH}, {false, EXACT}, {false, REACH}};
+    for (size_t i = 0; i < sizeof passes / sizeof *passes; i++)
+        find_partners(&join, &passes[i]);
+    status = emit(&join, features);
+done:
+    camber_free(context, join.partner);
+    camber_free(context, join.next);
+    camber_free(context, join.heads);
+    return status;
+}

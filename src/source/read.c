@@ -1,0 +1,384 @@
+/* Streams the features of a file into a set. */
+#include "source/source.h"
+
+#include <cpl_conv.h>
+#include <cpl_string.h>
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+static const double PROGRESS_MS = 50;
+
+typedef struct reader {
+    camber_context *context;
+    camber_features *features;
+    const camber_source_desc *desc;
+    camber_dataset dataset;
+    camber_parts parts;
+    camber_tiles *tiles; /* NULL: no vector tiles */
+
+    /* The layer being read. */
+    OGRLayerH layer;
+    uint32_t layer_index;
+    camber_columns columns;
+
+    camber_features_stats stats; /* of this file */
+    char damage[512];            /* what the first damage was */
+    size_t read;                 /* features that the layer gave */
+    double shown_ms;
+} reader;
+
+/* ---- Set-up for a layer ---- */
+
+/* CAMBER_ERROR_ARGUMENT: the attribute filter does not fit the layer; nothing is logged then. */
+static camber_status begin_layer(reader *self, int index) {
+    self->layer = GDALDatasetGetLayer(self->dataset.handle, index);
+    OGRFeatureDefnH schema = OGR_L_GetLayerDefn(self->layer);
+    camber_status status = camber_features_find_layer(self->features, OGR_L_GetName(self->layer), &self->layer_index);
+    if (status == CAMBER_OK)
+        status = camber_parts_set_srs(&self->parts, OGR_L_GetSpatialRef(self->layer), self->desc->path);
+    if (status == CAMBER_OK)
+        status = camber_columns_find(&self->columns, self->features, schema, self->tiles, self->dataset.osm);
+    if (status != CAMBER_OK)
+        return status;
+    /* A filter may look at any field. */
+    if (!self->desc->where)
+        camber_columns_ignore_others(&self->columns, self->layer);
+    self->dataset.errors = (camber_gdal_errors){0};
+    if (self->desc->where && OGR_L_SetAttributeFilter(self->layer, self->desc->where) != OGRERR_NONE)
+        return CAMBER_ERROR_ARGUMENT;
+    OGR_L_ResetReading(self->layer);
+    return CAMBER_OK;
+}
+
+/* ---- One feature ---- */
+
+/* The tile that a feature comes from. OGR's drivers put it into the feature's number: column in the low bits, then
+ * row, then the feature. Where that does not fit the coordinates, the middle of the feature tells. */
+static void find_tile(const reader *self, OGRFeatureH feature, camber_tile_feature *tile) {
+    const int zoom = self->dataset.zoom;
+    const double side = ldexp(1.0, zoom);
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (size_t i = 0; i < self->parts.point_count; i++) {
+        for (int axis = 0; axis < 2; axis++) {
+            low[axis] = fmin(low[axis], self->parts.points[2 * i + (size_t)axis] * side);
+            high[axis] = fmax(high[axis], self->parts.points[2 * i + (size_t)axis] * side);
+        }
+    }
+    const GIntBig number = OGR_F_GetFID(feature), mask = ((GIntBig)1 << zoom) - 1;
+    tile->column = (uint32_t)(number & mask);
+    tile->row = (uint32_t)(number >> zoom & mask);
+    /* Buffers are half a tile wide at most. */
+    if (number >= 0 && low[0] <= tile->column + 1.5 && high[0] >= tile->column - 0.5 && low[1] <= tile->row + 1.5 &&
+        high[1] >= tile->row - 0.5)
+        return;
+    tile->column = (uint32_t)fmin(fmax(floor((low[0] + high[0]) / 2), 0), side - 1);
+    tile->row = (uint32_t)fmin(fmax(floor((low[1] + high[1]) / 2), 0), side - 1);
+}
+
+static camber_status keep(reader *self, OGRFeatureH feature, camber_geometry_kind kind) {
+    uint32_t index;
+    camber_status status = camber_columns_class(&self->columns, feature, self->layer_index, kind, &index);
+    if (status != CAMBER_OK)
+        return status;
+    if (self->tiles) {
+        camber_tile_feature tile = {.class_index = index, .outline = kind == CAMBER_GEOMETRY_POLYGON};
+        find_tile(self, feature, &tile);
+        tile.has_id = camber_columns_id(&self->columns, feature, &tile.id);
+        return camber_tiles_add(self->tiles, &tile, &self->parts);
+    }
+    status = camber_features_add_feature(self->features, index);
+    size_t first = 0;
+    for (size_t i = 0; i < self->parts.part_count && status == CAMBER_OK; i++) {
+        status =
+            camber_features_add_polyline(self->features, self->parts.points + 2 * first, self->parts.ends[i] - first);
+        first = self->parts.ends[i];
+    }
+    return status;
+}
+
+/* failed: OGR reported a failure with this feature. */
+static camber_status read_feature(reader *self, OGRFeatureH feature, bool failed) {
+    camber_parts *parts = &self->parts;
+    OGRGeometryH geometry = OGR_F_GetGeometryRef(feature);
+    parts->left_out = !geometry && !failed;
+    parts->damaged = failed;
+    const bool area = geometry && camber_columns_is_area(&self->columns, feature, geometry);
+    camber_status status = CAMBER_OK;
+    for (int kind = 0; geometry && kind < 2 && status == CAMBER_OK; kind++) {
+        const bool wanted = kind == CAMBER_GEOMETRY_LINE ? !area : parts->wants_polygons;
+        if (!wanted)
+            continue;
+        /* An area's ring is a line to OGR. */
+        const camber_geometry_kind collected = area ? CAMBER_GEOMETRY_LINE : (camber_geometry_kind)kind;
+        status = camber_parts_collect(parts, geometry, collected);
+        if (status == CAMBER_OK && parts->part_count)
+            status = keep(self, feature, (camber_geometry_kind)kind);
+    }
+    self->stats.skipped_features += parts->left_out || (area && !parts->wants_polygons);
+    self->stats.damaged_features += parts->damaged;
+    if (parts->damaged && self->damage[0] == 0)
+        snprintf(self->damage, sizeof self->damage, "%s",
+                 failed ? self->dataset.errors.message : "a geometry that does not parse");
+    return status;
+}
+
+/* ---- The stream ---- */
+
+/* A shapefile gives a record that lies past the end of a cut file as a feature with a failure, one after the other:
+ * that is a read error, and no damage to a feature. */
+static bool is_read_error(const camber_gdal_errors *errors) {
+    return errors->number == CPLE_FileIO || strstr(errors->message, "fread(") != NULL;
+}
+
+/* OSM_USE_CUSTOM_INDEXING is named in the message; the option of the driver is USE_CUSTOM_INDEXING. */
+static bool is_unsorted(const camber_gdal_errors *errors) {
+    return strstr(errors->message, "USE_CUSTOM_INDEXING=NO") != NULL;
+}
+
+static camber_status fail_stream(reader *self, const char *cause) {
+    return camber_fail(self->context, CAMBER_ERROR_INPUT,
+                       "%s: cut off or damaged after %zu features: %s; get the file "
+                       "again",
+                       self->desc->path, self->read, cause);
+}
+
+static void show_progress(reader *self, double fraction) {
+    const double now = camber_now_ms();
+    if (now - self->shown_ms < PROGRESS_MS)
+        return;
+    self->shown_ms = now;
+    camber_progress(self->context, "reading", fraction);
+}
+
+static OGRFeatureH next_feature(reader *self, double *fraction) {
+    self->dataset.errors = (camber_gdal_errors){0};
+    CPLErrorReset();
+    if (!self->dataset.osm)
+        return OGR_L_GetNextFeature(self->layer);
+    OGRLayerH layer = NULL;
+    return GDALDatasetGetNextFeature(self->dataset.handle, &layer, fraction, NULL, NULL);
+}
+
+/* expected: features that the layer announces, below 0 where it does not know. *unsorted: start again with nodes in
+ * no order; nothing is logged then. */
+static camber_status read_layer(reader *self, GIntBig expected, bool *unsorted) {
+    camber_status status = CAMBER_OK;
+    double fraction = -1;
+    self->read = 0;
+    while (status == CAMBER_OK) {
+        OGRFeatureH feature = next_feature(self, &fraction);
+        const camber_gdal_errors *errors = &self->dataset.errors;
+        const bool failed = errors->failures && CPLGetLastErrorType() >= CE_Failure;
+        if (failed && self->dataset.osm && is_unsorted(errors) && !*unsorted) {
+            *unsorted = true;
+            OGR_F_Destroy(feature);
+            return CAMBER_ERROR_INPUT;
+        }
+        if (failed && (!feature || is_read_error(errors)))
+            status = fail_stream(self, errors->message);
+        if (!feature)
+            break;
+        if (status == CAMBER_OK) {
+            if (!self->dataset.osm && expected > 0)
+                fraction = fmin((double)++self->read / (double)expected, 1);
+            else
+                self->read++;
+            status = read_feature(self, feature, failed);
+            show_progress(self, fraction);
+        }
+        OGR_F_Destroy(feature);
+    }
+    return status;
+}
+
+/* A FlatGeobuf that is cut off just ends; its header says how many features there are. */
+static camber_status check_count(reader *self, GIntBig expected) {
+    const char *driver = GDALGetDriverShortName(GDALGetDatasetDriver(self->dataset.handle));
+    if (self->desc->where || !EQUAL(driver, "FlatGeobuf") || expected < 0 || self->read >= (size_t)expected)
+        return CAMBER_OK;
+    return fail_stream(self, "its header announces more");
+}
+
+static camber_status read_layers(reader *self, const int *layers, size_t count, bool *unsorted) {
+    bool any = false;
+    for (size_t i = 0; i < count; i++) {
+        camber_status status = begin_layer(self, layers[i]);
+        if (status == CAMBER_ERROR_ARGUMENT && count > 1)
+            continue;
+        if (status == CAMBER_ERROR_ARGUMENT)
+            break;
+        if (status != CAMBER_OK)
+            return status;
+        any = true;
+        const bool counts = !self->desc->where && OGR_L_TestCapability(self->layer, OLCFastFeatureCount);
+        const GIntBig expected = counts && !self->dataset.osm ? OGR_L_GetFeatureCount(self->layer, FALSE) : -1;
+        status = read_layer(self, expected, unsorted);
+        if (status == CAMBER_OK)
+            status = check_count(self, expected);
+        if (status != CAMBER_OK)
+            return status;
+    }
+    if (any)
+        return CAMBER_OK;
+    return camber_fail(self->context, CAMBER_ERROR_ARGUMENT,
+                       "%s: the filter \"%s\" does not fit: %s; compare fields of "
+                       "the layer, as in highway = 'primary'",
+                       self->desc->path, self->desc->where,
+                       self->dataset.errors.failures ? self->dataset.errors.message : "it does not parse");
+}
+
+/* ---- A file ---- */
+
+static void warn(const reader *self) {
+    const camber_features_stats *stats = &self->stats;
+    const char *path = self->desc->path;
+    if (stats->damaged_features)
+        camber_log(self->context, CAMBER_LOG_WARNING,
+                   "%s: %zu damaged features (the first: %s); what of them reads is kept", path,
+                   stats->damaged_features, self->damage);
+    if (stats->skipped_features)
+        camber_log(self->context, CAMBER_LOG_WARNING,
+                   "%s: left out what is no line (points, areas, empty geometry) of %zu features", path,
+                   stats->skipped_features);
+    if (stats->invalid_points)
+        camber_log(self->context, CAMBER_LOG_WARNING,
+                   "%s: %zu points are not numbers and are left out; their lines are split there", path,
+                   stats->invalid_points);
+    if (stats->clamped_points)
+        camber_log(self->context, CAMBER_LOG_WARNING, "%s: %zu points beyond latitude 85.051129 are moved there", path,
+                   stats->clamped_points);
+}
+
+/* What the file gave, looked at as a whole. */
+static camber_status judge(reader *self, size_t features_before) {
+    const camber_parts *parts = &self->parts;
+    if (parts->strange_points > parts->raw_points / 2)
+        return camber_fail(self->context, CAMBER_ERROR_INPUT,
+                           "%s: its coordinates are not degrees, and it names no other coordinate system; add one (a "
+                           ".prj beside a shapefile) or convert the file with ogr2ogr -s_srs EPSG:... -t_srs EPSG:4326",
+                           self->desc->path);
+    if (self->features->feature_count == features_before && !self->tiles && self->stats.damaged_features)
+        return camber_fail(self->context, CAMBER_ERROR_INPUT, "%s: no feature can be read: %s; get the file again",
+                           self->desc->path, self->damage);
+    if (self->features->feature_count == features_before && self->stats.skipped_features)
+        return camber_fail(self->context, CAMBER_ERROR_INPUT,
+                           "%s: no lines: %zu features have other geometry (points, areas, nothing); name another "
+                           "--layer, or a style that draws outlines of polygons",
+                           self->desc->path, self->stats.skipped_features);
+    return CAMBER_OK;
+}
+
+static camber_status read_dataset(reader *self, bool *unsorted) {
+    camber_context *context = self->context;
+    const camber_style *style = self->features->style;
+    const size_t features_before = self->features->feature_count;
+    int *layers = NULL;
+    size_t count = 0;
+    camber_status status = camber_dataset_layers(&self->dataset, style->wants_polygons, &layers, &count);
+    if (status == CAMBER_OK && self->dataset.zoom >= 0)
+        status = camber_tiles_create(context, self->dataset.zoom, &self->tiles);
+    if (status != CAMBER_OK)
+        goto done;
+    if (self->dataset.osm) {
+        /* The driver then skips what belongs to its other layers: twice as fast. */
+        const char *name = OGR_L_GetName(GDALDatasetGetLayer(self->dataset.handle, layers[0]));
+        GDALDatasetReleaseResultSet(
+            self->dataset.handle,
+            GDALDatasetExecuteSQL(self->dataset.handle, CPLSPrintf("SET interest_layers = %s", name), NULL, NULL));
+    }
+    self->parts = (camber_parts){.context = context, .whole = self->tiles, .wants_polygons = style->wants_polygons};
+    status = read_layers(self, layers, count, unsorted);
+    if (status == CAMBER_OK && self->tiles)
+        status = camber_tiles_finish(self->tiles, self->features);
+    if (status == CAMBER_OK)
+        status = judge(self, features_before);
+    if (status == CAMBER_OK && camber_dataset_is_osm(&self->dataset))
+        self->features->is_osm = true;
+done:
+    camber_free(context, layers);
+    return status;
+}
+
+static void close_reader(reader *self) {
+    camber_parts_free(&self->parts);
+    camber_tiles_destroy(self->tiles);
+    camber_columns_free(&self->columns, self->context);
+    camber_dataset_close(&self->dataset);
+}
+
+static void add_stats(camber_features *features, const reader *self) {
+    camber_features_stats *sum = &features->stats;
+    sum->features = features->feature_count;
+    sum->polylines = features->polyline_count;
+    sum->points = features->point_count;
+    sum->skipped_features += self->stats.skipped_features;
+    sum->damaged_features += self->stats.damaged_features;
+    sum->invalid_points += self->parts.invalid_points;
+    sum->clamped_points += self->parts.clamped_points;
+    sum->antimeridian_splits += self->parts.antimeridian_splits;
+}
+
+/* One attempt; on failure the set is as before but for spare classes. */
+static camber_status read_once(camber_features *features, const camber_source_desc *desc, bool *unsorted) {
+    reader self = {
+        .context = features->context, .features = features, .desc = desc, .parts.context = features->context};
+    const size_t points = features->point_count, polylines = features->polyline_count, count = features->feature_count;
+    const bool was_osm = features->is_osm;
+    const camber_features_stats stats = features->stats;
+    camber_status status = camber_dataset_open(features->context, desc, features->style, *unsorted, &self.dataset);
+    if (status != CAMBER_OK)
+        return status;
+    CPLPushErrorHandlerEx(camber_gdal_collect, &self.dataset.errors);
+    status = read_dataset(&self, unsorted);
+    CPLPopErrorHandler();
+    if (status == CAMBER_OK) {
+        self.stats.invalid_points = self.parts.invalid_points;
+        self.stats.clamped_points = self.parts.clamped_points;
+        add_stats(features, &self);
+        warn(&self);
+        camber_progress(features->context, "reading", 1);
+    } else {
+        features->point_count = points;
+        features->polyline_count = polylines;
+        features->feature_count = count;
+        features->is_osm = was_osm;
+        features->stats = stats;
+    }
+    close_reader(&self);
+    return status;
+}
+
+camber_status camber_features_read(camber_features *features, const camber_source_desc *desc) {
+    static const char option[] = "CPL_VSIL_GZIP_WRITE_PROPERTIES";
+    GDALAllRegister();
+    /* Or GDAL writes a .properties file beside a .gz. */
+    const char *old = CPLGetThreadLocalConfigOption(option, NULL);
+    char *kept = old ? camber_copy_string(features->context, old) : NULL;
+    CPLSetThreadLocalConfigOption(option, "NO");
+    bool unsorted = false;
+    camber_status status = read_once(features, desc, &unsorted);
+    if (status != CAMBER_OK && unsorted)
+        status = read_once(features, desc, &unsorted);
+    CPLSetThreadLocalConfigOption(option, kept);
+    camber_free(features->context, kept);
+    return status;
+}
+
+/* ---- What GDAL can do ---- */
+
+const char *camber_format_name(size_t n) {
+    GDALAllRegister();
+    const int count = GDALGetDriverCount();
+    for (int i = 0; i < count; i++) {
+        GDALDriverH driver = GDALGetDriver(i);
+        if (GDALGetMetadataItem(driver, GDAL_DCAP_VECTOR, NULL) && GDALGetMetadataItem(driver, GDAL_DCAP_OPEN, NULL) &&
+            n-- == 0)
+            return GDALGetDriverShortName(driver);
+    }
+    return NULL;
+}
+
+const char *camber_gdal_version(void) {
+    return GDALVersionInfo("--version");
+}

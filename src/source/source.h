@@ -1,0 +1,151 @@
+/* What the files of this layer share: filling a set, geometry of one feature, tile pieces, an open file. */
+#ifndef CAMBER_SOURCE_H
+#define CAMBER_SOURCE_H
+
+#include "source/features.h"
+
+#include <gdal.h>
+#include <ogr_api.h>
+#include <ogr_srs_api.h>
+
+/* ---- features.c: filling a set. Failures are logged. ---- */
+
+/* The set's own copy of text, the same pointer for equal texts. */
+camber_status camber_features_intern(camber_features *features, const char *text, const char **interned);
+camber_status camber_features_find_layer(camber_features *features, const char *name, uint32_t *layer);
+/* values: style->property_count of them, strings interned. */
+camber_status camber_features_find_class(camber_features *features, uint32_t layer, camber_geometry_kind geometry,
+                                         const camber_value *values, uint32_t *class_index);
+camber_status camber_features_add_feature(camber_features *features, uint32_t class_index);
+/* A polyline of the feature added last. points: pairs of world coordinates. */
+camber_status camber_features_add_polyline(camber_features *features, const double *points, size_t point_count);
+
+/* ---- geometry.c: a feature's geometry as world polylines ---- */
+
+typedef enum camber_projection_kind {
+    CAMBER_PROJECTION_DEGREES = 0, /* longitude and latitude of WGS 84 */
+    CAMBER_PROJECTION_METRES,      /* EPSG:3857 */
+    CAMBER_PROJECTION_TRANSFORM,   /* anything else, through PROJ to degrees */
+} camber_projection_kind;
+
+typedef struct camber_parts {
+    camber_context *context;
+    camber_projection_kind projection;
+    bool latitude_first;                    /* degrees come as latitude, longitude */
+    OGRCoordinateTransformationH transform; /* owned */
+    /* Tiles: coordinates are left where they are, beyond the world's edges too; clipping comes later. */
+    bool whole;
+    bool wants_polygons;
+
+    /* The last feature's polylines: part i ends before point ends[i]. */
+    double *points;
+    size_t point_count, point_capacity;
+    size_t *ends;
+    size_t part_count, part_capacity;
+    bool left_out; /* some of its geometry is not drawn */
+    bool damaged;
+
+    /* Sums over all features. */
+    size_t raw_points, strange_points; /* strange: not degrees on Earth */
+    size_t invalid_points, clamped_points, antimeridian_splits;
+
+    double *raw; /* x of all points of a line, then y */
+    size_t raw_capacity;
+} camber_parts;
+
+/* Sets the projection for a layer; srs may be NULL: degrees. name stands in messages. */
+camber_status camber_parts_set_srs(camber_parts *parts, OGRSpatialReferenceH srs, const char *name);
+/* Collects the lines of a geometry, or the rings of its polygons. */
+camber_status camber_parts_collect(camber_parts *parts, OGRGeometryH geometry, camber_geometry_kind kind);
+void camber_parts_free(camber_parts *parts);
+
+/* ---- tiles.c: pieces of features cut by vector tiles ---- */
+
+typedef struct camber_tiles camber_tiles;
+
+typedef struct camber_tile_feature {
+    uint32_t column, row; /* tile, from the north-west */
+    uint32_t class_index;
+    bool outline; /* of a polygon: what runs along the border is the tile's doing */
+    bool has_id;
+    uint64_t id; /* the same in every tile */
+} camber_tile_feature;
+
+/* zoom: 0 to 30. */
+camber_status camber_tiles_create(camber_context *context, int zoom, camber_tiles **tiles);
+void camber_tiles_destroy(camber_tiles *tiles);
+/* Cuts the parts at the tile's border and keeps what lies inside. */
+camber_status camber_tiles_add(camber_tiles *tiles, const camber_tile_feature *feature, const camber_parts *parts);
+/* Joins the pieces and adds them to the set. */
+camber_status camber_tiles_finish(camber_tiles *tiles, camber_features *features);
+
+/* ---- dataset.c: an open file ---- */
+
+/* What GDAL said since the last reset. */
+typedef struct camber_gdal_errors {
+    size_t failures;
+    CPLErrorNum number; /* of the first */
+    char message[512];  /* the first */
+} camber_gdal_errors;
+
+typedef struct camber_dataset {
+    camber_context *context;
+    const camber_source_desc *desc;
+    GDALDatasetH handle;
+    bool osm;   /* the OSM driver */
+    int zoom;   /* of vector tiles, below 0 for anything else */
+    char *conf; /* OSM: the configuration, and where GDAL sees it */
+    char conf_path[64];
+    camber_gdal_errors errors;
+} camber_dataset;
+
+/* Opens desc->path, which stays named by the dataset. unsorted: OSM nodes come in no order. */
+camber_status camber_dataset_open(camber_context *context, const camber_source_desc *desc, const camber_style *style,
+                                  bool unsorted, camber_dataset *dataset);
+void camber_dataset_close(camber_dataset *dataset);
+/* Whether the data is OpenStreetMap's. */
+bool camber_dataset_is_osm(const camber_dataset *dataset);
+/* Indices of the layers to read; freed with camber_free. */
+camber_status camber_dataset_layers(camber_dataset *dataset, bool wants_polygons, int **layers, size_t *count);
+/* CPLErrorHandler whose user data is a camber_gdal_errors. */
+void CPL_STDCALL camber_gdal_collect(CPLErr level, CPLErrorNum number, const char *message);
+
+/* ---- attributes.c: the fields of a layer that are read ---- */
+
+/* What a style's property is read from. */
+typedef struct camber_column {
+    int field; /* below 0: the layer does not have it */
+    OGRFieldType type;
+    bool boolean;
+} camber_column;
+
+typedef struct camber_columns {
+    camber_features *features;
+    camber_column *items; /* style->property_count */
+    camber_value *values; /* style->property_count */
+    bool plain;           /* the layer has none of them */
+    int ids[4];           /* vector tiles: fields with an id, the best first */
+    size_t id_count;
+    int highway;
+    int *areas; /* OSM: fields of camber_osm_area_keys */
+    size_t area_count;
+} camber_columns;
+
+/* Keys that make a closed way without a highway an area; NULL at the end. */
+extern const char *const camber_osm_area_keys[];
+
+/* Finds the fields of a layer; again for the next layer. */
+camber_status camber_columns_find(camber_columns *columns, camber_features *features, OGRFeatureDefnH schema,
+                                  bool tiles, bool osm);
+void camber_columns_free(camber_columns *columns, camber_context *context);
+/* Tells OGR that the other fields need not be decoded. */
+void camber_columns_ignore_others(const camber_columns *columns, OGRLayerH layer);
+camber_status camber_columns_class(camber_columns *columns, OGRFeatureH feature, uint32_t layer,
+                                   camber_geometry_kind kind, uint32_t *class_index);
+/* A hash of the feature's id, the same in every tile; false: it has none. */
+bool camber_columns_id(const camber_columns *columns, OGRFeatureH feature, uint64_t *id);
+/* OSM: a closed way that is no highway and has a key of areas. The driver is told to leave them to us, for it takes
+ * closed highways with such a key for areas as well. */
+bool camber_columns_is_area(const camber_columns *columns, OGRFeatureH feature, OGRGeometryH geometry);
+
+#endif

@@ -1,0 +1,102 @@
+/* JSON to expressions: where in the document we are, types, nodes. Only src/style includes this. */
+#ifndef CAMBER_COMPILER_H
+#define CAMBER_COMPILER_H
+
+#include "style/expression.h"
+
+/* Deepest nesting of an expression: compilation and evaluation recurse that far. */
+#define CAMBER_EXPRESSION_DEPTH 200
+/* "/layers/3/paint/line-width", and an expression's path behind it. */
+#define CAMBER_PATH_DEPTH (CAMBER_EXPRESSION_DEPTH + 16)
+/* Most feature properties that a style may read; they are looked up one by one. */
+#define CAMBER_PROPERTY_LIMIT 1024
+
+typedef struct camber_path_step {
+    const char *key; /* NULL: index */
+    size_t index;
+} camber_path_step;
+
+/* A property's type in the specification. */
+typedef struct camber_property {
+    const char *name;
+    camber_type type;
+    bool interpolated; /* older functions on zoom are curves; else steps */
+    bool data_driven;  /* may read the feature */
+    double low, high;  /* range of a number */
+} camber_property;
+
+typedef struct camber_compiler {
+    camber_context *context;
+    camber_style *style; /* gets the properties that are read */
+    const char *name;    /* of the document */
+    camber_status status;
+    camber_path_step path[CAMBER_PATH_DEPTH];
+    size_t path_length;
+    camber_expression *expression; /* under construction */
+    size_t depth;
+    uint32_t *operands; /* a stack: those of the nodes under construction */
+    size_t operand_count, operand_capacity;
+} camber_compiler;
+
+/* How an operand of unknown type becomes one of the expected type. */
+typedef enum camber_annotation {
+    CAMBER_ANNOTATE_ASSERT = 0,
+    CAMBER_ANNOTATE_COERCE,
+    CAMBER_ANNOTATE_OMIT, /* an operator around it will do it */
+} camber_annotation;
+
+/* The steps of the path that are entered are left again only on success: after a failure nothing follows. */
+void camber_compiler_enter_key(camber_compiler *c, const char *key);
+void camber_compiler_enter_index(camber_compiler *c, size_t index);
+void camber_compiler_leave(camber_compiler *c);
+/* Logs "NAME: /pointer: " and the message, and sets the status. Returns false. */
+bool camber_compiler_fail(camber_compiler *c, const char *format, ...) CAMBER_PRINTF(2, 3);
+void camber_compiler_warn(camber_compiler *c, const char *format, ...) CAMBER_PRINTF(2, 3);
+/* "a string": what the JSON value is. */
+const char *camber_json_name(const json_t *json);
+
+/* A value of a property: a constant, an expression or an older function. NULL in *expression on failure. */
+bool camber_compile_property(camber_compiler *c, json_t *json, const camber_property *property,
+                             camber_expression **expression);
+/* filter.c: an expression or an older filter. */
+bool camber_compile_filter(camber_compiler *c, json_t *json, camber_expression **expression);
+/* Whether the filter picks polygons by their geometry type. Call it on filters that compile. */
+bool camber_filter_asks_polygons(const json_t *json);
+
+/* ---- For operators.c, filter.c and function.c ---- */
+
+/* An empty expression to compile into; afterwards camber_expression_end hands it over or frees it. */
+bool camber_expression_begin(camber_compiler *c, json_t *json);
+bool camber_expression_end(camber_compiler *c, bool done, uint32_t root, camber_expression **expression);
+
+bool camber_compile(camber_compiler *c, json_t *json, camber_type expected, uint32_t *node);
+/* Element index of array, annotated, with the path in step. */
+bool camber_compile_element(camber_compiler *c, const json_t *array, size_t index, camber_type expected,
+                            uint32_t *node);
+/* The same, but an element of unknown type stays so: an operator around it will see to that. */
+bool camber_compile_loose_element(camber_compiler *c, const json_t *array, size_t index, camber_type expected,
+                                  uint32_t *node);
+/* Wraps node so that it has the expected type, or fails. */
+bool camber_annotate(camber_compiler *c, camber_type expected, camber_annotation annotation, uint32_t *node);
+
+bool camber_push_operand(camber_compiler *c, uint32_t node);
+/* Makes a node of the operands past the first_operand-th, and pops them. */
+bool camber_make_node(camber_compiler *c, const camber_node *prototype, size_t first_operand, uint32_t *node);
+bool camber_make_constant(camber_compiler *c, const camber_value *value, uint32_t *node);
+/* Scalars only. */
+bool camber_make_json_constant(camber_compiler *c, const json_t *json, uint32_t *node);
+/* Wraps node in a conversion to text. */
+bool camber_make_to_string(camber_compiler *c, uint32_t *node);
+/* A node of a property of the feature, which the style then collects. op: get or has. */
+bool camber_make_property(camber_compiler *c, camber_op op, const char *name, uint32_t *node);
+bool camber_push_stop(camber_compiler *c, double stop);
+bool camber_push_label(camber_compiler *c, const camber_label *label);
+camber_node *camber_node_at(camber_compiler *c, uint32_t node);
+const char *camber_type_name(camber_type type);
+
+/* operators.c: the expression [operator, operand, ...]. */
+bool camber_compile_operator(camber_compiler *c, json_t *array, camber_type expected, uint32_t *node);
+/* function.c: {"stops": [[zoom, value], ...], "base": number, "type": string}. */
+bool camber_compile_function(camber_compiler *c, json_t *object, const camber_property *property, uint32_t *node);
+
+#endif

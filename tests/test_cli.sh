@@ -1,0 +1,392 @@
+#!/bin/bash
+# The tool's contract: exit statuses, one line an error, nothing left behind. test_cli.sh TOOL
+# Prints what failed and exits 1 if anything did.
+set -u
+tool=$1
+here=$(cd "$(dirname "$0")" && pwd)
+osm=$here/data/santa_cruz/osm.mbtiles
+tiger=$here/data/santa_cruz/tiger.mbtiles
+tmp=$(mktemp -d) || exit 1
+trap 'umount "$tmp/small" 2>/dev/null; rm -rf "$tmp"' EXIT
+mkdir "$tmp/in" "$tmp/out" "$tmp/empty" "$tmp/spool"
+# A cache of its own: PoCL's first builds must not meet other tests'. Drivers leak at exit, the tool's tests do not.
+export XDG_CACHE_HOME=$tmp/cache POCL_CACHE_DIR=$tmp/pocl TMPDIR=$tmp/spool
+export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_leaks=0}
+mkdir "$POCL_CACHE_DIR"
+cd "$tmp/out" || exit 1
+checks=0
+failures=0
+
+fail() {
+    failures=$((failures + 1))
+    echo "FAILED: $name: $*"
+}
+
+# Runs a command; out, err and status are what came of it.
+run() {
+    before=$(ls -A "$tmp/out" "$tmp/spool")
+    "$@" >"$tmp/stdout" 2>"$tmp/stderr" </dev/null
+    status=$?
+    checks=$((checks + 1))
+}
+
+# expect STATUS NAME ARGUMENT...: the tool ends with the status; an error is one line, and leaves nothing.
+expect() {
+    local wanted=$1
+    name=$2
+    shift 2
+    run "$tool" "$@"
+    verify "$wanted"
+}
+
+verify() {
+    [ "$status" = "$1" ] || fail "exit status $status, not $1: $(head -c 300 "$tmp/stderr")"
+    [ "$1" = 0 ] && return
+    local lines
+    lines=$(grep -vc '^camber: warning: ' "$tmp/stderr")
+    [ "$lines" = 1 ] || fail "$lines lines of error, not 1: $(head -c 600 "$tmp/stderr")"
+    grep -v '^camber: warning: ' "$tmp/stderr" | grep -q '^camber: .*[:;)] .' || fail "not 'camber: what, where, cure'"
+    [ "$before" = "$(ls -A "$tmp/out" "$tmp/spool")" ] || fail "left behind: $(ls -A "$tmp/out" "$tmp/spool")"
+}
+
+says() {
+    grep -q -e "$1" "$tmp/stderr" || fail "standard error lacks '$1': $(head -c 600 "$tmp/stderr")"
+}
+
+has() { # FILE TEXT...
+    local file=$1 text
+    shift
+    for text in "$@"; do
+        grep -aq -e "$text" "$file" || fail "$(basename "$file") lacks $text"
+    done
+}
+
+lacks() {
+    grep -aq -e "$2" "$1" && fail "$(basename "$1") has $2"
+}
+
+# Big-endian (PNG) and little-endian (GLB) 32-bit numbers at an offset.
+be32() { od -An -tu1 -j"$2" -N4 "$1" | awk '{print (($1 * 256 + $2) * 256 + $3) * 256 + $4}'; }
+le32() { od -An -tu1 -j"$2" -N4 "$1" | awk '{print (($4 * 256 + $3) * 256 + $2) * 256 + $1}'; }
+
+is_png() { # FILE WIDTH HEIGHT
+    [ -s "$1" ] || { fail "no $1"; return; }
+    [ "$(od -An -tx1 -N8 "$1" | tr -d ' \n')" = 89504e470d0a1a0a ] || fail "$1 is no PNG"
+    [ "$(be32 "$1" 16)x$(be32 "$1" 20)" = "$2x$3" ] || fail "$1 is $(be32 "$1" 16) x $(be32 "$1" 20), not $2 x $3"
+    [ "$(tail -c 8 "$1" | od -An -tx1 | tr -d ' \n')" = 49454e44ae426082 ] || fail "$1 is cut off"
+}
+
+# ---- Usage ----
+
+expect 2 "no verb"
+expect 2 "unknown verb" frobnicate
+expect 2 "unknown option" render --bogus
+expect 2 "unknown letter" info -z
+expect 2 "option of another verb" info --size 5x5
+expect 2 "option without its value" render "$osm" -o
+expect 2 "value for a flag" info --json=1
+expect 2 "no input" render -o a.png
+expect 2 "no output" render "$osm"
+expect 2 "input for info" info "$osm"
+expect 2 "unknown extension" render "$osm" -o a.gif
+expect 2 "png from tessellate" tessellate "$osm" -o a.png
+expect 2 "glb from render" render "$osm" -o a.glb
+expect 2 "JSON and picture on standard output" render "$osm" -o - --json
+for size in 0x0 0x5 5x0 1000000x1000000 1000000x5 65536x5 65535x65535 5 5x 5x5x5 -5x5 axb 5x5a 99999999999x5 ''; do
+    expect 2 "size '$size'" render "$osm" -o a.png --size "$size"
+done
+expect 2 "size after ratio" render "$osm" -o a.png --size 40000x10 --ratio 2
+for ratio in 0 -1 nan inf 1e99 2x 0x2 ''; do
+    expect 2 "ratio '$ratio'" render "$osm" -o a.png --ratio "$ratio"
+done
+for box in 1,2,3 1,2,3,4,5 1,2,3,x 1,5,3,4 nan,2,3,4 1,2,1,3 -200,0,0,1 0,-91,1,1; do
+    expect 2 "bbox $box" render "$osm" -o a.png --bbox "$box"
+done
+expect 2 "center without zoom" render "$osm" -o a.png --center -122,37
+expect 2 "zoom without center" render "$osm" -o a.png --zoom 12
+expect 2 "bbox and center" render "$osm" -o a.png --bbox 0,0,1,1 --center 0,0 --zoom 3
+expect 2 "pitch" render "$osm" -o a.png --pitch 30
+expect 2 "theme and style" render "$osm" -o a.png --theme dark --style x.json
+expect 2 "unknown method" render "$osm" -o a.png --method star
+expect 2 "prefix of a method" render "$osm" -o a.png --method stri
+expect 2 "0 threads" info --threads 0
+expect 2 "bench without input" bench
+expect 2 "bench of both" bench "$osm" --polylines x
+expect 2 "standard input twice" render - - -o a.png
+expect 2 "where that does not parse" render "$osm" -o a.png --where 'highway = = 3'
+
+# ---- Help and the man page ----
+
+for verb in '' render tessellate validate bench info; do
+    expect 0 "help of '$verb'" $verb --help
+    [ -s "$tmp/stderr" ] && fail "something on standard error"
+    grep -o -e '--[a-z][a-z-]*' "$tmp/stdout" | sort -u >"$tmp/options"
+    [ "$(wc -l <"$tmp/options")" -ge 2 ] || fail "no options in it"
+    while read -r option; do
+        sed 's/\\-/-/g' "$here/../src/cli/camber.1" | grep -q -e "$option\b" || fail "the man page lacks $option"
+    done <"$tmp/options"
+done
+expect 0 "version" --version
+has "$tmp/stdout" '^camber [0-9]*\.[0-9]*\.[0-9]*$'
+expect 0 "version of a verb" render --version
+
+# ---- Info ----
+
+expect 0 "info" info
+has "$tmp/stdout" '^camber ' '^device ' '^GL ' '^sharing ' '^formats '
+expect 0 "info as JSON" info --json
+has "$tmp/stdout" '"devices"' '"backends"' '"formats"' '"GPKG"' '"gdal"' '"camber"'
+if ! grep -q '"sharing"' "$tmp/stdout"; then
+    echo "skipped: no OpenCL device or GL here: $(grep unavailable "$tmp/stdout")"
+    exit 77
+fi
+run env OCL_ICD_VENDORS="$tmp/empty" OPENCL_VENDOR_PATH="$tmp/empty" "$tool" info
+name="info without OpenCL"
+verify 0
+has "$tmp/stdout" '^device *none: .'
+expect 0 "info on an unknown device" info --device 'no such device' --json
+has "$tmp/stdout" '"unavailable"'
+
+# ---- Render ----
+
+expect 0 "render" render "$osm" -o city.png --size 300x200
+is_png city.png 300 200
+has city.png 'OpenStreetMap contributors' "camber [0-9]"
+says 'OpenStreetMap contributors'
+says 'city.png'
+cp city.png "$tmp/in/city.png"
+expect 73 "output exists" render "$osm" -o city.png --size 30x20
+cmp -s city.png "$tmp/in/city.png" || fail "the file has changed"
+expect 0 "render again" render "$osm" -o city.png --size 300x200 -f -q
+cmp -s city.png "$tmp/in/city.png" || fail "other bytes at the second run"
+[ -s "$tmp/stderr" ] && fail "says something with -q"
+expect 0 "without shared buffers" render "$osm" -o - --size 300x200 --sharing copy
+cmp -s "$tmp/stdout" "$tmp/in/city.png" || fail "other bytes than with them"
+expect 0 "to standard output" render "$osm" -o - --size 300x200
+cmp -s "$tmp/stdout" "$tmp/in/city.png" || fail "other bytes than in a file"
+expect 0 "ratio" render "$osm" -o ratio.PNG --size 100x50 --ratio 2
+is_png ratio.PNG 200 100
+ln -s city.png link.png
+expect 73 "a link exists" render "$osm" -o link.png
+expect 0 "through a link" render "$osm" -o link.png -fq --size 20x10
+[ -L link.png ] || fail "the link is gone"
+is_png city.png 20 10
+chmod 640 city.png
+expect 0 "keeps the mode" render "$osm" -o city.png -fq --size 20x10
+[ "$(stat -c %a city.png)" = 640 ] || fail "mode $(stat -c %a city.png)"
+expect 0 "JSON" render "$tiger" -o tiger.png --size 64x64 --json --method kite --coverage linear
+has "$tmp/stdout" '"width": 64' '"device"' '"gl_renderer"' '"sharing"' '"draw_calls"' '"peak_rss_bytes"' '"total_ms"' \
+    '"attribution": null' '"method": "kite"' '"coverage": "linear"' '"triangles": [1-9]'
+lacks tiger.png OpenStreetMap
+expect 0 "one thread, dark" render "$tiger" -o dark.png --size 64x64 --theme dark --threads 1
+cmp -s dark.png tiger.png && fail "dark looks like light"
+expect 0 "two inputs" render "$osm" "$tiger" -o two.png --size 64x64
+has two.png 'OpenStreetMap contributors'
+expect 0 "centre and zoom" render "$osm" -o close.png --center -122.03,36.974 --zoom 14 --bearing 30 --size 99x77
+is_png close.png 99 77
+expect 0 "nothing in the view" render "$osm" -o nothing.png --bbox 10,10,11,11 --size 50x50
+is_png nothing.png 50 50
+says '^camber: warning: '
+expect 0 "nothing in the view, tessellated" tessellate "$osm" -o nothing.glb --bbox 10,10,11,11
+[ "$(le32 nothing.glb 8)" = "$(stat -c %s nothing.glb)" ] || fail "no whole GLB"
+says '^camber: warning: '
+rm -f nothing.glb
+run sh -c "'$tool' render - -o - --size 64x64 -q <'$osm' >'$tmp/in/stdin.png'"
+name="standard input"
+verify 0
+is_png "$tmp/in/stdin.png" 64 64
+[ -z "$(ls -A "$TMPDIR")" ] || fail "left in TMPDIR: $(ls -A "$TMPDIR")"
+for file in "$XDG_CACHE_HOME"/camber/*; do
+    [ -f "$file" ] && head -c 3000 /dev/urandom >"$file"
+done
+expect 0 "spoilt cache" render "$osm" -o spoilt.png --size 300x200 -q
+cmp -s spoilt.png "$tmp/in/city.png" || fail "other bytes than before"
+rm -f -- *.png *.PNG
+
+# ---- Tessellate, bench, validate ----
+
+for method in strip kite fan; do
+    expect 0 "tessellate, $method" tessellate "$osm" -o mesh.glb -f --method $method --size 200x200 --json
+    [ "$(head -c 4 mesh.glb)" = glTF ] || fail "no GLB"
+    [ "$(le32 mesh.glb 8)" = "$(stat -c %s mesh.glb)" ] || fail "its head says $(le32 mesh.glb 8) bytes"
+    has mesh.glb POSITION 'OpenStreetMap contributors'
+    has "$tmp/stdout" "\"output_bytes\": $(stat -c %s mesh.glb)" "\"method\": \"$method\"" '"triangles": [1-9]'
+done
+rm -f mesh.glb
+keys=('"device"' '"gl_renderer"' '"sharing"' '"draw"' '"polylines"' '"points_in"' '"segments_in"' '"points"' '"segments"'
+    '"runs"' '"tessellate_ms"' '"draw_ms"' '"frame_ms"' '"stage_ms"' '"min"' '"median"' '"max"' '"vertices"'
+    '"triangles"' '"bytes"' '"draw_calls"' '"peak_rss_bytes"')
+expect 0 "bench of a map" bench "$osm" --json --runs 2 --size 128x128 --dump lines.bin
+has "$tmp/stdout" "${keys[@]}"
+[ "$(le32 lines.bin 0)" = $((0x4c594c50)) ] || fail "the dump has no magic"
+polylines=$(le32 lines.bin 4)
+points=$(le32 lines.bin 8)
+[ "$(stat -c %s lines.bin)" = $((12 + 4 * (polylines + 1) + 8 * points)) ] || fail "the dump has a wrong size"
+expect 0 "bench of its dump" bench --polylines lines.bin --width-px 3 --json --runs 2 --size 128x128 -o lines.png \
+    --dump again.bin
+has "$tmp/stdout" "${keys[@]}" "\"polylines\": $polylines," "\"points_in\": $points," '"runs": 2' '"draw": "gl"'
+is_png lines.png 128 128
+cmp -s lines.bin again.bin || fail "the dump of the dump differs"
+expect 0 "bench as a table" bench --polylines lines.bin --runs 1 --size 64x64
+has "$tmp/stdout" '^tessellate ' '^draw ' '^frame ' '^classify ' '^scan ' '^emit '
+expect 0 "validate" validate --method strip
+plan=$(sed -n 's/^1\.\.//p' "$tmp/stdout")
+[ "${plan:-0}" -ge 50 ] || fail "plan of '$plan'"
+[ "$(grep -c '^ok ' "$tmp/stdout")" = "${plan:-0}" ] || fail "$(grep -c '^ok ' "$tmp/stdout") ok of $plan"
+lacks "$tmp/stdout" '^not ok'
+expect 0 "validate polylines" validate --polylines lines.bin --json
+has "$tmp/stdout" '"checks": [1-9]' '"failed": 0'
+expect 0 "validate a map" validate "$tiger" --method kite --size 200x200
+head -c 1000 lines.bin >"$tmp/in/cut.bin"
+expect 65 "polylines cut off" bench --polylines "$tmp/in/cut.bin"
+expect 65 "polylines of text" validate --polylines "$here/test_cli.sh"
+expect 66 "no such polylines" bench --polylines "$tmp/in/none.bin"
+expect 65 "a folder of polylines" bench --polylines "$tmp/in"
+rm -f lines.bin again.bin lines.png
+
+# ---- Bad input ----
+
+touch "$tmp/in/empty.geojson" "$tmp/in/empty.osm.pbf" "$tmp/in/empty"
+head -c 30000 "$osm" >"$tmp/in/cut.mbtiles"
+head -c 30000 /dev/urandom >"$tmp/in/random.osm.pbf"
+head -c 30000 /dev/urandom >"$tmp/in/random.geojson"
+line='{"type":"Feature","properties":{"highway":"primary"},"geometry":{"type":"LineString","coordinates":[[1,1],[2,2]]}}'
+echo "{\"type\":\"FeatureCollection\",\"features\":[$line]}" >"$tmp/in/line.geojson"
+echo "{\"type\":\"FeatureCollection\",\"features\":[$line,${line%??????????}" >"$tmp/in/cut.geojson"
+echo '{"type":"FeatureCollection","features":[{"type":"Feature","properties":{"highway":"x"},"geometry":{"type":"Point",
+"coordinates":[1,1]}}]}' >"$tmp/in/points.geojson"
+sed 's/\[\[1,1\],\[2,2\]\]/[["a","b"],["c","d"]]/' "$tmp/in/line.geojson" >"$tmp/in/words.geojson"
+expect 66 "missing" render "$tmp/in/none.osm.pbf" -o a.png
+for file in empty.geojson empty.osm.pbf empty cut.mbtiles random.osm.pbf random.geojson cut.geojson points.geojson \
+    words.geojson; do
+    expect 65 "$file" render "$tmp/in/$file" -o a.png
+    expect 65 "$file, tessellated" tessellate "$tmp/in/$file" -o a.glb --json
+    [ -s "$tmp/stdout" ] && fail "an error has something on standard output"
+done
+expect 65 "a folder" render "$tmp/in" -o a.png
+expect 65 "no such layer" render "$osm" -o a.png --layer nope
+expect 0 "one line" render "$tmp/in/line.geojson" -o a.png --size 64x64
+rm -f a.png
+run sh -c "head -c 500 /dev/urandom | '$tool' render - -o a.png"
+name="random standard input"
+verify 65
+says 'standard input'
+
+# ---- Styles ----
+
+echo '{"version": 8, "layers": [' >"$tmp/in/cut.json"
+echo '{"version": 8, "sources": {}, "layers": [{"id": "a", "type": "line", "source": "s", "paint": {"line-width": {}}}]}' \
+    >"$tmp/in/type.json"
+echo '{"version": 8, "sources": {}, "layers": [{"id": "a", "type": "line", "source": "s", "paint": {"line-color": 7}}]}' \
+    >"$tmp/in/color.json"
+expect 66 "no such style" render "$osm" -o a.png --style "$tmp/in/none.json"
+expect 65 "style that is not JSON" render "$osm" -o a.png --style "$tmp/in/cut.json"
+says 'cut.json'
+expect 65 "width of a wrong type" render "$osm" -o a.png --style "$tmp/in/type.json"
+says '/layers/0/paint/line-width'
+expect 65 "colour of a wrong type" render "$osm" -o a.png --style "$tmp/in/color.json"
+says '/layers/0/paint/line-color'
+expect 65 "style that is a folder" render "$osm" -o a.png --style "$tmp/in"
+
+layers='"layers": [{"id": "a", "type": "line", "source": "s", "paint": {"line-width": 3}}]'
+echo "{\"version\": 8, \"sources\": {\"s\": {\"type\": \"geojson\", \"data\": \"line.geojson\"}}, $layers}" >"$tmp/in/own.json"
+expect 0 "a style with its own source" render --style "$tmp/in/own.json" -o a.png --size 64x64 --json
+has "$tmp/stdout" '"features": 1'
+is_png a.png 64 64
+rm -f a.png
+sed 's/line.geojson/none.geojson/' "$tmp/in/own.json" >"$tmp/in/gone.json"
+expect 66 "a style whose source is not there" render --style "$tmp/in/gone.json" -o a.png
+sed 's|line.geojson|https://example.org/a.geojson|' "$tmp/in/own.json" >"$tmp/in/url.json"
+expect 2 "a style whose source is elsewhere" render --style "$tmp/in/url.json" -o a.png
+says 'INPUT'
+
+# ---- Output ----
+
+expect 73 "no such folder" render "$osm" -o none/a.png
+expect 73 "a file as a folder" render "$osm" -o "$tmp/in/empty/a.png"
+mkdir folder.png
+expect 73 "a folder" render "$osm" -o folder.png
+expect 73 "a folder, forced" render "$osm" -o folder.png -f
+rmdir folder.png
+expect 73 "a name that is too long" render "$osm" -o "$(printf 'a%.0s' $(seq 300)).png"
+if [ -w /dev/full ]; then
+    expect 73 "a device, not forced" render "$osm" -o /dev/full --format png
+    expect 74 "a full disk" render "$osm" -o /dev/full --format png -f
+    [ -c /dev/full ] || fail "the device is gone"
+    expect 74 "a full disk, GLB" tessellate "$osm" -o /dev/full --format glb -f
+    for words in "render $osm -o - --size 64x64" "render $osm -o a.png -f --json" "info" "info --json" "--help"; do
+        run sh -c "'$tool' $words >/dev/full"
+        name="standard output is full: $words"
+        [ "$status" = 74 ] || fail "exit status $status, not 74"
+        rm -f a.png
+    done
+fi
+mkdir "$tmp/small"
+if mount -t tmpfs -o size=32k none "$tmp/small" 2>/dev/null; then
+    expect 74 "a small disk" render "$osm" -o "$tmp/small/a.png" --size 2000x2000
+    [ -z "$(ls -A "$tmp/small")" ] || fail "left behind: $(ls -A "$tmp/small")"
+    expect 74 "a small disk, GLB" tessellate "$osm" -o "$tmp/small/a.glb"
+    [ -z "$(ls -A "$tmp/small")" ] || fail "left behind: $(ls -A "$tmp/small")"
+else
+    echo "skipped: a small disk: no right to mount one"
+fi
+name="a reader that goes"
+"$tool" render "$osm" -o - --size 2000x2000 2>"$tmp/stderr" | head -c 10 >/dev/null
+status=${PIPESTATUS[0]}
+[ "$status" = 74 ] || fail "exit status $status, not 74"
+[ "$(wc -l <"$tmp/stderr")" = 1 ] || fail "$(wc -l <"$tmp/stderr") lines"
+
+# ---- Devices ----
+
+expect 69 "an unknown device" render "$osm" -o a.png --device 'no such device'
+for verb in "render $osm -o a.png" "tessellate $osm -o a.glb" validate; do
+    name="no OpenCL platform: $verb"
+    # shellcheck disable=SC2086
+    run env OCL_ICD_VENDORS="$tmp/empty" OPENCL_VENDOR_PATH="$tmp/empty" "$tool" $verb
+    verify 69
+done
+
+# ---- Signals ----
+
+# Job control: without it a shell starts background jobs with SIGINT ignored.
+set -m
+mkfifo "$tmp/in/fifo"
+for signal in INT:130 TERM:143; do
+    name="SIG${signal%:*} while it reads"
+    "$tool" render - -o a.png <"$tmp/in/fifo" 2>"$tmp/stderr" &
+    job=$!
+    exec 3>"$tmp/in/fifo"
+    head -c 200000 "$osm" >&3
+    for _ in $(seq 100); do
+        [ -n "$(ls -A "$TMPDIR")" ] && break
+        sleep 0.1
+    done
+    [ -n "$(ls -A "$tmp/out")" ] || fail "no output was begun"
+    kill -"${signal%:*}" $job
+    wait $job
+    status=$?
+    exec 3>&-
+    [ "$status" = "${signal#*:}" ] || fail "exit status $status, not ${signal#*:}"
+    [ -z "$(ls -A "$tmp/out")$(ls -A "$TMPDIR")" ] || fail "left behind: $(ls -A "$tmp/out" "$TMPDIR")"
+done
+name="SIGINT in the middle"
+for delay in 0.02 0.05 0.1 0.15 0.2 0.3 0.5; do
+    "$tool" render "$osm" -o a.png --size 4000x4000 2>"$tmp/stderr" &
+    job=$!
+    sleep $delay
+    kill -INT $job 2>/dev/null
+    wait $job
+    status=$?
+    case $status in
+    0) is_png a.png 4000 4000 ;;
+    130) ;;
+    *) fail "exit status $status after $delay s" ;;
+    esac
+    rm -f a.png
+    [ -z "$(ls -A)" ] || fail "left behind after $delay s: $(ls -A)"
+    rm -rf -- .camber-*
+done
+set +m
+
+echo "$checks runs, $failures failures"
+[ "$failures" = 0 ]

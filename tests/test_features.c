@@ -1,0 +1,204 @@
+/* The set of features: strings and classes are kept once, polylines where they were put; and memory that runs out. */
+#include "source/source.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static char *properties[] = {"highway", "bridge"};
+
+typedef struct fixture {
+    camber_context *context;
+    struct camber_style style;
+    camber_features *features;
+} fixture;
+
+static int set_up(void **state) {
+    fixture *it = calloc(1, sizeof *it);
+    assert_non_null(it);
+    assert_int_equal(camber_context_create(NULL, &it->context), CAMBER_OK);
+    it->style = (struct camber_style){.context = it->context, .properties = properties, .property_count = 2};
+    assert_int_equal(camber_features_create(it->context, &it->style, &it->features), CAMBER_OK);
+    *state = it;
+    return 0;
+}
+
+static int tear_down(void **state) {
+    fixture *it = *state;
+    camber_features_destroy(it->features);
+    camber_context_destroy(it->context);
+    free(it);
+    return 0;
+}
+
+static void test_strings(void **state) {
+    fixture *it = *state;
+    enum { COUNT = 5000 };
+    const char **first = malloc(COUNT * sizeof *first);
+    assert_non_null(first);
+    char text[32];
+    for (int i = 0; i < COUNT; i++) {
+        snprintf(text, sizeof text, "street %d", i);
+        assert_int_equal(camber_features_intern(it->features, text, &first[i]), CAMBER_OK);
+    }
+    for (int i = 0; i < COUNT; i++) {
+        const char *again;
+        snprintf(text, sizeof text, "street %d", i);
+        assert_int_equal(camber_features_intern(it->features, text, &again), CAMBER_OK);
+        assert_ptr_equal(again, first[i]);
+        assert_string_equal(again, text);
+    }
+    free(first);
+}
+
+static void test_classes(void **state) {
+    fixture *it = *state;
+    const char *primary;
+    assert_int_equal(camber_features_intern(it->features, "primary", &primary), CAMBER_OK);
+    uint32_t layer, other, one, two;
+    assert_int_equal(camber_features_find_layer(it->features, "roads", &layer), CAMBER_OK);
+    assert_int_equal(camber_features_find_layer(it->features, "rail", &other), CAMBER_OK);
+    assert_int_not_equal(layer, other);
+    assert_int_equal(camber_features_find_layer(it->features, "roads", &other), CAMBER_OK);
+    assert_int_equal(layer, other);
+
+    const camber_value variants[][2] = {
+        {{.type = CAMBER_VALUE_NULL}, {.type = CAMBER_VALUE_NULL}},
+        {{.type = CAMBER_VALUE_STRING, .string = primary}, {.type = CAMBER_VALUE_NULL}},
+        {{.type = CAMBER_VALUE_NULL}, {.type = CAMBER_VALUE_STRING, .string = primary}},
+        {{.type = CAMBER_VALUE_STRING, .string = primary}, {.type = CAMBER_VALUE_BOOL, .boolean = true}},
+        {{.type = CAMBER_VALUE_STRING, .string = primary}, {.type = CAMBER_VALUE_BOOL, .boolean = false}},
+        {{.type = CAMBER_VALUE_STRING, .string = primary}, {.type = CAMBER_VALUE_NUMBER, .number = 1}},
+        {{.type = CAMBER_VALUE_STRING, .string = primary}, {.type = CAMBER_VALUE_NUMBER, .number = 1.5}},
+        {{.type = CAMBER_VALUE_NUMBER, .number = NAN}, {.type = CAMBER_VALUE_NULL}},
+    };
+    const size_t count = sizeof variants / sizeof *variants;
+    for (size_t i = 0; i < count; i++) {
+        assert_int_equal(camber_features_find_class(it->features, layer, CAMBER_GEOMETRY_LINE, variants[i], &one),
+                         CAMBER_OK);
+        assert_int_equal(one, i);
+    }
+    for (size_t i = 0; i < count; i++) {
+        assert_int_equal(camber_features_find_class(it->features, layer, CAMBER_GEOMETRY_LINE, variants[i], &two),
+                         CAMBER_OK);
+        assert_int_equal(two, i);
+    }
+    assert_int_equal(camber_features_find_class(it->features, layer, CAMBER_GEOMETRY_POLYGON, variants[0], &two),
+                     CAMBER_OK);
+    assert_int_equal(two, count);
+    /* Thousands, so that the table grows. */
+    for (int round = 0; round < 2; round++) {
+        for (uint32_t i = 0; i < 3000; i++) {
+            const camber_value values[2] = {{.type = CAMBER_VALUE_NUMBER, .number = 100.0 + i}};
+            assert_int_equal(camber_features_find_class(it->features, layer, CAMBER_GEOMETRY_LINE, values, &one),
+                             CAMBER_OK);
+            assert_int_equal(one, count + 1 + i);
+            const camber_feature_class *made = &it->features->classes[one];
+            assert_true(it->features->values[made->first_value].number == 100.0 + i);
+        }
+    }
+}
+
+static void test_polylines(void **state) {
+    fixture *it = *state;
+    const camber_value none[2] = {{0}};
+    uint32_t layer, class_index;
+    assert_int_equal(camber_features_find_layer(it->features, "roads", &layer), CAMBER_OK);
+    assert_int_equal(camber_features_find_class(it->features, layer, CAMBER_GEOMETRY_LINE, none, &class_index),
+                     CAMBER_OK);
+    double points[2 * 7];
+    for (size_t i = 0; i < 14; i++)
+        points[i] = (double)i / 16;
+    size_t total = 0, polylines = 0;
+    for (uint32_t feature = 0; feature < 500; feature++) {
+        assert_int_equal(camber_features_add_feature(it->features, class_index), CAMBER_OK);
+        for (size_t part = 0; part <= feature % 3; part++) {
+            assert_int_equal(camber_features_add_polyline(it->features, points, feature % 7 + 1), CAMBER_OK);
+            assert_int_equal(it->features->polyline_feature[polylines], feature);
+            assert_int_equal(it->features->offsets[polylines], total);
+            total += feature % 7 + 1;
+            polylines++;
+            assert_int_equal(it->features->offsets[polylines], total);
+        }
+    }
+    assert_int_equal(it->features->polyline_count, polylines);
+    assert_int_equal(it->features->point_count, total);
+    assert_memory_equal(it->features->points + 2 * it->features->offsets[polylines - 1], points,
+                        sizeof(double) * 2 * (499 % 7 + 1));
+}
+
+/* A style without properties makes one class a layer and geometry. */
+static void test_no_properties(void **state) {
+    fixture *it = *state;
+    const struct camber_style style = {.context = it->context};
+    camber_features *features;
+    assert_int_equal(camber_features_create(it->context, &style, &features), CAMBER_OK);
+    uint32_t one, two;
+    assert_int_equal(camber_features_find_class(features, 0, CAMBER_GEOMETRY_LINE, NULL, &one), CAMBER_OK);
+    assert_int_equal(camber_features_find_class(features, 0, CAMBER_GEOMETRY_LINE, NULL, &two), CAMBER_OK);
+    assert_int_equal(one, two);
+    assert_int_equal(camber_features_find_class(features, 1, CAMBER_GEOMETRY_LINE, NULL, &two), CAMBER_OK);
+    assert_int_not_equal(one, two);
+    camber_features_destroy(features);
+}
+
+static void *reallocate_some(void *user, void *block, size_t size) {
+    int *left = user;
+    if (size == 0) {
+        free(block);
+        return NULL;
+    }
+    return (*left)-- > 0 ? realloc(block, size) : NULL;
+}
+
+/* Allocations of a whole read fail, the first ones each; nothing leaks (the sanitizer looks) and the status is told. */
+static void test_out_of_memory(void **state) {
+    (void)state;
+    int failures = 0;
+    for (int allowed = 1; allowed < 1000; allowed += 1 + allowed / 8) {
+        int left = 1000000;
+        const camber_context_desc desc = {.reallocate = reallocate_some, .allocator_user = &left};
+        camber_context *context;
+        assert_int_equal(camber_context_create(&desc, &context), CAMBER_OK);
+        const struct camber_style style = {.context = context, .properties = properties, .property_count = 2};
+        const camber_source_desc source = {.path = CAMBER_TEST_DATA "/santa_cruz/osm.mbtiles",
+                                           .where = "type = 'motorway'"};
+        camber_features *features = NULL;
+        left = allowed;
+        camber_status status = camber_features_create(context, &style, &features);
+        if (status == CAMBER_OK)
+            status = camber_features_read(features, &source);
+        const bool enough = status == CAMBER_OK;
+        if (!enough) {
+            failures++;
+            assert_int_equal(status, CAMBER_ERROR_MEMORY);
+            assert_true(!features || features->feature_count == 0);
+        }
+        camber_features_destroy(features);
+        left = 1;
+        camber_context_destroy(context);
+        if (enough) {
+            assert_true(failures > 10);
+            return;
+        }
+    }
+    fail_msg("a read of a small layer needs more than 1000 allocations");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_strings, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_classes, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_polylines, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_no_properties, set_up, tear_down),
+        cmocka_unit_test(test_out_of_memory),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

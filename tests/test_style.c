@@ -1,0 +1,594 @@
+/* Style documents: the built-in ones against a list of road classes, and documents that are wrong. */
+#include "style/style.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+typedef struct fixture {
+    camber_context *context;
+    camber_style *style;
+    char error[4096], warning[4096]; /* the last of each */
+    size_t error_count, warning_count;
+    size_t allocations_left; /* counts down; at 0 allocation fails */
+    size_t blocks;           /* live */
+} fixture;
+
+static void keep_message(void *user, camber_log_level level, const char *message) {
+    fixture *f = user;
+    if (level == CAMBER_LOG_ERROR) {
+        snprintf(f->error, sizeof f->error, "%s", message);
+        f->error_count++;
+    } else if (level == CAMBER_LOG_WARNING) {
+        snprintf(f->warning, sizeof f->warning, "%s", message);
+        f->warning_count++;
+    }
+}
+
+static void *reallocate(void *user, void *block, size_t size_bytes) {
+    fixture *f = user;
+    if (size_bytes == 0) {
+        f->blocks -= block != NULL;
+        free(block);
+        return NULL;
+    }
+    if (f->allocations_left == 0)
+        return NULL;
+    f->allocations_left--;
+    void *made = realloc(block, size_bytes);
+    f->blocks += !block && made;
+    return made;
+}
+
+static void setup(fixture *f) {
+    memset(f, 0, sizeof *f);
+    f->allocations_left = SIZE_MAX;
+    const camber_context_desc desc = {
+        .reallocate = reallocate, .allocator_user = f, .log = keep_message, .log_user = f, .cache_dir = ""};
+    assert_int_equal(camber_context_create(&desc, &f->context), CAMBER_OK);
+}
+
+static void teardown(fixture *f) {
+    camber_style_destroy(f->style);
+    camber_context_destroy(f->context);
+    assert_int_equal(f->blocks, 0);
+}
+
+static camber_status parse(fixture *f, const char *json) {
+    return camber_style_parse(f->context, json, strlen(json), "roads.json", &f->style);
+}
+
+/* ---- The built-in style ---- */
+
+typedef struct feature {
+    const char *highway, *type, *mtfcc, *bridge, *tunnel; /* bridge and tunnel: a digit is a number */
+    bool plain;
+} feature;
+
+enum { PROPERTY_LIMIT = 16 };
+
+static camber_value text_value(const char *text) {
+    if (text && (strcmp(text, "0") == 0 || strcmp(text, "1") == 0))
+        return (camber_value){.type = CAMBER_VALUE_NUMBER, .number = text[0] - '0'};
+    return (camber_value){.type = text ? CAMBER_VALUE_STRING : CAMBER_VALUE_NULL, .string = text};
+}
+
+static void set_values(const camber_style *style, const feature *road, camber_value *values) {
+    const struct {
+        const char *name;
+        camber_value value;
+    } known[] = {
+        {"highway", text_value(road->highway)}, {"type", text_value(road->type)},
+        {"MTFCC", text_value(road->mtfcc)},     {"bridge", text_value(road->bridge)},
+        {"tunnel", text_value(road->tunnel)},   {CAMBER_PLAIN_PROPERTY, {.type = CAMBER_VALUE_NULL}},
+    };
+    assert_in_range(style->property_count, 1, PROPERTY_LIMIT);
+    for (size_t i = 0; i < style->property_count; i++) {
+        size_t k = 0;
+        while (k < sizeof known / sizeof *known && strcmp(known[k].name, style->properties[i]) != 0)
+            k++;
+        if (k == sizeof known / sizeof *known)
+            fail_msg("the style reads %s", style->properties[i]);
+        values[i] = known[k].value;
+        if (strcmp(known[k].name, CAMBER_PLAIN_PROPERTY) == 0 && road->plain)
+            values[i] = (camber_value){.type = CAMBER_VALUE_BOOL, .boolean = true};
+    }
+}
+
+/* Exactly the casing and the fill "level-class-..." match; NULL: none. */
+static void check_road(const camber_style *style, const feature *road, const char *expected) {
+    camber_value values[PROPERTY_LIMIT];
+    set_values(style, road, values);
+    const camber_feature_view view = {values, "LineString"};
+    const char *name = road->highway ? road->highway : road->type ? road->type : road->mtfcc ? road->mtfcc : "-";
+    for (double zoom = 0.0; zoom <= 24.0; zoom += 0.5) {
+        size_t matches = 0;
+        for (size_t i = 0; i < style->layer_count; i++) {
+            const camber_style_layer *layer = &style->layers[i];
+            if (layer->kind != CAMBER_LAYER_LINE || !camber_style_layer_matches(layer, zoom, &view))
+                continue;
+            if (!expected || strncmp(layer->id, expected, strlen(expected)) != 0)
+                fail_msg("%s is drawn by %s, not by %s", name, layer->id, expected ? expected : "nothing");
+            const camber_layer_paint paint = camber_style_layer_paint(layer, zoom, &view);
+            assert_true(paint.width > 0.1 && paint.width < 16384.0 && paint.color.a > 0.99f);
+            matches++;
+        }
+        if (matches != (expected ? 2 : 0))
+            fail_msg("%s is drawn by %zu layers at %g", name, matches, zoom);
+    }
+}
+
+static const struct {
+    const char *value, *class_name;
+} osm_classes[] = {
+    {"motorway", "motorway"},
+    {"motorway_link", "ramp"},
+    {"trunk", "trunk"},
+    {"trunk_link", "ramp"},
+    {"primary", "primary"},
+    {"primary_link", "primary"},
+    {"secondary", "secondary"},
+    {"secondary_link", "secondary"},
+    {"tertiary", "tertiary"},
+    {"tertiary_link", "tertiary"},
+    {"residential", "minor"},
+    {"unclassified", "minor"},
+    {"living_street", "minor"},
+    {"road", "minor"},
+    {"service", "service"},
+    {"pedestrian", "service"},
+    {"track", "track"},
+    {"footway", "path"},
+    {"cycleway", "path"},
+    {"path", "path"},
+    {"bridleway", "path"},
+    {"steps", "path"},
+    {"rail", NULL},
+    {"proposed", NULL},
+    {"construction", NULL},
+    {"abandoned", NULL},
+    {"platform", NULL},
+    {"pier", NULL},
+    {"narrow_gauge", NULL},
+    {"tram", NULL},
+    {"bus_stop", NULL},
+    {"", NULL},
+    {"multipolygon", NULL},
+};
+
+static const struct {
+    const char *value, *class_name;
+} tiger_classes[] = {
+    {"S1100", "motorway"}, {"S1200", "primary"}, {"S1400", "minor"}, {"S1500", "track"},   {"S1630", "ramp"},
+    {"S1640", "service"},  {"S1710", "path"},    {"S1720", "path"},  {"S1730", "service"}, {"S1740", "service"},
+    {"S1750", "service"},  {"S1780", "service"}, {"S1820", "path"},  {"S1830", "path"},    {"R1011", NULL},
+    {"H3010", NULL},       {"L4010", NULL},      {"P0001", NULL},
+};
+
+static const char *layer_prefix(char text[64], const char *level, const char *class_name) {
+    if (!class_name)
+        return NULL;
+    snprintf(text, 64, "%s-%s-", level, class_name);
+    return text;
+}
+
+static void check_roads(const camber_style *style) {
+    char text[64];
+    static const struct {
+        const char *bridge, *tunnel, *level;
+    } levels[] = {
+        {NULL, NULL, "ground"},      {"no", "no", "ground"},
+        {"0", "0", "ground"},        {"yes", NULL, "bridge"},
+        {"viaduct", "no", "bridge"}, {"1", "0", "bridge"},
+        {NULL, "yes", "tunnel"},     {"no", "culvert", "tunnel"},
+        {"0", "1", "tunnel"},        {"yes", "building_passage", "tunnel"},
+    };
+    for (size_t i = 0; i < sizeof osm_classes / sizeof *osm_classes; i++) {
+        for (size_t l = 0; l < sizeof levels / sizeof *levels; l++) {
+            feature road = {.highway = osm_classes[i].value, .bridge = levels[l].bridge, .tunnel = levels[l].tunnel};
+            const char *expected = layer_prefix(text, levels[l].level, osm_classes[i].class_name);
+            check_road(style, &road, expected);
+            road.type = road.highway;
+            road.highway = NULL;
+            check_road(style, &road, expected);
+        }
+    }
+    for (size_t i = 0; i < sizeof tiger_classes / sizeof *tiger_classes; i++)
+        check_road(style, &(feature){.mtfcc = tiger_classes[i].value},
+                   layer_prefix(text, "ground", tiger_classes[i].class_name));
+    check_road(style, &(feature){.plain = true}, "ground-minor-");
+    check_road(style, &(feature){.plain = false}, NULL);
+    /* A way's highway counts, whatever the type of the relation or attribute beside it. */
+    check_road(style, &(feature){.highway = "primary", .type = "rail"}, "ground-primary-");
+}
+
+static camber_layer_paint paint_of(const camber_style *style, const char *id, double zoom) {
+    camber_value values[PROPERTY_LIMIT] = {{.type = CAMBER_VALUE_NULL}};
+    const camber_feature_view view = {values, "LineString"};
+    for (size_t i = 0; i < style->layer_count; i++)
+        if (strcmp(style->layers[i].id, id) == 0)
+            return camber_style_layer_paint(&style->layers[i], zoom, &view);
+    fail_msg("no layer %s", id);
+    return (camber_layer_paint){0};
+}
+
+/* Levels and within them casings before fills, classes in one order; a casing and its fill share their geometry,
+ * and the casing is the wider one. */
+static void check_order(const camber_style *style) {
+    static const char *const levels[] = {"tunnel", "ground", "bridge"}, *const parts[] = {"casing", "fill"};
+    static const char *const classes[] = {"path",      "track",   "service", "minor", "tertiary",
+                                          "secondary", "primary", "ramp",    "trunk", "motorway"};
+    size_t at = 1;
+    assert_int_equal(style->layer_count, 1 + 3 * 2 * 10);
+    assert_int_equal(style->layers[0].kind, CAMBER_LAYER_BACKGROUND);
+    for (size_t l = 0; l < 3; l++) {
+        for (size_t p = 0; p < 2; p++) {
+            for (size_t i = 0; i < 10; i++, at++) {
+                char id[64];
+                snprintf(id, sizeof id, "%s-%s-%s", levels[l], classes[i], parts[p]);
+                assert_string_equal(style->layers[at].id, id);
+                assert_int_equal(style->layers[at].join, CAMBER_JOIN_ROUND);
+                assert_int_equal(style->layers[at].cap, l == 2 ? CAMBER_CAP_BUTT : CAMBER_CAP_ROUND);
+                if (p == 0) {
+                    const camber_style_layer *casing = &style->layers[at], *fill = &style->layers[at + 10];
+                    assert_string_equal(casing->filter_key, fill->filter_key);
+                    assert_int_equal(casing->cap, fill->cap);
+                    for (double zoom = 0.0; zoom <= 24.0; zoom += 0.25)
+                        assert_true(paint_of(style, casing->id, zoom).width >
+                                    paint_of(style, fill->id, zoom).width + 0.05);
+                }
+            }
+        }
+    }
+}
+
+/* Wider with zoom, and wider by class. */
+static void check_widths(const camber_style *style) {
+    static const char *const ranks[] = {"ground-path-fill",     "ground-service-fill",   "ground-minor-fill",
+                                        "ground-tertiary-fill", "ground-secondary-fill", "ground-primary-fill",
+                                        "ground-motorway-fill"};
+    for (double zoom = 4.0; zoom <= 22.0; zoom += 0.25) {
+        for (size_t i = 0; i < sizeof ranks / sizeof *ranks; i++) {
+            const double width = paint_of(style, ranks[i], zoom).width;
+            assert_true(zoom >= 22.0 || paint_of(style, ranks[i], zoom + 0.25).width > width);
+            assert_true(i == 0 || width >= paint_of(style, ranks[i - 1], zoom).width);
+        }
+    }
+}
+
+static void test_builtin(void **state) {
+    (void)state;
+    for (int theme = 0; theme < 2; theme++) {
+        fixture f;
+        setup(&f);
+        const camber_theme which = theme ? CAMBER_THEME_DARK : CAMBER_THEME_LIGHT;
+        assert_int_equal(camber_style_builtin(f.context, which, &f.style), CAMBER_OK);
+        assert_int_equal(f.error_count + f.warning_count, 0);
+        assert_false(f.style->wants_polygons);
+        check_order(f.style);
+        check_widths(f.style);
+        check_roads(f.style);
+        const camber_color paper = camber_style_layer_paint(&f.style->layers[0], 12.0, NULL).color;
+        assert_true(paper.a > 0.99f && (paper.g > 0.5f) == (which == CAMBER_THEME_LIGHT));
+        teardown(&f);
+    }
+}
+
+/* ---- Documents ---- */
+
+static void test_layer(void **state) {
+    (void)state;
+    fixture f;
+    setup(&f);
+    const char *json =
+        "\xef\xbb\xbf{\"version\": 8, \"sources\": {\"city\": {\"type\": \"vector\"}}, \"layers\": ["
+        "{\"id\": \"paper\", \"type\": \"background\", \"paint\": {\"background-color\": \"red\","
+        "  \"background-opacity\": 0.5}},"
+        "{\"id\": \"roads\", \"type\": \"line\", \"source\": \"city\", \"source-layer\": \"transport\", \"minzoom\": 3,"
+        "  \"maxzoom\": 15.5, \"filter\": [\"==\", \"highway\", \"primary\"], \"layout\": {\"line-cap\": \"square\","
+        "  \"line-join\": \"bevel\", \"line-miter-limit\": 5}, \"paint\": {\"line-width\": [\"get\", \"w\"],"
+        "  \"line-color\": \"rgba(0, 0, 255, 0.5)\", \"line-opacity\": 0.5}},"
+        "{\"id\": \"plain\", \"type\": \"line\"},"
+        "{\"id\": \"hidden\", \"type\": \"line\", \"layout\": {\"visibility\": \"none\"}},"
+        "{\"id\": \"outlines\", \"type\": \"line\", \"filter\": [\"==\", \"$type\", \"Polygon\"]}]}";
+    assert_int_equal(parse(&f, json), CAMBER_OK);
+    assert_int_equal(f.error_count + f.warning_count, 0);
+    assert_int_equal(f.style->layer_count, 5);
+    assert_true(f.style->wants_polygons);
+    const camber_style_layer *paper = &f.style->layers[0], *roads = &f.style->layers[1], *plain = &f.style->layers[2];
+    assert_true(fabsf(camber_style_layer_paint(paper, 0.0, NULL).color.a - 0.5f) < 1e-6f);
+    assert_string_equal(roads->source, "city");
+    assert_string_equal(roads->source_layer, "transport");
+    assert_string_equal(roads->filter_key, "[\"==\",\"highway\",\"primary\"]");
+    assert_int_equal(roads->cap, CAMBER_CAP_SQUARE);
+    assert_int_equal(roads->join, CAMBER_JOIN_BEVEL);
+    assert_true(fabsf(roads->miter_limit - 5.0f) < 1e-6f);
+    assert_int_equal(f.style->property_count, 2);
+    camber_value values[2];
+    const size_t highway = strcmp(f.style->properties[0], "highway") == 0 ? 0 : 1;
+    values[highway] = (camber_value){.type = CAMBER_VALUE_STRING, .string = "primary"};
+    values[1 - highway] = (camber_value){.type = CAMBER_VALUE_NUMBER, .number = 7.0};
+    const camber_feature_view view = {values, "LineString"};
+    assert_true(camber_style_layer_matches(roads, 3.0, &view));
+    assert_true(camber_style_layer_matches(roads, 15.4, &view));
+    assert_false(camber_style_layer_matches(roads, 2.9, &view));
+    assert_false(camber_style_layer_matches(roads, 15.5, &view));
+    assert_true(camber_style_layer_matches(plain, 24.0, &view));
+    assert_false(camber_style_layer_matches(&f.style->layers[3], 10.0, &view));
+    camber_layer_paint paint = camber_style_layer_paint(roads, 10.0, &view);
+    assert_true(fabs(paint.width - 7.0) < 1e-12 && fabsf(paint.color.a - 0.25f) < 1e-6f && paint.color.b >= 1.0f);
+    /* What cannot be evaluated, or is no width, is the specification's default, and below 0 is 0. */
+    values[1 - highway] = (camber_value){.type = CAMBER_VALUE_STRING, .string = "wide"};
+    assert_true(fabs(camber_style_layer_paint(roads, 10.0, &view).width - 1.0) < 1e-12);
+    values[1 - highway] = (camber_value){.type = CAMBER_VALUE_NUMBER, .number = NAN};
+    assert_true(fabs(camber_style_layer_paint(roads, 10.0, &view).width - 1.0) < 1e-12);
+    values[1 - highway].number = -3.0;
+    assert_true(fabs(camber_style_layer_paint(roads, 10.0, &view).width) < 1e-12);
+    values[highway].string = "secondary";
+    assert_false(camber_style_layer_matches(roads, 10.0, &view));
+    assert_int_equal(plain->cap, CAMBER_CAP_BUTT);
+    assert_int_equal(plain->join, CAMBER_JOIN_MITER);
+    assert_null(plain->source);
+    assert_string_equal(plain->filter_key, "");
+    paint = camber_style_layer_paint(plain, 10.0, &view);
+    assert_true(fabs(paint.width - 1.0) < 1e-12 && paint.color.a >= 1.0f && paint.color.r <= 0.0f);
+    teardown(&f);
+}
+
+static void test_warnings(void **state) {
+    (void)state;
+    fixture f;
+    setup(&f);
+    assert_int_equal(parse(&f, "{\"version\": 8, \"layers\": ["
+                               "{\"id\": \"a\", \"type\": \"fill\"}, {\"id\": \"b\", \"type\": \"fill\"},"
+                               "{\"id\": \"c\", \"type\": \"line\", \"paint\": {\"line-blur\": 3,"
+                               "  \"line-color-transition\": {\"duration\": 1}}},"
+                               "{\"id\": \"d\", \"type\": \"line\", \"paint\": {\"line-blur\": 4}}]}"),
+                     CAMBER_OK);
+    assert_int_equal(f.warning_count, 2);
+    assert_string_equal(f.warning, "roads.json: /layers/2/paint/line-blur: this property is not drawn; the layer is "
+                                   "drawn without it");
+    assert_int_equal(f.style->layer_count, 2);
+    teardown(&f);
+    setup(&f);
+    assert_int_equal(parse(&f, "{\"version\": 8, \"layers\": [{\"id\": \"c\", \"type\": \"line\", \"layout\": "
+                               "{\"line-cap\": {\"stops\": [[0, \"butt\"], [10, \"round\"]]}, \"frob/ni~cate\": 3}}]}"),
+                     CAMBER_OK);
+    assert_int_equal(f.warning_count, 2);
+    assert_string_equal(f.warning, "roads.json: /layers/0/layout/frob~1ni~0cate: unknown property; the layer is drawn "
+                                   "without it");
+    assert_int_equal(f.style->layers[0].cap, CAMBER_CAP_ROUND);
+    teardown(&f);
+}
+
+/* A line layer with one thing in it. */
+#define LINE(rest) "{\"version\": 8, \"layers\": [{\"id\": \"a\", \"type\": \"line\", " rest "}]}"
+
+static void test_wrong(void **state) {
+    (void)state;
+    static const struct {
+        const char *json, *message;
+    } samples[] = {
+        {"", "line 1, column 0: "},
+        {" \n ", "line 2, column "},
+        {"{", "line 1, column 1: "},
+        {"{\"version\": 8,\n \"layers\": [}", "line 2, column 13: "},
+        {"{\"version\": 8, \"layers\": [{\"id\": \"ro", "line 1, column "},
+        {"{\"version\": 8, \"layers\": [{\"id\": \"ro\xff\xfe\"}]}", "line 1, column "},
+        {"{\"version\": 8, \"layers\": []} x", "line 1, column "},
+        {"{\"version\": 1e999, \"layers\": []}", "line 1, column "},
+        {"{\"version\": NaN, \"layers\": []}", "line 1, column "},
+        {"\x01\x02\x03", "line 1, column "},
+        {"3", "expected a style document, an object, found a number"},
+        {"[]", "expected a style document, an object, found an array"},
+        {"{}", "/version: expected the number 8"},
+        {"{\"version\": \"8\", \"layers\": []}", "/version: expected the number 8"},
+        {"{\"version\": 7, \"layers\": []}", "/version: expected the number 8"},
+        {"{\"version\": 8}", "/layers: expected an array of layers"},
+        {"{\"version\": 8, \"layers\": {}}", "/layers: expected an array of layers"},
+        {"{\"version\": 8, \"sources\": 3, \"layers\": []}", "/sources: expected an object, found a number"},
+        {"{\"version\": 8, \"layers\": [3]}", "/layers/0: expected a layer, an object, found a number"},
+        {"{\"version\": 8, \"layers\": [{\"type\": \"line\"}]}", "/layers/0: the layer has no \"id\""},
+        {"{\"version\": 8, \"layers\": [{\"id\": \"a\"}]}", "/layers/0: the layer has no \"type\""},
+        {"{\"version\": 8, \"layers\": [{\"id\": \"a\", \"type\": \"fill\"}, {\"id\": \"b\", \"type\": \"line\"}, "
+         "{\"id\": \"a\", \"type\": \"line\"}]}",
+         "/layers/2/id: \"a\" is the id of /layers/0 too"},
+        {LINE("\"paint\": {\"line-width\": \"2\"}"),
+         "/layers/0/paint/line-width: expected a number or an expression, found a string"},
+        {LINE("\"paint\": {\"line-width\": -1}"), "/layers/0/paint/line-width: -1 is out of range"},
+        {LINE("\"paint\": {\"line-opacity\": 1.5}"), "/layers/0/paint/line-opacity: 1.5 is out of range; use 0 to 1"},
+        {LINE("\"paint\": {\"line-color\": 3}"), "/layers/0/paint/line-color: expected a colour"},
+        {LINE("\"paint\": {\"line-color\": \"sour\"}"), "/layers/0/paint/line-color: cannot be evaluated"},
+        {LINE("\"paint\": []"), "/layers/0/paint: expected an object, found an array"},
+        {LINE("\"layout\": 3"), "/layers/0/layout: expected an object, found a number"},
+        {LINE("\"layout\": {\"line-cap\": \"pointed\"}"), "/layers/0/layout/line-cap: \"pointed\" is no line-cap"},
+        {LINE("\"layout\": {\"line-cap\": 3}"), "/layers/0/layout/line-cap: expected a string"},
+        {LINE("\"layout\": {\"visibility\": true}"), "/layers/0/layout/visibility: expected \"visible\" or \"none\""},
+        {LINE("\"minzoom\": \"3\""), "/layers/0/minzoom: expected a number, found a string"},
+        {LINE("\"maxzoom\": 25"), "/layers/0/maxzoom: 25 is out of range"},
+        {LINE("\"source\": 3"), "/layers/0/source: expected a string, found a number"},
+        {LINE("\"filter\": 3"), "/layers/0/filter: expected a filter, found a number"},
+        {LINE("\"filter\": [\"==\", \"a\", [\"nope\"]]"), "/layers/0/filter/2/0: unknown operator \"nope\""},
+        {"{\"version\": 8, \"layers\": [{\"id\": \"a\", \"type\": \"background\", \"paint\": {\"background-color\": "
+         "[\"get\", \"c\"]}}]}",
+         "/layers/0/paint/background-color: background-color cannot depend on features"},
+    };
+    for (size_t i = 0; i < sizeof samples / sizeof *samples; i++) {
+        fixture f;
+        char start[256];
+        setup(&f);
+        assert_int_equal(parse(&f, samples[i].json), CAMBER_ERROR_INPUT);
+        snprintf(start, sizeof start, "roads.json: %s", samples[i].message);
+        if (f.error_count != 1 || strncmp(f.error, start, strlen(start)) != 0 || !strchr(f.error, ';'))
+            fail_msg("%s: %zu errors, '%s', not '%s'", samples[i].json, f.error_count, f.error, start);
+        assert_null(f.style);
+        teardown(&f);
+    }
+}
+
+/* ---- Hostile documents ---- */
+
+typedef struct text {
+    char *bytes;
+    size_t size, capacity;
+} text;
+
+static void append(text *t, const char *more) {
+    const size_t length = strlen(more);
+    if (t->size + length + 1 > t->capacity) {
+        t->capacity = 2 * (t->size + length + 1);
+        t->bytes = realloc(t->bytes, t->capacity);
+        assert_non_null(t->bytes);
+    }
+    memcpy(t->bytes + t->size, more, length + 1);
+    t->size += length;
+}
+
+static void test_nesting(void **state) {
+    (void)state;
+    for (size_t depth = 1000; depth <= 100000; depth *= 100) {
+        fixture f;
+        text t = {0};
+        setup(&f);
+        append(&t, "{\"version\": 8, \"layers\": [{\"id\": \"a\", \"type\": \"line\", \"filter\": ");
+        for (size_t i = 0; i < depth; i++)
+            append(&t, "[\"all\",");
+        append(&t, "true");
+        for (size_t i = 0; i < depth; i++)
+            append(&t, "]");
+        append(&t, "}]}");
+        assert_int_equal(parse(&f, t.bytes), CAMBER_ERROR_INPUT);
+        assert_int_equal(f.error_count, 1);
+        assert_non_null(strstr(f.error, depth == 1000 ? "nested deeper than" : "depth"));
+        /* Cut off at the deepest. */
+        t.bytes[t.size / 2] = 0;
+        assert_int_equal(parse(&f, t.bytes), CAMBER_ERROR_INPUT);
+        free(t.bytes);
+        teardown(&f);
+    }
+}
+
+static void test_many(void **state) {
+    (void)state;
+    enum { MANY = 1000000 };
+    fixture f;
+    text t = {0};
+    char one[64];
+    setup(&f);
+    append(&t, "{\"version\": 8, \"layers\": [{\"id\": \"a\", \"type\": \"line\", \"paint\": {\"line-width\": "
+               "[\"interpolate\", [\"linear\"], [\"get\", \"n\"]");
+    for (int i = 0; i < MANY; i++) {
+        snprintf(one, sizeof one, ",%d,%d", i, 2 * i);
+        append(&t, one);
+    }
+    append(&t, "]}}]}");
+    assert_int_equal(parse(&f, t.bytes), CAMBER_OK);
+    const camber_value value = {.type = CAMBER_VALUE_NUMBER, .number = 654321.25};
+    const camber_feature_view view = {&value, "LineString"};
+    assert_true(fabs(camber_style_layer_paint(f.style->layers, 10.0, &view).width - 1308642.5) < 1e-6);
+    free(t.bytes);
+    teardown(&f);
+}
+
+/* 10^5 labels, one of them twice, and more properties than are kept. */
+static void test_many_names(void **state) {
+    (void)state;
+    fixture f;
+    text t = {0};
+    char one[64];
+    setup(&f);
+    append(&t, "{\"version\": 8, \"layers\": [{\"id\": \"a\", \"type\": \"line\", \"filter\": [\"match\", [\"get\", "
+               "\"n\"], [\"x77777\"");
+    for (int i = 0; i < 100000; i++) {
+        snprintf(one, sizeof one, ",\"x%d\"", i);
+        append(&t, one);
+    }
+    append(&t, "], true, false]}]}");
+    assert_int_equal(parse(&f, t.bytes), CAMBER_ERROR_INPUT);
+    assert_non_null(strstr(f.error, "\"x77777\" occurs twice"));
+    free(t.bytes);
+    t = (text){0};
+    append(&t, "{\"version\": 8, \"layers\": [{\"id\": \"a\", \"type\": \"line\", \"filter\": [\"any\"");
+    for (int i = 0; i < 100000; i++) {
+        snprintf(one, sizeof one, ",[\"has\",\"x%d\"]", i);
+        append(&t, one);
+    }
+    append(&t, "]}]}");
+    assert_int_equal(parse(&f, t.bytes), CAMBER_ERROR_INPUT);
+    assert_non_null(strstr(f.error, "feature properties are read"));
+    free(t.bytes);
+    teardown(&f);
+}
+
+/* Every prefix and many single-byte changes of a document end in a status, with one error where they fail. */
+static void test_damage(void **state) {
+    (void)state;
+    const char *json =
+        LINE("\"filter\": [\"all\", [\"in\", \"h\", \"a\", 2], [\"!\", [\"has\", \"t\"]], [\"match\", "
+             "[\"to-string\", [\"get\", \"b\"]], [\"\", \"0\"], true, false]], \"paint\": {\"line-width\": "
+             "[\"interpolate\", [\"exponential\", 1.5], [\"zoom\"], 4, [\"+\", 1, 2], 22, 9], "
+             "\"line-color\": {\"stops\": [[1, \"red\"], [2, \"hsl(1, 2%, 3%)\"]]}}");
+    static const char bytes[] = "\"[]{},:0-9ae \\\x01\xff\x80";
+    const size_t length = strlen(json);
+    char *copy = malloc(length + 1);
+    assert_non_null(copy);
+    fixture f;
+    setup(&f);
+    assert_int_equal(parse(&f, json), CAMBER_OK);
+    camber_style_destroy(f.style);
+    f.style = NULL;
+    for (size_t i = 0; i < length; i++) {
+        memcpy(copy, json, length + 1);
+        copy[i] = 0;
+        assert_int_equal(parse(&f, copy), CAMBER_ERROR_INPUT);
+        for (size_t b = 0; b + 1 < sizeof bytes; b++) {
+            memcpy(copy, json, length + 1);
+            copy[i] = bytes[b];
+            f.error_count = 0;
+            const camber_status status = parse(&f, copy);
+            assert_true(status == CAMBER_OK || (status == CAMBER_ERROR_INPUT && f.error_count == 1));
+            camber_style_destroy(f.style);
+            f.style = NULL;
+        }
+    }
+    free(copy);
+    teardown(&f);
+}
+
+/* Whichever allocation fails, nothing leaks and the status says so. */
+static void test_memory(void **state) {
+    (void)state;
+    const char *json =
+        LINE("\"source\": \"s\", \"filter\": [\"all\", [\"in\", \"h\", \"a\", 2], [\"match\", [\"to-string\", "
+             "[\"get\", \"b\"]], [\"\", \"0\"], true, false]], \"layout\": {\"line-cap\": [\"to-string\", "
+             "\"round\"]}, \"paint\": {\"line-width\": [\"step\", [\"zoom\"], 4, 5, 6]}");
+    camber_status status = CAMBER_ERROR_MEMORY;
+    for (size_t count = 0; status == CAMBER_ERROR_MEMORY; count++) {
+        fixture f;
+        setup(&f);
+        f.allocations_left = count;
+        status = parse(&f, json);
+        assert_true(status == CAMBER_OK || status == CAMBER_ERROR_MEMORY);
+        assert_true(status == CAMBER_OK || f.style == NULL);
+        assert_true(status == CAMBER_OK || f.error_count == 1);
+        if (status == CAMBER_OK) {
+            assert_in_range(count, 20, 1000);
+            assert_int_equal(f.style->layers[0].cap, CAMBER_CAP_ROUND);
+        }
+        teardown(&f);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_builtin),    cmocka_unit_test(test_layer),   cmocka_unit_test(test_warnings),
+        cmocka_unit_test(test_wrong),      cmocka_unit_test(test_nesting), cmocka_unit_test(test_many),
+        cmocka_unit_test(test_many_names), cmocka_unit_test(test_damage),  cmocka_unit_test(test_memory),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

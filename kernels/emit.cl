@@ -24,10 +24,10 @@ static inline void put_vertex(global camber_u32 *restrict vertices, size_t k, co
 }
 
 static inline void put_edges(global camber_u32 *restrict vertices, size_t k, const segment_end *e) {
-    const camber_edge left = camber_edge_at(e->join, e->half_shorter, e->end, 1.0f, CAMBER_METHOD);
-    const camber_edge right = camber_edge_at(e->join, e->half_shorter, e->end, -1.0f, CAMBER_METHOD);
-    put_vertex(vertices, k, e, left.along, left.limit_px, 1.0f);
-    put_vertex(vertices, k + 1, e, right.along, right.limit_px, -1.0f);
+    put_vertex(vertices, k, e, camber_edge_along(e->join, e->end, 1.0f, CAMBER_METHOD),
+               camber_edge_limit(e->join, e->half_shorter, 1.0f), 1.0f);
+    put_vertex(vertices, k + 1, e, camber_edge_along(e->join, e->end, -1.0f, CAMBER_METHOD),
+               camber_edge_limit(e->join, e->half_shorter, -1.0f), -1.0f);
 }
 
 static inline void put_triangle(global camber_u32 *restrict indices, camber_u32 a, camber_u32 b, camber_u32 c) {
@@ -36,21 +36,25 @@ static inline void put_triangle(global camber_u32 *restrict indices, camber_u32 
     indices[2] = c;
 }
 
+/* A dot's segment has no direction, no turns, and its cap at both ends. */
+static inline void make_dot(segment_end *in, segment_end *out) {
+    in->dx = in->dy = out->dx = out->dy = 0.0f;
+    in->turns = out->turns = 0;
+    out->flags = camber_join_end(in->join) * 9u;
+    in->flags = out->flags | 64u;
+}
+
 #if CAMBER_METHOD == CAMBER_STRIP
 
-static inline void put_strip_indices(global camber_u32 *restrict indices, camber_u32 v, camber_u32 kind, camber_u32 ends) {
+static inline void put_strip_indices(global camber_u32 *restrict indices, camber_u32 v, camber_u32 dot,
+                                     camber_u32 breaks, camber_u32 last) {
     indices[0] = v;
     indices[1] = v + 1;
-    if (kind == CAMBER_KIND_DOT) {
-        indices[2] = v + 2;
-        indices[3] = v + 3;
-        indices[4] = 0xffffffffu;
-    } else if (ends & CAMBER_POINT_LAST) {
-        indices[2] = 0xffffffffu;
-    } else if (!ends && kind > CAMBER_KIND_CUT) {
-        indices[2] = 0xffffffffu;
-        indices[3] = v + 2;
-        indices[4] = v + 3;
+    if (last | breaks)
+        indices[2] = dot ? v + 2 : 0xffffffffu;
+    if (breaks) {
+        indices[3] = dot ? v + 3 : v + 2;
+        indices[4] = dot ? 0xffffffffu : v + 3;
     }
 }
 
@@ -124,7 +128,8 @@ static inline void put_join_vertices(global camber_u32 *restrict vertices, size_
     }
 }
 
-static inline void put_join_indices(global camber_u32 *restrict indices, camber_u32 v, camber_u32 triangles, float outer) {
+static inline void put_join_indices(global camber_u32 *restrict indices, camber_u32 v, camber_u32 triangles,
+                                    float outer) {
     const camber_u32 p = v + 2 + (triangles ? triangles - 1 : 0);
     const camber_u32 in_edge = outer > 0.0f ? v : v + 1, out_edge = outer > 0.0f ? p + 1 : p + 2;
     camber_u32 from = in_edge;
@@ -138,16 +143,17 @@ static inline void put_join_indices(global camber_u32 *restrict indices, camber_
 
 #endif
 
-kernel void emit(global const float *restrict x, global const float *restrict y,
-                 global const camber_u32 *restrict info, global const camber_row *restrict rows,
-                 global const camber_u32 *restrict joins, global const camber_u32 *restrict offsets,
-                 global const camber_u64 *restrict bases, global camber_u32 *restrict vertices,
-                 global camber_u32 *restrict indices) {
+kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK, 1, 1))) void emit(
+    global const float *restrict x, global const float *restrict y, global const float *restrict x_after,
+    global const float *restrict y_after, global const camber_u32 *restrict info,
+    global const camber_row *restrict rows, global const camber_u32 *restrict joins,
+    global const camber_u32 *restrict offsets, global const camber_u64 *restrict bases,
+    global camber_u32 *restrict vertices, global camber_u32 *restrict indices) {
     const size_t i = get_global_id(0) + 1;
     const camber_u32 join = joins[i], kind = camber_join_kind(join);
-    if (kind == CAMBER_KIND_GHOST || kind == CAMBER_KIND_UNDRAWN)
+    if (kind == CAMBER_KIND_GHOST)
         return;
-    const size_t block = get_global_id(0) / CAMBER_BLOCK;
+    const size_t block = get_group_id(0);
     const camber_u32 offset = offsets[i - 1];
     const size_t k = (size_t)bases[2 * block] + (offset & 0xffffu);
     global camber_u32 *restrict index = indices + (size_t)bases[2 * block + 1] + (offset >> 16);
@@ -155,8 +161,8 @@ kernel void emit(global const float *restrict x, global const float *restrict y,
 
     const camber_u32 point = info[i], before = joins[i - 1], after = joins[i + 1];
     const camber_u32 ends = point & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST);
-    const float dx = x[i] - x[i - 1], dy = y[i] - y[i - 1], ex = x[i + 1] - x[i], ey = y[i + 1] - y[i];
-    const float half_shorter = camber_turn_between(dx, dy, ex, ey).half_shorter;
+    const float dx = x[i] - x[i - 1], dy = y[i] - y[i - 1], ex = x_after[i + 1] - x[i], ey = y_after[i + 1] - y[i];
+    const float half_shorter = camber_half_shorter(dx, dy, ex, ey);
     const camber_u32 row = point >> CAMBER_POINT_ROW_SHIFT;
 
     segment_end in = {x[i], y[i], dx, dy, half_shorter, 1.0f, join, 0, 0, row};
@@ -166,29 +172,28 @@ kernel void emit(global const float *restrict x, global const float *restrict y,
     out.flags = camber_join_end(join) | camber_join_end(after) << 3;
     out.turns = (join & 0xffffu) | after << 16;
 
-    if (kind == CAMBER_KIND_DOT) {
-        in.dx = in.dy = out.dx = out.dy = 0.0f;
-        in.turns = out.turns = 0;
-        in.flags = camber_join_end(join) * 9u | 64u;
-        out.flags = camber_join_end(join) * 9u;
-        put_edges(vertices, k, &out);
-        put_edges(vertices, k + 2, &in);
 #if CAMBER_METHOD == CAMBER_STRIP
-        put_strip_indices(index, v, kind, ends);
-#else
-        put_body(index, v, v + 2, 0, 0, 0);
-#endif
+    const camber_u32 dot = kind == CAMBER_KIND_DOT, breaks = camber_strip_breaks(kind, point);
+    put_strip_indices(index, v, dot, breaks, ends & CAMBER_POINT_LAST);
+    if (dot)
+        make_dot(&in, &out);
+    if (dot || ends & CAMBER_POINT_FIRST) {
+        put_edges(vertices, k, &out);
+        if (dot)
+            put_edges(vertices, k + 2, &in);
         return;
     }
-#if CAMBER_METHOD == CAMBER_STRIP
-    put_strip_indices(index, v, kind, ends);
-    if (!(ends & CAMBER_POINT_FIRST))
-        put_edges(vertices, k, &in);
-    else
-        put_edges(vertices, k, &out);
-    if (!ends && kind > CAMBER_KIND_CUT)
+    put_edges(vertices, k, &in);
+    if (breaks)
         put_edges(vertices, k + 2, &out);
 #else
+    if (kind == CAMBER_KIND_DOT) {
+        make_dot(&in, &out);
+        put_edges(vertices, k, &out);
+        put_edges(vertices, k + 2, &in);
+        put_body(index, v, v + 2, 0, 0, 0);
+        return;
+    }
     const camber_u32 joined = kind != CAMBER_KIND_CAP;
     if (ends & CAMBER_POINT_FIRST) {
         if (joined)

@@ -14,17 +14,24 @@
 #include "layout.h"
 
 typedef struct camber_turn {
-    float c, s;          /* cosine (>= 0) and sine (signed) of half the turn */
-    float dot;           /* cosine of the turn */
-    float half_shorter;  /* half the shorter of the two segments, px */
+    float c, s;         /* cosine (>= 0) and sine (signed) of half the turn */
+    float dot;          /* cosine of the turn */
+    float half_shorter; /* half the shorter of the two segments, px */
 } camber_turn;
 
-/* From the vectors into (dx, dy) and out of (ex, ey) a point, px. Lengths below 1e-18 px count as that. */
-CAMBER_FN camber_turn camber_turn_between(float dx, float dy, float ex, float ey) {
+/* Half the shorter of the segments into (dx, dy) and out of (ex, ey) a point, px. */
+CAMBER_FN float camber_half_shorter(float dx, float dy, float ex, float ey) {
     const float d2 = dx * dx + dy * dy, e2 = ex * ex + ey * ey;
-    const float d = CAMBER_SQRT(d2 > 1e-36f ? d2 : 1e-36f), e = CAMBER_SQRT(e2 > 1e-36f ? e2 : 1e-36f);
-    const float ux = dx / d, uy = dy / d, wx = ex / e, wy = ey / e;
-    const float dot = ux * wx + uy * wy, cross = ux * wy - uy * wx;
+    return 0.5f * CAMBER_SQRT(d2 < e2 ? d2 : e2);
+}
+
+/* The turn between them. The product of the lengths comes from (d.e)^2 + (d x e)^2 = |d|^2 |e|^2: one root and one
+ * division serve both. Below 1e-9 px by 1e-9 px it counts as that; at the longest, 3e9 px, it still fits a float. */
+CAMBER_FN camber_turn camber_turn_between(float dx, float dy, float ex, float ey) {
+    const float along = dx * ex + dy * ey, aside = dx * ey - dy * ex;
+    const float product = along * along + aside * aside; /* of the squared lengths */
+    const float scale = 1.0f / CAMBER_SQRT(product > 1e-36f ? product : 1e-36f);
+    const float dot = along * scale, cross = aside * scale;
     /* Of c and s the larger comes from a root that loses nothing, the smaller from cross = 2 s c. */
     const float larger = CAMBER_SQRT(0.5f + 0.5f * CAMBER_FABS(dot));
     const float smaller = 0.5f * cross / larger;
@@ -32,7 +39,7 @@ CAMBER_FN camber_turn camber_turn_between(float dx, float dy, float ex, float ey
     turn.dot = dot;
     turn.c = dot >= 0.0f ? larger : CAMBER_FABS(smaller);
     turn.s = dot >= 0.0f ? smaller : (cross < 0.0f ? -larger : larger);
-    turn.half_shorter = 0.5f * (d < e ? d : e);
+    turn.half_shorter = camber_half_shorter(dx, dy, ex, ey);
     return turn;
 }
 
@@ -40,7 +47,10 @@ CAMBER_FN camber_turn camber_turn_between(float dx, float dy, float ex, float ey
 CAMBER_FN camber_u32 camber_turn_pack(camber_turn turn) {
     const float q = turn.s / (1.0f + turn.c) * 32767.0f;
     const float rounded = q + (q < 0.0f ? -0.5f : 0.5f);
-    return (camber_u32)(camber_i32)(rounded > 32767.0f ? 32767.0f : rounded < -32767.0f ? -32767.0f : rounded) & 0xffffu;
+    return (camber_u32)(camber_i32)(rounded > 32767.0f    ? 32767.0f
+                                    : rounded < -32767.0f ? -32767.0f
+                                                          : rounded) &
+           0xffffu;
 }
 
 CAMBER_FN float camber_turn_unpack(camber_u32 join) {
@@ -73,12 +83,12 @@ CAMBER_FN camber_u32 camber_cap_end(camber_u32 cap) {
 
 /* Triangles of a round join as a fan: steps of the row's angle until they pass the turn. cos falls from 0 to
  * half a circle, so comparing cosines compares angles. */
-CAMBER_FN camber_u32 camber_fan_triangles(camber_turn turn, camber_row row) {
-    float x = row.fan_cos, y = row.fan_sin;
+CAMBER_FN camber_u32 camber_fan_triangles(float turn_cos, float step_cos, float step_sin) {
+    float x = step_cos, y = step_sin;
     camber_u32 n = 1;
-    while (n < CAMBER_JOIN_TRIANGLES_MAX && x > turn.dot && y > 0.0f) {
-        const float next = x * row.fan_cos - y * row.fan_sin;
-        y = x * row.fan_sin + y * row.fan_cos;
+    while (n < CAMBER_JOIN_TRIANGLES_MAX && x > turn_cos && y > 0.0f) {
+        const float next = x * step_cos - y * step_sin;
+        y = x * step_sin + y * step_cos;
         x = next;
         n++;
     }
@@ -101,12 +111,12 @@ CAMBER_FN camber_u32 camber_fan_triangles(camber_turn turn, camber_row row) {
  *     split: past |tan(t/2)| = 2 (127 degrees) C runs away; both end past P, and the fragment shader gives each
  *     its side of the bisector
  */
-CAMBER_FN camber_u32 camber_join_word(camber_turn turn, camber_row row, camber_u32 method) {
+CAMBER_FN camber_u32 camber_join_word(camber_turn turn, CAMBER_GLOBAL const camber_row *row, camber_u32 method) {
     const float sine = CAMBER_FABS(turn.s);
-    const camber_u32 miter = row.join == 1u && turn.c * row.miter_limit >= 1.0f;
-    const camber_u32 bevel = row.join != 0u && !miter;
+    const camber_u32 miter = row->join == 1u && turn.c * row->miter_limit >= 1.0f;
+    const camber_u32 bevel = row->join != 0u && !miter;
     const camber_u32 split = !miter && sine > 2.0f * turn.c;
-    const camber_u32 tight = row.reach_px * sine > turn.half_shorter * turn.c;
+    const camber_u32 tight = row->reach_px * sine > turn.half_shorter * turn.c;
     camber_u32 end = miter ? 3u : bevel ? 4u : 0u;
     camber_u32 triangles = 0;
     if (method == CAMBER_STRIP) {
@@ -114,7 +124,8 @@ CAMBER_FN camber_u32 camber_join_word(camber_turn turn, camber_row row, camber_u
     } else if (sine > 0.0f) {
         /* Past 120 degrees the kite's tip runs away: two kites of half the angle. */
         const camber_u32 kites = !miter && sine > 1.7320508f * turn.c ? 4u : 2u;
-        triangles = method == CAMBER_FAN && row.join == 0u ? camber_fan_triangles(turn, row) : kites;
+        triangles = method == CAMBER_FAN && row->join == 0u ? camber_fan_triangles(turn.dot, row->fan_cos, row->fan_sin)
+                                                            : kites;
     }
     const camber_u32 kind = split ? CAMBER_KIND_SPLIT : tight ? CAMBER_KIND_TIGHT : CAMBER_KIND_CUT;
     return camber_turn_pack(turn) | kind << CAMBER_JOIN_KIND_SHIFT | end << CAMBER_JOIN_END_SHIFT |
@@ -123,36 +134,40 @@ CAMBER_FN camber_u32 camber_join_word(camber_turn turn, camber_row row, camber_u
 
 /* The join word of an end of an open polyline, or of a dot. */
 CAMBER_FN camber_u32 camber_cap_word(camber_u32 cap, camber_u32 dot) {
-    const camber_u32 kind = !dot ? CAMBER_KIND_CAP : cap == 0u ? CAMBER_KIND_UNDRAWN : CAMBER_KIND_DOT;
+    const camber_u32 kind = !dot ? CAMBER_KIND_CAP : cap == 0u ? CAMBER_KIND_GHOST : CAMBER_KIND_DOT;
     return kind << CAMBER_JOIN_KIND_SHIFT | camber_cap_end(cap) << CAMBER_JOIN_END_SHIFT;
 }
 
-/* How far along its segment an edge vertex lies, in units of the reach, and the bound on that in px. end: +1 at
- * the segment's end, -1 at its start; side: +1 or -1. */
-typedef struct camber_edge {
-    float along, limit_px;
-} camber_edge;
-
-CAMBER_FN camber_edge camber_edge_at(camber_u32 join, float half_shorter, float end, float side, camber_u32 method) {
+/* How far along its segment an edge vertex lies, in units of the reach. end: +1 at the segment's end, -1 at its start;
+ * side: +1 or -1. Floats and no struct: two of them returned together are a float2 to the device's compiler, which then
+ * does not vectorise. */
+CAMBER_FN float camber_edge_along(camber_u32 join, float end, float side, camber_u32 method) {
     const camber_u32 kind = camber_join_kind(join);
-    camber_edge edge;
-    edge.along = end;
-    edge.limit_px = CAMBER_NO_LIMIT_PX;
-    if (kind < CAMBER_KIND_CUT) {
-        /* A cap: a butt end needs the pad only, however wide the line is drawn. */
-        edge.limit_px = camber_join_end(join) == 1u ? CAMBER_PAD_PX : CAMBER_NO_LIMIT_PX;
-        return edge;
-    }
     const float q = camber_turn_unpack(join);
-    const float tan_half = camber_turn_tan_half(q);
-    const camber_u32 inner = side * q > 0.0f;
-    const camber_u32 cut = kind != CAMBER_KIND_SPLIT;
+    const float cut = -end * side * camber_turn_tan_half(q);
+    const camber_u32 is_cut = kind == CAMBER_KIND_CUT || kind == CAMBER_KIND_TIGHT;
     if (method == CAMBER_STRIP)
-        edge.along = cut ? -end * side * tan_half : end;
-    else
-        edge.along = method == CAMBER_KITE && cut && inner ? -end * side * tan_half : 0.0f;
-    edge.limit_px = cut && inner ? half_shorter : CAMBER_NO_LIMIT_PX;
-    return edge;
+        return is_cut ? cut : end;
+    if (method == CAMBER_KITE && is_cut && side * q > 0.0f)
+        return cut;
+    return kind < CAMBER_KIND_CUT ? end : 0.0f;
+}
+
+/* The bound on that, px: on the inner side half the shorter segment; past a butt end the pad, however wide the line. */
+CAMBER_FN float camber_edge_limit(camber_u32 join, float half_shorter, float side) {
+    const camber_u32 kind = camber_join_kind(join);
+    const camber_u32 is_cut = kind == CAMBER_KIND_CUT || kind == CAMBER_KIND_TIGHT;
+    const camber_u32 is_butt = kind < CAMBER_KIND_CUT && camber_join_end(join) == 1u;
+    const float inner = is_cut && side * camber_turn_unpack(join) > 0.0f ? half_shorter : CAMBER_NO_LIMIT_PX;
+    return is_butt ? CAMBER_PAD_PX : inner;
+}
+
+/* Whether a strip breaks at a point, which then has two pairs of vertices: inside a polyline at any join but a plain
+ * cut; and a dot has two pairs as well. Shifts of masks by the kind, since a switch is not vectorised. */
+CAMBER_FN camber_u32 camber_strip_breaks(camber_u32 kind, camber_u32 info) {
+    const camber_u32 inner = info & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST) ? 0u : 1u;
+    const camber_u32 dot = 1u << CAMBER_KIND_DOT >> kind & 1u;
+    return dot | ((1u << CAMBER_KIND_TIGHT | 1u << CAMBER_KIND_SPLIT) >> kind & inner);
 }
 
 /* How many vertices and indices a point emits, vertices | indices << 16. Lists of a point, in order:
@@ -162,19 +177,21 @@ CAMBER_FN camber_edge camber_edge_at(camber_u32 join, float half_shorter, float 
 CAMBER_FN camber_u32 camber_join_counts(camber_u32 join, camber_u32 before, camber_u32 info, camber_u32 method) {
     const camber_u32 kind = camber_join_kind(join);
     const camber_u32 first = info & CAMBER_POINT_FIRST, last = info & CAMBER_POINT_LAST;
-    if (kind == CAMBER_KIND_GHOST || kind == CAMBER_KIND_UNDRAWN)
-        return 0;
+    const camber_u32 live = kind != CAMBER_KIND_GHOST ? 1u : 0u;
     if (method == CAMBER_STRIP) {
-        if (kind == CAMBER_KIND_DOT || (kind > CAMBER_KIND_CUT && !first && !last))
-            return 4u | 5u << 16;
-        return 2u | (last ? 3u : 2u) << 16;
+        const camber_u32 breaks = camber_strip_breaks(kind, info);
+        const camber_u32 restart = last && !breaks ? 1u : 0u;
+        return live * ((2u + 2u * breaks) | (2u + 3u * breaks + restart) << 16);
     }
+    if (!live)
+        return 0;
     if (kind == CAMBER_KIND_DOT)
         return 4u | 6u << 16;
     if (first)
         return kind == CAMBER_KIND_CAP ? 2u : 3u;
     const camber_u32 triangles = camber_join_triangles(join);
-    const camber_u32 centred = (kind != CAMBER_KIND_CAP ? 1u : 0u) + (camber_join_kind(before) != CAMBER_KIND_CAP ? 1u : 0u);
+    const camber_u32 centred =
+        (kind != CAMBER_KIND_CAP ? 1u : 0u) + (camber_join_kind(before) != CAMBER_KIND_CAP ? 1u : 0u);
     const camber_u32 join_vertices = triangles ? triangles - 1u : 0u;
     const camber_u32 vertices = kind == CAMBER_KIND_CAP ? 2u : 5u + join_vertices;
     return vertices | (3u * (2u + centred) + 3u * triangles) << 16;

@@ -9,6 +9,7 @@ typedef uint camber_u32;
 typedef int camber_i32;
 typedef ulong camber_u64;
 #define CAMBER_FN static inline
+#define CAMBER_GLOBAL global
 #define CAMBER_SQRT(x) sqrt(x)
 #define CAMBER_FABS(x) fabs(x)
 #define CAMBER_PAD_PX 0.75f
@@ -19,6 +20,7 @@ typedef uint32_t camber_u32;
 typedef int32_t camber_i32;
 typedef uint64_t camber_u64;
 #define CAMBER_FN static inline
+#define CAMBER_GLOBAL
 #define CAMBER_SQRT(x) sqrtf(x)
 #define CAMBER_FABS(x) fabsf(x)
 #endif
@@ -58,13 +60,12 @@ typedef struct camber_row {
 #define CAMBER_JOIN_TRIANGLES_SHIFT 22
 #define CAMBER_JOIN_TRIANGLES_MAX 64 /* so that a block's index count fits 16 bits */
 
-#define CAMBER_KIND_GHOST 0u
-#define CAMBER_KIND_DOT 1u   /* a polyline of one point */
-#define CAMBER_KIND_CAP 2u   /* an end of an open polyline */
-#define CAMBER_KIND_CUT 3u   /* a join cut along its bisector */
-#define CAMBER_KIND_TIGHT 4u /* cut on the outer side; the inner side has no room */
-#define CAMBER_KIND_SPLIT 5u /* too sharp to cut: both segments end here */
-#define CAMBER_KIND_UNDRAWN 6u /* a dot with butt caps: no area */
+#define CAMBER_KIND_GHOST 0u /* emits nothing: no point of a polyline, or a dot with butt caps */
+#define CAMBER_KIND_DOT 1u     /* a polyline of one point */
+#define CAMBER_KIND_CAP 2u     /* an end of an open polyline */
+#define CAMBER_KIND_CUT 3u     /* a join cut along its bisector */
+#define CAMBER_KIND_TIGHT 4u   /* cut on the outer side; the inner side has no room */
+#define CAMBER_KIND_SPLIT 5u   /* too sharp to cut: both segments end here */
 
 /* The methods, as camber_method, and the ends, as camber_end: numbers that the preprocessor can compare. */
 #define CAMBER_STRIP 0

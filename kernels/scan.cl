@@ -1,9 +1,10 @@
 /* scan: exclusive prefix sums of the counts within each block of CAMBER_BLOCK points, and each block's sum.
  * Reads joins[n + 1], info[n + 2]; writes offsets[n] and sums[n / CAMBER_BLOCK], both vertices | indices << 16.
  * The sums of blocks are few; the host adds them up in 64 bits and learns the sizes by it. */
-kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK, 1, 1))) void
-scan(global const camber_u32 *restrict joins, global const camber_u32 *restrict info,
-     global camber_u32 *restrict offsets, global camber_u32 *restrict sums) {
+kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK, 1, 1))) void scan(global const camber_u32 *restrict joins,
+                                                                           global const camber_u32 *restrict info,
+                                                                           global camber_u32 *restrict offsets,
+                                                                           global camber_u32 *restrict sums) {
     local camber_u32 total[2][CAMBER_BLOCK];
     const size_t i = get_global_id(0) + 1;
     const size_t lane = get_local_id(0);

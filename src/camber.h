@@ -116,7 +116,7 @@ typedef struct camber_polylines_stats {
     size_t rings;                /* polylines that close */
     size_t dots;                 /* polylines of one distinct point: drawn as a dot by round and square caps */
     size_t empty_polylines;      /* polylines without a point */
-    size_t repeated_points;      /* dropped: no farther than 1e-18 px from the point before */
+    size_t repeated_points;      /* dropped: no farther than 1e-9 px from the point before */
     size_t invalid_points;       /* dropped: NaN, infinite, or beyond 1e9 px; the polyline is split there */
 } camber_polylines_stats;
 
@@ -124,8 +124,8 @@ typedef struct camber_polylines camber_polylines;
 
 /* Cleans and copies polylines into the form that the kernels read. A polyline that is split at invalid
  * points keeps its index and its row.
- * Returns CAMBER_ERROR_INPUT (offsets not ascending, a row of 2^24 or more), CAMBER_ERROR_MEMORY,
- * CAMBER_ERROR_LIMIT (more than 2^32 - 1024 points). Cost: one pass, about 2 ns a point. */
+ * Returns CAMBER_ERROR_INPUT (offsets not ascending from 0 to point_count, a row of 2^24 or more),
+ * CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT (more than 2.5 * 10^9 points). Cost: one pass, about 2 ns a point. */
 CAMBER_API camber_status camber_polylines_create(camber_context *context, const camber_polylines_desc *desc,
                                                  camber_polylines **polylines);
 CAMBER_API void camber_polylines_destroy(camber_polylines *polylines);

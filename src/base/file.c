@@ -94,7 +94,8 @@ bool camber_cache_load(camber_context *context, const char *name, char **bytes, 
     if (!cache_folder(context, folder))
         return false;
     snprintf(path, sizeof path, "%s/%s", folder, name);
-    if (access(path, R_OK) != 0)
+    struct stat about;
+    if (stat(path, &about) != 0 || !S_ISREG(about.st_mode) || access(path, R_OK) != 0)
         return false;
     return camber_read_file(context, path, bytes, size_bytes) == CAMBER_OK;
 }

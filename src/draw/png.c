@@ -63,18 +63,34 @@ static bool write_head(camber_png *writer, const camber_png_desc *desc) {
     return true;
 }
 
-camber_status camber_png_create(camber_context *context, const camber_png_desc *desc, camber_sink sink, camber_png **png) {
+static camber_status check_desc(camber_context *context, const camber_png_desc *desc) {
     if (desc->width < 1 || desc->width > 65535 || desc->height < 1 || desc->height > 65535)
         return camber_fail(context, CAMBER_ERROR_ARGUMENT, "a picture of %u x %u px; each side must be 1 to 65535", desc->width,
                            desc->height);
+    if (desc->compression < 0 || desc->compression > 9)
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "a PNG compression of %d; it must be 1 to 9, or 0 for 3",
+                           desc->compression);
+    for (size_t i = 0; i < desc->text_count; i++) {
+        const size_t length = strlen(desc->texts[i].key);
+        if (length < 1 || length > 79)
+            return camber_fail(context, CAMBER_ERROR_ARGUMENT, "a PNG text's key of %zu characters; it must have 1 to 79",
+                               length);
+    }
+    return CAMBER_OK;
+}
+
+camber_status camber_png_create(camber_context *context, const camber_png_desc *desc, camber_sink sink, camber_png **png) {
+    const camber_status status = check_desc(context, desc);
+    if (status != CAMBER_OK)
+        return status;
     camber_png *made = camber_alloc_zero(context, 1, sizeof *made);
     if (!made)
         return CAMBER_ERROR_MEMORY;
     *made = (camber_png){.context = context, .sink = sink, .width = desc->width, .rows_left = desc->height, .opaque = desc->opaque};
     made->row = camber_alloc(context, desc->width, 4);
-    made->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, made, on_error, on_warning);
+    made->png = !made->row ? NULL : png_create_write_struct(PNG_LIBPNG_VER_STRING, made, on_error, on_warning);
     made->info = made->png ? png_create_info_struct(made->png) : NULL;
-    if (!made->row || !made->info) {
+    if (!made->info) {
         camber_png_destroy(made);
         return CAMBER_ERROR_MEMORY;
     }
@@ -110,8 +126,11 @@ static bool write_row(camber_png *writer) {
 }
 
 camber_status camber_png_write_rows(camber_png *png, const uint8_t *rgba, uint32_t row_count) {
-    if (png->failed || row_count > png->rows_left)
-        return CAMBER_ERROR_IO;
+    if (png->failed)
+        return CAMBER_ERROR_IO; /* told when it failed */
+    if (row_count > png->rows_left)
+        return camber_fail(png->context, CAMBER_ERROR_IO, "PNG: %u rows, and it takes %u more; write those of its height",
+                           row_count, png->rows_left);
     for (uint32_t i = 0; i < row_count; i++) {
         const uint8_t *from = rgba + 4 * (size_t)png->width * i;
         if (png->opaque)
@@ -133,8 +152,11 @@ static bool write_end(camber_png *writer) {
 }
 
 camber_status camber_png_finish(camber_png *png) {
-    if (png->failed || png->rows_left > 0)
-        return CAMBER_ERROR_IO;
+    if (png->failed)
+        return CAMBER_ERROR_IO; /* told when it failed */
+    if (png->rows_left > 0)
+        return camber_fail(png->context, CAMBER_ERROR_IO, "PNG: %u rows are missing; write them before the end",
+                           png->rows_left);
     return write_end(png) ? CAMBER_OK : CAMBER_ERROR_IO;
 }
 

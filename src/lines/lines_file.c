@@ -45,8 +45,9 @@ camber_status camber_lines_parse(camber_context *context, const void *bytes, siz
         return status;
     camber_lines made = {.polyline_count = get_u32(file + 4), .point_count = get_u32(file + 8)};
     made.offsets = camber_alloc(context, made.polyline_count + 1, sizeof *made.offsets);
-    made.points = camber_alloc(context, made.point_count, 2 * sizeof *made.points);
-    if (!made.offsets || !made.points) {
+    if (made.offsets)
+        made.points = camber_alloc(context, made.point_count, 2 * sizeof *made.points);
+    if (!made.points) {
         camber_lines_free(context, &made);
         return CAMBER_ERROR_MEMORY;
     }

@@ -12,13 +12,18 @@ static bool is_valid(const float *point) {
 
 static bool is_repeated(const float *a, const float *b) {
     const float dx = b[0] - a[0], dy = b[1] - a[1];
-    return dx * dx + dy * dy <= 1e-36f;
+    return dx * dx + dy * dy <= 1e-18f;
 }
 
 static camber_status check_desc(camber_context *context, const camber_polylines_desc *desc) {
     assert(desc->polyline_count == 0 || desc->offsets);
     assert(desc->point_count == 0 || desc->points);
     size_t before = 0;
+    const size_t covered = desc->polyline_count ? desc->offsets[desc->polyline_count] : 0;
+    if (covered != desc->point_count || (desc->polyline_count && desc->offsets[0] != 0))
+        return camber_fail(context, CAMBER_ERROR_INPUT,
+                           "polylines: offsets run from %u to %zu, and there are %zu points; they must run from 0 to that",
+                           desc->polyline_count ? desc->offsets[0] : 0u, covered, desc->point_count);
     for (size_t i = 0; desc->polyline_count && i <= desc->polyline_count; i++) {
         if (desc->offsets[i] < before || desc->offsets[i] > desc->point_count)
             return camber_fail(context, CAMBER_ERROR_INPUT,
@@ -128,12 +133,10 @@ camber_status camber_polylines_create(camber_context *context, const camber_poly
         rings += desc->offsets[i + 1] - desc->offsets[i] > 2;
     const size_t slots = desc->point_count + 2 * (desc->keep_open ? 0 : rings) + 2 + CAMBER_BLOCK;
     status = CAMBER_ERROR_MEMORY;
-    p->x = camber_alloc(context, slots, sizeof *p->x);
-    p->y = camber_alloc(context, slots, sizeof *p->y);
-    p->info = camber_alloc(context, slots, sizeof *p->info);
-    p->first_slots = camber_alloc(context, desc->polyline_count + 1, sizeof *p->first_slots);
-    p->polyline_rows = camber_alloc(context, desc->polyline_count, sizeof *p->polyline_rows);
-    if (!p->x || !p->y || !p->info || !p->first_slots || !p->polyline_rows)
+    if (!(p->x = camber_alloc(context, slots, sizeof *p->x)) || !(p->y = camber_alloc(context, slots, sizeof *p->y)) ||
+        !(p->info = camber_alloc(context, slots, sizeof *p->info)) ||
+        !(p->first_slots = camber_alloc(context, desc->polyline_count + 1, sizeof *p->first_slots)) ||
+        !(p->polyline_rows = camber_alloc(context, desc->polyline_count, sizeof *p->polyline_rows)))
         goto done;
     p->x[0] = p->y[0] = 0;
     p->info[0] = 0;

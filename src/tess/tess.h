@@ -105,6 +105,11 @@ camber_status camber_mesh_first_index(camber_mesh *mesh, size_t polyline, uint64
 camber_status camber_rows_create(camber_context *context, const camber_polylines *polylines,
                                  const camber_tessellation_desc *desc, camber_row **rows);
 
+/* The host's part of the scan: adds up the blocks' sums, vertices | indices << 16, in 64 bits. bases takes
+ * 2 * (block_count + 1): each block's first vertex and first index, and the totals behind the last. CAMBER_ERROR_LIMIT
+ * where 32-bit indices do not reach all vertices. */
+camber_status camber_scan_blocks(camber_context *context, const uint32_t *sums, size_t block_count, uint64_t *bases);
+
 /* Adds a point's join word to the counts of a mesh's info. */
 void camber_mesh_info_count(camber_mesh_info *info, uint32_t join, uint32_t point);
 

@@ -208,7 +208,22 @@ static double event_ms(cl_event event) {
     return (double)(end - begin) * 1e-6;
 }
 
-/* The host's part of the scan: the sums of the blocks, added up in 64 bits. */
+camber_status camber_scan_blocks(camber_context *context, const uint32_t *sums, size_t block_count, uint64_t *bases) {
+    uint64_t vertices = 0, indices = 0;
+    for (size_t i = 0; i <= block_count; i++) {
+        bases[2 * i] = vertices;
+        bases[2 * i + 1] = indices;
+        if (i < block_count) {
+            vertices += sums[i] & 0xffffu;
+            indices += sums[i] >> 16;
+        }
+    }
+    if (vertices >= UINT32_MAX)
+        return camber_fail(context, CAMBER_ERROR_LIMIT,
+                           "%llu vertices are more than 32-bit indices reach; tessellate in parts", (unsigned long long)vertices);
+    return CAMBER_OK;
+}
+
 static camber_status scan_blocks(camber_mesh *mesh) {
     cl_command_queue queue = mesh->device->queue;
     const size_t blocks = mesh->slot_count / CAMBER_BLOCK;
@@ -216,21 +231,12 @@ static camber_status scan_blocks(camber_mesh *mesh) {
     const cl_uint *sums = clEnqueueMapBuffer(queue, mesh->sums, CL_TRUE, CL_MAP_READ, 0, 4 * blocks, 0, NULL, NULL, &code);
     if (code != CL_SUCCESS)
         return camber_fail_cl(mesh->device->context, "clEnqueueMapBuffer", code);
-    uint64_t vertices = 0, indices = 0;
-    for (size_t i = 0; i <= blocks; i++) {
-        mesh->host_bases[2 * i] = vertices;
-        mesh->host_bases[2 * i + 1] = indices;
-        if (i < blocks) {
-            vertices += sums[i] & 0xffffu;
-            indices += sums[i] >> 16;
-        }
-    }
+    const camber_status status = camber_scan_blocks(mesh->device->context, sums, blocks, mesh->host_bases);
     clEnqueueUnmapMemObject(queue, mesh->sums, (void *)(uintptr_t)sums, 0, NULL, NULL);
-    if (vertices >= UINT32_MAX)
-        return camber_fail(mesh->device->context, CAMBER_ERROR_LIMIT,
-                           "%llu vertices are more than 32-bit indices reach; tessellate in parts", (unsigned long long)vertices);
-    mesh->mesh_info.vertex_count = (size_t)vertices;
-    mesh->mesh_info.index_count = (size_t)indices;
+    if (status != CAMBER_OK)
+        return status;
+    mesh->mesh_info.vertex_count = (size_t)mesh->host_bases[2 * blocks];
+    mesh->mesh_info.index_count = (size_t)mesh->host_bases[2 * blocks + 1];
     return write_buffer(mesh, mesh->bases, mesh->host_bases, 16 * blocks);
 }
 
@@ -277,9 +283,9 @@ static camber_status reserve_output(camber_mesh *mesh) {
 
 static camber_status run_stages(camber_mesh *mesh, camber_program *program) {
     cl_event events[3] = {NULL, NULL, NULL};
-    const cl_mem classify[] = {mesh->x, mesh->y, mesh->info, mesh->rows, mesh->joins};
+    const cl_mem classify[] = {mesh->x, mesh->y, mesh->x, mesh->y, mesh->x, mesh->y, mesh->info, mesh->rows, mesh->joins};
     const cl_mem scan[] = {mesh->joins, mesh->info, mesh->offsets, mesh->sums};
-    camber_status status = run_stage(mesh, program->classify, "classify", classify, 5, events);
+    camber_status status = run_stage(mesh, program->classify, "classify", classify, 9, events);
     if (status == CAMBER_OK)
         status = run_stage(mesh, program->scan, "scan", scan, 4, events + 1);
     if (status == CAMBER_OK)
@@ -290,10 +296,10 @@ static camber_status run_stages(camber_mesh *mesh, camber_program *program) {
     status = reserve_output(mesh);
     if (status != CAMBER_OK)
         goto done;
-    const cl_mem emit[] = {mesh->x,     mesh->y,       mesh->info,  mesh->rows,
+    const cl_mem emit[] = {mesh->x, mesh->y, mesh->x, mesh->y, mesh->info,  mesh->rows,
                            mesh->joins, mesh->offsets, mesh->bases, mesh->buffers[CAMBER_BUFFER_VERTICES].mem,
                            mesh->buffers[CAMBER_BUFFER_INDICES].mem};
-    status = run_stage(mesh, program->emit, "emit", emit, 9, events + 2);
+    status = run_stage(mesh, program->emit, "emit", emit, 11, events + 2);
     const cl_int code = clFinish(mesh->device->queue);
     if (status == CAMBER_OK && code != CL_SUCCESS)
         status = camber_fail_cl(mesh->device->context, "clFinish", code);

@@ -26,8 +26,9 @@ typedef struct segment {
 
 static uint32_t push_vertex(twin *t, camber_vertex vertex) {
     camber_mesh_info *info = &t->data->info;
-    if (info->vertex_count >= UINT32_MAX - 1 || !camber_grow(t->polylines->context, &t->data->vertices, &t->vertex_capacity,
-                                                              info->vertex_count + 1, sizeof vertex)) {
+    if (t->failed || info->vertex_count >= UINT32_MAX - 1 ||
+        !camber_grow(t->polylines->context, &t->data->vertices, &t->vertex_capacity, info->vertex_count + 1,
+                     sizeof vertex)) {
         t->failed = true;
         return 0;
     }
@@ -37,7 +38,8 @@ static uint32_t push_vertex(twin *t, camber_vertex vertex) {
 
 static void push_index(twin *t, uint32_t index) {
     camber_mesh_info *info = &t->data->info;
-    if (!camber_grow(t->polylines->context, &t->data->indices, &t->index_capacity, info->index_count + 1, sizeof index)) {
+    if (t->failed || !camber_grow(t->polylines->context, &t->data->indices, &t->index_capacity, info->index_count + 1,
+                                  sizeof index)) {
         t->failed = true;
         return;
     }
@@ -73,10 +75,9 @@ static uint32_t push_edges(twin *t, size_t slot, segment s, bool at_end, camber_
     uint32_t left = 0;
     for (int right = 0; right < 2; right++) {
         const float side = right ? -1.0f : 1.0f;
-        const camber_edge edge = camber_edge_at(join, half_shorter, at_end ? 1.0f : -1.0f, side, t->method);
         camber_vertex vertex = make_vertex(t, slot, s, at_end);
-        vertex.along = edge.along;
-        vertex.limit_px = edge.limit_px;
+        vertex.along = camber_edge_along(join, at_end ? 1.0f : -1.0f, side, t->method);
+        vertex.limit_px = camber_edge_limit(join, half_shorter, side);
         vertex.across = pack_across(side);
         const uint32_t index = push_vertex(t, vertex);
         left = right ? left : index;
@@ -95,19 +96,19 @@ static uint32_t push_point(twin *t, size_t slot, segment s, bool at_end, float a
 static camber_u32 join_word(const twin *t, size_t slot, float *half_shorter) {
     const camber_polylines *p = t->polylines;
     const camber_u32 info = p->info[slot];
-    const camber_row row = t->rows[info >> CAMBER_POINT_ROW_SHIFT];
+    const camber_row *row = t->rows + (info >> CAMBER_POINT_ROW_SHIFT);
     const camber_turn turn = camber_turn_between(p->x[slot] - p->x[slot - 1], p->y[slot] - p->y[slot - 1],
                                                  p->x[slot + 1] - p->x[slot], p->y[slot + 1] - p->y[slot]);
     *half_shorter = turn.half_shorter;
     if (!(info & CAMBER_POINT_REAL))
         return 0;
     if (info & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST) && !(info & CAMBER_POINT_RING))
-        return camber_cap_word(row.cap, info & CAMBER_POINT_FIRST && info & CAMBER_POINT_LAST);
+        return camber_cap_word(row->cap, info & CAMBER_POINT_FIRST && info & CAMBER_POINT_LAST);
     return camber_join_word(turn, row, t->method);
 }
 
 static void walk_dot(twin *t, size_t slot, camber_u32 join) {
-    if (camber_join_kind(join) == CAMBER_KIND_UNDRAWN)
+    if (camber_join_kind(join) == CAMBER_KIND_GHOST)
         return;
     const camber_u32 end = join & 7u << CAMBER_JOIN_END_SHIFT;
     const segment s = {0.0f, 0.0f, end, end, t->polylines->info[slot] >> CAMBER_POINT_ROW_SHIFT};
@@ -253,7 +254,7 @@ static void walk(twin *t) {
         const camber_u32 row = p->info[slot] >> CAMBER_POINT_ROW_SHIFT;
         const segment in = {p->x[slot] - p->x[slot - 1], p->y[slot] - p->y[slot - 1], before, join, row};
         const segment out = {p->x[slot + 1] - p->x[slot], p->y[slot + 1] - p->y[slot], join, after, row};
-        if (camber_join_kind(join) == CAMBER_KIND_DOT || camber_join_kind(join) == CAMBER_KIND_UNDRAWN)
+        if (camber_join_kind(join) <= CAMBER_KIND_DOT)
             walk_dot(t, slot, join);
         else if (t->method == CAMBER_STRIP)
             walk_strip_point(t, slot, in, out, join, half_shorter);

@@ -65,7 +65,7 @@ CAMBER_FN float camber_turn_tan_half(float q) {
 }
 
 CAMBER_FN camber_u32 camber_join_kind(camber_u32 join) {
-    return join >> CAMBER_JOIN_KIND_SHIFT & 7u;
+    return join >> CAMBER_JOIN_KIND_SHIFT;
 }
 
 CAMBER_FN camber_u32 camber_join_end(camber_u32 join) {
@@ -163,11 +163,11 @@ CAMBER_FN float camber_edge_limit(camber_u32 join, float half_shorter, float sid
 }
 
 /* Whether a strip breaks at a point, which then has two pairs of vertices: inside a polyline at any join but a plain
- * cut; and a dot has two pairs as well. Shifts of masks by the kind, since a switch is not vectorised. */
+ * cut; and a dot has two pairs as well. */
 CAMBER_FN camber_u32 camber_strip_breaks(camber_u32 kind, camber_u32 info) {
     const camber_u32 inner = info & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST) ? 0u : 1u;
-    const camber_u32 dot = 1u << CAMBER_KIND_DOT >> kind & 1u;
-    return dot | ((1u << CAMBER_KIND_TIGHT | 1u << CAMBER_KIND_SPLIT) >> kind & inner);
+    const camber_u32 uncut = kind == CAMBER_KIND_TIGHT || kind == CAMBER_KIND_SPLIT ? inner : 0u;
+    return kind == CAMBER_KIND_DOT ? 1u : uncut;
 }
 
 /* How many vertices and indices a point emits, vertices | indices << 16. Lists of a point, in order:

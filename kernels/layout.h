@@ -54,18 +54,19 @@ typedef struct camber_row {
 #define CAMBER_VERTEX_WORDS 9
 
 /* A point's join word, what classify writes and scan and emit read:
- *   bits 0-15 tan(turn / 4) * 32767, two's complement; 16-18 kind; 19-21 camber_end; 22-28 join triangles. */
-#define CAMBER_JOIN_KIND_SHIFT 16
-#define CAMBER_JOIN_END_SHIFT 19
-#define CAMBER_JOIN_TRIANGLES_SHIFT 22
+ *   bits 0-15 tan(turn / 4) * 32767, two's complement; 16-18 camber_end; 19-25 join triangles; 28-31 kind.
+ * The kind comes last, so that no mask narrows it to three bits: oclgrind 21.10 gets such integers wrong. */
+#define CAMBER_JOIN_END_SHIFT 16
+#define CAMBER_JOIN_TRIANGLES_SHIFT 19
+#define CAMBER_JOIN_KIND_SHIFT 28
 #define CAMBER_JOIN_TRIANGLES_MAX 64 /* so that a block's index count fits 16 bits */
 
 #define CAMBER_KIND_GHOST 0u /* emits nothing: no point of a polyline, or a dot with butt caps */
-#define CAMBER_KIND_DOT 1u     /* a polyline of one point */
-#define CAMBER_KIND_CAP 2u     /* an end of an open polyline */
-#define CAMBER_KIND_CUT 3u     /* a join cut along its bisector */
-#define CAMBER_KIND_TIGHT 4u   /* cut on the outer side; the inner side has no room */
-#define CAMBER_KIND_SPLIT 5u   /* too sharp to cut: both segments end here */
+#define CAMBER_KIND_DOT 1u   /* a polyline of one point */
+#define CAMBER_KIND_CAP 2u   /* an end of an open polyline */
+#define CAMBER_KIND_CUT 3u   /* a join cut along its bisector */
+#define CAMBER_KIND_TIGHT 4u /* cut on the outer side; the inner side has no room */
+#define CAMBER_KIND_SPLIT 5u /* too sharp to cut: both segments end here */
 
 /* The methods, as camber_method, and the ends, as camber_end: numbers that the preprocessor can compare. */
 #define CAMBER_STRIP 0

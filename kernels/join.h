@@ -43,14 +43,12 @@ CAMBER_FN camber_turn camber_turn_between(float dx, float dy, float ex, float ey
     return turn;
 }
 
-/* tan(t/4) as 16 bits. */
+/* tan(t/4) as 16 bits. Never 0, which marks a cap: a straight join turns by 0.007 degrees. */
 CAMBER_FN camber_u32 camber_turn_pack(camber_turn turn) {
     const float q = turn.s / (1.0f + turn.c) * 32767.0f;
     const float rounded = q + (q < 0.0f ? -0.5f : 0.5f);
-    return (camber_u32)(camber_i32)(rounded > 32767.0f    ? 32767.0f
-                                    : rounded < -32767.0f ? -32767.0f
-                                                          : rounded) &
-           0xffffu;
+    const camber_i32 turns = (camber_i32)(rounded > 32767.0f ? 32767.0f : rounded < -32767.0f ? -32767.0f : rounded);
+    return turns == 0 ? 1u : (camber_u32)turns & 0xffffu;
 }
 
 CAMBER_FN float camber_turn_unpack(camber_u32 join) {

@@ -109,15 +109,15 @@ typedef struct camber_polylines_desc {
 
 /* What cleaning found. Nothing is dropped without being counted here. */
 typedef struct camber_polylines_stats {
-    size_t polylines;            /* as given */
-    size_t points;               /* as given */
-    size_t kept_points;          /* that are tessellated */
-    size_t kept_segments;        /* that are tessellated */
-    size_t rings;                /* polylines that close */
-    size_t dots;                 /* polylines of one distinct point: drawn as a dot by round and square caps */
-    size_t empty_polylines;      /* polylines without a point */
-    size_t repeated_points;      /* dropped: no farther than 1e-9 px from the point before */
-    size_t invalid_points;       /* dropped: NaN, infinite, or beyond 1e9 px; the polyline is split there */
+    size_t polylines;       /* as given */
+    size_t points;          /* as given */
+    size_t kept_points;     /* that are tessellated */
+    size_t kept_segments;   /* that are tessellated */
+    size_t rings;           /* polylines that close */
+    size_t dots;            /* polylines of one distinct point: drawn as a dot by round and square caps */
+    size_t empty_polylines; /* polylines without a point */
+    size_t repeated_points; /* dropped: no farther than 1e-9 px from the point before */
+    size_t invalid_points;  /* dropped: NaN, infinite, or beyond 1e9 px; the polyline is split there */
 } camber_polylines_stats;
 
 typedef struct camber_polylines camber_polylines;
@@ -145,6 +145,11 @@ typedef struct camber_lines {
  * CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_lines_parse(camber_context *context, const void *bytes, size_t size_bytes,
                                             const char *name, camber_lines *lines);
+/* Drops points where the line that is left stays within tolerance_px of them (Douglas and Peucker). Ends stay, and
+ * rings keep their seam. simplified is freed with camber_lines_free. Returns CAMBER_ERROR_ARGUMENT (a tolerance
+ * that is negative or not a number), CAMBER_ERROR_MEMORY. Cost: n log n. */
+CAMBER_API camber_status camber_lines_simplify(camber_context *context, const camber_lines *lines, double tolerance_px,
+                                               camber_lines *simplified);
 CAMBER_API void camber_lines_free(camber_context *context, camber_lines *lines);
 
 /* Where output goes: returns false when the bytes could not be taken (the caller knows why). */
@@ -300,24 +305,24 @@ typedef struct camber_tessellation_desc {
  * with g = half the width that is drawn + CAMBER_PAD_PX, and P = B where at_end, else A. All vertices but
  * those that no triangle ends with (is provoked by) carry the segment that the triangle draws. */
 typedef struct camber_vertex {
-    float x, y;      /* P, px */
-    float dx, dy;    /* B - A, px; 0, 0 for a dot, whose u is 1, 0 */
-    float along;     /* in units of g */
-    float limit_px;  /* bound on the offset along the segment; 3e38: none */
-    int16_t across;  /* in units of g / 16384 */
-    uint16_t flags;  /* bits 0-2: camber_end at A; 3-5: camber_end at B; 6: at_end */
-    int16_t turn_a;  /* tan(turn angle / 4) * 32767 at A, positive from x to y (clockwise as drawn) */
-    int16_t turn_b;  /* the same at B */
-    uint32_t row;    /* of the polyline */
+    float x, y;     /* P, px */
+    float dx, dy;   /* B - A, px; 0, 0 for a dot, whose u is 1, 0 */
+    float along;    /* in units of g */
+    float limit_px; /* bound on the offset along the segment; 3e38: none */
+    int16_t across; /* in units of g / 16384 */
+    uint16_t flags; /* bits 0-2: camber_end at A; 3-5: camber_end at B; 6: at_end */
+    int16_t turn_a; /* tan(turn angle / 4) * 32767 at A, positive from x to y (clockwise as drawn); 0: a cap */
+    int16_t turn_b; /* the same at B */
+    uint32_t row;   /* of the polyline */
 } camber_vertex;
 
 /* What the fragment shader does past an end of a segment. */
 typedef enum camber_end {
-    CAMBER_END_ROUND = 0,   /* distance to the end point: the paper's arc */
-    CAMBER_END_BUTT,        /* nothing past the end */
-    CAMBER_END_SQUARE,      /* nothing past half a width beyond the end */
-    CAMBER_END_MITER,       /* the edges run on; the geometry is cut at the bisector */
-    CAMBER_END_BEVEL,       /* cut by the line through the two outer corners */
+    CAMBER_END_ROUND = 0, /* distance to the end point: the paper's arc */
+    CAMBER_END_BUTT,      /* nothing past the end */
+    CAMBER_END_SQUARE,    /* nothing past half a width beyond the end */
+    CAMBER_END_MITER,     /* the edges run on; the geometry is cut at the bisector */
+    CAMBER_END_BEVEL,     /* cut by the line through the two outer corners */
     /* The same, on this segment's side of the bisector only: where the geometry is not cut along it, at strip's tight
      * joins and turns past 127 degrees. */
     CAMBER_END_SPLIT_ROUND,

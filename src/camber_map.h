@@ -41,15 +41,15 @@ typedef struct camber_source_desc {
 } camber_source_desc;
 
 typedef struct camber_features_stats {
-    size_t features;          /* read, lines kept */
-    size_t polylines;         /* kept, after parts were split and tile pieces joined */
-    size_t points;            /* kept */
-    size_t skipped_features;  /* points, and polygons where no layer of the style wants outlines */
-    size_t damaged_features;  /* that came with a failure, or whose geometry does not parse */
-    size_t invalid_points;    /* dropped: NaN or infinite */
-    size_t clamped_points;    /* moved to latitude 85.051129 */
+    size_t features;         /* read, lines kept */
+    size_t polylines;        /* kept, after parts were split and tile pieces joined */
+    size_t points;           /* kept */
+    size_t skipped_features; /* points, and polygons where no layer of the style wants outlines */
+    size_t damaged_features; /* that came with a failure, or whose geometry does not parse */
+    size_t invalid_points;   /* dropped: NaN or infinite */
+    size_t clamped_points;   /* moved to latitude 85.051129 */
     size_t antimeridian_splits;
-    size_t joined_pieces;     /* vector tiles: pieces of one feature joined at a tile border */
+    size_t joined_pieces; /* vector tiles: pieces of one feature joined at a tile border */
 } camber_features_stats;
 
 typedef struct camber_features camber_features;

@@ -1,5 +1,5 @@
 # Writes a C file that holds text files: cmake -DOUT=x.c -DNAME=symbol -DFILES=a;b -P embed.cmake
-# Local #include lines are dropped: the files come in the order that they need.
+# -DTEXT=file writes them as they are, too, for the lint. Local #include lines are dropped: the files come in the order that they need.
 string(REPLACE "|" ";" FILES "${FILES}")
 set(text "")
 foreach(file IN LISTS FILES)
@@ -15,5 +15,7 @@ string(HEX "${text}" hex)
 string(LENGTH "${text}" length)
 string(REGEX REPLACE "(................................................)" "\\1\n" hex "${hex}")
 string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," hex "${hex}")
-file(WRITE "${OUT}.new" "#include \"base/embedded.h\"\nconst char ${NAME}[] = {\n${hex}0};\nconst unsigned long ${NAME}_size = sizeof ${NAME} - 1;\n")
-file(COPY_FILE "${OUT}.new" "${OUT}" ONLY_IF_DIFFERENT)
+if(TEXT)
+  file(WRITE "${TEXT}" "${text}")
+endif()
+file(WRITE "${OUT}" "#include \"base/embedded.h\"\nconst char ${NAME}[] = {\n${hex}0};\nconst unsigned long ${NAME}_size = sizeof ${NAME} - 1;\n")

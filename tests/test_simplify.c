@@ -1,4 +1,4 @@
-#include "map/simplify.h"
+#include "lines/simplify.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -70,8 +70,8 @@ void *camber_alloc(camber_context *context, size_t count, size_t size_bytes) {
     if (size_bytes <= SIZE_MAX / elements)
         block = context->desc.reallocate(context->desc.allocator_user, NULL, elements * size_bytes);
     if (!block)
-        camber_log(context, CAMBER_LOG_ERROR, "out of memory: %zu elements of %zu bytes; give it less data or more memory",
-                   count, size_bytes);
+        camber_log(context, CAMBER_LOG_ERROR,
+                   "out of memory: %zu elements of %zu bytes; give it less data or more memory", count, size_bytes);
     return block;
 }
 
@@ -97,8 +97,8 @@ bool camber_grow(camber_context *context, void *items, size_t *capacity, size_t 
     else
         block = NULL;
     if (!block) {
-        camber_log(context, CAMBER_LOG_ERROR, "out of memory: %zu elements of %zu bytes; give it less data or more memory",
-                   wanted, size_bytes);
+        camber_log(context, CAMBER_LOG_ERROR,
+                   "out of memory: %zu elements of %zu bytes; give it less data or more memory", wanted, size_bytes);
         return false;
     }
     memcpy(items, &block, sizeof block);

@@ -10,10 +10,12 @@
 static camber_status fail_errno(camber_context *context, const char *path) {
     const int cause = errno;
     const camber_status status = cause == ENOENT || cause == ENOTDIR ? CAMBER_ERROR_NOT_FOUND : CAMBER_ERROR_IO;
-    return camber_fail(context, status, "%s: cannot be read: %s; check the path and its permissions", path, strerror(cause));
+    return camber_fail(context, status, "%s: cannot be read: %s; check the path and its permissions", path,
+                       strerror(cause));
 }
 
-static camber_status read_stream(camber_context *context, FILE *file, const char *path, char **bytes, size_t *size_bytes) {
+static camber_status read_stream(camber_context *context, FILE *file, const char *path, char **bytes,
+                                 size_t *size_bytes) {
     char *block = NULL;
     size_t capacity = 0, size = 0;
     camber_status status = CAMBER_ERROR_MEMORY;

@@ -71,14 +71,25 @@ static int open_polylines(camber_input *input) {
 }
 
 static camber_status project_polylines(camber_input *input) {
+    camber_context *context = input->session->context;
+    const double simplify_px = input->session->options->simplify_px;
     camber_polylines_destroy(input->polylines);
     input->polylines = NULL;
-    const camber_polylines_desc desc = {.points = input->lines.points,
-                                        .point_count = input->lines.point_count,
-                                        .offsets = input->lines.offsets,
-                                        .polyline_count = input->lines.polyline_count,
+    camber_lines simplified = {0};
+    if (simplify_px > 0) {
+        const camber_status status = camber_lines_simplify(context, &input->lines, simplify_px, &simplified);
+        if (status != CAMBER_OK)
+            return status;
+    }
+    const camber_lines *lines = simplify_px > 0 ? &simplified : &input->lines;
+    const camber_polylines_desc desc = {.points = lines->points,
+                                        .point_count = lines->point_count,
+                                        .offsets = lines->offsets,
+                                        .polyline_count = lines->polyline_count,
                                         .keep_open = true};
-    return camber_polylines_create(input->session->context, &desc, &input->polylines);
+    const camber_status status = camber_polylines_create(context, &desc, &input->polylines);
+    camber_lines_free(context, &simplified);
+    return status;
 }
 
 static camber_frame polylines_frame(camber_input *input, camber_mesh *mesh) {

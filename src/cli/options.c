@@ -199,7 +199,7 @@ static bool parse_count(const char **text, uint32_t *value) {
 static int parse_choice(const parser *p, const option_spec *spec, const char *text, int *value) {
     const size_t size = strlen(text);
     int place = 0;
-    for (const char *word = spec->argument; *word; place++) {
+    for (const char *word = spec->argument ? spec->argument : ""; *word; place++) {
         const size_t length = strcspn(word, "|");
         if (length == size && strncmp(word, text, size) == 0) {
             *value = place;
@@ -418,8 +418,6 @@ static int check_inputs(const parser *p) {
     if (options->polylines && (options->style || options->theme >= 0 || options->layer || options->where ||
                                options->has_bbox || options->has_center || options->view.bearing_deg != 0.0))
         return usage(p, "--polylines: is in pixels already and has no style, layer or view; leave those out");
-    if (options->polylines && options->simplify_px > 0)
-        return usage(p, "--simplify-px with --polylines: this version simplifies maps only; leave it out");
     if (options->width_px > 0 && !options->polylines)
         return usage(p, "--width-px: is for --polylines; a map's widths are its style's");
     if (options->style && options->theme >= 0)

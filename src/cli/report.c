@@ -60,18 +60,18 @@ static void name_input(const camber_report *report, const char *message, char *t
         snprintf(text, size, "%s", message);
 }
 
-void camber_report_log(void *user, camber_log_level level, const char *original) {
+void camber_report_log(void *user, camber_log_level level, const char *message) {
     camber_report *report = user;
-    char message[4096];
-    name_input(report, original, message, sizeof message);
+    char text[4096];
+    name_input(report, message, text, sizeof text);
     if (level == CAMBER_LOG_ERROR) {
         if (report->sealed)
             return;
-        snprintf(report->error, sizeof report->error, "%s", message);
+        snprintf(report->error, sizeof report->error, "%s", text);
     } else if (level == CAMBER_LOG_WARNING && !report->quiet) {
-        print_line(report, "camber: warning: ", message);
+        print_line(report, "camber: warning: ", text);
     } else if (level == CAMBER_LOG_INFO && report->verbose) {
-        print_line(report, "camber: info: ", message);
+        print_line(report, "camber: info: ", text);
     }
 }
 

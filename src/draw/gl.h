@@ -1,10 +1,12 @@
-/* The GL that camber calls, loaded at run time: EGL's and OSMesa's libraries both export gl* symbols, so none is linked. */
+/* The GL that camber calls, loaded at run time: EGL's and OSMesa's libraries both export gl* symbols, so none is
+ * linked. */
 #ifndef CAMBER_GL_H
 #define CAMBER_GL_H
 
 #include "base/base.h"
 
 #include <GLES3/gl3.h>
+/* Needs it first. */
 #include <GLES2/gl2ext.h>
 
 #define CAMBER_GL_FUNCTIONS(X)                                                                                         \

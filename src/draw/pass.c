@@ -39,7 +39,8 @@ static camber_status reserve_rows(camber_renderer *renderer, size_t row_count) {
     const size_t texels = TEXELS_A_ROW * (row_count ? row_count : 1);
     const size_t height = (texels + ROW_TEXTURE_WIDTH - 1) / ROW_TEXTURE_WIDTH;
     if (height > renderer->share.surface->info.largest_target_px)
-        return camber_fail(renderer->share.device->context, CAMBER_ERROR_LIMIT, "%zu rows of style; merge equal ones", row_count);
+        return camber_fail(renderer->share.device->context, CAMBER_ERROR_LIMIT, "%zu rows of style; merge equal ones",
+                           row_count);
     if (!camber_grow(renderer->share.device->context, &renderer->row_texels, &renderer->row_capacity,
                      height * ROW_TEXTURE_WIDTH, 4 * sizeof *renderer->row_texels))
         return CAMBER_ERROR_MEMORY;
@@ -88,7 +89,8 @@ static void bind_mesh(camber_renderer *renderer, const camber_mesh *mesh) {
 }
 
 /* Draws the polylines of a run with the rows that are in the texture. */
-static camber_status draw_run(camber_renderer *renderer, camber_mesh *mesh, const pass_run *run, const camber_piece *piece) {
+static camber_status draw_run(camber_renderer *renderer, camber_mesh *mesh, const pass_run *run,
+                              const camber_piece *piece) {
     /* A count is a signed 32-bit number, and restarts lie wherever a strip ends: cut at a polyline's. */
     enum { INDICES_MAX = 1 << 30 };
     const camber_gl *gl = &renderer->share.surface->gl;
@@ -117,8 +119,8 @@ static camber_status draw_run(camber_renderer *renderer, camber_mesh *mesh, cons
         if (status != CAMBER_OK)
             return status;
         if (to > from) {
-            gl->DrawElements(mesh->mesh_info.strips ? GL_TRIANGLE_STRIP : GL_TRIANGLES, (GLsizei)(to - from), GL_UNSIGNED_INT,
-                             (const void *)(uintptr_t)(4 * from));
+            gl->DrawElements(mesh->mesh_info.strips ? GL_TRIANGLE_STRIP : GL_TRIANGLES, (GLsizei)(to - from),
+                             GL_UNSIGNED_INT, (const void *)(uintptr_t)(4 * from));
             ++*piece->draw_calls;
         }
         first = end;

@@ -50,8 +50,8 @@ static bool write_head(camber_png *writer, const camber_png_desc *desc) {
     /* Maps are flat areas and thin lines: one filter does as well as trying all five, in a third of the time. */
     png_set_filter(writer->png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
     png_set_IHDR(writer->png, writer->info, desc->width, desc->height, 8,
-                 desc->opaque ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_RGB_ALPHA, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_BASE,
-                 PNG_FILTER_TYPE_BASE);
+                 desc->opaque ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_RGB_ALPHA, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_BASE, PNG_FILTER_TYPE_BASE);
     png_set_sRGB(writer->png, writer->info, PNG_sRGB_INTENT_PERCEPTUAL);
     for (size_t i = 0; i < desc->text_count; i++) {
         png_text text = {.compression = PNG_ITXT_COMPRESSION_NONE,
@@ -65,28 +65,30 @@ static bool write_head(camber_png *writer, const camber_png_desc *desc) {
 
 static camber_status check_desc(camber_context *context, const camber_png_desc *desc) {
     if (desc->width < 1 || desc->width > 65535 || desc->height < 1 || desc->height > 65535)
-        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "a picture of %u x %u px; each side must be 1 to 65535", desc->width,
-                           desc->height);
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "a picture of %u x %u px; each side must be 1 to 65535",
+                           desc->width, desc->height);
     if (desc->compression < 0 || desc->compression > 9)
         return camber_fail(context, CAMBER_ERROR_ARGUMENT, "a PNG compression of %d; it must be 1 to 9, or 0 for 3",
                            desc->compression);
     for (size_t i = 0; i < desc->text_count; i++) {
         const size_t length = strlen(desc->texts[i].key);
         if (length < 1 || length > 79)
-            return camber_fail(context, CAMBER_ERROR_ARGUMENT, "a PNG text's key of %zu characters; it must have 1 to 79",
-                               length);
+            return camber_fail(context, CAMBER_ERROR_ARGUMENT,
+                               "a PNG text's key of %zu characters; it must have 1 to 79", length);
     }
     return CAMBER_OK;
 }
 
-camber_status camber_png_create(camber_context *context, const camber_png_desc *desc, camber_sink sink, camber_png **png) {
+camber_status camber_png_create(camber_context *context, const camber_png_desc *desc, camber_sink sink,
+                                camber_png **png) {
     const camber_status status = check_desc(context, desc);
     if (status != CAMBER_OK)
         return status;
     camber_png *made = camber_alloc_zero(context, 1, sizeof *made);
     if (!made)
         return CAMBER_ERROR_MEMORY;
-    *made = (camber_png){.context = context, .sink = sink, .width = desc->width, .rows_left = desc->height, .opaque = desc->opaque};
+    *made = (camber_png){
+        .context = context, .sink = sink, .width = desc->width, .rows_left = desc->height, .opaque = desc->opaque};
     made->row = camber_alloc(context, desc->width, 4);
     made->png = !made->row ? NULL : png_create_write_struct(PNG_LIBPNG_VER_STRING, made, on_error, on_warning);
     made->info = made->png ? png_create_info_struct(made->png) : NULL;
@@ -129,8 +131,8 @@ camber_status camber_png_write_rows(camber_png *png, const uint8_t *rgba, uint32
     if (png->failed)
         return CAMBER_ERROR_IO; /* told when it failed */
     if (row_count > png->rows_left)
-        return camber_fail(png->context, CAMBER_ERROR_IO, "PNG: %u rows, and it takes %u more; write those of its height",
-                           row_count, png->rows_left);
+        return camber_fail(png->context, CAMBER_ERROR_IO,
+                           "PNG: %u rows, and it takes %u more; write those of its height", row_count, png->rows_left);
     for (uint32_t i = 0; i < row_count; i++) {
         const uint8_t *from = rgba + 4 * (size_t)png->width * i;
         if (png->opaque)

@@ -98,7 +98,8 @@ camber_status camber_renderer_check(camber_renderer *renderer, const char *what)
 static camber_status check_frame(camber_renderer *renderer, const camber_frame *frame) {
     if (frame->width < 1 || frame->width > SIDE_MAX_PX || frame->height < 1 || frame->height > SIDE_MAX_PX)
         return camber_fail(renderer->share.device->context, CAMBER_ERROR_ARGUMENT,
-                           "a picture of %u x %u px; each side must be 1 to %d", frame->width, frame->height, SIDE_MAX_PX);
+                           "a picture of %u x %u px; each side must be 1 to %d", frame->width, frame->height,
+                           SIDE_MAX_PX);
     for (size_t i = 0; i < frame->pass_count; i++) {
         assert(frame->passes[i].mesh->renderer == renderer);
         assert(frame->passes[i].paint_count == 0 || frame->passes[i].paints);
@@ -113,7 +114,8 @@ static camber_piece first_piece(const camber_renderer *renderer, const camber_fr
         side = frame->largest_piece_px;
     const uint32_t width = frame->width < side ? frame->width : side;
     const uint32_t rows = PIECE_PX / width < side ? PIECE_PX / width : side;
-    return (camber_piece){.width = width, .height = frame->height < rows ? frame->height : rows, .coverage = frame->coverage};
+    return (camber_piece){
+        .width = width, .height = frame->height < rows ? frame->height : rows, .coverage = frame->coverage};
 }
 
 static camber_status draw_piece(camber_renderer *renderer, const camber_frame *frame, const camber_piece *piece) {
@@ -137,7 +139,8 @@ static camber_status draw_piece(camber_renderer *renderer, const camber_frame *f
 static camber_status read_piece(camber_renderer *renderer, const camber_piece *piece, uint8_t *band, uint32_t width) {
     const camber_gl *gl = &renderer->share.surface->gl;
     gl->PixelStorei(GL_PACK_ROW_LENGTH, (GLint)width);
-    gl->ReadPixels(0, 0, (GLsizei)piece->width, (GLsizei)piece->height, GL_RGBA, GL_UNSIGNED_BYTE, band + 4 * (size_t)piece->x);
+    gl->ReadPixels(0, 0, (GLsizei)piece->width, (GLsizei)piece->height, GL_RGBA, GL_UNSIGNED_BYTE,
+                   band + 4 * (size_t)piece->x);
     gl->PixelStorei(GL_PACK_ROW_LENGTH, 0);
     return camber_renderer_check(renderer, "reading back");
 }

@@ -19,8 +19,8 @@ static GLuint compile(camber_renderer *renderer, GLenum kind, const char *head, 
         return shader;
     char log[LOG_SIZE] = "";
     gl->GetShaderInfoLog(shader, LOG_SIZE, NULL, log);
-    camber_log(renderer->share.device->context, CAMBER_LOG_ERROR, "a shader does not compile on %s; update its driver: %s",
-               renderer->share.surface->info.renderer, log);
+    camber_log(renderer->share.device->context, CAMBER_LOG_ERROR,
+               "a shader does not compile on %s; update its driver: %s", renderer->share.surface->info.renderer, log);
     gl->DeleteShader(shader);
     return 0;
 }
@@ -40,8 +40,8 @@ static camber_status build(camber_renderer *renderer, const char *head, const ch
         if (!linked) {
             char log[LOG_SIZE] = "";
             gl->GetProgramInfoLog(program, LOG_SIZE, NULL, log);
-            camber_log(renderer->share.device->context, CAMBER_LOG_ERROR, "shaders do not link on %s; update its driver: %s",
-                       renderer->share.surface->info.renderer, log);
+            camber_log(renderer->share.device->context, CAMBER_LOG_ERROR,
+                       "shaders do not link on %s; update its driver: %s", renderer->share.surface->info.renderer, log);
         }
     }
     for (int i = 0; i < 2; i++)
@@ -52,8 +52,8 @@ static camber_status build(camber_renderer *renderer, const char *head, const ch
         return CAMBER_ERROR_DEVICE;
     }
     /* Samplers stay at unit 0, where GL starts them. */
-    *shader = (camber_shader){program, gl->GetUniformLocation(program, "u_origin"), gl->GetUniformLocation(program, "u_scale"),
-                              gl->GetUniformLocation(program, "u_color")};
+    *shader = (camber_shader){program, gl->GetUniformLocation(program, "u_origin"),
+                              gl->GetUniformLocation(program, "u_scale"), gl->GetUniformLocation(program, "u_color")};
     return CAMBER_OK;
 }
 

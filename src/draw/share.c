@@ -32,14 +32,15 @@ static bool works(camber_share *share, const camber_share_path *path) {
     if (path->ops.reserve(share, &buffer, PROBE_BYTES) == CAMBER_OK) {
         buffer.used_bytes = PROBE_BYTES;
         if (path->ops.begin(share, &buffer, 1) == CAMBER_OK) {
-            const cl_int code = clEnqueueFillBuffer(share->device->queue, buffer.mem, &word, sizeof word, 0, PROBE_BYTES, 0,
-                                                    NULL, NULL);
+            const cl_int code = clEnqueueFillBuffer(share->device->queue, buffer.mem, &word, sizeof word, 0,
+                                                    PROBE_BYTES, 0, NULL, NULL);
             clFinish(share->device->queue);
             same = path->ops.finish(share, &buffer, 1, true) == CAMBER_OK && code == CL_SUCCESS;
         }
         gl->BindBuffer(GL_ARRAY_BUFFER, buffer.gl_name);
         /* A persistent map stands already, and a buffer has one map at a time. */
-        const cl_uint *seen = buffer.map ? buffer.map : gl->MapBufferRange(GL_ARRAY_BUFFER, 0, PROBE_BYTES, GL_MAP_READ_BIT);
+        const cl_uint *seen =
+            buffer.map ? buffer.map : gl->MapBufferRange(GL_ARRAY_BUFFER, 0, PROBE_BYTES, GL_MAP_READ_BIT);
         same = same && seen && seen[0] == word && seen[PROBE_BYTES / 4 - 1] == word;
         gl->BindBuffer(GL_ARRAY_BUFFER, 0);
     }
@@ -59,6 +60,7 @@ camber_status camber_share_choose(camber_share *share, camber_sharing wanted, co
             return CAMBER_OK;
         }
     }
-    return camber_fail(share->device->context, CAMBER_ERROR_DEVICE, "sharing '%s' does not work between %s and %s; use auto",
-                       camber_sharing_name(wanted), share->device->info.name, share->surface->info.renderer);
+    return camber_fail(share->device->context, CAMBER_ERROR_DEVICE,
+                       "sharing '%s' does not work between %s and %s; use auto", camber_sharing_name(wanted),
+                       share->device->info.name, share->surface->info.renderer);
 }

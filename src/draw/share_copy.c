@@ -23,7 +23,8 @@ static camber_status reserve(void *user, camber_buffer *buffer, size_t size_byte
     gl->BufferData(GL_ARRAY_BUFFER, (GLsizeiptr)size_bytes, NULL, GL_DYNAMIC_DRAW);
     gl->BindBuffer(GL_ARRAY_BUFFER, 0);
     if (gl->GetError() != GL_NO_ERROR)
-        return camber_fail(share->device->context, CAMBER_ERROR_MEMORY, "a GL buffer of %zu bytes; draw less at once", size_bytes);
+        return camber_fail(share->device->context, CAMBER_ERROR_MEMORY, "a GL buffer of %zu bytes; draw less at once",
+                           size_bytes);
     buffer->capacity_bytes = size_bytes;
     return CAMBER_OK;
 }
@@ -40,8 +41,8 @@ static camber_status finish(void *user, camber_buffer *buffers, size_t count, bo
     const camber_gl *gl = &share->surface->gl;
     for (size_t i = 0; i < count && written; i++) {
         cl_int code;
-        void *bytes = clEnqueueMapBuffer(share->device->queue, buffers[i].mem, CL_TRUE, CL_MAP_READ, 0, buffers[i].used_bytes,
-                                         0, NULL, NULL, &code);
+        void *bytes = clEnqueueMapBuffer(share->device->queue, buffers[i].mem, CL_TRUE, CL_MAP_READ, 0,
+                                         buffers[i].used_bytes, 0, NULL, NULL, &code);
         if (code != CL_SUCCESS)
             return camber_fail_cl(share->device->context, "clEnqueueMapBuffer", code);
         gl->BindBuffer(GL_ARRAY_BUFFER, buffers[i].gl_name);
@@ -53,4 +54,5 @@ static camber_status finish(void *user, camber_buffer *buffers, size_t count, bo
     return CAMBER_OK;
 }
 
-const camber_share_path camber_share_copy = {CAMBER_SHARING_COPY, is_possible, {reserve, begin, finish, camber_share_release}};
+const camber_share_path camber_share_copy = {
+    CAMBER_SHARING_COPY, is_possible, {reserve, begin, finish, camber_share_release}};

@@ -19,7 +19,8 @@ static camber_status reserve(void *user, camber_buffer *buffer, size_t size_byte
     gl->BindBuffer(GL_ARRAY_BUFFER, 0);
     gl->Finish();
     if (gl->GetError() != GL_NO_ERROR)
-        return camber_fail(share->device->context, CAMBER_ERROR_MEMORY, "a GL buffer of %zu bytes; draw less at once", size_bytes);
+        return camber_fail(share->device->context, CAMBER_ERROR_MEMORY, "a GL buffer of %zu bytes; draw less at once",
+                           size_bytes);
     cl_int code;
     buffer->mem = clCreateFromGLBuffer(share->device->cl, CL_MEM_READ_WRITE, buffer->gl_name, &code);
     if (code != CL_SUCCESS) {
@@ -52,4 +53,5 @@ static camber_status finish(void *user, camber_buffer *buffers, size_t count, bo
     return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(share->device->context, "clEnqueueReleaseGLObjects", code);
 }
 
-const camber_share_path camber_share_gl = {CAMBER_SHARING_GL, is_possible, {reserve, begin, finish, camber_share_release}};
+const camber_share_path camber_share_gl = {
+    CAMBER_SHARING_GL, is_possible, {reserve, begin, finish, camber_share_release}};

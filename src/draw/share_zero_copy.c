@@ -1,5 +1,5 @@
-/* Zero copy on the CPU: a persistent, coherent map of the GL buffer is page-aligned host memory, and an OpenCL buffer on
- * that memory lets the kernels write straight into it. */
+/* Zero copy on the CPU: a persistent, coherent map of the GL buffer is page-aligned host memory, and an OpenCL buffer
+ * on that memory lets the kernels write straight into it. */
 #include "draw/share.h"
 
 static bool is_possible(const camber_share *share) {
@@ -19,10 +19,11 @@ static camber_status reserve(void *user, camber_buffer *buffer, size_t size_byte
     buffer->map = gl->MapBufferRange(GL_ARRAY_BUFFER, 0, (GLsizeiptr)size_bytes, flags);
     gl->BindBuffer(GL_ARRAY_BUFFER, 0);
     if (!buffer->map)
-        return camber_fail(share->device->context, CAMBER_ERROR_MEMORY, "a mapped GL buffer of %zu bytes; draw less at once",
-                           size_bytes);
+        return camber_fail(share->device->context, CAMBER_ERROR_MEMORY,
+                           "a mapped GL buffer of %zu bytes; draw less at once", size_bytes);
     cl_int code;
-    buffer->mem = clCreateBuffer(share->device->cl, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, size_bytes, buffer->map, &code);
+    buffer->mem =
+        clCreateBuffer(share->device->cl, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, size_bytes, buffer->map, &code);
     if (code != CL_SUCCESS) {
         buffer->mem = NULL;
         return camber_fail_cl(share->device->context, "clCreateBuffer on a GL map", code);
@@ -44,8 +45,8 @@ static camber_status finish(void *user, camber_buffer *buffers, size_t count, bo
     const camber_share *share = user;
     cl_int code = CL_SUCCESS;
     for (size_t i = 0; i < count && written && code == CL_SUCCESS; i++) {
-        void *seen = clEnqueueMapBuffer(share->device->queue, buffers[i].mem, CL_TRUE, CL_MAP_READ, 0, buffers[i].used_bytes,
-                                        0, NULL, NULL, &code);
+        void *seen = clEnqueueMapBuffer(share->device->queue, buffers[i].mem, CL_TRUE, CL_MAP_READ, 0,
+                                        buffers[i].used_bytes, 0, NULL, NULL, &code);
         if (code == CL_SUCCESS)
             code = clEnqueueUnmapMemObject(share->device->queue, buffers[i].mem, seen, 0, NULL, NULL);
     }

@@ -48,7 +48,7 @@ static void describe(camber_surface *surface) {
         .backend = surface->name,
         .renderer = renderer ? renderer : "unknown",
         .version = version ? version : "unknown",
-        .largest_target_px = largest > 0 ? (uint32_t)largest : 0,
+        .largest_target_px = largest > 0 ? (uint32_t)largest : 1,
         .software = renderer && is_software(renderer),
         .buffer_storage = gl->BufferStorage != NULL,
     };
@@ -72,7 +72,8 @@ static camber_status open_backend(camber_context *context, const camber_surface_
     return CAMBER_OK;
 }
 
-camber_status camber_surface_create(camber_context *context, const camber_surface_desc *desc, camber_surface **surface) {
+camber_status camber_surface_create(camber_context *context, const camber_surface_desc *desc,
+                                    camber_surface **surface) {
     static const camber_surface_ops *const backends[] = {&camber_surface_egl, &camber_surface_osmesa};
     const camber_backend wanted = desc ? desc->backend : CAMBER_BACKEND_AUTO;
     camber_status status = CAMBER_ERROR_DEVICE;
@@ -100,8 +101,8 @@ camber_surface_info camber_surface_get_info(const camber_surface *surface) {
 camber_status camber_surface_make_current(camber_surface *surface) {
     if (surface->ops->make_current(surface))
         return CAMBER_OK;
-    return camber_fail(surface->context, CAMBER_ERROR_DEVICE, "%s: the GL context cannot be made current; open it again",
-                       surface->name);
+    return camber_fail(surface->context, CAMBER_ERROR_DEVICE,
+                       "%s: the GL context cannot be made current; open it again", surface->name);
 }
 
 camber_gl_handles camber_surface_handles(const camber_surface *surface) {

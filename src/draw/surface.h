@@ -21,8 +21,8 @@ extern const camber_surface_ops camber_surface_osmesa;
 struct camber_surface {
     camber_context *context;
     const camber_surface_ops *ops;
-    void *state;       /* the back end's */
-    const char *name;  /* set by create: "EGL surfaceless", ... */
+    void *state;      /* the back end's */
+    const char *name; /* set by create: "EGL surfaceless", ... */
     camber_gl gl;
     camber_surface_info info;
 };

@@ -1,9 +1,9 @@
 /* EGL without a display: Mesa's surfaceless platform, else the first device that gives a GLES 3 context. */
 #include "draw/surface.h"
 
+#include <CL/cl_gl.h>
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
-#include <CL/cl_gl.h>
 #include <dlfcn.h>
 #include <string.h>
 
@@ -132,7 +132,8 @@ static bool make_current(camber_surface *surface) {
 
 static camber_gl_handles handles(const camber_surface *surface) {
     const egl_state *egl = surface->state;
-    return (camber_gl_handles){(cl_context_properties)egl->context, (cl_context_properties)egl->display, CL_EGL_DISPLAY_KHR};
+    return (camber_gl_handles){(cl_context_properties)egl->context, (cl_context_properties)egl->display,
+                               CL_EGL_DISPLAY_KHR};
 }
 
 static void destroy(camber_surface *surface) {

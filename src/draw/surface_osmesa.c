@@ -46,15 +46,23 @@ static bool make_current(camber_surface *surface) {
 
 static camber_status create(camber_surface *surface) {
     /* 4.3 has primitive restart with the fixed index, and GLES 3 shaders come with it. */
-    static const int wanted[] = {OSMESA_FORMAT, OSMESA_RGBA, OSMESA_PROFILE, OSMESA_CORE_PROFILE,
-                                 OSMESA_CONTEXT_MAJOR_VERSION, 4, OSMESA_CONTEXT_MINOR_VERSION, 3, 0};
+    static const int wanted[] = {OSMESA_FORMAT,
+                                 OSMESA_RGBA,
+                                 OSMESA_PROFILE,
+                                 OSMESA_CORE_PROFILE,
+                                 OSMESA_CONTEXT_MAJOR_VERSION,
+                                 4,
+                                 OSMESA_CONTEXT_MINOR_VERSION,
+                                 3,
+                                 0};
     surface->name = "OSMesa";
     osmesa_state *osmesa = camber_alloc_zero(surface->context, 1, sizeof *osmesa);
     if (!osmesa)
         return CAMBER_ERROR_MEMORY;
     surface->state = osmesa;
     if (!load_library(osmesa))
-        return camber_fail(surface->context, CAMBER_ERROR_DEVICE, "OSMesa: libOSMesa.so.8 cannot be loaded; install libosmesa6");
+        return camber_fail(surface->context, CAMBER_ERROR_DEVICE,
+                           "OSMesa: libOSMesa.so.8 cannot be loaded; install libosmesa6");
     osmesa->context = osmesa->create(wanted, NULL);
     if (!osmesa->context || !make_current(surface))
         return camber_fail(surface->context, CAMBER_ERROR_DEVICE, "OSMesa: no GL 4.3 core context; use EGL");

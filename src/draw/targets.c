@@ -24,8 +24,8 @@ static camber_status resize(camber_renderer *renderer, int which, GLsizei width,
     if (gl->CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE || gl->GetError() != GL_NO_ERROR) {
         release(gl, target);
         return camber_fail(renderer->share.device->context, CAMBER_ERROR_MEMORY,
-                           "%s gives no target of %d x %d px; draw smaller pieces", renderer->share.surface->info.renderer,
-                           (int)width, (int)height);
+                           "%s gives no target of %d x %d px; draw smaller pieces",
+                           renderer->share.surface->info.renderer, (int)width, (int)height);
     }
     target->width = width;
     target->height = height;

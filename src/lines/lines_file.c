@@ -29,9 +29,10 @@ static camber_status check_file(camber_context *context, const unsigned char *by
     for (uint64_t i = 0; i <= n; i++) {
         const uint32_t offset = get_u32(bytes + 12 + 4 * i);
         if (offset < before || offset > p || (i == 0 && offset != 0) || (i == n && offset != p))
-            return camber_fail(context, CAMBER_ERROR_INPUT,
-                               "%s: offset %llu is %u, which does not ascend from 0 to %llu; it is damaged, write it again",
-                               name, (unsigned long long)i, offset, (unsigned long long)p);
+            return camber_fail(
+                context, CAMBER_ERROR_INPUT,
+                "%s: offset %llu is %u, which does not ascend from 0 to %llu; it is damaged, write it again", name,
+                (unsigned long long)i, offset, (unsigned long long)p);
         before = offset;
     }
     return CAMBER_OK;
@@ -88,8 +89,8 @@ static bool write_words(camber_sink sink, const void *words, size_t count) {
 
 camber_status camber_lines_write(camber_context *context, const camber_lines *lines, camber_sink sink) {
     if (lines->polyline_count >= UINT32_MAX || lines->point_count > UINT32_MAX)
-        return camber_fail(context, CAMBER_ERROR_LIMIT, "%zu points do not fit a polyline file's 32-bit counts; write parts",
-                           lines->point_count);
+        return camber_fail(context, CAMBER_ERROR_LIMIT,
+                           "%zu points do not fit a polyline file's 32-bit counts; write parts", lines->point_count);
     const uint32_t zero = 0;
     const uint32_t head[3] = {MAGIC, (uint32_t)lines->polyline_count, (uint32_t)lines->point_count};
     const bool whole = write_words(sink, head, 3) &&

@@ -21,9 +21,10 @@ static camber_status check_desc(camber_context *context, const camber_polylines_
     size_t before = 0;
     const size_t covered = desc->polyline_count ? desc->offsets[desc->polyline_count] : 0;
     if (covered != desc->point_count || (desc->polyline_count && desc->offsets[0] != 0))
-        return camber_fail(context, CAMBER_ERROR_INPUT,
-                           "polylines: offsets run from %u to %zu, and there are %zu points; they must run from 0 to that",
-                           desc->polyline_count ? desc->offsets[0] : 0u, covered, desc->point_count);
+        return camber_fail(
+            context, CAMBER_ERROR_INPUT,
+            "polylines: offsets run from %u to %zu, and there are %zu points; they must run from 0 to that",
+            desc->polyline_count ? desc->offsets[0] : 0u, covered, desc->point_count);
     for (size_t i = 0; desc->polyline_count && i <= desc->polyline_count; i++) {
         if (desc->offsets[i] < before || desc->offsets[i] > desc->point_count)
             return camber_fail(context, CAMBER_ERROR_INPUT,
@@ -33,8 +34,9 @@ static camber_status check_desc(camber_context *context, const camber_polylines_
     }
     for (size_t i = 0; desc->rows && i < desc->polyline_count; i++)
         if (desc->rows[i] >= 1u << 24)
-            return camber_fail(context, CAMBER_ERROR_INPUT, "polyline %zu: its row %u is not below %u; merge equal rows", i,
-                               desc->rows[i], 1u << 24);
+            return camber_fail(context, CAMBER_ERROR_INPUT,
+                               "polyline %zu: its row %u is not below %u; merge equal rows", i, desc->rows[i],
+                               1u << 24);
     /* A ring takes two ghosts, and it has three points or more: 5/3 slots a point at most. */
     if (desc->point_count > (UINT32_MAX - 1024u) / 5 * 3 || desc->polyline_count > UINT32_MAX - 1024u)
         return camber_fail(context, CAMBER_ERROR_LIMIT,

@@ -1,7 +1,7 @@
 #include "map/geometry.h"
 
 #include "map/clip.h"
-#include "map/simplify.h"
+#include "lines/simplify.h"
 
 #include <math.h>
 #include <string.h>

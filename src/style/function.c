@@ -58,7 +58,7 @@ static bool compile_stops(camber_compiler *c, const json_t *stops, camber_type t
     camber_compiler_enter_key(c, "stops");
     for (size_t i = 0; i < json_array_size(stops); i++) {
         const double before = zoom;
-        uint32_t node;
+        uint32_t node = 0;
         camber_compiler_enter_index(c, i);
         if (!compile_stop(c, json_array_get(stops, i), type, &zoom, &node))
             return false;

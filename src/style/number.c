@@ -74,8 +74,8 @@ void camber_number_format(double number, char text[CAMBER_NUMBER_TEXT_SIZE]) {
         snprintf(text, CAMBER_NUMBER_TEXT_SIZE, "%s", isnan(number) ? "NaN" : number > 0 ? "Infinity" : "-Infinity");
         return;
     }
-    char digits[20];
-    int exponent;
+    char digits[20] = "";
+    int exponent = 0;
     const int count = shortest_digits(fabs(number), digits, &exponent);
     if (digits[0] == '0') {
         snprintf(text, CAMBER_NUMBER_TEXT_SIZE, "0");

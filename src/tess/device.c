@@ -142,15 +142,22 @@ static camber_status choose(camber_device *device, const char *match) {
         device->info = info;
     }
     if (best < 0)
-        return camber_fail(device->context, CAMBER_ERROR_DEVICE, "no OpenCL device matches '%s'; there are: %s", match, names);
+        return camber_fail(device->context, CAMBER_ERROR_DEVICE, "no OpenCL device matches '%s'; there are: %s", match,
+                           names);
     return CAMBER_OK;
 }
 
 static camber_status open_cl(camber_device *device, camber_surface *surface) {
     cl_int code;
-    const camber_gl_handles gl = surface && device->info.gl_sharing ? camber_surface_handles(surface) : (camber_gl_handles){0};
-    const cl_context_properties shared[] = {CL_CONTEXT_PLATFORM, (cl_context_properties)device->platform,
-                                            CL_GL_CONTEXT_KHR, gl.context, gl.display_kind, gl.display, 0};
+    const camber_gl_handles gl =
+        surface && device->info.gl_sharing ? camber_surface_handles(surface) : (camber_gl_handles){0};
+    const cl_context_properties shared[] = {CL_CONTEXT_PLATFORM,
+                                            (cl_context_properties)device->platform,
+                                            CL_GL_CONTEXT_KHR,
+                                            gl.context,
+                                            gl.display_kind,
+                                            gl.display,
+                                            0};
     const cl_context_properties alone[] = {CL_CONTEXT_PLATFORM, (cl_context_properties)device->platform, 0};
     if (gl.context) {
         device->cl = clCreateContext(shared, 1, &device->id, NULL, NULL, &code);

@@ -35,7 +35,8 @@ static bool load(camber_device *device, camber_program *program, const char *opt
         const unsigned char *binary = (const unsigned char *)bytes + sizeof hash;
         const size_t binary_size = size - sizeof hash;
         if (hash == camber_hash(CAMBER_HASH_START, binary, binary_size))
-            program->cl = clCreateProgramWithBinary(device->cl, 1, &device->id, &binary_size, &binary, &binary_code, &code);
+            program->cl =
+                clCreateProgramWithBinary(device->cl, 1, &device->id, &binary_size, &binary, &binary_code, &code);
     }
     camber_free(device->context, bytes);
     if (code == CL_SUCCESS && binary_code == CL_SUCCESS &&
@@ -54,8 +55,9 @@ static camber_status fail_build(camber_device *device, cl_program program, const
     char *log = camber_alloc_zero(device->context, size + 1, 1);
     if (log)
         clGetProgramBuildInfo(program, device->id, CL_PROGRAM_BUILD_LOG, size, log, NULL);
-    camber_fail(device->context, CAMBER_ERROR_DEVICE, "%s: the kernels do not build on %s (%d); update its driver or try another device: %.*s",
-                call, device->info.name, code, (int)LOG_MAX, log ? log : "");
+    camber_fail(device->context, CAMBER_ERROR_DEVICE,
+                "%s: the kernels do not build on %s (%d); update its driver or try another device: %.*s", call,
+                device->info.name, code, (int)LOG_MAX, log ? log : "");
     camber_free(device->context, log);
     return CAMBER_ERROR_DEVICE;
 }

@@ -15,8 +15,9 @@ static camber_status check_stroke(camber_context *context, const camber_stroke *
         return camber_fail(context, CAMBER_ERROR_ARGUMENT, "stroke %zu: a miter limit of %g; it must be 0 or more", row,
                            (double)stroke->miter_limit);
     if ((unsigned)stroke->join > CAMBER_JOIN_BEVEL || (unsigned)stroke->cap > CAMBER_CAP_SQUARE)
-        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "stroke %zu: join %d, cap %d; see camber_join and camber_cap", row,
-                           (int)stroke->join, (int)stroke->cap);
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT,
+                           "stroke %zu: join %d, cap %d; see camber_join and camber_cap", row, (int)stroke->join,
+                           (int)stroke->cap);
     return CAMBER_OK;
 }
 
@@ -42,12 +43,14 @@ camber_status camber_rows_create(camber_context *context, const camber_polylines
                                  const camber_tessellation_desc *desc, camber_row **rows) {
     assert(desc->stroke_count == 0 || desc->strokes);
     if (polylines->row_count > desc->stroke_count)
-        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "a polyline has row %u, and there are %zu strokes; give one a row",
-                           polylines->row_count - 1, desc->stroke_count);
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT,
+                           "a polyline has row %u, and there are %zu strokes; give one a row", polylines->row_count - 1,
+                           desc->stroke_count);
     const float tolerance = desc->fan_tolerance_px == 0.0f ? 0.25f : desc->fan_tolerance_px;
     if (!(tolerance > 0.0f) || (unsigned)desc->method > CAMBER_METHOD_FAN)
-        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "a fan tolerance of %g px, method %d; see camber_tessellation_desc",
-                           (double)tolerance, (int)desc->method);
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT,
+                           "a fan tolerance of %g px, method %d; see camber_tessellation_desc", (double)tolerance,
+                           (int)desc->method);
     for (size_t i = 0; i < desc->stroke_count; i++) {
         const camber_status status = check_stroke(context, desc->strokes + i, i);
         if (status != CAMBER_OK)

@@ -16,8 +16,8 @@ struct camber_device {
     cl_context cl;
     cl_command_queue queue;
     camber_device_info info;
-    bool host_memory;  /* the device works in the host's memory */
-    bool gl_context;   /* cl was made for a GL context: GL buffers can be shared */
+    bool host_memory;                   /* the device works in the host's memory */
+    bool gl_context;                    /* cl was made for a GL context: GL buffers can be shared */
     struct camber_program *programs[3]; /* by camber_method, built when first used */
 };
 
@@ -35,8 +35,8 @@ camber_status camber_fail_cl(camber_context *context, const char *call, cl_int c
 typedef struct camber_program {
     cl_program cl;
     cl_kernel classify, scan, emit;
-    uint64_t key;   /* of the cache */
-    bool to_save;   /* built from source: its binary is saved once the kernels have run */
+    uint64_t key; /* of the cache */
+    bool to_save; /* built from source: its binary is saved once the kernels have run */
 } camber_program;
 
 /* The kernels of a method, built or loaded at first use. */
@@ -89,7 +89,7 @@ struct camber_mesh {
     bool joins_counted; /* mesh_info's counts of joins and triangles are there */
     bool sharp_joins;   /* a row has miter or bevel joins */
     bool flat_caps;     /* a row has butt or square caps */
-    bool empty; /* nothing tessellated yet, or nothing came of it */
+    bool empty;         /* nothing tessellated yet, or nothing came of it */
 };
 
 enum { CAMBER_BUFFER_VERTICES, CAMBER_BUFFER_INDICES };

@@ -105,8 +105,9 @@ static camber_status reserve_input(camber_mesh *mesh, size_t slot_count) {
         cl_mem *mem;
         size_t size_bytes;
     } wanted[] = {
-        {&mesh->x, 4 * words},     {&mesh->y, 4 * words},          {&mesh->info, 4 * words},  {&mesh->joins, 4 * words},
-        {&mesh->offsets, 4 * capacity}, {&mesh->sums, 4 * blocks}, {&mesh->bases, 16 * blocks},
+        {&mesh->x, 4 * words},       {&mesh->y, 4 * words},          {&mesh->info, 4 * words},
+        {&mesh->joins, 4 * words},   {&mesh->offsets, 4 * capacity}, {&mesh->sums, 4 * blocks},
+        {&mesh->bases, 16 * blocks},
     };
     for (size_t i = 0; i < sizeof wanted / sizeof *wanted && status == CAMBER_OK; i++)
         status = make_buffer(mesh, wanted[i].size_bytes, wanted[i].mem);
@@ -145,17 +146,17 @@ static camber_status upload(camber_mesh *mesh, const camber_polylines *polylines
     if (status == CAMBER_OK)
         status = write_buffer(mesh, mesh->joins, &zero, 4);
     if (status == CAMBER_OK) {
-        const cl_int code = clEnqueueWriteBuffer(mesh->device->queue, mesh->joins, CL_TRUE, 4 * (words - 1), 4, &zero, 0,
-                                                 NULL, NULL);
+        const cl_int code =
+            clEnqueueWriteBuffer(mesh->device->queue, mesh->joins, CL_TRUE, 4 * (words - 1), 4, &zero, 0, NULL, NULL);
         status = code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(mesh->device->context, "clEnqueueWriteBuffer", code);
     }
     camber_context *context = mesh->device->context;
-    if (status == CAMBER_OK && (!camber_grow(context, &mesh->first_slots, &mesh->polyline_capacity,
-                                             polylines->polyline_count + 1, sizeof *mesh->first_slots) ||
-                                !camber_grow(context, &mesh->polyline_rows, &mesh->row_list_capacity,
-                                             polylines->polyline_count, sizeof *mesh->polyline_rows) ||
-                                !camber_grow(context, &mesh->host_bases, &mesh->base_capacity, 2 * (blocks + 1),
-                                             sizeof *mesh->host_bases)))
+    if (status == CAMBER_OK &&
+        (!camber_grow(context, &mesh->first_slots, &mesh->polyline_capacity, polylines->polyline_count + 1,
+                      sizeof *mesh->first_slots) ||
+         !camber_grow(context, &mesh->polyline_rows, &mesh->row_list_capacity, polylines->polyline_count,
+                      sizeof *mesh->polyline_rows) ||
+         !camber_grow(context, &mesh->host_bases, &mesh->base_capacity, 2 * (blocks + 1), sizeof *mesh->host_bases)))
         status = CAMBER_ERROR_MEMORY;
     if (status != CAMBER_OK)
         return status;
@@ -192,8 +193,8 @@ static cl_int set_arguments(cl_kernel kernel, const cl_mem *mems, cl_uint count)
 }
 
 /* Runs a stage over all slots and waits for it, since the next host step needs its result. */
-static camber_status run_stage(camber_mesh *mesh, cl_kernel kernel, const char *name, const cl_mem *mems, cl_uint mem_count,
-                               cl_event *event) {
+static camber_status run_stage(camber_mesh *mesh, cl_kernel kernel, const char *name, const cl_mem *mems,
+                               cl_uint mem_count, cl_event *event) {
     const size_t global = mesh->slot_count, local = CAMBER_BLOCK;
     cl_int code = set_arguments(kernel, mems, mem_count);
     if (code == CL_SUCCESS)
@@ -220,7 +221,8 @@ camber_status camber_scan_blocks(camber_context *context, const uint32_t *sums, 
     }
     if (vertices >= UINT32_MAX)
         return camber_fail(context, CAMBER_ERROR_LIMIT,
-                           "%llu vertices are more than 32-bit indices reach; tessellate in parts", (unsigned long long)vertices);
+                           "%llu vertices are more than 32-bit indices reach; tessellate in parts",
+                           (unsigned long long)vertices);
     return CAMBER_OK;
 }
 
@@ -228,7 +230,8 @@ static camber_status scan_blocks(camber_mesh *mesh) {
     cl_command_queue queue = mesh->device->queue;
     const size_t blocks = mesh->slot_count / CAMBER_BLOCK;
     cl_int code;
-    const cl_uint *sums = clEnqueueMapBuffer(queue, mesh->sums, CL_TRUE, CL_MAP_READ, 0, 4 * blocks, 0, NULL, NULL, &code);
+    const cl_uint *sums =
+        clEnqueueMapBuffer(queue, mesh->sums, CL_TRUE, CL_MAP_READ, 0, 4 * blocks, 0, NULL, NULL, &code);
     if (code != CL_SUCCESS)
         return camber_fail_cl(mesh->device->context, "clEnqueueMapBuffer", code);
     const camber_status status = camber_scan_blocks(mesh->device->context, sums, blocks, mesh->host_bases);
@@ -246,10 +249,12 @@ static camber_status count_joins(camber_mesh *mesh) {
     cl_command_queue queue = mesh->device->queue;
     const size_t size_bytes = 4 * (mesh->slot_count + 2);
     cl_int code;
-    const cl_uint *joins = clEnqueueMapBuffer(queue, mesh->joins, CL_TRUE, CL_MAP_READ, 0, size_bytes, 0, NULL, NULL, &code);
+    const cl_uint *joins =
+        clEnqueueMapBuffer(queue, mesh->joins, CL_TRUE, CL_MAP_READ, 0, size_bytes, 0, NULL, NULL, &code);
     if (code != CL_SUCCESS)
         return camber_fail_cl(mesh->device->context, "clEnqueueMapBuffer", code);
-    const cl_uint *info = clEnqueueMapBuffer(queue, mesh->info, CL_TRUE, CL_MAP_READ, 0, size_bytes, 0, NULL, NULL, &code);
+    const cl_uint *info =
+        clEnqueueMapBuffer(queue, mesh->info, CL_TRUE, CL_MAP_READ, 0, size_bytes, 0, NULL, NULL, &code);
     if (code == CL_SUCCESS) {
         size_t segments = 0;
         for (size_t i = 1; i <= mesh->slot_count; i++) {
@@ -283,7 +288,8 @@ static camber_status reserve_output(camber_mesh *mesh) {
 
 static camber_status run_stages(camber_mesh *mesh, camber_program *program) {
     cl_event events[3] = {NULL, NULL, NULL};
-    const cl_mem classify[] = {mesh->x, mesh->y, mesh->x, mesh->y, mesh->x, mesh->y, mesh->info, mesh->rows, mesh->joins};
+    const cl_mem classify[] = {mesh->x, mesh->y,    mesh->x,    mesh->y,    mesh->x,
+                               mesh->y, mesh->info, mesh->rows, mesh->joins};
     const cl_mem scan[] = {mesh->joins, mesh->info, mesh->offsets, mesh->sums};
     camber_status status = run_stage(mesh, program->classify, "classify", classify, 9, events);
     if (status == CAMBER_OK)
@@ -296,8 +302,16 @@ static camber_status run_stages(camber_mesh *mesh, camber_program *program) {
     status = reserve_output(mesh);
     if (status != CAMBER_OK)
         goto done;
-    const cl_mem emit[] = {mesh->x, mesh->y, mesh->x, mesh->y, mesh->info,  mesh->rows,
-                           mesh->joins, mesh->offsets, mesh->bases, mesh->buffers[CAMBER_BUFFER_VERTICES].mem,
+    const cl_mem emit[] = {mesh->x,
+                           mesh->y,
+                           mesh->x,
+                           mesh->y,
+                           mesh->info,
+                           mesh->rows,
+                           mesh->joins,
+                           mesh->offsets,
+                           mesh->bases,
+                           mesh->buffers[CAMBER_BUFFER_VERTICES].mem,
                            mesh->buffers[CAMBER_BUFFER_INDICES].mem};
     status = run_stage(mesh, program->emit, "emit", emit, 11, events + 2);
     const cl_int code = clFinish(mesh->device->queue);
@@ -348,8 +362,8 @@ camber_status camber_tessellate(camber_mesh *mesh, const camber_polylines *polyl
 }
 
 static camber_status read_buffer(camber_mesh *mesh, int which, void *bytes, size_t size_bytes) {
-    const cl_int code = clEnqueueReadBuffer(mesh->device->queue, mesh->buffers[which].mem, CL_TRUE, 0, size_bytes, bytes,
-                                            0, NULL, NULL);
+    const cl_int code = clEnqueueReadBuffer(mesh->device->queue, mesh->buffers[which].mem, CL_TRUE, 0, size_bytes,
+                                            bytes, 0, NULL, NULL);
     return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(mesh->device->context, "clEnqueueReadBuffer", code);
 }
 
@@ -365,9 +379,11 @@ camber_status camber_mesh_read(camber_mesh *mesh, camber_mesh_data *data) {
     if (status == CAMBER_OK && !mesh->empty) {
         status = mesh->ops->begin(mesh->ops_user, mesh->buffers, 2);
         if (status == CAMBER_OK)
-            status = read_buffer(mesh, CAMBER_BUFFER_VERTICES, made.vertices, made.info.vertex_count * sizeof *made.vertices);
+            status = read_buffer(mesh, CAMBER_BUFFER_VERTICES, made.vertices,
+                                 made.info.vertex_count * sizeof *made.vertices);
         if (status == CAMBER_OK)
-            status = read_buffer(mesh, CAMBER_BUFFER_INDICES, made.indices, made.info.index_count * sizeof *made.indices);
+            status =
+                read_buffer(mesh, CAMBER_BUFFER_INDICES, made.indices, made.info.index_count * sizeof *made.indices);
         const camber_status finished = mesh->ops->finish(mesh->ops_user, mesh->buffers, 2, false);
         status = status == CAMBER_OK ? finished : status;
     }
@@ -384,7 +400,8 @@ camber_status camber_mesh_first_index(camber_mesh *mesh, size_t polyline, uint64
     const size_t block = slot / CAMBER_BLOCK;
     cl_uint packed = 0;
     if (slot < mesh->slot_count && slot % CAMBER_BLOCK != 0) {
-        const cl_int code = clEnqueueReadBuffer(mesh->device->queue, mesh->offsets, CL_TRUE, 4 * slot, 4, &packed, 0, NULL, NULL);
+        const cl_int code =
+            clEnqueueReadBuffer(mesh->device->queue, mesh->offsets, CL_TRUE, 4 * slot, 4, &packed, 0, NULL, NULL);
         if (code != CL_SUCCESS)
             return camber_fail_cl(mesh->device->context, "clEnqueueReadBuffer", code);
     }

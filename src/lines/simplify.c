@@ -1,4 +1,6 @@
-#include "map/simplify.h"
+#include "lines/simplify.h"
+
+#include "base/base.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -101,4 +103,49 @@ size_t camber_simplify(double *points, size_t count, double tolerance, unsigned 
         kept++;
     }
     return kept;
+}
+
+/* One polyline: to double, simplified, back. Doubles hold every float, so what stays is bit for bit what came. */
+static uint32_t simplify_line(const float *from, size_t count, double tolerance_px, double *points, unsigned char *keep,
+                              float *to) {
+    for (size_t i = 0; i < 2 * count; i++)
+        points[i] = (double)from[i];
+    const size_t kept = camber_simplify(points, count, tolerance_px, keep);
+    for (size_t i = 0; i < 2 * kept; i++)
+        to[i] = (float)points[i];
+    return (uint32_t)kept;
+}
+
+camber_status camber_lines_simplify(camber_context *context, const camber_lines *lines, double tolerance_px,
+                                    camber_lines *simplified) {
+    if (!(tolerance_px >= 0.0))
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "a tolerance of %g px; it must be 0 or more", tolerance_px);
+    size_t longest = 0;
+    for (size_t i = 0; i < lines->polyline_count; i++) {
+        const size_t count = lines->offsets[i + 1] - lines->offsets[i];
+        longest = count > longest ? count : longest;
+    }
+    camber_status status = CAMBER_ERROR_MEMORY;
+    camber_lines made = {.polyline_count = lines->polyline_count};
+    double *points = camber_alloc(context, longest, 2 * sizeof *points);
+    unsigned char *keep = camber_alloc(context, longest, 1);
+    made.points = camber_alloc(context, lines->point_count, 2 * sizeof *made.points);
+    made.offsets = camber_alloc(context, lines->polyline_count + 1, sizeof *made.offsets);
+    if (!points || !keep || !made.points || !made.offsets)
+        goto done;
+    made.offsets[0] = 0;
+    for (size_t i = 0; i < lines->polyline_count; i++) {
+        const size_t first = lines->offsets[i];
+        made.point_count += simplify_line(lines->points + 2 * first, lines->offsets[i + 1] - first, tolerance_px, points, keep,
+                                          made.points + 2 * made.point_count);
+        made.offsets[i + 1] = (uint32_t)made.point_count;
+    }
+    *simplified = made;
+    made = (camber_lines){0};
+    status = CAMBER_OK;
+done:
+    camber_lines_free(context, &made);
+    camber_free(context, keep);
+    camber_free(context, points);
+    return status;
 }

@@ -1,0 +1,88 @@
+#!/usr/bin/env bash
+# A ten-line program against the installed tree, through pkg-config and through CMake: test_install.sh BUILD MAP
+set -eu
+build=$1
+map=$2
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cmake --install "$build" --prefix "$folder/usr" >"$folder/log" || { cat "$folder/log"; exit 1; }
+
+cat >"$folder/core.c" <<'C'
+#include <camber.h>
+#include <stdio.h>
+int main(void) {
+    const float points[] = {10, 10, 90, 10, 90, 90};
+    const uint32_t offsets[] = {0, 3};
+    const camber_stroke stroke = {.width_px = 8};
+    camber_context *context;
+    camber_polylines *lines;
+    camber_mesh_data mesh;
+    if (camber_context_create(NULL, &context) != CAMBER_OK ||
+        camber_polylines_create(context, &(camber_polylines_desc){points, 3, offsets, 1, NULL, false}, &lines) != CAMBER_OK ||
+        camber_tessellate_on_host(context, lines, &(camber_tessellation_desc){&stroke, 1, CAMBER_METHOD_STRIP, 0}, &mesh))
+        return 1;
+    printf("%s: %zu vertices\n", camber_version(), mesh.info.vertex_count);
+    return mesh.info.vertex_count == 6 ? 0 : 1;
+}
+C
+cat >"$folder/map.c" <<'C'
+#include <camber_map.h>
+int main(void) {
+    camber_context *context;
+    camber_style *style;
+    if (camber_context_create(NULL, &context) != CAMBER_OK ||
+        camber_style_builtin(context, CAMBER_THEME_DARK, &style) != CAMBER_OK)
+        return 1;
+    camber_style_destroy(style);
+    camber_context_destroy(context);
+    return 0;
+}
+C
+programs=core
+[ "$map" = ON ] && programs="core map"
+libdir=$(dirname "$(find "$folder/usr" -name libcamber.so | head -n 1)")
+export PKG_CONFIG_PATH=$libdir/pkgconfig LD_LIBRARY_PATH=$libdir
+
+for program in $programs; do
+    package=camber
+    [ "$program" = map ] && package=camber-map
+    # shellcheck disable=SC2046
+    ${CC:-cc} -std=c11 -Wall -Werror $(pkg-config --cflags "$package") "$folder/$program.c" -o "$folder/$program" \
+        $(pkg-config --libs "$package")
+    "$folder/$program"
+done
+
+cat >"$folder/CMakeLists.txt" <<C
+cmake_minimum_required(VERSION 3.22)
+project(consumer C)
+find_package(camber REQUIRED)
+add_executable(core_shared core.c)
+target_link_libraries(core_shared camber::camber)
+add_executable(core_static core.c)
+target_link_libraries(core_static camber::camber_static)
+if($map)
+  find_package(camber-map REQUIRED)
+  add_executable(map_shared map.c)
+  target_link_libraries(map_shared camber::camber_map)
+  add_executable(map_static map.c)
+  target_link_libraries(map_static camber::camber_map_static)
+endif()
+C
+cmake -S "$folder" -B "$folder/consumer" -DCMAKE_PREFIX_PATH="$folder/usr" >"$folder/log" 2>&1 &&
+    cmake --build "$folder/consumer" >>"$folder/log" 2>&1 || { cat "$folder/log"; exit 1; }
+for program in $programs; do
+    "$folder/consumer/${program}_shared"
+    "$folder/consumer/${program}_static"
+done
+
+# Nothing but the public names leaves the libraries.
+for library in "$libdir"/libcamber*.so; do
+    if nm -D --defined-only "$library" | awk '{print $3}' | grep -vE '^(camber_|__bss_start|_edata|_end)'; then
+        echo "$library exports more than camber_*"
+        exit 1
+    fi
+done
+exported=$(nm -D --defined-only "$libdir/libcamber.so" | awk '{print $3}' | grep '^camber_' | sort)
+declared=$(grep -oE '^CAMBER_API [^(]*\(' "$folder"/usr/include/camber.h | grep -oE 'camber_[a-z_]+\($' | tr -d '(' | sort)
+[ "$exported" = "$declared" ] || { diff <(echo "$exported") <(echo "$declared"); echo "exports and camber.h differ"; exit 1; }
+"$folder/usr/bin/camber" --version

@@ -1,0 +1,15 @@
+#!/usr/bin/env bash
+# The kernels in oclgrind, which checks every access for bounds and for races: test_oclgrind.sh PROGRAM
+set -u
+command -v oclgrind >/dev/null || { echo "oclgrind is not installed: skipped"; exit 77; }
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+# Its clang reads the kernels from memory only where it may write a cache.
+oclgrind --data-races --log "$folder/log" "$1"
+status=$?
+if [ -s "$folder/log" ]; then
+    echo "oclgrind found:"
+    head -n 40 "$folder/log"
+    exit 1
+fi
+exit $status

@@ -16,7 +16,7 @@
  *
  * Threads. There is no global state. A context and all that was made from it may be used by one thread
  * at a time; different contexts are independent. A surface's GL context is made current on the calling
- * thread by each call that needs it.
+ * thread by each call that needs it, and stays so until camber_surface_release.
  *
  * Units. Pixels are device pixels, x to the right, y down; pixel centres lie at .5.
  */
@@ -252,6 +252,8 @@ typedef struct camber_surface_info {
 CAMBER_API camber_status camber_surface_create(camber_context *context, const camber_surface_desc *desc,
                                                camber_surface **surface);
 CAMBER_API void camber_surface_destroy(camber_surface *surface);
+/* Lets go of the GL context on the calling thread, so that another thread can use the surface. */
+CAMBER_API void camber_surface_release(camber_surface *surface);
 /* The strings live as long as the surface. */
 CAMBER_API camber_surface_info camber_surface_get_info(const camber_surface *surface);
 

@@ -1,5 +1,6 @@
 #include "cli/session.h"
 
+#include <pthread.h>
 #include <stdlib.h>
 
 /* Both names of PoCL, of before and after 4.0, and llvmpipe's, which read them when they start; GDAL's too. */
@@ -10,48 +11,142 @@ static bool set_threads(uint32_t threads) {
            setenv("LP_NUM_THREADS", text, 1) == 0 && setenv("GDAL_NUM_THREADS", text, 1) == 0;
 }
 
-static camber_status open_context(camber_session *session) {
+static camber_status open_context(camber_report *report, camber_context **context) {
+    const camber_context_desc desc = {
+        .log = camber_report_log, .log_user = report, .progress = camber_report_progress, .progress_user = report};
+    return camber_context_create(&desc, context);
+}
+
+/* Before any thread or driver starts. */
+static camber_status prepare(camber_session *session) {
     const uint32_t threads = session->options->threads;
+    if (session->context)
+        return CAMBER_OK;
     if (threads && !set_threads(threads))
         return CAMBER_ERROR_MEMORY;
     /* Mesa's own warnings about missing GPUs would stand among the errors. */
     setenv("EGL_LOG_LEVEL", "fatal", 0);
-    const camber_context_desc desc = {.log = camber_report_log,
-                                      .log_user = session->report,
-                                      .progress = camber_report_progress,
-                                      .progress_user = session->report};
-    return camber_context_create(&desc, &session->context);
+    return open_context(session->report, &session->context);
 }
 
-int camber_session_need(camber_session *session, camber_needs needs) {
+static camber_status open_drawing(camber_session *session, camber_context *context, camber_needs needs) {
     const camber_options *options = session->options;
     camber_status status = CAMBER_OK;
-    if (!session->context)
-        status = open_context(session);
-    if (status == CAMBER_OK && needs >= CAMBER_NEEDS_RENDERER && !session->surface) {
+    if (needs >= CAMBER_NEEDS_RENDERER && !session->surface) {
         const camber_surface_desc desc = {.backend = (camber_backend)options->backend};
-        status = camber_surface_create(session->context, &desc, &session->surface);
+        status = camber_surface_create(context, &desc, &session->surface);
     }
     if (status == CAMBER_OK && needs >= CAMBER_NEEDS_DEVICE && !session->device) {
         const camber_device_desc desc = {.match = options->device};
-        status = camber_device_create(session->context, &desc, session->surface, &session->device);
+        status = camber_device_create(context, &desc, session->surface, &session->device);
     }
     if (status == CAMBER_OK && needs >= CAMBER_NEEDS_RENDERER && !session->renderer) {
         const camber_renderer_desc desc = {.sharing = (camber_sharing)options->sharing};
         status = camber_renderer_create(session->device, session->surface, &desc, &session->renderer);
     }
-    return camber_report_status(session->report, status);
+    return status;
+}
+
+/* ---- Opening beside ---- */
+
+struct camber_opener {
+    camber_session *session;
+    camber_context *context;
+    camber_report report;
+    camber_status status;
+    pthread_t thread;
+    bool running;
+};
+
+/* One line through the kernels and the shaders that maps use: drivers compile them now, not in the first frame. What
+ * fails here fails there again, and is told there. */
+static void warm_up(const camber_session *session, camber_context *context) {
+    const float points[] = {2, 2, 14, 2, 14, 14};
+    const uint32_t offsets[] = {0, 3};
+    const camber_polylines_desc lines = {.points = points, .point_count = 3, .offsets = offsets, .polyline_count = 1};
+    const camber_stroke stroke = {.width_px = 3};
+    const camber_paint paint = {3, {0, 0, 0, 1}};
+    const camber_tessellation_desc tessellation = {
+        .strokes = &stroke, .stroke_count = 1, .method = camber_session_method(session)};
+    camber_polylines *polylines = NULL;
+    camber_mesh *mesh = NULL;
+    if (camber_polylines_create(context, &lines, &polylines) == CAMBER_OK &&
+        camber_mesh_create(session->device, session->renderer, &mesh) == CAMBER_OK &&
+        camber_tessellate(mesh, polylines, &tessellation) == CAMBER_OK) {
+        const camber_pass pass = {.mesh = mesh, .paints = &paint, .paint_count = 1};
+        const camber_frame frame = {.width = 16,
+                                    .height = 16,
+                                    .passes = &pass,
+                                    .pass_count = 1,
+                                    .coverage = (camber_coverage)session->options->coverage};
+        (void)camber_render(session->renderer, &frame, NULL, NULL, NULL);
+    }
+    camber_mesh_destroy(mesh);
+    camber_polylines_destroy(polylines);
+}
+
+static void *open_beside(void *user) {
+    camber_opener *opener = user;
+    opener->status = open_context(&opener->report, &opener->context);
+    if (opener->status == CAMBER_OK)
+        opener->status = open_drawing(opener->session, opener->context, CAMBER_NEEDS_RENDERER);
+    if (opener->status == CAMBER_OK)
+        warm_up(opener->session, opener->context);
+    if (opener->session->surface)
+        camber_surface_release(opener->session->surface);
+    return NULL;
+}
+
+void camber_session_start(camber_session *session) {
+    if (prepare(session) != CAMBER_OK)
+        return;
+    camber_opener *opener = calloc(1, sizeof *opener);
+    if (!opener)
+        return;
+    opener->session = session;
+    opener->report = *session->report;
+    opener->report.bars = false;
+    opener->running = pthread_create(&opener->thread, NULL, open_beside, opener) == 0;
+    if (opener->running)
+        session->opener = opener;
+    else
+        free(opener);
+}
+
+static void join(camber_opener *opener) {
+    if (opener && opener->running)
+        pthread_join(opener->thread, NULL);
+    if (opener)
+        opener->running = false;
+}
+
+/* ---- Both ---- */
+
+int camber_session_need(camber_session *session, camber_needs needs) {
+    camber_status status = prepare(session);
+    if (status != CAMBER_OK || needs < CAMBER_NEEDS_DEVICE)
+        return camber_report_status(session->report, status);
+    if (session->opener) {
+        join(session->opener);
+        return camber_report_status(&session->opener->report, session->opener->status);
+    }
+    return camber_report_status(session->report, open_drawing(session, session->context, needs));
 }
 
 void camber_session_close(camber_session *session) {
+    join(session->opener);
     camber_renderer_destroy(session->renderer);
     camber_device_destroy(session->device);
     camber_surface_destroy(session->surface);
     camber_context_destroy(session->context);
+    if (session->opener)
+        camber_context_destroy(session->opener->context);
+    free(session->opener);
     session->renderer = NULL;
     session->device = NULL;
     session->surface = NULL;
     session->context = NULL;
+    session->opener = NULL;
 }
 
 camber_method camber_session_method(const camber_session *session) {

@@ -10,6 +10,10 @@ typedef enum camber_needs {
     CAMBER_NEEDS_RENDERER,
 } camber_needs;
 
+/* A renderer that opens on a thread of its own while a file is read. It has its own context and report, since those
+ * serve one thread at a time. */
+typedef struct camber_opener camber_opener;
+
 typedef struct camber_session {
     const camber_options *options;
     camber_report *report;
@@ -18,8 +22,13 @@ typedef struct camber_session {
     camber_surface *surface;
     camber_device *device;
     camber_renderer *renderer;
+    camber_opener *opener; /* NULL: not started */
     double start_ms;
 } camber_session;
+
+/* Starts opening a renderer beside what the caller does next; camber_session_need(CAMBER_NEEDS_RENDERER) waits for it
+ * and tells how it went. */
+void camber_session_start(camber_session *session);
 
 /* Opens what is needed and not open yet. Returns an exit status, its line printed. */
 int camber_session_need(camber_session *session, camber_needs needs);

@@ -18,11 +18,15 @@ static int draw(job *j) {
     int status = camber_output_open(&j->output, session->report, session->guard, session->options->output,
                                     session->options->force);
     if (status == CAMBER_EXIT_DONE)
-        status = camber_session_need(session, CAMBER_NEEDS_RENDERER);
-    if (status == CAMBER_EXIT_DONE)
-        status = camber_input_open(&j->input, session);
+        status = camber_session_need(session, CAMBER_NEEDS_CONTEXT);
+    if (status != CAMBER_EXIT_DONE)
+        return status;
+    camber_session_start(session);
+    status = camber_input_open(&j->input, session);
     if (status == CAMBER_EXIT_DONE)
         status = camber_input_project(&j->input);
+    if (status == CAMBER_EXIT_DONE)
+        status = camber_session_need(session, CAMBER_NEEDS_RENDERER);
     if (status != CAMBER_EXIT_DONE)
         return status;
     camber_input_warn_empty(&j->input, "the picture is empty");

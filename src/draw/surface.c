@@ -105,6 +105,10 @@ camber_status camber_surface_make_current(camber_surface *surface) {
                        "%s: the GL context cannot be made current; open it again", surface->name);
 }
 
+void camber_surface_release(camber_surface *surface) {
+    surface->ops->release(surface);
+}
+
 camber_gl_handles camber_surface_handles(const camber_surface *surface) {
     return surface->ops->handles ? surface->ops->handles(surface) : (camber_gl_handles){0};
 }

@@ -10,6 +10,7 @@ typedef struct camber_surface_ops {
     /* Loads the library and makes a context, current on this thread. Logs on failure. */
     camber_status (*create)(camber_surface *surface);
     bool (*make_current)(camber_surface *surface);
+    void (*release)(camber_surface *surface); /* no context is current on this thread any more */
     camber_function *(*load)(camber_surface *surface, const char *name);
     camber_gl_handles (*handles)(const camber_surface *surface); /* NULL: none */
     void (*destroy)(camber_surface *surface);

@@ -130,6 +130,11 @@ static bool make_current(camber_surface *surface) {
     return egl->eglMakeCurrent(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, egl->context);
 }
 
+static void release(camber_surface *surface) {
+    const egl_state *egl = surface->state;
+    egl->eglMakeCurrent(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+}
+
 static camber_gl_handles handles(const camber_surface *surface) {
     const egl_state *egl = surface->state;
     return (camber_gl_handles){(cl_context_properties)egl->context, (cl_context_properties)egl->display,
@@ -141,7 +146,7 @@ static void destroy(camber_surface *surface) {
     if (!egl)
         return;
     if (egl->context != EGL_NO_CONTEXT) {
-        egl->eglMakeCurrent(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+        release(surface);
         egl->eglDestroyContext(egl->display, egl->context);
     }
     /* The display is the process's, shared with every other surface on it, and the driver's library keeps threads: both
@@ -149,4 +154,5 @@ static void destroy(camber_surface *surface) {
     camber_free(surface->context, egl);
 }
 
-const camber_surface_ops camber_surface_egl = {CAMBER_BACKEND_EGL, create, make_current, load, handles, destroy};
+const camber_surface_ops camber_surface_egl = {
+    CAMBER_BACKEND_EGL, create, make_current, release, load, handles, destroy};

@@ -44,6 +44,11 @@ static bool make_current(camber_surface *surface) {
     return osmesa->make_current(osmesa->context, &osmesa->pixel, GL_UNSIGNED_BYTE, 1, 1);
 }
 
+static void release(camber_surface *surface) {
+    const osmesa_state *osmesa = surface->state;
+    osmesa->make_current(NULL, NULL, 0, 0, 0);
+}
+
 static camber_status create(camber_surface *surface) {
     /* 4.3 has primitive restart with the fixed index, and GLES 3 shaders come with it. */
     static const int wanted[] = {OSMESA_FORMAT,
@@ -79,11 +84,12 @@ static void destroy(camber_surface *surface) {
     if (!osmesa)
         return;
     if (osmesa->context) {
-        osmesa->make_current(NULL, NULL, 0, 0, 0);
+        release(surface);
         osmesa->destroy(osmesa->context);
     }
     /* The library stays: its driver's threads may still be in it. */
     camber_free(surface->context, osmesa);
 }
 
-const camber_surface_ops camber_surface_osmesa = {CAMBER_BACKEND_OSMESA, create, make_current, load, NULL, destroy};
+const camber_surface_ops camber_surface_osmesa = {
+    CAMBER_BACKEND_OSMESA, create, make_current, release, load, NULL, destroy};

@@ -127,9 +127,10 @@ function(road_layer out theme level class part)
   endif()
   road_color(color ${level} ${${theme}_paper} ${near} ${far})
   road_filter(filter ${level} ${class})
-  # The bank of a bridge ends where the bridge does; anything else runs on under its neighbour.
+  # The bank of a bridge ends where the bridge does; anything else runs on into its neighbour: a bridge's roadway too,
+  # or the bank would show through the smooth edge of its end.
   set(cap round)
-  if(level STREQUAL "bridge")
+  if(level STREQUAL "bridge" AND part STREQUAL "casing")
     set(cap butt)
   endif()
   set(layer ",\n    {\"id\": \"${level}-${class}-${part}\", \"type\": \"line\",\n")

@@ -60,6 +60,17 @@ static inline void put_strip_indices(global camber_u32 *restrict indices, camber
 
 #else
 
+/* The edges of the segment out. Where a kite's bodies are cut they meet in one inner vertex: it is the segment in's, to
+ * the last bit, so that no pixel falls between. No triangle ends with it. */
+static inline void put_out_edges(global camber_u32 *restrict vertices, size_t k, const segment_end *in,
+                                 const segment_end *out) {
+    const float q = camber_turn_unpack(out->join), side = q > 0.0f ? 1.0f : -1.0f;
+    put_edges(vertices, k, out);
+    if (CAMBER_METHOD == CAMBER_KITE && camber_join_kind(out->join) == CAMBER_KIND_CUT)
+        put_vertex(vertices, k + (q > 0.0f ? 0 : 1), in, camber_edge_along(in->join, 1.0f, side, CAMBER_METHOD),
+                   camber_edge_limit(in->join, in->half_shorter, side), side);
+}
+
 /* The body between the start's L, R (s, s + 1) and the end's (e, e + 1); a and b are the centres where the ends are
  * joins. Every triangle ends with a vertex that carries the segment, and all wind alike:
  *
@@ -177,7 +188,9 @@ kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK, 1, 1))) void emit(
     put_strip_indices(index, v, dot, breaks, ends & CAMBER_POINT_LAST);
     if (dot)
         make_dot(&in, &out);
-    if (dot || ends & CAMBER_POINT_FIRST) {
+    /* A ring's seam begins with the vertices that it ends with, to the last bit: no pixel falls between. No triangle
+     * ends with them, so they may carry the other segment. */
+    if (dot || (ends & CAMBER_POINT_FIRST && kind != CAMBER_KIND_CUT)) {
         put_edges(vertices, k, &out);
         if (dot)
             put_edges(vertices, k + 2, &in);
@@ -198,7 +211,7 @@ kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK, 1, 1))) void emit(
     if (ends & CAMBER_POINT_FIRST) {
         if (joined)
             put_vertex(vertices, k, &out, 0.0f, CAMBER_NO_LIMIT_PX, 0.0f);
-        put_edges(vertices, k + joined, &out);
+        put_out_edges(vertices, k + joined, &in, &out);
         return;
     }
     const camber_u32 triangles = camber_join_triangles(join);
@@ -211,7 +224,7 @@ kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK, 1, 1))) void emit(
     put_join_vertices(vertices, k + 2, &in, &out, rows[row], outer);
     const size_t p = k + (centre - v);
     put_vertex(vertices, p, &out, 0.0f, CAMBER_NO_LIMIT_PX, 0.0f);
-    put_edges(vertices, p + 1, &out);
+    put_out_edges(vertices, p + 1, &in, &out);
     put_join_indices(index, v, triangles, outer);
 #endif
 }

@@ -156,7 +156,9 @@ CAMBER_FN float camber_edge_limit(camber_u32 join, float half_shorter, float sid
     const camber_u32 kind = camber_join_kind(join);
     const camber_u32 is_cut = kind == CAMBER_KIND_CUT || kind == CAMBER_KIND_TIGHT;
     const camber_u32 is_butt = kind < CAMBER_KIND_CUT && camber_join_end(join) == 1u;
-    const float inner = is_cut && side * camber_turn_unpack(join) > 0.0f ? half_shorter : CAMBER_NO_LIMIT_PX;
+    /* What a tight join gives up of the inner side the other segment may be too short to cover: the pad at most. */
+    const float room = kind == CAMBER_KIND_TIGHT && half_shorter > CAMBER_PAD_PX ? CAMBER_PAD_PX : half_shorter;
+    const float inner = is_cut && side * camber_turn_unpack(join) > 0.0f ? room : CAMBER_NO_LIMIT_PX;
     return is_butt ? CAMBER_PAD_PX : inner;
 }
 

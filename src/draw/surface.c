@@ -72,19 +72,47 @@ static camber_status open_backend(camber_context *context, const camber_surface_
     return CAMBER_OK;
 }
 
+/* A log that tells errors as information: a back end that is not there is none while another may be. */
+typedef struct softened_log {
+    camber_log_fn *log;
+    void *user;
+} softened_log;
+
+static void log_softened(void *user, camber_log_level level, const char *message) {
+    const softened_log *softened = user;
+    if (softened->log)
+        softened->log(softened->user, level == CAMBER_LOG_ERROR ? CAMBER_LOG_INFO : level, message);
+}
+
+static camber_status try_backend(camber_context *context, const camber_surface_ops *ops, bool is_last,
+                                 camber_surface **surface) {
+    if (is_last)
+        return open_backend(context, ops, surface);
+    softened_log softened = {context->desc.log, context->desc.log_user};
+    context->desc.log = log_softened;
+    context->desc.log_user = &softened;
+    const camber_status status = open_backend(context, ops, surface);
+    context->desc.log = softened.log;
+    context->desc.log_user = softened.user;
+    return status;
+}
+
 camber_status camber_surface_create(camber_context *context, const camber_surface_desc *desc,
                                     camber_surface **surface) {
     static const camber_surface_ops *const backends[] = {&camber_surface_egl, &camber_surface_osmesa};
+    const size_t count = sizeof backends / sizeof *backends;
     const camber_backend wanted = desc ? desc->backend : CAMBER_BACKEND_AUTO;
-    camber_status status = CAMBER_ERROR_DEVICE;
-    for (size_t i = 0; i < sizeof backends / sizeof *backends; i++) {
+    camber_status status = CAMBER_ERROR_ARGUMENT;
+    for (size_t i = 0; i < count; i++) {
         if (wanted != CAMBER_BACKEND_AUTO && wanted != backends[i]->backend)
             continue;
-        status = open_backend(context, backends[i], surface);
+        status = try_backend(context, backends[i], wanted != CAMBER_BACKEND_AUTO || i + 1 == count, surface);
         if (status == CAMBER_OK || status == CAMBER_ERROR_MEMORY)
-            break;
+            return status;
     }
-    return status;
+    return status == CAMBER_ERROR_ARGUMENT
+               ? camber_fail(context, status, "no GL back end %d; see camber_backend", (int)wanted)
+               : status;
 }
 
 void camber_surface_destroy(camber_surface *surface) {

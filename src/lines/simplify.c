@@ -136,8 +136,8 @@ camber_status camber_lines_simplify(camber_context *context, const camber_lines 
     made.offsets[0] = 0;
     for (size_t i = 0; i < lines->polyline_count; i++) {
         const size_t first = lines->offsets[i];
-        made.point_count += simplify_line(lines->points + 2 * first, lines->offsets[i + 1] - first, tolerance_px, points, keep,
-                                          made.points + 2 * made.point_count);
+        made.point_count += simplify_line(lines->points + 2 * first, lines->offsets[i + 1] - first, tolerance_px,
+                                          points, keep, made.points + 2 * made.point_count);
         made.offsets[i + 1] = (uint32_t)made.point_count;
     }
     *simplified = made;

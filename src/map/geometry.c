@@ -1,7 +1,7 @@
 #include "map/geometry.h"
 
-#include "map/clip.h"
 #include "lines/simplify.h"
+#include "map/clip.h"
 
 #include <math.h>
 #include <string.h>

@@ -134,7 +134,9 @@ static void push_strip_edge(twin *t, uint32_t left) {
 static void walk_strip_point(twin *t, size_t slot, segment in, segment out, camber_u32 join, float half_shorter) {
     const camber_u32 info = t->polylines->info[slot];
     if (info & CAMBER_POINT_FIRST) {
-        push_strip_edge(t, push_edges(t, slot, out, false, join, half_shorter));
+        /* A ring's seam begins with the very vertices that it ends with. */
+        const bool seam = camber_join_kind(join) == CAMBER_KIND_CUT;
+        push_strip_edge(t, push_edges(t, slot, seam ? in : out, seam, join, half_shorter));
         return;
     }
     push_strip_edge(t, push_edges(t, slot, in, true, join, half_shorter));
@@ -236,6 +238,15 @@ static void walk_body_point(twin *t, size_t slot, segment in, segment out, cambe
         t->start_centre = push_point(t, slot, out, false, 0.0f, 0.0f);
     t->start = push_edges(t, slot, out, false, join, half_shorter);
     t->start_joined = joined;
+    if (t->method == CAMBER_KITE && camber_join_kind(join) == CAMBER_KIND_CUT && !t->failed) {
+        /* Cut bodies meet in one inner vertex, the one of the segment that comes in. */
+        const bool right = !(camber_turn_unpack(join) > 0.0f);
+        camber_vertex vertex = make_vertex(t, slot, in, true);
+        vertex.along = camber_edge_along(join, 1.0f, right ? -1.0f : 1.0f, t->method);
+        vertex.limit_px = camber_edge_limit(join, half_shorter, right ? -1.0f : 1.0f);
+        vertex.across = pack_across(right ? -1.0f : 1.0f);
+        t->data->vertices[t->start + right] = vertex;
+    }
 }
 
 static void walk(twin *t) {

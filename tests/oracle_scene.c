@@ -1,0 +1,262 @@
+/* Whole road networks against the oracle, with Cairo as the peer: every line stroked by itself, black on white, round
+ * joins and butt ends; the mean difference from the union of all strokes over a square in the middle. Needs the
+ * extracts under $CAMBER_DATA/data; ends in 77 without them. */
+#include "oracle.h"
+
+#include <cairo.h>
+#include <cpl_error.h>
+#include <gdal.h>
+#include <ogr_api.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SIDE_PX = 2048, CROP_AT_PX = 800, CROP_PX = 400, SKIPPED = 77 };
+
+/* World coordinates, then pixels of the picture. */
+typedef struct network {
+    double *world; /* pairs, 0 to 1 */
+    float *points;
+    size_t point_count, point_capacity;
+    uint32_t *offsets;
+    size_t line_count, line_capacity;
+} network;
+
+typedef struct core {
+    camber_context *context;
+    camber_surface *surface;
+    camber_device *device;
+    camber_renderer *renderer;
+    camber_mesh *mesh;
+} core;
+
+static void *must(void *block) {
+    if (!block)
+        abort();
+    return block;
+}
+
+/* ---- Reading ---- */
+
+static void add_line(network *n, OGRGeometryH line) {
+    const double pi = 3.14159265358979323846;
+    const int count = OGR_G_GetPointCount(line);
+    if (n->line_count + 2 > n->line_capacity) {
+        n->line_capacity = 2 * n->line_capacity + 1024;
+        n->offsets = must(realloc(n->offsets, n->line_capacity * sizeof *n->offsets));
+        n->offsets[0] = 0;
+    }
+    if (n->point_count + (size_t)count > n->point_capacity) {
+        n->point_capacity = 2 * n->point_capacity + (size_t)count + 4096;
+        n->world = must(realloc(n->world, n->point_capacity * 2 * sizeof *n->world));
+    }
+    for (int i = 0; i < count; i++) {
+        const double latitude = OGR_G_GetY(line, i) * pi / 180;
+        n->world[2 * n->point_count] = (OGR_G_GetX(line, i) + 180) / 360;
+        n->world[2 * n->point_count++ + 1] = (1 - asinh(tan(latitude)) / pi) / 2;
+    }
+    n->offsets[++n->line_count] = (uint32_t)n->point_count;
+}
+
+/* The ways with a highway tag. false: the file is not there. */
+static bool read_highways(network *n, const char *path) {
+    GDALDatasetH dataset = GDALOpenEx(path, GDAL_OF_VECTOR | GDAL_OF_READONLY, NULL, NULL, NULL);
+    if (!dataset)
+        return false;
+    OGRLayerH from = NULL;
+    for (OGRFeatureH f; (f = GDALDatasetGetNextFeature(dataset, &from, NULL, NULL, NULL)) != NULL;) {
+        OGRGeometryH line = OGR_F_GetGeometryRef(f);
+        const int field = OGR_F_GetFieldIndex(f, "highway");
+        if (strcmp(OGR_L_GetName(from), "lines") == 0 && line && field >= 0 && OGR_F_IsFieldSetAndNotNull(f, field))
+            add_line(n, line);
+        OGR_F_Destroy(f);
+    }
+    GDALClose(dataset);
+    return n->line_count > 1000;
+}
+
+static int compare_doubles(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Where the middle 99 % of the points begin and end on an axis. */
+static void middle(const network *n, int axis, double *least, double *most) {
+    double *sorted = must(malloc(n->point_count * sizeof *sorted));
+    for (size_t i = 0; i < n->point_count; i++)
+        sorted[i] = n->world[2 * i + (size_t)axis];
+    qsort(sorted, n->point_count, sizeof *sorted, compare_doubles);
+    *least = sorted[(size_t)((double)n->point_count * 0.005)];
+    *most = sorted[(size_t)((double)n->point_count * 0.995)];
+    free(sorted);
+}
+
+/* The middle 99 % of the points span the picture. */
+static void fit(network *n) {
+    double left, right, top, bottom;
+    middle(n, 0, &left, &right);
+    middle(n, 1, &top, &bottom);
+    const double scale = SIDE_PX / fmax(right - left, bottom - top);
+    n->points = must(malloc(n->point_count * 2 * sizeof *n->points));
+    for (size_t i = 0; i < n->point_count; i++) {
+        n->points[2 * i] = (float)((n->world[2 * i] - left) * scale);
+        n->points[2 * i + 1] = (float)((n->world[2 * i + 1] - top) * scale);
+    }
+}
+
+static void free_network(network *n) {
+    free(n->world);
+    free(n->points);
+    free(n->offsets);
+}
+
+/* ---- Drawing: 255 is ink ---- */
+
+static bool keep_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
+    uint8_t *levels = user;
+    for (size_t i = 0; i < (size_t)row_count * SIDE_PX; i++)
+        levels[(size_t)first_row * SIDE_PX + i] = (uint8_t)(255 - rgba[4 * i]);
+    return true;
+}
+
+static bool draw(const core *c, const network *n, double width_px, uint8_t *levels) {
+    const camber_stroke stroke = {(float)width_px, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0};
+    const camber_paint paint = {(float)width_px, {0, 0, 0, 1}};
+    const camber_polylines_desc desc = {n->points, n->point_count, n->offsets, n->line_count, NULL, true};
+    const camber_tessellation_desc tessellation = {&stroke, 1, CAMBER_METHOD_STRIP, 0};
+    camber_polylines *polylines = NULL;
+    camber_status status = camber_polylines_create(c->context, &desc, &polylines);
+    if (status == CAMBER_OK)
+        status = camber_tessellate(c->mesh, polylines, &tessellation);
+    if (status == CAMBER_OK) {
+        const camber_pass pass = {.mesh = c->mesh, .paints = &paint, .paint_count = 1};
+        const camber_frame frame = {SIDE_PX, SIDE_PX, {1, 1, 1, 1}, &pass, 1, CAMBER_COVERAGE_EXACT, 0};
+        status = camber_render(c->renderer, &frame, keep_rows, levels, NULL);
+    }
+    camber_polylines_destroy(polylines);
+    return status == CAMBER_OK;
+}
+
+static void draw_with_cairo(const network *n, double width_px, uint8_t *levels) {
+    cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_ARGB32, SIDE_PX, SIDE_PX);
+    cairo_t *cairo = cairo_create(surface);
+    cairo_set_source_rgb(cairo, 1, 1, 1);
+    cairo_paint(cairo);
+    cairo_set_source_rgb(cairo, 0, 0, 0);
+    cairo_set_line_width(cairo, width_px);
+    cairo_set_line_join(cairo, CAIRO_LINE_JOIN_ROUND);
+    cairo_set_tolerance(cairo, 0.25);
+    for (size_t i = 0; i < n->line_count; i++) {
+        for (uint32_t k = n->offsets[i]; k < n->offsets[i + 1]; k++)
+            (k == n->offsets[i] ? cairo_move_to : cairo_line_to)(cairo, n->points[2 * k], n->points[2 * k + 1]);
+        cairo_stroke(cairo);
+    }
+    cairo_surface_flush(surface);
+    const unsigned char *pixels = cairo_image_surface_get_data(surface);
+    const size_t stride = (size_t)cairo_image_surface_get_stride(surface);
+    for (size_t y = 0; y < SIDE_PX; y++)
+        for (size_t x = 0; x < SIDE_PX; x++)
+            levels[y * SIDE_PX + x] = (uint8_t)(255 - pixels[y * stride + 4 * x]);
+    cairo_destroy(cairo);
+    cairo_surface_destroy(surface);
+}
+
+/* ---- Judging ---- */
+
+/* In 255ths, over the crop. */
+static double mean_error(const oracle_window *truth, const uint8_t *levels) {
+    double sum = 0;
+    for (int y = 0; y < CROP_PX; y++)
+        for (int x = 0; x < CROP_PX; x++) {
+            const int level = levels[(size_t)(CROP_AT_PX + y) * SIDE_PX + (size_t)(CROP_AT_PX + x)];
+            sum += abs((int)lrint(255 * oracle_coverage(truth, x, y)) - level);
+        }
+    return sum / (CROP_PX * CROP_PX);
+}
+
+static bool judge(const core *c, const network *n, const char *name, double width_px, double most_of_cairo) {
+    const oracle_style style = {width_px, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 2, false};
+    uint8_t *levels = must(malloc((size_t)SIDE_PX * SIDE_PX));
+    oracle_window truth;
+    if (!oracle_open(&truth, CROP_AT_PX, CROP_AT_PX, CROP_PX, CROP_PX))
+        abort();
+    for (size_t i = 0; i < n->line_count; i++)
+        if (!oracle_stroke(&truth, n->points + 2 * (size_t)n->offsets[i], n->offsets[i + 1] - n->offsets[i], &style))
+            abort();
+    const bool drawn = draw(c, n, width_px, levels);
+    const double error = mean_error(&truth, levels);
+    draw_with_cairo(n, width_px, levels);
+    const double cairo = mean_error(&truth, levels);
+    const bool good = drawn && error <= most_of_cairo * cairo;
+    printf("%s - %s at %g px: mean error %.3f, Cairo %.3f: %.3f of it (bound %.2f)\n", good ? "ok" : "not ok", name,
+           width_px, error, cairo, error / cairo, most_of_cairo);
+    oracle_close(&truth);
+    free(levels);
+    return good;
+}
+
+static void print_log(void *user, camber_log_level level, const char *message) {
+    (void)user;
+    if (level == CAMBER_LOG_ERROR)
+        printf("# %s\n", message);
+}
+
+static bool open_core(core *c) {
+    const camber_context_desc desc = {.log = print_log};
+    return camber_context_create(&desc, &c->context) == CAMBER_OK &&
+           camber_surface_create(c->context, NULL, &c->surface) == CAMBER_OK &&
+           camber_device_create(c->context, NULL, c->surface, &c->device) == CAMBER_OK &&
+           camber_renderer_create(c->device, c->surface, NULL, &c->renderer) == CAMBER_OK &&
+           camber_mesh_create(c->device, c->renderer, &c->mesh) == CAMBER_OK;
+}
+
+static void close_core(core *c) {
+    camber_mesh_destroy(c->mesh);
+    camber_renderer_destroy(c->renderer);
+    camber_device_destroy(c->device);
+    camber_surface_destroy(c->surface);
+    camber_context_destroy(c->context);
+}
+
+int main(void) {
+    static const struct {
+        const char *name, *file;
+        double most_of_cairo[3]; /* at 8, 3 and 1 px */
+    } scenes[] = {
+        {"nyc", "nyc.osm.pbf", {1, 1, 1}},
+        {"porto", "porto_portugal.osm.pbf", {1.2, 1.2, 1.25}},
+    };
+    static const double widths_px[3] = {8, 3, 1};
+    const char *folder = getenv("CAMBER_DATA");
+    if (!folder) {
+        puts("CAMBER_DATA is not set: no scenes to judge");
+        return SKIPPED;
+    }
+    core c = {0};
+    bool good = true;
+    int status = SKIPPED;
+    CPLSetErrorHandler(CPLQuietErrorHandler); /* GDAL warns of every area that does not close */
+    GDALAllRegister();
+    if (!open_core(&c))
+        goto done;
+    for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
+        network n = {0};
+        char path[4096];
+        snprintf(path, sizeof path, "%s/data/%s", folder, scenes[i].file);
+        if (!read_highways(&n, path)) {
+            printf("# %s cannot be read: not judged\n", path);
+        } else {
+            fit(&n);
+            printf("# %s: %zu lines, %zu points\n", scenes[i].name, n.line_count, n.point_count);
+            for (int w = 0; w < 3; w++)
+                good = judge(&c, &n, scenes[i].name, widths_px[w], scenes[i].most_of_cairo[w]) && good;
+            status = good ? 0 : 1;
+        }
+        free_network(&n);
+    }
+done:
+    close_core(&c);
+    return status;
+}

@@ -48,36 +48,53 @@ static bool take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint3
     return true;
 }
 
-/* From lines in memory to pixels in memory; then the parts that a frame is made of, their input resident. */
-static camber_status run_camber(bench *b, const bench_scene *scene, uint8_t *picture, times *t, int run) {
-    const camber_stroke stroke = {.width_px = scene->width_px};
-    const camber_paint paint = {scene->width_px, {0, 0, 0, 1}};
-    const camber_pass pass = {.mesh = b->mesh, .paints = &paint, .paint_count = 1};
-    const camber_frame frame = {
-        .width = BENCH_SIDE_PX, .height = BENCH_SIDE_PX, .background = {1, 1, 1, 1}, .passes = &pass, .pass_count = 1};
+static camber_status make_polylines(bench *b, const bench_scene *scene, camber_polylines **polylines) {
     const camber_polylines_desc desc = {.points = scene->lines.points,
                                         .point_count = scene->lines.point_count,
                                         .offsets = scene->lines.offsets,
                                         .polyline_count = scene->lines.polyline_count,
                                         .keep_open = true};
-    const camber_tessellation_desc tessellation = {.strokes = &stroke, .stroke_count = 1};
+    return camber_polylines_create(b->context, &desc, polylines);
+}
+
+static camber_status tessellate(bench *b, const bench_scene *scene, const camber_polylines *polylines) {
+    const camber_stroke stroke = {.width_px = scene->width_px};
+    return camber_tessellate(b->mesh, polylines, &(camber_tessellation_desc){.strokes = &stroke, .stroke_count = 1});
+}
+
+/* A frame, from lines in memory to pixels in memory. */
+static camber_status run_frame(bench *b, const bench_scene *scene, uint8_t *picture, times *t, int run) {
+    const camber_paint paint = {scene->width_px, {0, 0, 0, 1}};
+    const camber_pass pass = {.mesh = b->mesh, .paints = &paint, .paint_count = 1};
+    const camber_frame frame = {
+        .width = BENCH_SIDE_PX, .height = BENCH_SIDE_PX, .background = {1, 1, 1, 1}, .passes = &pass, .pass_count = 1};
     camber_polylines *polylines = NULL;
     camber_frame_stats stats = {0};
     const double begin = camber_now_ms();
-    camber_status status = camber_polylines_create(b->context, &desc, &polylines);
+    camber_status status = make_polylines(b, scene, &polylines);
     if (status == CAMBER_OK)
-        status = camber_tessellate(b->mesh, polylines, &tessellation);
+        status = tessellate(b, scene, polylines);
     if (status == CAMBER_OK)
         status = camber_render(b->renderer, &frame, take_rows, picture, &stats);
-    const double drawn = camber_now_ms();
-    if (status == CAMBER_OK)
-        status = camber_tessellate(b->mesh, polylines, &tessellation);
-    const double tessellated = camber_now_ms();
     if (status == CAMBER_OK && run >= 0) {
-        const camber_mesh_info info = camber_mesh_get_info(b->mesh);
-        t->frame[run] = drawn - begin;
-        t->tessellate[run] = tessellated - drawn;
+        t->frame[run] = camber_now_ms() - begin;
         t->draw[run] = stats.draw_ms;
+    }
+    camber_polylines_destroy(polylines);
+    return status;
+}
+
+/* The tessellation alone, its input and output resident on the device. */
+static camber_status run_tessellation(bench *b, const bench_scene *scene, times *t) {
+    camber_polylines *polylines = NULL;
+    camber_status status = make_polylines(b, scene, &polylines);
+    for (int run = -WARM_UPS; run < RUNS && status == CAMBER_OK; run++) {
+        const double begin = camber_now_ms();
+        status = tessellate(b, scene, polylines);
+        if (status != CAMBER_OK || run < 0)
+            continue;
+        t->tessellate[run] = camber_now_ms() - begin;
+        const camber_mesh_info info = camber_mesh_get_info(b->mesh);
         t->classify[run] = info.classify_ms;
         t->scan[run] = info.scan_ms;
         t->emit[run] = info.emit_ms;
@@ -107,7 +124,7 @@ static void print_row(bench *b, const bench_scene *scene, times *t) {
     const double millions = (double)segments / 1e3;
     printf("%-22s %7zu %8zu %5.1f %6.2f %6.2f %6.2f %7.2f %7.1f %6.1f %6.2f %7.1f %7.1f", scene->name,
            scene->lines.polyline_count, segments, bytes / (double)segments, classify, scan, emit, tessellate,
-           millions / tessellate, bytes / 1e6 / (classify + scan + emit), copy / emit, draw, frame);
+           millions / (classify + scan + emit), bytes / 1e6 / (classify + scan + emit), copy / emit, draw, frame);
     if (cairo > 0)
         printf(" %7.1f %6.2f", cairo, cairo / frame);
     printf("\n");
@@ -122,28 +139,40 @@ static void print_row(bench *b, const bench_scene *scene, times *t) {
             info.triangle_count, bytes, classify, scan, emit, tessellate, copy, draw, frame, cairo);
 }
 
+/* memcpy of the vertices, as often as the tessellation ran. */
+static camber_status run_copy(bench *b, times *t) {
+    camber_mesh_data data = {0};
+    camber_status status = camber_mesh_read(b->mesh, &data);
+    void *copy = camber_alloc(b->context, data.info.vertex_count, sizeof *data.vertices);
+    if (status == CAMBER_OK && !copy)
+        status = CAMBER_ERROR_MEMORY;
+    for (int run = -WARM_UPS; run < RUNS && status == CAMBER_OK; run++) {
+        const double ms = copy_ms(copy, data.vertices, data.info.vertex_count * sizeof *data.vertices);
+        if (run >= 0)
+            t->copy[run] = ms;
+    }
+    camber_free(b->context, copy);
+    camber_mesh_data_free(b->context, &data);
+    return status;
+}
+
 static camber_status run_scene(bench *b, const bench_scene *scene) {
     times t;
     uint8_t *picture = camber_alloc(b->context, (size_t)BENCH_SIDE_PX * BENCH_SIDE_PX, 4);
-    camber_mesh_data data = {0};
-    void *copy = NULL;
     camber_status status = picture ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    /* In turn, so that a machine whose speed drifts is fair to both. */
     for (int run = -WARM_UPS; run < RUNS && status == CAMBER_OK; run++) {
-        status = run_camber(b, scene, picture, &t, run);
-        if (status == CAMBER_OK && !copy) {
-            status = camber_mesh_read(b->mesh, &data);
-            copy = camber_alloc(b->context, data.info.vertex_count, sizeof *data.vertices);
-            status = copy ? status : CAMBER_ERROR_MEMORY;
-        }
-        if (status == CAMBER_OK && run >= 0) {
-            t.copy[run] = copy_ms(copy, data.vertices, data.info.vertex_count * sizeof *data.vertices);
-            t.cairo[run] = bench_cairo_ms(scene);
-        }
+        status = run_frame(b, scene, picture, &t, run);
+        const double cairo_ms = bench_cairo_ms(scene);
+        if (run >= 0)
+            t.cairo[run] = cairo_ms;
     }
     if (status == CAMBER_OK)
+        status = run_tessellation(b, scene, &t);
+    if (status == CAMBER_OK)
+        status = run_copy(b, &t);
+    if (status == CAMBER_OK)
         print_row(b, scene, &t);
-    camber_free(b->context, copy);
-    camber_mesh_data_free(b->context, &data);
     camber_free(b->context, picture);
     return status;
 }
@@ -208,10 +237,10 @@ static camber_status run_all(bench *b) {
     printf("%s (%s %s), %u units; %s; sharing: %s; camber %s%s%s\n", device.name, device.platform, device.driver,
            device.compute_units, surface.renderer, camber_sharing_name(camber_renderer_get_sharing(b->renderer)),
            camber_version(), cairo ? "; Cairo " : "", cairo ? cairo : "");
-    printf(
-        "%d x %d px, round joins, butt caps, black on white; ms, medians of %d after %d. M/s: segments tessellated.\n"
-        "GB/s: bytes written by the kernels; cpy/emit: memcpy of the vertices on one thread against emit.\n\n",
-        BENCH_SIDE_PX, BENCH_SIDE_PX, RUNS, WARM_UPS);
+    printf("%d x %d px, round joins, butt caps, black on white; ms, medians of %d after %d. M/s: segments through the "
+           "kernels.\n"
+           "GB/s: bytes written by the kernels; cpy/emit: memcpy of the vertices on one thread against emit.\n\n",
+           BENCH_SIDE_PX, BENCH_SIDE_PX, RUNS, WARM_UPS);
     printf("%-22s %7s %8s %5s %6s %6s %6s %7s %7s %6s %6s %7s %7s%s\n", "scene", "lines", "segments", "B/seg", "class.",
            "scan", "emit", "tess.", "M/s", "GB/s", "cpy/em", "draw", "frame", cairo ? "   Cairo  ratio" : "");
     for (size_t i = 0; i < list.count && status == CAMBER_OK; i++)
@@ -248,6 +277,8 @@ int main(int argc, char **argv) {
         perror(argv[2]);
         return 73;
     }
+    /* As the tool does: a core for each of PoCL's threads. */
+    setenv("POCL_AFFINITY", "1", 0);
     camber_status status = open_bench(&b);
     if (status == CAMBER_OK)
         status = run_all(&b);

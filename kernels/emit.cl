@@ -46,15 +46,43 @@ static inline void make_dot(segment_end *in, segment_end *out) {
 
 #if CAMBER_METHOD == CAMBER_STRIP
 
-static inline void put_strip_indices(global camber_u32 *restrict indices, camber_u32 v, camber_u32 dot,
-                                     camber_u32 breaks, camber_u32 last) {
-    indices[0] = v;
-    indices[1] = v + 1;
-    if (last | breaks)
-        indices[2] = dot ? v + 2 : 0xffffffffu;
+/* A point of a strip. Its branches are what it costs on a CPU: two of them, at the beginning of a polyline and where
+ * the strip breaks; everything else is a choice of values. */
+static inline void put_strip_point(global camber_u32 *vertices, global camber_u32 *index, size_t k, camber_u32 point,
+                                   const segment_end *in, const segment_end *out) {
+    const camber_u32 kind = camber_join_kind(in->join), v = (camber_u32)k;
+    const camber_u32 breaks = camber_strip_breaks(kind, point);
+    /* Most points by far: a cut inside a polyline. */
+    if (kind == CAMBER_KIND_CUT && !(point & CAMBER_POINT_FIRST)) {
+        const float along = camber_edge_along(in->join, 1.0f, 1.0f, CAMBER_METHOD);
+        index[0] = v;
+        index[1] = v + 1;
+        put_vertex(vertices, k, in, along, CAMBER_NO_LIMIT_PX, 1.0f);
+        put_vertex(vertices, k + 1, in, -along, CAMBER_NO_LIMIT_PX, -1.0f);
+        return;
+    }
+    if (point & CAMBER_POINT_FIRST) {
+        index[0] = 0xffffffffu;
+        index[1] = v;
+        index[2] = v + 1;
+        /* A ring's seam begins with the vertices that it ends with, to the last bit: no pixel falls between. No
+         * triangle ends with them, so they may carry the other segment. */
+        put_edges(vertices, k, kind == CAMBER_KIND_CUT ? in : out);
+        if (breaks) { /* a dot */
+            index[3] = v + 2;
+            index[4] = v + 3;
+            put_edges(vertices, k + 2, in);
+        }
+        return;
+    }
+    index[0] = v;
+    index[1] = v + 1;
+    put_edges(vertices, k, in);
     if (breaks) {
-        indices[3] = dot ? v + 3 : v + 2;
-        indices[4] = dot ? 0xffffffffu : v + 3;
+        index[2] = 0xffffffffu;
+        index[3] = v + 2;
+        index[4] = v + 3;
+        put_edges(vertices, k + 2, out);
     }
 }
 
@@ -155,8 +183,7 @@ static inline void put_join_indices(global camber_u32 *restrict indices, camber_
 #endif
 
 kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK, 1, 1))) void emit(
-    global const float *restrict x, global const float *restrict y, global const float *restrict x_after,
-    global const float *restrict y_after, global const camber_u32 *restrict info,
+    global const float *restrict x, global const float *restrict y, global const camber_u32 *restrict info,
     global const camber_row *restrict rows, global const camber_u32 *restrict joins,
     global const camber_u32 *restrict offsets, global const camber_u64 *restrict bases,
     global camber_u32 *restrict vertices, global camber_u32 *restrict indices) {
@@ -168,47 +195,31 @@ kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK, 1, 1))) void emit(
     const camber_u32 offset = offsets[i - 1];
     const size_t k = (size_t)bases[2 * block] + (offset & 0xffffu);
     global camber_u32 *restrict index = indices + (size_t)bases[2 * block + 1] + (offset >> 16);
-    const camber_u32 v = (camber_u32)k;
-
     const camber_u32 point = info[i], before = joins[i - 1], after = joins[i + 1];
-    const camber_u32 ends = point & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST);
-    const float dx = x[i] - x[i - 1], dy = y[i] - y[i - 1], ex = x_after[i + 1] - x[i], ey = y_after[i + 1] - y[i];
+    const float dx = x[i] - x[i - 1], dy = y[i] - y[i - 1], ex = x[i + 1] - x[i], ey = y[i + 1] - y[i];
     const float half_shorter = camber_half_shorter(dx, dy, ex, ey);
     const camber_u32 row = point >> CAMBER_POINT_ROW_SHIFT;
-
     segment_end in = {x[i], y[i], dx, dy, half_shorter, 1.0f, join, 0, 0, row};
     in.flags = camber_join_end(before) | camber_join_end(join) << 3 | 64u;
     in.turns = (before & 0xffffu) | join << 16;
     segment_end out = {x[i], y[i], ex, ey, half_shorter, -1.0f, join, 0, 0, row};
     out.flags = camber_join_end(join) | camber_join_end(after) << 3;
     out.turns = (join & 0xffffu) | after << 16;
+    if (kind == CAMBER_KIND_DOT)
+        make_dot(&in, &out);
 
 #if CAMBER_METHOD == CAMBER_STRIP
-    const camber_u32 dot = kind == CAMBER_KIND_DOT, breaks = camber_strip_breaks(kind, point);
-    put_strip_indices(index, v, dot, breaks, ends & CAMBER_POINT_LAST);
-    if (dot)
-        make_dot(&in, &out);
-    /* A ring's seam begins with the vertices that it ends with, to the last bit: no pixel falls between. No triangle
-     * ends with them, so they may carry the other segment. */
-    if (dot || (ends & CAMBER_POINT_FIRST && kind != CAMBER_KIND_CUT)) {
-        put_edges(vertices, k, &out);
-        if (dot)
-            put_edges(vertices, k + 2, &in);
-        return;
-    }
-    put_edges(vertices, k, &in);
-    if (breaks)
-        put_edges(vertices, k + 2, &out);
+    put_strip_point(vertices, index, k, point, &in, &out);
 #else
+    const camber_u32 v = (camber_u32)k;
     if (kind == CAMBER_KIND_DOT) {
-        make_dot(&in, &out);
         put_edges(vertices, k, &out);
         put_edges(vertices, k + 2, &in);
         put_body(index, v, v + 2, 0, 0, 0);
         return;
     }
     const camber_u32 joined = kind != CAMBER_KIND_CAP;
-    if (ends & CAMBER_POINT_FIRST) {
+    if (point & CAMBER_POINT_FIRST) {
         if (joined)
             put_vertex(vertices, k, &out, 0.0f, CAMBER_NO_LIMIT_PX, 0.0f);
         put_out_edges(vertices, k + joined, &in, &out);

@@ -151,15 +151,14 @@ CAMBER_FN float camber_edge_along(camber_u32 join, float end, float side, camber
     return kind < CAMBER_KIND_CUT ? end : 0.0f;
 }
 
-/* The bound on that, px: on the inner side half the shorter segment; past a butt end the pad, however wide the line. */
+/* The bound on that, px: past a butt end the pad, however wide the line; on the inner side of a tight join half the
+ * shorter segment, and the pad at most, since what it gives up the other segment may be too short to cover. */
 CAMBER_FN float camber_edge_limit(camber_u32 join, float half_shorter, float side) {
     const camber_u32 kind = camber_join_kind(join);
-    const camber_u32 is_cut = kind == CAMBER_KIND_CUT || kind == CAMBER_KIND_TIGHT;
     const camber_u32 is_butt = kind < CAMBER_KIND_CUT && camber_join_end(join) == 1u;
-    /* What a tight join gives up of the inner side the other segment may be too short to cover: the pad at most. */
-    const float room = kind == CAMBER_KIND_TIGHT && half_shorter > CAMBER_PAD_PX ? CAMBER_PAD_PX : half_shorter;
-    const float inner = is_cut && side * camber_turn_unpack(join) > 0.0f ? room : CAMBER_NO_LIMIT_PX;
-    return is_butt ? CAMBER_PAD_PX : inner;
+    const camber_u32 is_inner = kind == CAMBER_KIND_TIGHT && side * camber_turn_unpack(join) > 0.0f;
+    const float inner = half_shorter < CAMBER_PAD_PX ? half_shorter : CAMBER_PAD_PX;
+    return is_butt ? CAMBER_PAD_PX : is_inner ? inner : CAMBER_NO_LIMIT_PX;
 }
 
 /* Whether a strip breaks at a point, which then has two pairs of vertices: inside a polyline at any join but a plain
@@ -171,16 +170,16 @@ CAMBER_FN camber_u32 camber_strip_breaks(camber_u32 kind, camber_u32 info) {
 }
 
 /* How many vertices and indices a point emits, vertices | indices << 16. Lists of a point, in order:
- *   strip       in L, R | restart where the strip breaks | out L, R
+ *   strip       in L, R | restart before a polyline and where the strip breaks | out L, R
  *   kite, fan   in L, R | join | P | out L, R       P only where there is a join
  */
 CAMBER_FN camber_u32 camber_join_counts(camber_u32 join, camber_u32 before, camber_u32 info, camber_u32 method) {
     const camber_u32 kind = camber_join_kind(join);
-    const camber_u32 first = info & CAMBER_POINT_FIRST, last = info & CAMBER_POINT_LAST;
+    const camber_u32 first = info & CAMBER_POINT_FIRST;
     const camber_u32 live = kind != CAMBER_KIND_GHOST ? 1u : 0u;
     if (method == CAMBER_STRIP) {
         const camber_u32 breaks = camber_strip_breaks(kind, info);
-        const camber_u32 restart = last && !breaks ? 1u : 0u;
+        const camber_u32 restart = first && !breaks ? 1u : 0u;
         return live * ((2u + 2u * breaks) | (2u + 3u * breaks + restart) << 16);
     }
     if (!live)

@@ -28,6 +28,8 @@ typedef uint64_t camber_u64;
 /* Points a work-group, and the block of the scan. Point arrays are padded with ghosts to a multiple of it, so
  * that no kernel needs a guard. */
 #define CAMBER_BLOCK 256
+/* Points a work-item of the scan. */
+#define CAMBER_SCAN_POINTS 4
 
 /* A point's info word: row << CAMBER_POINT_ROW_SHIFT | flags. 0 is a ghost: a neighbour to look at, or padding,
  * that emits nothing. A ring is stored as ghost of its last but one point, its points with the first repeated

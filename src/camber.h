@@ -218,7 +218,10 @@ typedef struct camber_device_desc {
 typedef struct camber_device camber_device;
 typedef struct camber_surface camber_surface;
 
-/* Opens a device and its kernels, from the cache where they are there. surface may be NULL; where it is
+/* PoCL leaves its threads to the system, which often puts two on one core; POCL_AFFINITY=1 in the environment before
+ * the first OpenCL call of the process gives each its own. The tool sets it; a library must not.
+ *
+ * Opens a device and its kernels, from the cache where they are there. surface may be NULL; where it is
  * given, buffers can be shared with its GL context (camber_renderer_create tells how).
  * Returns CAMBER_ERROR_DEVICE (no platform, no device that matches, a kernel that does not build: the log has
  * the build log), CAMBER_ERROR_MEMORY. Cost: 0.2 to 0.6 s the first time, 10 ms from the cache. */
@@ -336,7 +339,7 @@ typedef enum camber_end {
 
 typedef struct camber_mesh_info {
     camber_method method;
-    bool strips; /* indices are triangle strips with CAMBER_RESTART_INDEX between; else triangles */
+    bool strips; /* indices are triangle strips, CAMBER_RESTART_INDEX before each; else triangles */
     size_t vertex_count;
     size_t index_count;
     size_t triangle_count; /* not degenerate */

@@ -26,6 +26,8 @@ static camber_status prepare(camber_session *session) {
         return CAMBER_ERROR_MEMORY;
     /* Mesa's own warnings about missing GPUs would stand among the errors. */
     setenv("EGL_LOG_LEVEL", "fatal", 0);
+    /* A core for each of PoCL's threads: left to themselves two of them often share one. */
+    setenv("POCL_AFFINITY", "1", 0);
     return open_context(session->report, &session->context);
 }
 

@@ -192,14 +192,22 @@ static cl_int set_arguments(cl_kernel kernel, const cl_mem *mems, cl_uint count)
     return code;
 }
 
-/* Runs a stage over all slots and waits for it, since the next host step needs its result. */
-static camber_status run_stage(camber_mesh *mesh, cl_kernel kernel, const char *name, const cl_mem *mems,
-                               cl_uint mem_count, cl_event *event) {
-    const size_t global = mesh->slot_count, local = CAMBER_BLOCK;
-    cl_int code = set_arguments(kernel, mems, mem_count);
+/* A stage: a kernel, its arguments, and how many points a work-item takes. */
+typedef struct stage {
+    const char *name;
+    cl_kernel kernel;
+    const cl_mem *mems;
+    cl_uint mem_count;
+    size_t points;
+} stage;
+
+/* Runs a stage over all slots, a work-group a block. */
+static camber_status run_stage(camber_mesh *mesh, stage s, cl_event *event) {
+    const size_t global = mesh->slot_count / s.points, local = CAMBER_BLOCK / s.points;
+    cl_int code = set_arguments(s.kernel, s.mems, s.mem_count);
     if (code == CL_SUCCESS)
-        code = clEnqueueNDRangeKernel(mesh->device->queue, kernel, 1, NULL, &global, &local, 0, NULL, event);
-    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(mesh->device->context, name, code);
+        code = clEnqueueNDRangeKernel(mesh->device->queue, s.kernel, 1, NULL, &global, &local, 0, NULL, event);
+    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(mesh->device->context, s.name, code);
 }
 
 static double event_ms(cl_event event) {
@@ -291,9 +299,9 @@ static camber_status run_stages(camber_mesh *mesh, camber_program *program) {
     const cl_mem classify[] = {mesh->x, mesh->y,    mesh->x,    mesh->y,    mesh->x,
                                mesh->y, mesh->info, mesh->rows, mesh->joins};
     const cl_mem scan[] = {mesh->joins, mesh->info, mesh->offsets, mesh->sums};
-    camber_status status = run_stage(mesh, program->classify, "classify", classify, 9, events);
+    camber_status status = run_stage(mesh, (stage){"classify", program->classify, classify, 9, 1}, events);
     if (status == CAMBER_OK)
-        status = run_stage(mesh, program->scan, "scan", scan, 4, events + 1);
+        status = run_stage(mesh, (stage){"scan", program->scan, scan, 4, CAMBER_SCAN_POINTS}, events + 1);
     if (status == CAMBER_OK)
         status = scan_blocks(mesh);
     mesh->empty = status != CAMBER_OK || mesh->mesh_info.vertex_count == 0;
@@ -304,8 +312,6 @@ static camber_status run_stages(camber_mesh *mesh, camber_program *program) {
         goto done;
     const cl_mem emit[] = {mesh->x,
                            mesh->y,
-                           mesh->x,
-                           mesh->y,
                            mesh->info,
                            mesh->rows,
                            mesh->joins,
@@ -313,7 +319,7 @@ static camber_status run_stages(camber_mesh *mesh, camber_program *program) {
                            mesh->bases,
                            mesh->buffers[CAMBER_BUFFER_VERTICES].mem,
                            mesh->buffers[CAMBER_BUFFER_INDICES].mem};
-    status = run_stage(mesh, program->emit, "emit", emit, 11, events + 2);
+    status = run_stage(mesh, (stage){"emit", program->emit, emit, 9, 1}, events + 2);
     const cl_int code = clFinish(mesh->device->queue);
     if (status == CAMBER_OK && code != CL_SUCCESS)
         status = camber_fail_cl(mesh->device->context, "clFinish", code);

@@ -114,9 +114,9 @@ static void walk_dot(twin *t, size_t slot, camber_u32 join) {
     const segment s = {0.0f, 0.0f, end, end, t->polylines->info[slot] >> CAMBER_POINT_ROW_SHIFT};
     const uint32_t a = push_edges(t, slot, s, false, join, 0.0f), b = push_edges(t, slot, s, true, join, 0.0f);
     if (t->method == CAMBER_STRIP) {
+        push_index(t, CAMBER_RESTART_INDEX);
         for (uint32_t i = 0; i < 4; i++)
             push_index(t, a + i);
-        push_index(t, CAMBER_RESTART_INDEX);
     } else {
         push_triangle(t, a, a + 1, b);
         push_triangle(t, a + 1, b + 1, b);
@@ -136,14 +136,13 @@ static void walk_strip_point(twin *t, size_t slot, segment in, segment out, camb
     if (info & CAMBER_POINT_FIRST) {
         /* A ring's seam begins with the very vertices that it ends with. */
         const bool seam = camber_join_kind(join) == CAMBER_KIND_CUT;
+        push_index(t, CAMBER_RESTART_INDEX);
         push_strip_edge(t, push_edges(t, slot, seam ? in : out, seam, join, half_shorter));
         return;
     }
     push_strip_edge(t, push_edges(t, slot, in, true, join, half_shorter));
     t->data->info.triangle_count += 2;
-    if (info & CAMBER_POINT_LAST) {
-        push_index(t, CAMBER_RESTART_INDEX);
-    } else if (camber_join_kind(join) != CAMBER_KIND_CUT) {
+    if (!(info & CAMBER_POINT_LAST) && camber_join_kind(join) != CAMBER_KIND_CUT) {
         push_index(t, CAMBER_RESTART_INDEX);
         push_strip_edge(t, push_edges(t, slot, out, false, join, half_shorter));
     }

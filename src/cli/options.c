@@ -4,6 +4,9 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* A tenth of a pixel does not show, and drops a third of a city's points. */
+#define RENDER_SIMPLIFY_PX 0.1
 #include <strings.h>
 
 enum {
@@ -94,7 +97,7 @@ static const option_spec specs[] = {
      "how lines become triangles (strip; validate: all)", 0, 0},
     {"coverage", 0, KIND_CHOICE, READING, FIELD(coverage), "exact|linear", "how edges are smoothed (exact)", 0, 0},
     {"simplify-px", 0, KIND_NUMBER, READING, FIELD(simplify_px), "T",
-     "drop points that the line stays this close to (0: none)", 0, 1e6},
+     "drop points that the line stays this close to (render: 0.1, else 0: none)", 0, 1e6},
     {"device", 0, KIND_TEXT, EVERY, FIELD(device), "TEXT", "OpenCL: cpu, gpu, or part of a device's name", 0, 0},
     {"backend", 0, KIND_CHOICE, EVERY, FIELD(backend), "auto|egl|osmesa", "where GL comes from (auto)", 0, 0},
     {"sharing", 0, KIND_CHOICE, RENDER | BENCH | INFO, FIELD(sharing), "auto|gl|zero-copy|copy",
@@ -451,7 +454,8 @@ static int check(const parser *p) {
 }
 
 int camber_options_parse(int argc, char **argv, camber_options *options, char *message, size_t message_size) {
-    *options = (camber_options){.format = -1, .theme = -1, .method = -1, .view = {.ratio = 1}, .zoom = NAN, .runs = 9};
+    *options = (camber_options){
+        .format = -1, .theme = -1, .method = -1, .view = {.ratio = 1}, .zoom = NAN, .simplify_px = NAN, .runs = 9};
     const parser p = {options, message, message_size};
     options->inputs = calloc((size_t)argc + 1, sizeof *options->inputs);
     if (!options->inputs)
@@ -472,6 +476,8 @@ int camber_options_parse(int argc, char **argv, camber_options *options, char *m
         else
             options->inputs[options->input_count++] = text;
     }
+    if (isnan(options->simplify_px))
+        options->simplify_px = options->verb == CAMBER_VERB_RENDER ? RENDER_SIMPLIFY_PX : 0;
     if (status == CAMBER_EXIT_DONE && !options->help && !options->version)
         status = check(&p);
     return status;

@@ -1,7 +1,8 @@
 /* emit: per point, its vertices and indices.
  * Reads x, y, info[n + 2], joins[n + 1], offsets[n], bases[2 * n / CAMBER_BLOCK] (each block's first vertex and
  * first index); writes vertices[CAMBER_VERTEX_WORDS * vertex count], indices[index count]. Lists and their
- * order: camber_join_counts in join.h. */
+ * order: camber_join_counts in join.h. Without restrict on put_vertex and put_edges emit
+ * takes half as long again; with it on the functions that call them oclgrind cannot run what becomes of it. */
 
 /* What the vertices of one end of a segment share. */
 typedef struct segment_end {
@@ -30,7 +31,7 @@ static inline void put_edges(global camber_u32 *restrict vertices, size_t k, con
                camber_edge_limit(e->join, e->half_shorter, -1.0f), -1.0f);
 }
 
-static inline void put_triangle(global camber_u32 *restrict indices, camber_u32 a, camber_u32 b, camber_u32 c) {
+static inline void put_triangle(global camber_u32 *indices, camber_u32 a, camber_u32 b, camber_u32 c) {
     indices[0] = a;
     indices[1] = b;
     indices[2] = c;
@@ -48,8 +49,8 @@ static inline void make_dot(segment_end *in, segment_end *out) {
 
 /* A point of a strip. Its branches are what it costs on a CPU: two of them, at the beginning of a polyline and where
  * the strip breaks; everything else is a choice of values. */
-static inline void put_strip_point(global camber_u32 *restrict vertices, global camber_u32 *restrict index, size_t k,
-                                   camber_u32 point, const segment_end *in, const segment_end *out) {
+static inline void put_strip_point(global camber_u32 *vertices, global camber_u32 *index, size_t k, camber_u32 point,
+                                   const segment_end *in, const segment_end *out) {
     const camber_u32 kind = camber_join_kind(in->join), v = (camber_u32)k;
     const camber_u32 breaks = camber_strip_breaks(kind, point);
     if (point & CAMBER_POINT_FIRST) {
@@ -69,8 +70,16 @@ static inline void put_strip_point(global camber_u32 *restrict vertices, global 
     index[0] = v;
     index[1] = v + 1;
     put_edges(vertices, k, in);
-    if (breaks) {
-        index[2] = 0xffffffffu;
+    if (!breaks)
+        return;
+    index[2] = 0xffffffffu;
+    if (kind == CAMBER_KIND_TIGHT) {
+        const float side = camber_turn_unpack(in->join) > 0.0f ? 1.0f : -1.0f;
+        index[3] = side > 0.0f ? v + 2 : v;
+        index[4] = side > 0.0f ? v + 1 : v + 2;
+        put_vertex(vertices, k + 2, out, camber_edge_along(out->join, -1.0f, side, CAMBER_METHOD),
+                   camber_edge_limit(out->join, out->half_shorter, side), side);
+    } else {
         index[3] = v + 2;
         index[4] = v + 3;
         put_edges(vertices, k + 2, out);
@@ -81,8 +90,7 @@ static inline void put_strip_point(global camber_u32 *restrict vertices, global 
 
 /* The edges of the segment out. Where a kite's bodies are cut they meet in one inner vertex: it is the segment in's, to
  * the last bit, so that no pixel falls between. No triangle ends with it. */
-static inline void put_out_edges(global camber_u32 *restrict vertices, size_t k, const segment_end *in,
-                                 const segment_end *out) {
+static inline void put_out_edges(global camber_u32 *vertices, size_t k, const segment_end *in, const segment_end *out) {
     const float q = camber_turn_unpack(out->join), side = q > 0.0f ? 1.0f : -1.0f;
     put_edges(vertices, k, out);
     if (CAMBER_METHOD == CAMBER_KITE && camber_join_kind(out->join) == CAMBER_KIND_CUT)
@@ -97,7 +105,7 @@ static inline void put_out_edges(global camber_u32 *restrict vertices, size_t k,
  *     A          B
  *     sR--------eR
  */
-static inline camber_u32 put_body(global camber_u32 *restrict indices, camber_u32 s, camber_u32 e, camber_u32 has_a,
+static inline camber_u32 put_body(global camber_u32 *indices, camber_u32 s, camber_u32 e, camber_u32 has_a,
                                   camber_u32 b, camber_u32 has_b) {
     const camber_u32 a = s - 1;
     if (has_a && has_b) {
@@ -126,7 +134,7 @@ static inline camber_u32 put_body(global camber_u32 *restrict indices, camber_u3
 
 /* A triangle of a join about the centre p, ending with the vertex that carries its segment. outer < 0: the turn is to
  * the left, the outer side is the right one. */
-static inline void put_wedge(global camber_u32 *restrict indices, camber_u32 p, camber_u32 from, camber_u32 to,
+static inline void put_wedge(global camber_u32 *indices, camber_u32 p, camber_u32 from, camber_u32 to,
                              camber_u32 to_carries, float outer) {
     const camber_u32 carries = to_carries ? to : from, other = to_carries ? from : to;
     const camber_u32 flip = (outer > 0.0f) == (to_carries != 0u);
@@ -136,7 +144,7 @@ static inline void put_wedge(global camber_u32 *restrict indices, camber_u32 p, 
 /* The join's own vertices, from the outer edge of the segment in to that of the segment out:
  *   kite  1: C, where the outer edges meet;  3: C1, E on the bisector, C2 of two half turns
  *   fan   steps of the row's angle */
-static inline void put_join_vertices(global camber_u32 *restrict vertices, size_t k, const segment_end *in,
+static inline void put_join_vertices(global camber_u32 *vertices, size_t k, const segment_end *in,
                                      const segment_end *out, camber_row row, float outer) {
     const camber_u32 triangles = camber_join_triangles(in->join);
     const float q = fabs(camber_turn_unpack(in->join));
@@ -158,8 +166,7 @@ static inline void put_join_vertices(global camber_u32 *restrict vertices, size_
     }
 }
 
-static inline void put_join_indices(global camber_u32 *restrict indices, camber_u32 v, camber_u32 triangles,
-                                    float outer) {
+static inline void put_join_indices(global camber_u32 *indices, camber_u32 v, camber_u32 triangles, float outer) {
     const camber_u32 p = v + 2 + (triangles ? triangles - 1 : 0);
     const camber_u32 in_edge = outer > 0.0f ? v : v + 1, out_edge = outer > 0.0f ? p + 1 : p + 2;
     camber_u32 from = in_edge;

@@ -162,7 +162,7 @@ CAMBER_FN float camber_edge_limit(camber_u32 join, float half_shorter, float sid
 }
 
 /* Whether a strip breaks at a point, which then has two pairs of vertices: inside a polyline at any join but a plain
- * cut; and a dot has two pairs as well. */
+ * cut. A dot breaks too: it has two pairs. */
 CAMBER_FN camber_u32 camber_strip_breaks(camber_u32 kind, camber_u32 info) {
     const camber_u32 inner = info & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST) ? 0u : 1u;
     const camber_u32 uncut = kind == CAMBER_KIND_TIGHT || kind == CAMBER_KIND_SPLIT ? inner : 0u;
@@ -170,7 +170,8 @@ CAMBER_FN camber_u32 camber_strip_breaks(camber_u32 kind, camber_u32 info) {
 }
 
 /* How many vertices and indices a point emits, vertices | indices << 16. Lists of a point, in order:
- *   strip       in L, R | restart before a polyline and where the strip breaks | out L, R
+ *   strip       in L, R | restart before a polyline and where the strip breaks | out L, R; at a tight
+ *               join out's inner one only, as both segments have the outer one in common
  *   kite, fan   in L, R | join | P | out L, R       P only where there is a join
  */
 CAMBER_FN camber_u32 camber_join_counts(camber_u32 join, camber_u32 before, camber_u32 info, camber_u32 method) {
@@ -180,7 +181,8 @@ CAMBER_FN camber_u32 camber_join_counts(camber_u32 join, camber_u32 before, camb
     if (method == CAMBER_STRIP) {
         const camber_u32 breaks = camber_strip_breaks(kind, info);
         const camber_u32 restart = first && !breaks ? 1u : 0u;
-        return live * ((2u + 2u * breaks) | (2u + 3u * breaks + restart) << 16);
+        const camber_u32 more = breaks ? (kind == CAMBER_KIND_TIGHT ? 1u : 2u) : 0u;
+        return live * ((2u + more) | (2u + 3u * breaks + restart) << 16);
     }
     if (!live)
         return 0;

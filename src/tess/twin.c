@@ -131,21 +131,38 @@ static void push_strip_edge(twin *t, uint32_t left) {
     push_index(t, left + 1);
 }
 
+/* Where a tight join's next strip begins: its own inner vertex, and the outer one that both segments have in common. */
+static void push_tight_start(twin *t, size_t slot, segment out, camber_u32 join, float half_shorter, uint32_t in_left) {
+    const bool left_is_inner = camber_turn_unpack(join) > 0.0f;
+    const float side = left_is_inner ? 1.0f : -1.0f;
+    camber_vertex vertex = make_vertex(t, slot, out, false);
+    vertex.along = camber_edge_along(join, -1.0f, side, t->method);
+    vertex.limit_px = camber_edge_limit(join, half_shorter, side);
+    vertex.across = pack_across(side);
+    const uint32_t inner = push_vertex(t, vertex);
+    push_index(t, left_is_inner ? inner : in_left);
+    push_index(t, left_is_inner ? in_left + 1 : inner);
+}
+
 static void walk_strip_point(twin *t, size_t slot, segment in, segment out, camber_u32 join, float half_shorter) {
-    const camber_u32 info = t->polylines->info[slot];
+    const camber_u32 info = t->polylines->info[slot], kind = camber_join_kind(join);
     if (info & CAMBER_POINT_FIRST) {
         /* A ring's seam begins with the very vertices that it ends with. */
-        const bool seam = camber_join_kind(join) == CAMBER_KIND_CUT;
+        const bool seam = kind == CAMBER_KIND_CUT;
         push_index(t, CAMBER_RESTART_INDEX);
         push_strip_edge(t, push_edges(t, slot, seam ? in : out, seam, join, half_shorter));
         return;
     }
-    push_strip_edge(t, push_edges(t, slot, in, true, join, half_shorter));
+    const uint32_t in_left = push_edges(t, slot, in, true, join, half_shorter);
+    push_strip_edge(t, in_left);
     t->data->info.triangle_count += 2;
-    if (!(info & CAMBER_POINT_LAST) && camber_join_kind(join) != CAMBER_KIND_CUT) {
-        push_index(t, CAMBER_RESTART_INDEX);
+    if (info & CAMBER_POINT_LAST || kind == CAMBER_KIND_CUT)
+        return;
+    push_index(t, CAMBER_RESTART_INDEX);
+    if (kind == CAMBER_KIND_TIGHT)
+        push_tight_start(t, slot, out, join, half_shorter, in_left);
+    else
         push_strip_edge(t, push_edges(t, slot, out, false, join, half_shorter));
-    }
 }
 
 /* ---- kite and fan ---- */

@@ -4,10 +4,10 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* A tenth of a pixel does not show, and drops a third of a city's points. */
-#define RENDER_SIMPLIFY_PX 0.1
 #include <strings.h>
+
+/* A tenth of a pixel does not show, and drops a fifth to a third of a city's points. */
+#define RENDER_SIMPLIFY_PX 0.1
 
 enum {
     RENDER = 1 << CAMBER_VERB_RENDER,

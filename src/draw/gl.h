@@ -51,6 +51,8 @@
     X(void, BindBuffer, (GLenum, GLuint))                                                                              \
     X(void, BufferData, (GLenum, GLsizeiptr, const void *, GLenum))                                                    \
     X(void, BufferSubData, (GLenum, GLintptr, GLsizeiptr, const void *))                                               \
+    X(void, CopyBufferSubData, (GLenum, GLenum, GLintptr, GLintptr, GLsizeiptr))                                       \
+    X(GLboolean, UnmapBuffer, (GLenum))                                                                                \
     X(void *, MapBufferRange, (GLenum, GLintptr, GLsizeiptr, GLbitfield))                                              \
     X(void, DrawArrays, (GLenum, GLint, GLsizei))                                                                      \
     X(void, DrawElements, (GLenum, GLsizei, GLenum, const void *))                                                     \

@@ -35,7 +35,6 @@ static void fill_rows(camber_renderer *renderer, const camber_pass *pass, const 
 
 static camber_status reserve_rows(camber_renderer *renderer, size_t row_count) {
     const camber_gl *gl = &renderer->share.surface->gl;
-    /* At least two rows of texels, so that one row of the table always ends inside a row of the texture. */
     const size_t texels = TEXELS_A_ROW * (row_count ? row_count : 1);
     const size_t height = (texels + ROW_TEXTURE_WIDTH - 1) / ROW_TEXTURE_WIDTH;
     if (height > renderer->share.surface->info.largest_target_px)

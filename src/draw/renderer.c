@@ -112,9 +112,9 @@ static camber_piece first_piece(const camber_renderer *renderer, const camber_fr
     uint32_t side = renderer->share.surface->info.largest_target_px;
     if (frame->largest_piece_px && frame->largest_piece_px < side)
         side = frame->largest_piece_px;
-    assert(side > 0 && frame->width > 0);
     const uint32_t width = frame->width < side ? frame->width : side;
-    const uint32_t rows = PIECE_PX / width < side ? PIECE_PX / width : side;
+    const uint32_t fitting = (uint32_t)PIECE_PX / (width ? width : 1);
+    const uint32_t rows = fitting < side ? fitting : side;
     return (camber_piece){
         .width = width, .height = frame->height < rows ? frame->height : rows, .coverage = frame->coverage};
 }

@@ -20,9 +20,28 @@ void camber_share_release(void *user, camber_buffer *buffer) {
     *buffer = (camber_buffer){0};
 }
 
-/* Writes a word with OpenCL and reads it back through GL. */
+enum { PROBE_BYTES = 4096 };
+
+/* What GL reads from a buffer: a copy of it that GL makes, since a map may be the very memory that OpenCL wrote. */
+static bool gl_sees(const camber_gl *gl, GLuint buffer, cl_uint word) {
+    GLuint copy = 0;
+    gl->GenBuffers(1, &copy);
+    gl->BindBuffer(GL_COPY_READ_BUFFER, buffer);
+    gl->BindBuffer(GL_COPY_WRITE_BUFFER, copy);
+    gl->BufferData(GL_COPY_WRITE_BUFFER, PROBE_BYTES, NULL, GL_STREAM_READ);
+    gl->CopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, PROBE_BYTES);
+    const cl_uint *seen = gl->MapBufferRange(GL_COPY_WRITE_BUFFER, 0, PROBE_BYTES, GL_MAP_READ_BIT);
+    const bool same = seen && seen[0] == word && seen[PROBE_BYTES / 4 - 1] == word;
+    if (seen)
+        gl->UnmapBuffer(GL_COPY_WRITE_BUFFER);
+    gl->BindBuffer(GL_COPY_WRITE_BUFFER, 0);
+    gl->BindBuffer(GL_COPY_READ_BUFFER, 0);
+    gl->DeleteBuffers(1, &copy);
+    return same;
+}
+
+/* Writes a word with OpenCL and reads it with GL. */
 static bool works(camber_share *share, const camber_share_path *path) {
-    enum { PROBE_BYTES = 4096 };
     const cl_uint word = 0x63616d62u;
     const camber_gl *gl = &share->surface->gl;
     camber_buffer buffer = {0};
@@ -37,12 +56,7 @@ static bool works(camber_share *share, const camber_share_path *path) {
             clFinish(share->device->queue);
             same = path->ops.finish(share, &buffer, 1, true) == CAMBER_OK && code == CL_SUCCESS;
         }
-        gl->BindBuffer(GL_ARRAY_BUFFER, buffer.gl_name);
-        /* A persistent map stands already, and a buffer has one map at a time. */
-        const cl_uint *seen =
-            buffer.map ? buffer.map : gl->MapBufferRange(GL_ARRAY_BUFFER, 0, PROBE_BYTES, GL_MAP_READ_BIT);
-        same = same && seen && seen[0] == word && seen[PROBE_BYTES / 4 - 1] == word;
-        gl->BindBuffer(GL_ARRAY_BUFFER, 0);
+        same = same && gl_sees(gl, buffer.gl_name, word);
     }
     path->ops.release(share, &buffer);
     while (gl->GetError() != GL_NO_ERROR) {

@@ -11,7 +11,6 @@ enum { DEVICES_MAX = 16 };
 
 #define EGL_FUNCTIONS(X)                                                                                               \
     X(EGLBoolean, eglInitialize, (EGLDisplay, EGLint *, EGLint *))                                                     \
-    X(EGLBoolean, eglTerminate, (EGLDisplay))                                                                          \
     X(EGLBoolean, eglBindAPI, (EGLenum))                                                                               \
     X(EGLBoolean, eglChooseConfig, (EGLDisplay, const EGLint *, EGLConfig *, EGLint, EGLint *))                        \
     X(EGLContext, eglCreateContext, (EGLDisplay, EGLConfig, EGLContext, const EGLint *))                               \
@@ -76,8 +75,7 @@ static bool open_display(egl_state *egl, EGLDisplay display) {
     egl->display = display;
     if (make_context(egl))
         return true;
-    egl->eglTerminate(display);
-    egl->display = EGL_NO_DISPLAY;
+    egl->display = EGL_NO_DISPLAY; /* not terminated: another surface may be on it */
     return false;
 }
 

@@ -107,7 +107,7 @@ static void put_polyline(camber_polylines *p, const camber_polylines_desc *desc,
     }
 }
 
-/* Ghosts to the end of the last block and one past it. They repeat a valid position: no kernel meets a NaN. */
+/* Ghosts to the end of the last block and one past it. At the origin: no kernel meets a NaN. */
 static void put_padding(camber_polylines *p) {
     const size_t used = p->slot_count + 1;
     p->slot_count = (p->slot_count + CAMBER_BLOCK - 1) / CAMBER_BLOCK * CAMBER_BLOCK;

@@ -68,7 +68,7 @@ if($map)
   target_link_libraries(map_static camber::camber_map_static)
 endif()
 C
-cmake -S "$folder" -B "$folder/consumer" -DCMAKE_PREFIX_PATH="$folder/usr" >"$folder/log" 2>&1 &&
+cmake -S "$folder" -B "$folder/consumer" -G Ninja -DCMAKE_PREFIX_PATH="$folder/usr" >"$folder/log" 2>&1 &&
     cmake --build "$folder/consumer" >>"$folder/log" 2>&1 || { cat "$folder/log"; exit 1; }
 for program in $programs; do
     "$folder/consumer/${program}_shared"

@@ -184,6 +184,7 @@ typedef struct scene_list {
     size_t count;
 } scene_list;
 
+#ifdef CAMBER_DEMO_CITY
 static void add_map(bench *b, scene_list *list, const char *name, const char *path, float width_px) {
     bench_scene *scene = list->scenes + list->count;
     if (!bench_scene_map(b->context, path, &scene->lines)) {
@@ -194,6 +195,7 @@ static void add_map(bench *b, scene_list *list, const char *name, const char *pa
     scene->width_px = width_px;
     list->count++;
 }
+#endif
 
 static void add_walks(bench *b, scene_list *list, const char *name, size_t polylines, double step_px, float width_px) {
     bench_scene *scene = list->scenes + list->count;

@@ -29,7 +29,7 @@ typedef uint64_t camber_u64;
  * that no kernel needs a guard. */
 #define CAMBER_BLOCK 256
 /* Points a work-item of the scan. */
-#define CAMBER_SCAN_POINTS 4
+#define CAMBER_SCAN_POINTS 8
 
 /* A point's info word: row << CAMBER_POINT_ROW_SHIFT | flags. 0 is a ghost: a neighbour to look at, or padding,
  * that emits nothing. A ring is stored as ghost of its last but one point, its points with the first repeated

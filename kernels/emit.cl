@@ -53,6 +53,15 @@ static inline void put_strip_point(global camber_u32 *vertices, global camber_u3
                                    const segment_end *in, const segment_end *out) {
     const camber_u32 kind = camber_join_kind(in->join), v = (camber_u32)k;
     const camber_u32 breaks = camber_strip_breaks(kind, point);
+    /* Most points by far: a cut inside a polyline. */
+    if (kind == CAMBER_KIND_CUT && !(point & CAMBER_POINT_FIRST)) {
+        const float along = camber_edge_along(in->join, 1.0f, 1.0f, CAMBER_METHOD);
+        index[0] = v;
+        index[1] = v + 1;
+        put_vertex(vertices, k, in, along, CAMBER_NO_LIMIT_PX, 1.0f);
+        put_vertex(vertices, k + 1, in, -along, CAMBER_NO_LIMIT_PX, -1.0f);
+        return;
+    }
     if (point & CAMBER_POINT_FIRST) {
         index[0] = 0xffffffffu;
         index[1] = v;

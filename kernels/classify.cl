@@ -1,6 +1,6 @@
 /* classify: per point, which join it is.
- * Reads x, y, info[n + 2] (one ghost before and after the n points), rows; writes joins[n + 1], of which the first
- * stays 0. n is a multiple of CAMBER_BLOCK. CAMBER_METHOD is set by the build.
+ * Reads x, y, info[n + 2] (one ghost before and after the n points), rows; writes joins[n + 2], of which the first and
+ * the last stay 0. n is a multiple of CAMBER_BLOCK. CAMBER_METHOD is set by the build.
  * x_before, x_after and their like are x and y once more: where the compiler can see that a point's two neighbours lie
  * together, it packs them into a float2, and PoCL does not vectorise over the points any more (5 times slower). */
 kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK, 1, 1))) void classify(

@@ -1,5 +1,5 @@
 /* emit: per point, its vertices and indices.
- * Reads x, y, info[n + 2], joins[n + 1], offsets[n], bases[2 * n / CAMBER_BLOCK] (each block's first vertex and
+ * Reads x, y, info[n + 2], joins[n + 2], offsets[n], bases[2 * n / CAMBER_BLOCK] (each block's first vertex and
  * first index); writes vertices[CAMBER_VERTEX_WORDS * vertex count], indices[index count]. Lists and their
  * order: camber_join_counts in join.h. Without restrict on put_vertex and put_edges emit
  * takes half as long again; with it on the functions that call them oclgrind cannot run what becomes of it. */

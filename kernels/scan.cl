@@ -1,6 +1,6 @@
 /* scan: exclusive prefix sums of the counts within each block of CAMBER_BLOCK points, and each block's sum. A
  * work-group a block, CAMBER_SCAN_POINTS points a work-item: sums over 32 lanes are a tenth of the work of sums over
- * 256. Reads joins[n + 1], info[n + 2]; writes offsets[n] and sums[n / CAMBER_BLOCK], both vertices | indices << 16.
+ * 256. Reads joins[n + 2], info[n + 2]; writes offsets[n] and sums[n / CAMBER_BLOCK], both vertices | indices << 16.
  * The sums of blocks are few; the host adds them up in 64 bits and learns the sizes by it. */
 #define LANES (CAMBER_BLOCK / CAMBER_SCAN_POINTS)
 

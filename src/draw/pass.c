@@ -48,9 +48,8 @@ static camber_status reserve_rows(camber_renderer *renderer, size_t row_count) {
     gl->DeleteTextures(1, &renderer->row_texture);
     gl->GenTextures(1, &renderer->row_texture);
     gl->BindTexture(GL_TEXTURE_2D, renderer->row_texture);
-    renderer->row_width = ROW_TEXTURE_WIDTH;
     renderer->row_height = (GLsizei)height;
-    gl->TexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA32F, renderer->row_width, renderer->row_height);
+    gl->TexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA32F, ROW_TEXTURE_WIDTH, renderer->row_height);
     gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     return CAMBER_OK;

@@ -28,8 +28,8 @@ struct camber_renderer {
     camber_target targets[CAMBER_TARGETS];
     GLuint vertex_array;
     GLuint row_texture;
-    GLsizei row_width, row_height; /* texels */
-    float *row_texels;             /* 4 floats a texel */
+    GLsizei row_height; /* texels */
+    float *row_texels;  /* 4 floats a texel */
     size_t row_capacity;
 };
 

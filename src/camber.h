@@ -213,6 +213,11 @@ CAMBER_API camber_status camber_device_list(camber_context *context, size_t capa
 typedef struct camber_device_desc {
     /* "cpu", "gpu", or part of a device's or platform's name, case ignored. NULL: a GPU, else a CPU. */
     const char *match;
+    /* Points a work-group takes: 64, 128 or 256. 0: 256. What comes out is the same bytes. */
+    uint32_t work_group_size;
+    /* No buffer is made larger: a mesh that needs more is made in parts of whole polylines, and what is read or drawn
+     * of it is the same. 0, or more than the device allows: the device's own limit. */
+    uint64_t largest_buffer_bytes;
 } camber_device_desc;
 
 typedef struct camber_device camber_device;
@@ -225,7 +230,8 @@ typedef struct camber_surface camber_surface;
  * PoCL leaves its threads to the system, which often puts two on one core; POCL_AFFINITY=1 in the environment before
  * the first OpenCL call of the process gives each its own. The tool sets it; a library must not.
  *
- * Returns CAMBER_ERROR_DEVICE (no platform, no device that matches), CAMBER_ERROR_MEMORY. */
+ * Returns CAMBER_ERROR_DEVICE (no platform, no device that matches), CAMBER_ERROR_ARGUMENT (a work-group size that is
+ * none of these), CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_device_create(camber_context *context, const camber_device_desc *desc,
                                               camber_surface *surface, camber_device **device);
 CAMBER_API void camber_device_destroy(camber_device *device);
@@ -362,7 +368,8 @@ CAMBER_API void camber_mesh_destroy(camber_mesh *mesh);
  * run to run. The mesh keeps the uploaded polylines, so that another call with the same object and other
  * strokes uploads nothing.
  * Returns CAMBER_ERROR_ARGUMENT (a width or a limit that is not a number or out of range, a row without a
- * stroke), CAMBER_ERROR_LIMIT (2^32 - 1 vertices or more), CAMBER_ERROR_MEMORY, CAMBER_ERROR_DEVICE (a kernel
+ * stroke), CAMBER_ERROR_LIMIT (2^32 - 1 vertices or more, or a polyline that needs more than the largest buffer),
+ * CAMBER_ERROR_MEMORY, CAMBER_ERROR_DEVICE (a kernel
  * that does not build: the log has the build log). Cost: 1 s the first time a method is used, 3 ms from the cache; then
  * about 10 ns a point on two cores. */
 CAMBER_API camber_status camber_tessellate(camber_mesh *mesh, const camber_polylines *polylines,
@@ -382,6 +389,31 @@ CAMBER_API camber_status camber_mesh_read(camber_mesh *mesh, camber_mesh_data *d
 CAMBER_API camber_status camber_tessellate_on_host(camber_context *context, const camber_polylines *polylines,
                                                    const camber_tessellation_desc *desc, camber_mesh_data *data);
 CAMBER_API void camber_mesh_data_free(camber_context *context, camber_mesh_data *data);
+
+/* ---- Stages: what came before the mesh, for proofs ---- */
+
+/* What classify and scan found for a point that is tessellated. */
+typedef struct camber_point_stages {
+    uint32_t polyline;     /* as given */
+    uint32_t point;        /* of the polyline's kept points */
+    float x, y;            /* px */
+    uint32_t join;         /* classify's word; its bits: CAMBER_JOIN_* in kernels/layout.h */
+    uint32_t first_vertex; /* of the mesh: where emit puts this point's vertices */
+    uint64_t first_index;  /* and its indices */
+} camber_point_stages;
+
+/* Free with camber_stages_free. */
+typedef struct camber_stages {
+    camber_point_stages *points; /* point_count, in input order; rings have their first point again at the end */
+    size_t point_count;
+} camber_stages;
+
+/* Of the last tessellation. Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_DEVICE. */
+CAMBER_API camber_status camber_mesh_read_stages(camber_mesh *mesh, camber_stages *stages);
+/* The CPU twin's. */
+CAMBER_API camber_status camber_stages_on_host(camber_context *context, const camber_polylines *polylines,
+                                               const camber_tessellation_desc *desc, camber_stages *stages);
+CAMBER_API void camber_stages_free(camber_context *context, camber_stages *stages);
 
 /* ---- Drawing --------------------------------------------------------------------------------------- */
 
@@ -445,6 +477,34 @@ typedef bool camber_rows_fn(void *user, const uint8_t *rgba, uint32_t first_row,
  * does not build, or the GL reported an error), CAMBER_ERROR_MEMORY, CAMBER_ERROR_IO (rows returned false). */
 CAMBER_API camber_status camber_render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows,
                                        void *user, camber_frame_stats *stats);
+
+/* ---- Overdraw: what the GPU does for a mesh, counted on it ---- */
+
+/* Consecutive indices of a mesh, as camber_mesh_read numbers them: of triangles whole triangles, of strips a part of
+ * one or several whole ones. */
+typedef struct camber_index_range {
+    uint64_t first_index, index_count;
+} camber_index_range;
+
+typedef struct camber_overdraw_desc {
+    uint32_t width, height; /* of the picture, px */
+    camber_mesh *mesh;
+    const camber_paint *paints; /* paint_count; only widths matter. A row at or past it is not drawn */
+    size_t paint_count;
+    const camber_index_range *ranges; /* range_count, each counted by itself. NULL: the mesh's polylines */
+    size_t range_count;
+    uint8_t *map; /* width * height: takes in how many ranges a pixel is repeated, up to 255. NULL: not wanted */
+} camber_overdraw_desc;
+
+typedef struct camber_overdraw {
+    uint64_t fragments;       /* shaded: every pixel of every triangle of the ranges, those without coverage too */
+    uint64_t drawn_pixels;    /* with coverage, once a range */
+    uint64_t repeated_pixels; /* with coverage from more than one fragment of a range, once a range */
+} camber_overdraw;
+
+/* Counts with the stencil and additive blending, two draw calls a range. Returns what camber_render returns. */
+CAMBER_API camber_status camber_overdraw_count(camber_renderer *renderer, const camber_overdraw_desc *desc,
+                                               camber_overdraw *overdraw);
 
 /* ---- PNG ------------------------------------------------------------------------------------------- */
 

@@ -119,6 +119,8 @@ CAMBER_API camber_scene_info camber_scene_get_info(const camber_scene *scene);
 /* The parts, owned by the scene. */
 CAMBER_API const camber_polylines *camber_scene_polylines(const camber_scene *scene);
 CAMBER_API const camber_lines *camber_scene_lines(const camber_scene *scene);
+/* The row of each polyline, an index into the strokes. */
+CAMBER_API const uint32_t *camber_scene_rows(const camber_scene *scene);
 CAMBER_API const camber_stroke *camber_scene_strokes(const camber_scene *scene, size_t *count);
 /* The frame with all passes drawing mesh, which holds the tessellated scene. Valid until the next call on
  * this scene. */

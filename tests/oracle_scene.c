@@ -1,7 +1,7 @@
 /* Whole road networks against the oracle, with Cairo as the peer: every line stroked by itself, black on white, round
  * joins and butt ends; the mean difference from the union of all strokes over a square in the middle. Needs the
  * extracts under $CAMBER_DATA/data; ends in 77 without them. */
-#include "oracle.h"
+#include "proof/oracle.h"
 
 #include <cairo.h>
 #include <cpl_error.h>
@@ -166,24 +166,25 @@ static void draw_with_cairo(const network *n, double width_px, uint8_t *levels) 
 /* ---- Judging ---- */
 
 /* In 255ths, over the crop. */
-static double mean_error(const oracle_window *truth, const uint8_t *levels) {
+static double mean_error(const camber_oracle_window *truth, const uint8_t *levels) {
     double sum = 0;
     for (int y = 0; y < CROP_PX; y++)
         for (int x = 0; x < CROP_PX; x++) {
             const int level = levels[(size_t)(CROP_AT_PX + y) * SIDE_PX + (size_t)(CROP_AT_PX + x)];
-            sum += abs((int)lrint(255 * oracle_coverage(truth, x, y)) - level);
+            sum += abs((int)lrint(255 * camber_oracle_coverage(truth, x, y)) - level);
         }
     return sum / (CROP_PX * CROP_PX);
 }
 
 static bool judge(const core *c, const network *n, const char *name, double width_px, double most_of_cairo) {
-    const oracle_style style = {width_px, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 2, false};
+    const camber_oracle_style style = {width_px, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 2, false};
     uint8_t *levels = must(malloc((size_t)SIDE_PX * SIDE_PX));
-    oracle_window truth;
-    if (!oracle_open(&truth, CROP_AT_PX, CROP_AT_PX, CROP_PX, CROP_PX))
+    camber_oracle_window truth;
+    if (!camber_oracle_open(&truth, CROP_AT_PX, CROP_AT_PX, CROP_PX, CROP_PX))
         abort();
     for (size_t i = 0; i < n->line_count; i++)
-        if (!oracle_stroke(&truth, n->points + 2 * (size_t)n->offsets[i], n->offsets[i + 1] - n->offsets[i], &style))
+        if (!camber_oracle_stroke(&truth, n->points + 2 * (size_t)n->offsets[i], n->offsets[i + 1] - n->offsets[i],
+                                  &style))
             abort();
     const bool drawn = draw(c, n, width_px, levels);
     const double error = mean_error(&truth, levels);
@@ -192,7 +193,7 @@ static bool judge(const core *c, const network *n, const char *name, double widt
     const bool good = drawn && error <= most_of_cairo * cairo;
     printf("%s - %s at %g px: mean error %.3f, Cairo %.3f: %.3f of it (bound %.2f)\n", good ? "ok" : "not ok", name,
            width_px, error, cairo, error / cairo, most_of_cairo);
-    oracle_close(&truth);
+    camber_oracle_close(&truth);
     free(levels);
     return good;
 }

@@ -9,7 +9,7 @@ enum { SIDE_PX = 2048, POINTS_MAX = 1 << 17, FIGURES_MAX = 1 << 14 };
 
 /* A figure on the picture; its twin's window lies to the right of its own. */
 typedef struct placed {
-    oracle_style style;
+    camber_oracle_style style;
     tally *tally, *twin_tally;
     int x, y, width, height; /* px, of its window */
     size_t first_point, point_count;
@@ -94,7 +94,7 @@ static void add_polyline(sheet *s, const float *points, size_t count, double x, 
 }
 
 void sheet_add(sheet *s, const figure *f) {
-    const oracle_style *style = &f->style;
+    const camber_oracle_style *style = &f->style;
     /* A square cap reaches sqrt(2) half widths, a miter its limit; two pixels more show what is drawn beside. */
     const double reach = style->width_px / 2 * fmax(1.5, style->join == CAMBER_JOIN_MITER ? style->miter_limit : 0) + 2;
     double left = INFINITY, top = INFINITY, right = -INFINITY, bottom = -INFINITY;
@@ -178,19 +178,19 @@ static void tally_pixel(tally *t, const placed *p, int drawn, int truth, int at)
 }
 
 static void compare(const sheet *s, const placed *p) {
-    oracle_window window;
-    if (!oracle_open(&window, p->x, p->y, p->width, p->height) ||
-        !oracle_stroke(&window, s->points + 2 * p->first_point, p->point_count, &p->style))
+    camber_oracle_window window;
+    if (!camber_oracle_open(&window, p->x, p->y, p->width, p->height) ||
+        !camber_oracle_stroke(&window, s->points + 2 * p->first_point, p->point_count, &p->style))
         abort();
     for (int y = 0; y < p->height; y++)
         for (int x = 0; x < p->width; x++) {
             const int drawn = coverage_drawn(s, p->x + x, p->y + y);
-            const int truth = (int)lrint(oracle_coverage(&window, x, y) * 255), at = y * p->width + x;
+            const int truth = (int)lrint(camber_oracle_coverage(&window, x, y) * 255), at = y * p->width + x;
             tally_pixel(p->tally, p, drawn, truth, at);
             if (p->twin_tally)
                 tally_pixel(p->twin_tally, p, drawn, coverage_drawn(s, p->x + p->width + x, p->y + y), at);
         }
-    oracle_close(&window);
+    camber_oracle_close(&window);
 }
 
 void sheet_flush(sheet *s) {

@@ -2,7 +2,7 @@
 #ifndef CAMBER_TESTS_SHEET_H
 #define CAMBER_TESTS_SHEET_H
 
-#include "oracle.h"
+#include "proof/oracle.h"
 
 /* The difference between picture and truth over the pixels that either touches, in 255ths. */
 typedef struct tally {
@@ -18,7 +18,7 @@ typedef struct tally {
 typedef struct figure {
     const float *points;
     size_t point_count;
-    oracle_style style;
+    camber_oracle_style style;
     tally *tally; /* takes the difference from the truth */
     const char *label;
     /* Drawn beside at a distance of whole pixels: the same stroke by other points. NULL: nothing is. */

@@ -66,8 +66,8 @@ static void reverse(const path *p, path *reversed) {
         memcpy(reversed->points + 2 * i, p->points + 2 * (p->count - 1 - i), 2 * sizeof(float));
 }
 
-static oracle_style style_of(double width_px, int join, int cap) {
-    return (oracle_style){width_px, (camber_join)join, (camber_cap)cap, 2.2, false};
+static camber_oracle_style style_of(double width_px, int join, int cap) {
+    return (camber_oracle_style){width_px, (camber_join)join, (camber_cap)cap, 2.2, false};
 }
 
 /* What a group of figures is held to, in 255ths. */
@@ -97,12 +97,12 @@ static void check(trial *t, const tally *errors, limits most) {
     t->good = tally_check(errors, most.mean, most.max) && t->good;
 }
 
-static void add(trial *t, tally *errors, const path *p, const oracle_style *style, const char *label) {
+static void add(trial *t, tally *errors, const path *p, const camber_oracle_style *style, const char *label) {
     sheet_add(t->sheet, &(figure){p->points, p->count, *style, errors, label, NULL, 0, NULL});
 }
 
 /* Draws p and another path that is the same stroke. */
-static void add_twins(trial *t, tally tallies[2], const path *p, const path *q, const oracle_style *style,
+static void add_twins(trial *t, tally tallies[2], const path *p, const path *q, const camber_oracle_style *style,
                       const char *label) {
     sheet_add(t->sheet, &(figure){p->points, p->count, *style, tallies, label, q->points, q->count, tallies + 1});
 }
@@ -116,7 +116,7 @@ enum { TO_90, TO_150, TO_180, TURN_GROUPS };
 static void add_turns(trial *t, int steps, int join, int cap, tally tallies[TURN_GROUPS]) {
     for (int w = 0; w < WIDTHS; w++) {
         const double h = widths_px[w] / 2;
-        const oracle_style style = style_of(widths_px[w], join, cap);
+        const camber_oracle_style style = style_of(widths_px[w], join, cap);
         for (int i = 0; i <= steps; i++) {
             const double degrees = 180.0 * i / steps, arm = 1.5 * h + 5;
             path p;
@@ -172,7 +172,7 @@ enum { ALONE, LAST, INNER, PLACES };
 /* Shorter than a pixel, than half the width, or neither. */
 enum { TINY, STUB, LONG, SPANS };
 
-static void add_length(trial *t, const oracle_style *style, double length, tally tallies[PLACES][SPANS]) {
+static void add_length(trial *t, const camber_oracle_style *style, double length, tally tallies[PLACES][SPANS]) {
     const double arm = style->width_px + 3;
     const double in = between(&t->dice, -1.5, 1.5), out = between(&t->dice, -1.5, 1.5);
     const int span = length < 1 ? TINY : length < style->width_px / 2 ? STUB : LONG;
@@ -206,7 +206,7 @@ static void check_lengths(camber_method method, int copies, const limits bounds[
                      spans[k % SPANS]);
         }
         for (int k = 0; k < LENGTHS * WIDTHS; k++) {
-            const oracle_style style = style_of(widths_px[k % WIDTHS], i / 3, i % 3);
+            const camber_oracle_style style = style_of(widths_px[k % WIDTHS], i / 3, i % 3);
             for (int n = style.width_px > 20 ? copies / 4 : copies; n > 0; n--)
                 add_length(&t, &style, lengths_px[k / WIDTHS], tallies);
         }
@@ -251,7 +251,7 @@ static void test_dots(void **state) {
     for (int w = 0; w < WIDTHS; w++)
         for (int i = 0; i < 60; i++) {
             const int cap = i % 2 ? CAMBER_CAP_SQUARE : CAMBER_CAP_ROUND;
-            const oracle_style style = style_of(widths_px[w], CAMBER_JOIN_ROUND, cap);
+            const camber_oracle_style style = style_of(widths_px[w], CAMBER_JOIN_ROUND, cap);
             path p;
             char label[64];
             snprintf(label, sizeof label, "width %g", widths_px[w]);
@@ -277,7 +277,7 @@ static void test_rings(void **state) {
         tally errors = {.name = name};
         snprintf(name, sizeof name, "rings of %d sides, %s", n, join_names[k / 3]);
         for (int i = 0; i < WIDTHS * 8; i++) {
-            oracle_style style = style_of(widths_px[i % WIDTHS], k / 3, CAMBER_CAP_BUTT);
+            camber_oracle_style style = style_of(widths_px[i % WIDTHS], k / 3, CAMBER_CAP_BUTT);
             const double side = (3 + style.width_px) * between(&t.dice, 0.3, 4) * (n > 4 ? 0.3 : 1);
             path p;
             char label[64];
@@ -303,7 +303,7 @@ static void test_direction_does_not_matter(void **state) {
     tally tallies[] = {{.name = "forwards"}, {.name = "backwards"}};
     assert_true(begin_trial(&t, CAMBER_METHOD_STRIP));
     for (int i = 0; i < 1500; i++) {
-        const oracle_style style = style_of(widths_px[i % (WIDTHS - 2)], i / 11 % 3, i / 33 % 3);
+        const camber_oracle_style style = style_of(widths_px[i % (WIDTHS - 2)], i / 11 % 3, i / 33 % 3);
         path p, q;
         begin(&p, &t.dice);
         for (int k = 0; k < 4; k++)
@@ -328,7 +328,7 @@ static void test_cuts_do_not_show(void **state) {
                        {{.name = "straight lines"}, {.name = "cut to pieces from 1 px"}}};
     assert_true(begin_trial(&t, CAMBER_METHOD_STRIP));
     for (int i = 0; i < 900; i++) {
-        const oracle_style style = style_of(widths_px[i % WIDTHS], i / 11 % 3, i / 33 % 3);
+        const camber_oracle_style style = style_of(widths_px[i % WIDTHS], i / 11 % 3, i / 33 % 3);
         const double piece = lengths_px[i / 100], length = piece < 0.3 ? 100 * piece : 30;
         const int pieces = (int)(length / piece) + 1;
         path p, q;
@@ -365,7 +365,7 @@ static void test_thin_lines_keep_their_ink(void **state) {
         tally errors = {.name = "thin lines"};
         assert_true(begin_trial(&t, CAMBER_METHOD_STRIP));
         for (int i = 0; i < 200; i++) {
-            const oracle_style style = style_of(cases[c].width_px, i % 3, i / 3 % 3);
+            const camber_oracle_style style = style_of(cases[c].width_px, i % 3, i / 3 % 3);
             path p;
             begin(&p, &t.dice);
             for (int k = 0; k < 10; k++)

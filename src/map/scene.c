@@ -214,6 +214,10 @@ const camber_polylines *camber_scene_polylines(const camber_scene *scene) {
     return scene->polylines;
 }
 
+const uint32_t *camber_scene_rows(const camber_scene *scene) {
+    return scene->geometry.rows;
+}
+
 const camber_lines *camber_scene_lines(const camber_scene *scene) {
     return &scene->geometry.lines;
 }

@@ -1,4 +1,4 @@
-#include "oracle.h"
+#include "proof/oracle.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -18,23 +18,23 @@ typedef struct vec {
     double x, y;
 } vec;
 
-bool oracle_open(oracle_window *window, int x0, int y0, int width, int height) {
-    *window = (oracle_window){x0, y0, width, height, NULL};
+bool camber_oracle_open(camber_oracle_window *window, int x0, int y0, int width, int height) {
+    *window = (camber_oracle_window){x0, y0, width, height, NULL};
     window->pixels = calloc((size_t)width * (size_t)height, sizeof *window->pixels);
     return window->pixels != NULL;
 }
 
-void oracle_clear(oracle_window *window) {
+void camber_oracle_clear(camber_oracle_window *window) {
     memset(window->pixels, 0, (size_t)window->width * (size_t)window->height * sizeof *window->pixels);
 }
 
-void oracle_close(oracle_window *window) {
+void camber_oracle_close(camber_oracle_window *window) {
     free(window->pixels);
     window->pixels = NULL;
 }
 
-double oracle_coverage(const oracle_window *window, int column, int row) {
-    const oracle_sample_set *set = window->pixels + (size_t)row * (size_t)window->width + (size_t)column;
+double camber_oracle_coverage(const camber_oracle_window *window, int column, int row) {
+    const camber_oracle_sample_set *set = window->pixels + (size_t)row * (size_t)window->width + (size_t)column;
     int count = 0;
     for (int i = 0; i < 4; i++)
         for (uint64_t bits = set->bits[i]; bits; bits &= bits - 1)
@@ -78,12 +78,12 @@ static int pixel_side(const shape *s, double x, double y) {
     return side;
 }
 
-static void cover(oracle_window *w, const shape *s) {
+static void cover(camber_oracle_window *w, const shape *s) {
     const double left = fmax(s->left - w->x0, 0), right = fmin(s->right - w->x0, w->width);
     const double top = fmax(s->top - w->y0, 0), bottom = fmin(s->bottom - w->y0, w->height);
     for (int row = (int)floor(top); row < bottom; row++)
         for (int column = (int)floor(left); column < right; column++) {
-            oracle_sample_set *set = w->pixels + (size_t)row * (size_t)w->width + (size_t)column;
+            camber_oracle_sample_set *set = w->pixels + (size_t)row * (size_t)w->width + (size_t)column;
             const double x = w->x0 + column, y = w->y0 + row;
             const int side = pixel_side(s, x + 0.5, y + 0.5);
             if (side > 0)
@@ -95,7 +95,7 @@ static void cover(oracle_window *w, const shape *s) {
 }
 
 /* A convex polygon, in either order. */
-static void cover_polygon(oracle_window *w, const vec *corners, int count) {
+static void cover_polygon(camber_oracle_window *w, const vec *corners, int count) {
     shape s = {.plane_count = count, .left = INFINITY, .top = INFINITY, .right = -INFINITY, .bottom = -INFINITY};
     double area = 0;
     for (int i = 0; i < count; i++) {
@@ -116,7 +116,7 @@ static void cover_polygon(oracle_window *w, const vec *corners, int count) {
 }
 
 /* The part of a disc where (p - centre) . a <= 0 and (p - centre) . b <= 0. */
-static void cover_sector(oracle_window *w, vec centre, double radius, vec a, vec b) {
+static void cover_sector(camber_oracle_window *w, vec centre, double radius, vec a, vec b) {
     const shape s = {
         .planes = {{a.x, a.y, a.x * centre.x + a.y * centre.y}, {b.x, b.y, b.x * centre.x + b.y * centre.y}},
         .plane_count = 2,
@@ -140,7 +140,7 @@ static vec direction_of(vec p, vec q) {
 }
 
 /* Past the end of a segment that comes in direction u. */
-static void cover_cap(oracle_window *w, vec end, vec u, const oracle_style *style) {
+static void cover_cap(camber_oracle_window *w, vec end, vec u, const camber_oracle_style *style) {
     const double h = style->width_px / 2;
     const vec normal = {-u.y, u.x}, back = {-u.x, -u.y};
     if (style->cap == CAMBER_CAP_ROUND) {
@@ -151,7 +151,7 @@ static void cover_cap(oracle_window *w, vec end, vec u, const oracle_style *styl
     }
 }
 
-static void cover_join(oracle_window *w, vec point, vec u, vec v, const oracle_style *style) {
+static void cover_join(camber_oracle_window *w, vec point, vec u, vec v, const camber_oracle_style *style) {
     const double h = style->width_px / 2, turn = atan2(u.x * v.y - u.y * v.x, u.x * v.x + u.y * v.y);
     /* y points down: a positive turn is to the right, and its outer side the left, -normal. */
     const double outer = turn > 0 ? -h : h;
@@ -166,12 +166,13 @@ static void cover_join(oracle_window *w, vec point, vec u, vec v, const oracle_s
         cover_polygon(w, (vec[]){point, in, out}, 3);
 }
 
-static void cover_segment(oracle_window *w, vec a, vec b, double h) {
+static void cover_segment(camber_oracle_window *w, vec a, vec b, double h) {
     const vec u = direction_of(a, b), normal = {-u.y, u.x};
     cover_polygon(w, (vec[]){step(a, normal, h), step(b, normal, h), step(b, normal, -h), step(a, normal, -h)}, 4);
 }
 
-bool oracle_stroke(oracle_window *window, const float *points, size_t count, const oracle_style *style) {
+bool camber_oracle_stroke(camber_oracle_window *window, const float *points, size_t count,
+                          const camber_oracle_style *style) {
     vec *p = malloc((count + 1) * sizeof *p);
     size_t n = 0;
     if (!p)

@@ -1,0 +1,46 @@
+/* The truth about strokes: coverage by 256 samples a pixel, from the definition of a stroke alone. Shares no formula
+ * with kernels and shaders: a stroke is the union of
+ *
+ *   the rectangle of each segment
+ *   the join of each inner point   round: the wedge between the two outer normals, within half a width
+ *                                  miter: the kite of point, corners and tip; past the limit the bevel
+ *                                  bevel: the triangle of point and corners
+ *   the caps                       round: half a disc; square: half a width more of the rectangle
+ */
+#ifndef CAMBER_PROOF_ORACLE_H
+#define CAMBER_PROOF_ORACLE_H
+
+#include "camber.h"
+
+typedef struct camber_oracle_sample_set {
+    uint64_t bits[4]; /* of 16 x 16 samples */
+} camber_oracle_sample_set;
+
+/* A window of the plane, x0, y0 to x0 + width, y0 + height px. */
+typedef struct camber_oracle_window {
+    int x0, y0, width, height;
+    camber_oracle_sample_set *pixels; /* width * height, rows from the top down */
+} camber_oracle_window;
+
+typedef struct camber_oracle_style {
+    double width_px;
+    camber_join join;
+    camber_cap cap;
+    double miter_limit; /* 1 / cos(turn / 2) */
+    bool closed;        /* the last point, equal to the first, is a join */
+} camber_oracle_style;
+
+/* Nothing is covered yet. false: out of memory. */
+bool camber_oracle_open(camber_oracle_window *window, int x0, int y0, int width, int height);
+void camber_oracle_clear(camber_oracle_window *window);
+void camber_oracle_close(camber_oracle_window *window);
+
+/* Adds a stroke to what is covered. points: count pairs of x, y px; repeated points are skipped. false: out of memory.
+ */
+bool camber_oracle_stroke(camber_oracle_window *window, const float *points, size_t count,
+                          const camber_oracle_style *style);
+
+/* 0 to 1, of the pixel whose corner is x0 + column, y0 + row. */
+double camber_oracle_coverage(const camber_oracle_window *window, int column, int row);
+
+#endif

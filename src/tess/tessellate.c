@@ -343,6 +343,7 @@ camber_status camber_tessellate(camber_mesh *mesh, const camber_polylines *polyl
     camber_row *rows = NULL;
     camber_program *program = NULL;
     mesh->empty = mesh->joins_counted = true;
+    mesh->done = false;
     mesh->sharp_joins = mesh->flat_caps = false;
     for (size_t i = 0; i < desc->stroke_count; i++) {
         mesh->sharp_joins |= desc->strokes[i].join != CAMBER_JOIN_ROUND;
@@ -362,7 +363,8 @@ camber_status camber_tessellate(camber_mesh *mesh, const camber_polylines *polyl
         if (status == CAMBER_OK && !mesh->empty)
             camber_program_save(mesh->device, program);
     }
-    mesh->empty = mesh->empty || status != CAMBER_OK;
+    mesh->done = status == CAMBER_OK;
+    mesh->empty = mesh->empty || !mesh->done;
     camber_free(context, rows);
     return status;
 }

@@ -11,7 +11,8 @@ typedef struct twin {
     const camber_row *rows;
     camber_u32 method;
     camber_mesh_data *data;
-    size_t vertex_capacity, index_capacity;
+    camber_stages *stages; /* NULL: not wanted */
+    size_t vertex_capacity, index_capacity, stage_capacity;
     bool failed; /* out of memory, or of 32-bit indices */
     /* The segment under way: its start's left edge vertex, and its start's centre where that is a join. */
     uint32_t start, start_centre;
@@ -265,6 +266,32 @@ static void walk_body_point(twin *t, size_t slot, segment in, segment out, cambe
     }
 }
 
+/* Where the walk is: what has been appended so far is where this point's vertices and indices begin. */
+static void note_stages(twin *t, size_t slot, camber_u32 join) {
+    const camber_polylines *p = t->polylines;
+    camber_stages *stages = t->stages;
+    if (!stages || t->failed)
+        return;
+    if (!camber_grow(p->context, &stages->points, &t->stage_capacity, stages->point_count + 1,
+                     sizeof *stages->points)) {
+        t->failed = true;
+        return;
+    }
+    const camber_point_stages *before = stages->point_count ? stages->points + stages->point_count - 1 : NULL;
+    uint32_t polyline = before ? before->polyline : 0;
+    while (p->first_slots[polyline + 1] < slot)
+        polyline++;
+    stages->points[stages->point_count++] = (camber_point_stages){
+        .polyline = polyline,
+        .point = before && before->polyline == polyline ? before->point + 1 : 0,
+        .x = p->x[slot],
+        .y = p->y[slot],
+        .join = join,
+        .first_vertex = (uint32_t)t->data->info.vertex_count,
+        .first_index = t->data->info.index_count,
+    };
+}
+
 static void walk(twin *t) {
     const camber_polylines *p = t->polylines;
     camber_u32 before = 0, join = 0, after = 0;
@@ -277,6 +304,7 @@ static void walk(twin *t) {
         after = slot < p->slot_count ? join_word(t, slot + 1, &half_after) : 0;
         if (!(p->info[slot] & CAMBER_POINT_REAL))
             continue;
+        note_stages(t, slot, join);
         camber_mesh_info_count(&t->data->info, join, p->info[slot]);
         const camber_u32 row = p->info[slot] >> CAMBER_POINT_ROW_SHIFT;
         const segment in = {p->x[slot] - p->x[slot - 1], p->y[slot] - p->y[slot - 1], before, join, row};
@@ -290,24 +318,45 @@ static void walk(twin *t) {
     }
 }
 
-camber_status camber_tessellate_on_host(camber_context *context, const camber_polylines *polylines,
-                                        const camber_tessellation_desc *desc, camber_mesh_data *data) {
+/* Tessellates into data, and into stages where they are wanted; both are empty on failure. */
+static camber_status run(camber_context *context, const camber_polylines *polylines,
+                         const camber_tessellation_desc *desc, camber_mesh_data *data, camber_stages *stages) {
     camber_row *rows = NULL;
     const camber_status status = camber_rows_create(context, polylines, desc, &rows);
     if (status != CAMBER_OK)
         return status;
-    camber_mesh_data made = {.info = {.method = desc->method, .strips = desc->method == CAMBER_METHOD_STRIP}};
-    twin t = {.polylines = polylines, .rows = rows, .method = (camber_u32)desc->method, .data = &made};
+    data->info = (camber_mesh_info){.method = desc->method, .strips = desc->method == CAMBER_METHOD_STRIP};
+    twin t = {.polylines = polylines, .rows = rows, .method = (camber_u32)desc->method, .data = data, .stages = stages};
     walk(&t);
     camber_free(context, rows);
-    if (t.failed) {
-        const bool full = made.info.vertex_count >= UINT32_MAX - 1;
-        camber_mesh_data_free(context, &made);
-        return full ? camber_fail(context, CAMBER_ERROR_LIMIT, "2^32 - 1 vertices or more; tessellate in parts")
-                    : CAMBER_ERROR_MEMORY;
-    }
-    *data = made;
-    return CAMBER_OK;
+    if (!t.failed)
+        return CAMBER_OK;
+    const bool full = data->info.vertex_count >= UINT32_MAX - 1;
+    camber_mesh_data_free(context, data);
+    if (stages)
+        camber_stages_free(context, stages);
+    return full ? camber_fail(context, CAMBER_ERROR_LIMIT, "2^32 - 1 vertices or more; tessellate in parts")
+                : CAMBER_ERROR_MEMORY;
+}
+
+camber_status camber_tessellate_on_host(camber_context *context, const camber_polylines *polylines,
+                                        const camber_tessellation_desc *desc, camber_mesh_data *data) {
+    camber_mesh_data made = {0};
+    const camber_status status = run(context, polylines, desc, &made, NULL);
+    if (status == CAMBER_OK)
+        *data = made;
+    return status;
+}
+
+camber_status camber_stages_on_host(camber_context *context, const camber_polylines *polylines,
+                                    const camber_tessellation_desc *desc, camber_stages *stages) {
+    camber_mesh_data mesh = {0};
+    camber_stages made = {0};
+    const camber_status status = run(context, polylines, desc, &mesh, &made);
+    camber_mesh_data_free(context, &mesh);
+    if (status == CAMBER_OK)
+        *stages = made;
+    return status;
 }
 
 void camber_mesh_data_free(camber_context *context, camber_mesh_data *data) {

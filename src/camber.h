@@ -210,9 +210,15 @@ typedef struct camber_device_info {
 CAMBER_API camber_status camber_device_list(camber_context *context, size_t capacity, camber_device_info *infos,
                                             size_t *count);
 
+/* Whether match, as in camber_device_desc, names the device. */
+CAMBER_API bool camber_device_matches(const camber_device_info *info, const char *match);
+
 typedef struct camber_device_desc {
     /* "cpu", "gpu", or part of a device's or platform's name, case ignored. NULL: a GPU, else a CPU. */
     const char *match;
+    /* Of the devices that match, in the order of camber_device_list, the one to open: 1 is the first. 0: the first
+     * GPU, else the first CPU. */
+    uint32_t number;
     /* Points a work-group takes: 64, 128 or 256. 0: 256. What comes out is the same bytes. */
     uint32_t work_group_size;
     /* No buffer is made larger: a mesh that needs more is made in parts of whole polylines, and what is read or drawn
@@ -230,8 +236,8 @@ typedef struct camber_surface camber_surface;
  * PoCL leaves its threads to the system, which often puts two on one core; POCL_AFFINITY=1 in the environment before
  * the first OpenCL call of the process gives each its own. The tool sets it; a library must not.
  *
- * Returns CAMBER_ERROR_DEVICE (no platform, no device that matches), CAMBER_ERROR_ARGUMENT (a work-group size that is
- * none of these), CAMBER_ERROR_MEMORY. */
+ * Returns CAMBER_ERROR_DEVICE (no platform, no device that matches or not so many), CAMBER_ERROR_ARGUMENT (a work-group
+ * size that is none of these), CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_device_create(camber_context *context, const camber_device_desc *desc,
                                               camber_surface *surface, camber_device **device);
 CAMBER_API void camber_device_destroy(camber_device *device);

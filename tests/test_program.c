@@ -119,6 +119,35 @@ static void test_device_match(void **state) {
     host_done(&h, context);
 }
 
+/* Devices of equal names are told apart by their numbers. */
+static void test_device_number(void **state) {
+    (void)state;
+    host h;
+    camber_context *context = host_context(&h);
+    camber_device_info infos[64];
+    camber_device *device = NULL;
+    size_t count = 0;
+    assert_int_equal(camber_device_list(context, 64, infos, &count), CAMBER_OK);
+    for (uint32_t i = 0; i < count; i++) {
+        const camber_device_desc all = {.number = i + 1}, named = {.match = infos[i].name, .number = 1};
+        assert_int_equal(camber_device_create(context, &all, NULL, &device), CAMBER_OK);
+        const camber_device_info info = camber_device_get_info(device);
+        assert_string_equal(info.name, infos[i].name);
+        assert_string_equal(info.platform, infos[i].platform);
+        camber_device_destroy(device);
+        assert_true(camber_device_matches(&infos[i], infos[i].name));
+        assert_true(camber_device_matches(&infos[i], NULL));
+        assert_false(camber_device_matches(&infos[i], "no such device"));
+        assert_int_equal(camber_device_create(context, &named, NULL, &device), CAMBER_OK);
+        assert_string_equal(camber_device_get_info(device).name, infos[i].name);
+        camber_device_destroy(device);
+    }
+    const camber_device_desc past = {.number = (uint32_t)count + 1};
+    assert_int_equal(camber_device_create(context, &past, NULL, &device), CAMBER_ERROR_DEVICE);
+    assert_story(&h, infos[0].name);
+    host_done(&h, context);
+}
+
 /* ---- The cache ---- */
 
 /* Opens a device anew with a cache folder, tessellates a line, holds it against the twin. Gives whether the kernels
@@ -270,8 +299,11 @@ static void test_unwritable_cache(void **state) {
 int main(void) {
     const struct CMUnitTest first[] = {cmocka_unit_test(test_no_platform)};
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_device_list),      cmocka_unit_test(test_device_match),
-        cmocka_unit_test(test_second_run_loads), cmocka_unit_test(test_damaged_files_are_ignored),
+        cmocka_unit_test(test_device_list),
+        cmocka_unit_test(test_device_match),
+        cmocka_unit_test(test_device_number),
+        cmocka_unit_test(test_second_run_loads),
+        cmocka_unit_test(test_damaged_files_are_ignored),
         cmocka_unit_test(test_unwritable_cache),
     };
     char pocl_cache[64];

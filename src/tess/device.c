@@ -110,7 +110,9 @@ static bool contains_ignoring_case(const char *text, const char *part) {
     return *part == 0;
 }
 
-static bool matches(const camber_device_info *info, const char *match) {
+bool camber_device_matches(const camber_device_info *info, const char *match) {
+    if (!match)
+        return true;
     if (contains_ignoring_case("cpu", match) && strlen(match) == 3)
         return info->type == CAMBER_DEVICE_TYPE_CPU;
     if (contains_ignoring_case("gpu", match) && strlen(match) == 3)
@@ -122,25 +124,29 @@ static int rank(const camber_device_info *info) {
     return info->type == CAMBER_DEVICE_TYPE_GPU ? 2 : info->type == CAMBER_DEVICE_TYPE_CPU ? 1 : 0;
 }
 
-static camber_status choose(camber_device *device, const char *match) {
+static camber_status choose(camber_device *device, const char *match, uint32_t number) {
     found_device found[DEVICES_MAX];
     const size_t count = find_devices(found);
     if (count == 0)
         return camber_fail(device->context, CAMBER_ERROR_DEVICE,
                            "no OpenCL device: no platform answers; install a driver (Debian: pocl-opencl-icd)");
     char names[1024] = "";
+    uint32_t seen = 0;
     int best = -1;
     for (size_t i = 0; i < count; i++) {
         const camber_device_info info = describe(found[i]);
         const size_t used = strlen(names);
         snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", info.name);
-        if ((match && !matches(&info, match)) || rank(&info) <= best)
+        if (!camber_device_matches(&info, match) || (number ? ++seen != number : rank(&info) <= best))
             continue;
         best = rank(&info);
         device->platform = found[i].platform;
         device->id = found[i].id;
         device->info = info;
     }
+    if (best < 0 && number)
+        return camber_fail(device->context, CAMBER_ERROR_DEVICE,
+                           "no OpenCL device number %u matches '%s'; there are: %s", number, match ? match : "", names);
     if (best < 0)
         return camber_fail(device->context, CAMBER_ERROR_DEVICE, "no OpenCL device matches '%s'; there are: %s", match,
                            names);
@@ -183,7 +189,7 @@ camber_status camber_device_create(camber_context *context, const camber_device_
     if (!made)
         return CAMBER_ERROR_MEMORY;
     made->context = context;
-    camber_status status = choose(made, desc ? desc->match : NULL);
+    camber_status status = choose(made, desc ? desc->match : NULL, desc ? desc->number : 0);
     if (status == CAMBER_OK)
         status = open_cl(made, surface);
     if (status != CAMBER_OK) {

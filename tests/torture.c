@@ -251,6 +251,21 @@ static void add_scribbles(torture_set *set) {
     torture_end_figure(set, "comb narrower than the width", 14);
 }
 
+/* Parts of one line whose edges fall on each other: half of a pixel each. */
+static void add_meetings(torture_set *set) {
+    pen p = pen_at(set, 83);
+    go(&p, 60, 0);
+    go(&p, 20, -90);
+    go(&p, 60, -90);
+    torture_end_figure(set, "hairpin, gap of the width", 20);
+    p = pen_at(set, 31);
+    for (int i = 0; i < 6; i++) {
+        go(&p, 50, i == 0 ? 0 : i % 2 ? 90 : -90);
+        go(&p, 10, i % 2 ? 90 : -90);
+    }
+    torture_end_figure(set, "comb, pitch of the width", 10);
+}
+
 /* As long as the longest lines of real networks, with their mixture: straights of many short pieces, bends, hairpins,
  * points that lie on each other. */
 static void add_long_line(torture_set *set) {
@@ -282,41 +297,7 @@ torture_set torture_make(void) {
     add_u_turns(&set);
     add_rings(&set);
     add_scribbles(&set);
+    add_meetings(&set);
     add_long_line(&set);
     return set;
-}
-
-/* ---- The verdict ---- */
-
-static bool is_inside(const torture_set *set, const float *truth, int x, int y) {
-    for (int v = y - 1; v <= y + 1; v++)
-        for (int u = x - 1; u <= x + 1; u++)
-            if (u < 0 || v < 0 || u >= set->width || v >= set->height ||
-                truth[(size_t)v * (size_t)set->width + (size_t)u] < 1.0f)
-                return false;
-    return true;
-}
-
-torture_verdict torture_judge(const torture_set *set, size_t figure, const float *truth, const uint8_t *alpha) {
-    const camber_window *cell = &set->figures[figure].cell;
-    size_t counts[256] = {0};
-    torture_verdict v = {0};
-    for (int y = cell->y0; y < cell->y0 + cell->height; y++)
-        for (int x = cell->x0; x < cell->x0 + cell->width; x++)
-            if (is_inside(set, truth, x, y)) {
-                counts[alpha[(size_t)y * (size_t)set->width + (size_t)x]]++;
-                v.inside++;
-            }
-    for (int level = 0; level < 256; level++)
-        v.level = counts[level] > counts[v.level] ? level : v.level;
-    v.differing = v.inside - counts[v.level];
-    v.worst = v.level;
-    for (int level = 0; level < 256; level++)
-        if (counts[level] && abs(level - v.level) > abs(v.worst - v.level))
-            v.worst = level;
-    for (int y = cell->y0 + cell->height - 1; y >= cell->y0; y--)
-        for (int x = cell->x0 + cell->width - 1; x >= cell->x0; x--)
-            if (is_inside(set, truth, x, y) && alpha[(size_t)y * (size_t)set->width + (size_t)x] == v.worst)
-                v.x = x, v.y = y;
-    return v;
 }

@@ -3,7 +3,7 @@
 #ifndef CAMBER_TESTS_TORTURE_H
 #define CAMBER_TESTS_TORTURE_H
 
-#include "scene.h"
+#include "picture.h"
 
 #include "proof/truth.h"
 
@@ -30,12 +30,33 @@ void torture_end_figure(torture_set *set, const char *name, double width_px);
 
 /* How a figure's inside looks: the pixels that the stroke covers wholly, and their eight neighbours too. */
 typedef struct torture_verdict {
-    size_t inside, differing; /* pixels; differing: from the level that most have */
-    int level, worst;         /* of 255: that level, and the one farthest from it */
-    int x, y;                 /* of the first that is the worst, in the picture */
+    size_t inside; /* pixels */
+    /* Pixels that are not of the level that most have: where a stretch of line turns within half its width, and where
+     * it takes parts of the line that lie farther apart to cover the pixel, each of them in part only. Coverage line
+     * over line cannot add up to 1 there. */
+    size_t torn, meeting;
+    int level, worst; /* of 255: that level, and the one farthest from it */
+    int x, y;         /* of the first that is the worst, in its cell */
 } torture_verdict;
 
-/* truth: the coverage of the whole picture; alpha: drawn, one byte a pixel. */
-torture_verdict torture_judge(const torture_set *set, size_t figure, const float *truth, const uint8_t *alpha);
+/* What the verdict is about: alpha is drawn with these strokes, one byte a pixel, and truth is their coverage, both of
+ * the whole picture. */
+typedef struct torture_picture {
+    const torture_set *set;
+    const camber_stroke *strokes;
+    const float *truth;
+    const uint8_t *alpha;
+} torture_picture;
+
+torture_verdict torture_judge(const torture_picture *drawn, size_t figure);
+
+/* Pixels of one picture of the whole set that are known to differ. */
+typedef struct torture_known {
+    size_t torn, meeting;
+} torture_known;
+
+/* Draws the set half transparent and flattened with every join, cap and back end; prints each figure that is not of one
+ * alpha inside; fails where a picture has more such pixels than are known. */
+void torture_check(const studio *s, const torture_set *set, camber_method method, torture_known known);
 
 #endif

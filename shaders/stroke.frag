@@ -1,6 +1,7 @@
 // The coverage of a pixel by its segment's part of a stroke.
 // Built with LINEAR (a ramp in place of the exact area), SHARP_JOINS (miter, bevel) and FLAT_CAPS (butt, square), each
-// 0 or 1, so that a mesh pays for what it has: a software rasteriser runs every branch.
+// 0 or 1, so that a mesh pays for what it has: a software rasteriser runs every branch. With COUNT it adds 1 of 255 in
+// place of the colour, and fragments without coverage leave nothing, in the stencil neither.
 precision highp float;
 
 flat in highp vec4 v_segment;
@@ -128,5 +129,11 @@ void main() {
 #endif
     float tie = 4e-5 * (half_width + 1.0); // the turn is off by at most 4 / 65534
     bool foreign = is_foreign(end_a, y, tie) || is_foreign(end_b, y, tie);
+#if COUNT
+    if (foreign || area <= 0.0)
+        discard;
+    o_color = vec4(1.0 / 255.0, 0.0, 0.0, 0.0);
+#else
     o_color = v_color * (foreign ? 0.0 : area);
+#endif
 }

@@ -246,6 +246,29 @@ static void test_paints_that_draw_nothing(void **state) {
     scene_free(&lines);
 }
 
+/* A row past the paints between rows that are drawn: not drawn, whatever another picture drew it with. */
+static void test_row_past_the_paints(void **state) {
+    studio *s = *state;
+    scene lines = {0};
+    for (size_t i = 0; i < 3; i++)
+        line(&lines, i % 2, 4, 10 + 20 * (double)i, 60, 10 + 20 * (double)i);
+    const camber_stroke strokes[] = {{8, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0},
+                                     {8, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0}};
+    const camber_paint paints[] = {{8, {1, 0, 0, 1}}, {8, {0, 1, 0, 1}}};
+    camber_mesh *mesh = make_mesh(s, &lines, strokes, 2, CAMBER_METHOD_STRIP);
+    for (size_t count = 2; count >= 1; count--) {
+        const camber_pass pass = {.mesh = mesh, .paints = paints, .paint_count = count};
+        picture p = draw(s, &pass, 1);
+        assert_value(&p, 32, 10, 0, 1);
+        assert_value(&p, 32, 30, 1, count == 2);
+        assert_value(&p, 32, 30, 3, count == 2);
+        assert_value(&p, 32, 50, 0, 1);
+        picture_free(&p);
+    }
+    camber_mesh_destroy(mesh);
+    scene_free(&lines);
+}
+
 /* Rows that a pass leaves out do not end a run, and their lines stay away. */
 static void test_some_rows(void **state) {
     studio *s = *state;
@@ -420,7 +443,7 @@ int main(void) {
         cmocka_unit_test(test_alphas_keep_order), cmocka_unit_test(test_paints_that_draw_nothing),
         cmocka_unit_test(test_some_rows),         cmocka_unit_test(test_thousands_of_rows),
         cmocka_unit_test(test_casing_and_fill),   cmocka_unit_test(test_polyline_range),
-        cmocka_unit_test(test_mesh_changes),
+        cmocka_unit_test(test_mesh_changes),      cmocka_unit_test(test_row_past_the_paints),
     };
     char pocl_cache[64];
     pocl_cache_apart(pocl_cache);

@@ -8,6 +8,8 @@ extern const char camber_stroke_vert[], camber_stroke_frag[]; /* shaders/ withou
 extern const unsigned long camber_stroke_vert_size, camber_stroke_frag_size;
 extern const char camber_flatten_vert[], camber_flatten_frag[];
 extern const unsigned long camber_flatten_vert_size, camber_flatten_frag_size;
+extern const char camber_count_frag[];
+extern const unsigned long camber_count_frag_size;
 extern const char camber_style_light[], camber_style_dark[]; /* src/style/ */
 extern const unsigned long camber_style_light_size, camber_style_dark_size;
 extern const char camber_osmconf[]; /* src/source/osmconf.ini */

@@ -17,6 +17,8 @@
     X(void, Enable, (GLenum))                                                                                          \
     X(void, Disable, (GLenum))                                                                                         \
     X(void, BlendFunc, (GLenum, GLenum))                                                                               \
+    X(void, StencilFunc, (GLenum, GLint, GLuint))                                                                      \
+    X(void, StencilOp, (GLenum, GLenum, GLenum))                                                                       \
     X(void, Viewport, (GLint, GLint, GLsizei, GLsizei))                                                                \
     X(void, ClearColor, (GLfloat, GLfloat, GLfloat, GLfloat))                                                          \
     X(void, Clear, (GLbitfield))                                                                                       \
@@ -67,6 +69,11 @@
     X(void, DeleteFramebuffers, (GLsizei, const GLuint *))                                                             \
     X(void, BindFramebuffer, (GLenum, GLuint))                                                                         \
     X(void, FramebufferTexture2D, (GLenum, GLenum, GLenum, GLuint, GLint))                                             \
+    X(void, FramebufferRenderbuffer, (GLenum, GLenum, GLenum, GLuint))                                                 \
+    X(void, GenRenderbuffers, (GLsizei, GLuint *))                                                                     \
+    X(void, DeleteRenderbuffers, (GLsizei, const GLuint *))                                                            \
+    X(void, BindRenderbuffer, (GLenum, GLuint))                                                                        \
+    X(void, RenderbufferStorage, (GLenum, GLenum, GLsizei, GLsizei))                                                   \
     X(GLenum, CheckFramebufferStatus, (GLenum))
 
 /* In the driver's extensions, not in every one. */

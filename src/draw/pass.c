@@ -18,16 +18,19 @@ static bool is_drawn(const camber_pass *pass, uint32_t row) {
     return row < pass->paint_count && pass->paints[row].width_px > 0.0f && pass->paints[row].color.a > 0.0f;
 }
 
-/* The row texture of a run: rows of other alphas are left out, and a layer's rows are drawn opaque. */
+/* The row texture of a run: rows of other alphas are left out, and a layer's rows are drawn opaque. Every row of the
+ * mesh has its texels, since a run has polylines that are not drawn among those that are. */
 static void fill_rows(camber_renderer *renderer, const camber_pass *pass, const pass_run *run, bool layered) {
-    for (size_t i = 0; i < pass->paint_count; i++) {
+    for (size_t i = 0; i < pass->mesh->row_count; i++) {
         const camber_paint *paint = pass->paints + i;
         float *texel = renderer->row_texels + 4 * TEXELS_A_ROW * i;
-        const bool drawn = is_drawn(pass, (uint32_t)i) && (!layered || paint->color.a == run->alpha);
+        memset(texel, 0, 4 * TEXELS_A_ROW * sizeof *texel);
+        texel[0] = -1.0f;
+        if (!is_drawn(pass, (uint32_t)i) || (layered && paint->color.a != run->alpha))
+            continue;
         const float alpha = layered ? 1.0f : paint->color.a;
         const float color[4] = {paint->color.r * alpha, paint->color.g * alpha, paint->color.b * alpha, alpha};
-        memset(texel, 0, 4 * TEXELS_A_ROW * sizeof *texel);
-        texel[0] = drawn ? 0.5f * paint->width_px : -1.0f;
+        texel[0] = 0.5f * paint->width_px;
         for (int c = 0; c < 4; c++)
             texel[4 + c] = layered && run->one_color ? 1.0f : color[c];
     }
@@ -67,9 +70,39 @@ static void upload_rows(camber_renderer *renderer, size_t row_count) {
                           renderer->row_texels + 4 * (size_t)whole * ROW_TEXTURE_WIDTH);
 }
 
-static void bind_mesh(camber_renderer *renderer, const camber_mesh *mesh) {
+camber_status camber_renderer_set_widths(camber_renderer *renderer, const camber_mesh *mesh, const camber_paint *paints,
+                                         size_t paint_count) {
+    const camber_status status = reserve_rows(renderer, mesh->row_count);
+    if (status != CAMBER_OK)
+        return status;
+    memset(renderer->row_texels, 0, 4 * TEXELS_A_ROW * mesh->row_count * sizeof *renderer->row_texels);
+    for (size_t i = 0; i < mesh->row_count; i++) {
+        const float width_px = i < paint_count ? paints[i].width_px : 0.0f;
+        renderer->row_texels[4 * TEXELS_A_ROW * i] = width_px > 0.0f ? 0.5f * width_px : -1.0f;
+    }
+    upload_rows(renderer, mesh->row_count);
+    return CAMBER_OK;
+}
+
+camber_status camber_renderer_mesh_shader(camber_renderer *renderer, const camber_mesh *mesh, unsigned variant,
+                                          const camber_shader **shader) {
+    return camber_renderer_stroke_shader(renderer,
+                                         variant | (mesh->sharp_joins ? CAMBER_VARIANT_SHARP_JOINS : 0u) |
+                                             (mesh->flat_caps ? CAMBER_VARIANT_FLAT_CAPS : 0u),
+                                         shader);
+}
+
+void camber_renderer_use_shader(camber_renderer *renderer, const camber_shader *shader, const camber_piece *piece) {
+    const camber_gl *gl = &renderer->share.surface->gl;
+    gl->UseProgram(shader->program);
+    gl->Uniform2f(shader->origin, (GLfloat)piece->x, (GLfloat)piece->y);
+    gl->Uniform2f(shader->scale, 2.0f / (GLfloat)piece->width, 2.0f / (GLfloat)piece->height);
+}
+
+void camber_renderer_bind_mesh(camber_renderer *renderer, const camber_mesh *mesh) {
     const camber_gl *gl = &renderer->share.surface->gl;
     const GLsizei stride = sizeof(camber_vertex);
+    gl->BindTexture(GL_TEXTURE_2D, renderer->row_texture);
     gl->BindVertexArray(renderer->vertex_array);
     gl->BindBuffer(GL_ARRAY_BUFFER, mesh->buffers[CAMBER_BUFFER_VERTICES].gl_name);
     gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, mesh->buffers[CAMBER_BUFFER_INDICES].gl_name);
@@ -93,17 +126,12 @@ static camber_status draw_run(camber_renderer *renderer, camber_mesh *mesh, cons
     enum { INDICES_MAX = 1 << 30 };
     const camber_gl *gl = &renderer->share.surface->gl;
     const camber_shader *shader;
-    const unsigned variant = (piece->coverage == CAMBER_COVERAGE_LINEAR ? CAMBER_VARIANT_LINEAR : 0u) |
-                             (mesh->sharp_joins ? CAMBER_VARIANT_SHARP_JOINS : 0u) |
-                             (mesh->flat_caps ? CAMBER_VARIANT_FLAT_CAPS : 0u);
-    camber_status status = camber_renderer_stroke_shader(renderer, variant, &shader);
+    camber_status status = camber_renderer_mesh_shader(
+        renderer, mesh, piece->coverage == CAMBER_COVERAGE_LINEAR ? CAMBER_VARIANT_LINEAR : 0u, &shader);
     if (status != CAMBER_OK)
         return status;
-    gl->UseProgram(shader->program);
-    gl->Uniform2f(shader->origin, (GLfloat)piece->x, (GLfloat)piece->y);
-    gl->Uniform2f(shader->scale, 2.0f / (GLfloat)piece->width, 2.0f / (GLfloat)piece->height);
-    gl->BindTexture(GL_TEXTURE_2D, renderer->row_texture);
-    bind_mesh(renderer, mesh);
+    camber_renderer_use_shader(renderer, shader, piece);
+    camber_renderer_bind_mesh(renderer, mesh);
     for (size_t first = run->first; first < run->end;) {
         size_t end = run->end;
         uint64_t from, to;
@@ -197,7 +225,7 @@ camber_status camber_renderer_draw_pass(camber_renderer *renderer, const camber_
         return CAMBER_OK;
     size_t end = pass->polyline_count ? pass->first_polyline + pass->polyline_count : mesh->polyline_count;
     end = end < mesh->polyline_count ? end : mesh->polyline_count;
-    camber_status status = reserve_rows(renderer, pass->paint_count);
+    camber_status status = reserve_rows(renderer, mesh->row_count);
     for (size_t first = pass->first_polyline; first < end && status == CAMBER_OK;) {
         const pass_run run = next_run(pass, first, end);
         const bool layered = run.alpha < 1.0f;
@@ -205,7 +233,7 @@ camber_status camber_renderer_draw_pass(camber_renderer *renderer, const camber_
         if (run.alpha <= 0.0f)
             continue;
         fill_rows(renderer, pass, &run, layered);
-        upload_rows(renderer, pass->paint_count);
+        upload_rows(renderer, mesh->row_count);
         if (layered) {
             status = draw_layered(renderer, pass, &run, piece);
         } else {

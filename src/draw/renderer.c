@@ -33,10 +33,8 @@ void camber_renderer_destroy(camber_renderer *renderer) {
             gl->DeleteProgram(renderer->strokes[i].program);
         for (int i = 0; i < 2; i++)
             gl->DeleteProgram(renderer->flatten[i].program);
-        for (int i = 0; i < CAMBER_TARGETS; i++) {
-            gl->DeleteFramebuffers(1, &renderer->targets[i].framebuffer);
-            gl->DeleteTextures(1, &renderer->targets[i].texture);
-        }
+        gl->DeleteProgram(renderer->count.program);
+        camber_renderer_release_targets(renderer);
         gl->DeleteTextures(1, &renderer->row_texture);
         gl->DeleteVertexArrays(1, &renderer->vertex_array);
     }

@@ -5,7 +5,13 @@
 #include "draw/share.h"
 
 /* Variants of the stroke shader, as bits. */
-enum { CAMBER_VARIANT_LINEAR = 1, CAMBER_VARIANT_SHARP_JOINS = 2, CAMBER_VARIANT_FLAT_CAPS = 4, CAMBER_VARIANTS = 8 };
+enum {
+    CAMBER_VARIANT_LINEAR = 1,
+    CAMBER_VARIANT_SHARP_JOINS = 2,
+    CAMBER_VARIANT_FLAT_CAPS = 4,
+    CAMBER_VARIANT_COUNT = 8, /* counts the fragments with coverage instead of drawing them */
+    CAMBER_VARIANTS = 16
+};
 
 typedef struct camber_shader {
     GLuint program; /* 0: not built yet */
@@ -15,16 +21,18 @@ typedef struct camber_shader {
 /* A texture to draw into, of the size of a piece. */
 typedef struct camber_target {
     GLuint texture, framebuffer;
+    GLuint stencil; /* of the counts only */
     GLsizei width, height;
 } camber_target;
 
-enum { CAMBER_TARGET_PICTURE, CAMBER_TARGET_COVERAGE, CAMBER_TARGET_LAYER, CAMBER_TARGETS };
+enum { CAMBER_TARGET_PICTURE, CAMBER_TARGET_COVERAGE, CAMBER_TARGET_LAYER, CAMBER_TARGET_COUNTS, CAMBER_TARGETS };
 
 struct camber_renderer {
     camber_share share;
     const camber_share_path *path;
     camber_shader strokes[CAMBER_VARIANTS];
     camber_shader flatten[2]; /* by whether the layer is one channel of coverage */
+    camber_shader count;      /* every fragment */
     camber_target targets[CAMBER_TARGETS];
     GLuint vertex_array;
     GLuint row_texture;
@@ -36,9 +44,11 @@ struct camber_renderer {
 /* shaders.c */
 camber_status camber_renderer_stroke_shader(camber_renderer *renderer, unsigned variant, const camber_shader **shader);
 camber_status camber_renderer_flatten_shader(camber_renderer *renderer, bool coverage, const camber_shader **shader);
+camber_status camber_renderer_count_shader(camber_renderer *renderer, const camber_shader **shader);
 
-/* targets.c: binds a target of at least this size, cleared to nothing drawn. */
+/* targets.c: binds a target of this size; what it holds is not defined. */
 camber_status camber_renderer_bind_target(camber_renderer *renderer, int which, GLsizei width, GLsizei height);
+void camber_renderer_release_targets(camber_renderer *renderer);
 
 /* pass.c: one piece of the picture. */
 typedef struct camber_piece {
@@ -47,6 +57,16 @@ typedef struct camber_piece {
     size_t *draw_calls;
 } camber_piece;
 camber_status camber_renderer_draw_pass(camber_renderer *renderer, const camber_pass *pass, const camber_piece *piece);
+/* The row texture of a mesh with widths alone; a row past the paints is not drawn. */
+camber_status camber_renderer_set_widths(camber_renderer *renderer, const camber_mesh *mesh, const camber_paint *paints,
+                                         size_t paint_count);
+/* The stroke shader that a mesh needs, CAMBER_VARIANT_LINEAR or COUNT added to what its rows ask for. */
+camber_status camber_renderer_mesh_shader(camber_renderer *renderer, const camber_mesh *mesh, unsigned variant,
+                                          const camber_shader **shader);
+/* Uses a shader, with its uniforms set for a piece. */
+void camber_renderer_use_shader(camber_renderer *renderer, const camber_shader *shader, const camber_piece *piece);
+/* Binds a mesh's vertices and indices, and the row texture. */
+void camber_renderer_bind_mesh(camber_renderer *renderer, const camber_mesh *mesh);
 
 /* Logs what GL reports; CAMBER_OK where it reports nothing. */
 camber_status camber_renderer_check(camber_renderer *renderer, const char *what);

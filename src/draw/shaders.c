@@ -60,10 +60,11 @@ static camber_status build(camber_renderer *renderer, const char *head, const ch
 camber_status camber_renderer_stroke_shader(camber_renderer *renderer, unsigned variant, const camber_shader **shader) {
     camber_shader *wanted = renderer->strokes + variant;
     if (!wanted->program) {
-        char head[128];
-        snprintf(head, sizeof head, "#define LINEAR %d\n#define SHARP_JOINS %d\n#define FLAT_CAPS %d\n",
+        char head[160];
+        snprintf(head, sizeof head,
+                 "#define LINEAR %d\n#define SHARP_JOINS %d\n#define FLAT_CAPS %d\n#define COUNT %d\n",
                  (variant & CAMBER_VARIANT_LINEAR) != 0, (variant & CAMBER_VARIANT_SHARP_JOINS) != 0,
-                 (variant & CAMBER_VARIANT_FLAT_CAPS) != 0);
+                 (variant & CAMBER_VARIANT_FLAT_CAPS) != 0, (variant & CAMBER_VARIANT_COUNT) != 0);
         const camber_status status = build(renderer, head, camber_stroke_vert, camber_stroke_frag, wanted);
         if (status != CAMBER_OK)
             return status;
@@ -81,5 +82,15 @@ camber_status camber_renderer_flatten_shader(camber_renderer *renderer, bool cov
             return status;
     }
     *shader = wanted;
+    return CAMBER_OK;
+}
+
+camber_status camber_renderer_count_shader(camber_renderer *renderer, const camber_shader **shader) {
+    if (!renderer->count.program) {
+        const camber_status status = build(renderer, "", camber_stroke_vert, camber_count_frag, &renderer->count);
+        if (status != CAMBER_OK)
+            return status;
+    }
+    *shader = &renderer->count;
     return CAMBER_OK;
 }

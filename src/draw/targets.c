@@ -1,10 +1,19 @@
-/* What is drawn into: the picture, and the layers that are flattened before they reach it. */
+/* What is drawn into: the picture, the layers that are flattened before they reach it, and counts. */
 #include "draw/renderer.h"
 
 static void release(const camber_gl *gl, camber_target *target) {
     gl->DeleteFramebuffers(1, &target->framebuffer);
     gl->DeleteTextures(1, &target->texture);
+    gl->DeleteRenderbuffers(1, &target->stencil);
     *target = (camber_target){0};
+}
+
+/* With the depth that nobody needs: stencil alone is not a framebuffer's everywhere. */
+static void add_stencil(const camber_gl *gl, camber_target *target, GLsizei width, GLsizei height) {
+    gl->GenRenderbuffers(1, &target->stencil);
+    gl->BindRenderbuffer(GL_RENDERBUFFER, target->stencil);
+    gl->RenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH24_STENCIL8, width, height);
+    gl->FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER, target->stencil);
 }
 
 static camber_status resize(camber_renderer *renderer, int which, GLsizei width, GLsizei height) {
@@ -21,6 +30,8 @@ static camber_status resize(camber_renderer *renderer, int which, GLsizei width,
     gl->GenFramebuffers(1, &target->framebuffer);
     gl->BindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
     gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target->texture, 0);
+    if (which == CAMBER_TARGET_COUNTS)
+        add_stencil(gl, target, width, height);
     if (gl->CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE || gl->GetError() != GL_NO_ERROR) {
         release(gl, target);
         return camber_fail(renderer->share.device->context, CAMBER_ERROR_MEMORY,
@@ -40,4 +51,9 @@ camber_status camber_renderer_bind_target(camber_renderer *renderer, int which, 
     gl->BindFramebuffer(GL_FRAMEBUFFER, renderer->targets[which].framebuffer);
     gl->Viewport(0, 0, width, height);
     return CAMBER_OK;
+}
+
+void camber_renderer_release_targets(camber_renderer *renderer) {
+    for (int i = 0; i < CAMBER_TARGETS; i++)
+        release(&renderer->share.surface->gl, renderer->targets + i);
 }

@@ -83,6 +83,7 @@ struct camber_mesh {
     /* Of the polylines: polyline_count + 1 slots, where a polyline's indices begin; polyline_count rows. */
     uint32_t *first_slots, *polyline_rows;
     size_t polyline_count, polyline_capacity, row_list_capacity;
+    size_t row_count;     /* every polyline's row is below it */
     uint64_t *host_bases; /* first vertex and first index of each block, and the totals behind the last */
     size_t base_capacity;
     camber_mesh_info mesh_info;

@@ -163,6 +163,7 @@ static camber_status upload(camber_mesh *mesh, const camber_polylines *polylines
     memcpy(mesh->first_slots, polylines->first_slots, (polylines->polyline_count + 1) * sizeof *mesh->first_slots);
     memcpy(mesh->polyline_rows, polylines->polyline_rows, polylines->polyline_count * sizeof *mesh->polyline_rows);
     mesh->polyline_count = polylines->polyline_count;
+    mesh->row_count = polylines->row_count;
     mesh->slot_count = polylines->slot_count;
     mesh->uploaded_serial = polylines->serial;
     return CAMBER_OK;

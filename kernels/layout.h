@@ -26,8 +26,10 @@ typedef uint64_t camber_u64;
 #endif
 
 /* Points a work-group, and the block of the scan. Point arrays are padded with ghosts to a multiple of it, so
- * that no kernel needs a guard. */
+ * that no kernel needs a guard. A device may take smaller ones, which divide it: its build sets them. */
+#ifndef CAMBER_BLOCK
 #define CAMBER_BLOCK 256
+#endif
 /* Points a work-item of the scan. */
 #define CAMBER_SCAN_POINTS 8
 

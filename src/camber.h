@@ -201,8 +201,8 @@ typedef struct camber_device_info {
     camber_device_type type;
     uint32_t compute_units;
     uint64_t memory_bytes;
-    uint64_t largest_buffer_bytes;
-    bool gl_sharing; /* cl_khr_gl_sharing */
+    uint64_t largest_buffer_bytes; /* of an open device: what its desc allows, if that is less */
+    bool gl_sharing;               /* cl_khr_gl_sharing */
 } camber_device_info;
 
 /* Fills up to capacity infos and sets *count to the number of devices present, which may be larger and may
@@ -222,7 +222,7 @@ typedef struct camber_device_desc {
     /* Points a work-group takes: 64, 128 or 256. 0: 256. What comes out is the same bytes. */
     uint32_t work_group_size;
     /* No buffer is made larger: a mesh that needs more is made in parts of whole polylines, and what is read or drawn
-     * of it is the same. 0, or more than the device allows: the device's own limit. */
+     * of it is the same. 4096 at least. 0, or more than the device allows: the device's own limit. */
     uint64_t largest_buffer_bytes;
 } camber_device_desc;
 
@@ -237,7 +237,7 @@ typedef struct camber_surface camber_surface;
  * the first OpenCL call of the process gives each its own. The tool sets it; a library must not.
  *
  * Returns CAMBER_ERROR_DEVICE (no platform, no device that matches or not so many), CAMBER_ERROR_ARGUMENT (a work-group
- * size that is none of these), CAMBER_ERROR_MEMORY. */
+ * size that is none of these, a largest buffer below 4096 bytes), CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_device_create(camber_context *context, const camber_device_desc *desc,
                                               camber_surface *surface, camber_device **device);
 CAMBER_API void camber_device_destroy(camber_device *device);

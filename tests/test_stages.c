@@ -125,7 +125,7 @@ static void test_wrong_words_show(void **state) {
     camber_stages good = on_device(b);
     /* Without rings and repeated points a point's slot is its place in the list. */
     assert_int_equal(good.point_count, polylines->first_slots[polylines->polyline_count]);
-    const cl_mem mems[] = {b->mesh->x, b->mesh->y, b->mesh->joins, b->mesh->offsets};
+    const cl_mem mems[] = {b->mesh->parts->x, b->mesh->parts->y, b->mesh->parts->joins, b->mesh->parts->offsets};
     for (size_t k = 0; k < 4; k++) {
         const size_t points[] = {0, 255, 256, 1000, good.point_count - 1};
         for (size_t i = 0; i < sizeof points / sizeof *points; i++) {

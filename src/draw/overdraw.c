@@ -31,7 +31,8 @@ typedef struct counting {
     size_t drawn_count;
     const camber_shader *cover, *every;
     camber_piece piece;
-    uint8_t *pixels; /* RGBA8 of a piece */
+    const camber_mesh_part *bound; /* NULL: none */
+    uint8_t *pixels;               /* RGBA8 of a piece */
     camber_overdraw sum;
 } counting;
 
@@ -46,15 +47,35 @@ static uint64_t shared_indices(const camber_mesh *mesh) {
     return mesh->mesh_info.strips ? 2 : 0;
 }
 
-static void draw_range(const counting *c, camber_index_range range) {
+static const camber_mesh_part *part_of(const camber_mesh *mesh, uint64_t index) {
+    size_t low = 0, high = mesh->part_count;
+    while (high - low > 1) {
+        const size_t middle = low + (high - low) / 2;
+        if (mesh->parts[middle].first_index <= index)
+            low = middle;
+        else
+            high = middle;
+    }
+    return mesh->parts + low;
+}
+
+/* A draw call for as much of a range as lies in one part and is not too long. */
+static void draw_range(counting *c, camber_index_range range) {
     const camber_mesh *mesh = c->desc->mesh;
     const GLenum kind = mesh->mesh_info.strips ? GL_TRIANGLE_STRIP : GL_TRIANGLES;
     const uint64_t shared = shared_indices(mesh);
     while (range.index_count > shared) {
-        const uint64_t count = range.index_count < INDICES_MAX ? range.index_count : INDICES_MAX;
-        gl_of(c)->DrawElements(kind, (GLsizei)count, GL_UNSIGNED_INT, (const void *)(uintptr_t)(4 * range.first_index));
-        range.first_index += count - shared;
-        range.index_count -= count - shared;
+        const camber_mesh_part *part = part_of(mesh, range.first_index);
+        const uint64_t first = range.first_index - part->first_index, left = part->index_count - first;
+        uint64_t count = range.index_count < INDICES_MAX ? range.index_count : INDICES_MAX;
+        count = count < left ? count : left;
+        if (part != c->bound)
+            camber_renderer_bind_part(c->renderer, part);
+        c->bound = part;
+        gl_of(c)->DrawElements(kind, (GLsizei)count, GL_UNSIGNED_INT, (const void *)(uintptr_t)(4 * first));
+        const uint64_t done = count < left ? count - shared : count; /* no triangle lies in two parts */
+        range.first_index += done;
+        range.index_count -= done;
     }
 }
 
@@ -111,7 +132,7 @@ typedef struct cursor {
 } cursor;
 
 /* Draws the triangles that end with one of the next indices, so many of them at most. */
-static cursor draw_some(const counting *c, cursor at, uint64_t indices) {
+static cursor draw_some(counting *c, cursor at, uint64_t indices) {
     const uint64_t shared = shared_indices(c->desc->mesh);
     while (at.range < c->drawn_count && indices > 0) {
         const camber_index_range range = c->drawn[at.range];
@@ -171,7 +192,7 @@ static camber_status count_fragments(counting *c) {
 
 /* ---- Pixels drawn once and more than once ---- */
 
-static void cover_and_repeat(const counting *c, size_t first, size_t count) {
+static void cover_and_repeat(counting *c, size_t first, size_t count) {
     const camber_gl *gl = gl_of(c);
     for (size_t i = first; i < first + count; i++) {
         gl->UseProgram(c->cover->program);
@@ -233,7 +254,7 @@ static camber_status count_piece(counting *c) {
                                                        (GLsizei)c->piece.height);
     if (status != CAMBER_OK)
         return status;
-    camber_renderer_bind_mesh(c->renderer, c->desc->mesh); /* after the target, whose texture takes the rows' place */
+    c->bound = NULL; /* the target's texture has taken the rows' place */
     camber_renderer_use_shader(c->renderer, c->cover, &c->piece);
     camber_renderer_use_shader(c->renderer, c->every, &c->piece);
     status = count_fragments(c);

@@ -99,13 +99,13 @@ void camber_renderer_use_shader(camber_renderer *renderer, const camber_shader *
     gl->Uniform2f(shader->scale, 2.0f / (GLfloat)piece->width, 2.0f / (GLfloat)piece->height);
 }
 
-void camber_renderer_bind_mesh(camber_renderer *renderer, const camber_mesh *mesh) {
+void camber_renderer_bind_part(camber_renderer *renderer, const camber_mesh_part *part) {
     const camber_gl *gl = &renderer->share.surface->gl;
     const GLsizei stride = sizeof(camber_vertex);
     gl->BindTexture(GL_TEXTURE_2D, renderer->row_texture);
     gl->BindVertexArray(renderer->vertex_array);
-    gl->BindBuffer(GL_ARRAY_BUFFER, mesh->buffers[CAMBER_BUFFER_VERTICES].gl_name);
-    gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, mesh->buffers[CAMBER_BUFFER_INDICES].gl_name);
+    gl->BindBuffer(GL_ARRAY_BUFFER, part->buffers[CAMBER_BUFFER_VERTICES].gl_name);
+    gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, part->buffers[CAMBER_BUFFER_INDICES].gl_name);
     for (GLuint i = 0; i < 7; i++)
         gl->EnableVertexAttribArray(i);
 #define AT(member) ((const void *)offsetof(camber_vertex, member))
@@ -119,11 +119,37 @@ void camber_renderer_bind_mesh(camber_renderer *renderer, const camber_mesh *mes
 #undef AT
 }
 
-/* Draws the polylines of a run with the rows that are in the texture. */
-static camber_status draw_run(camber_renderer *renderer, camber_mesh *mesh, const pass_run *run,
-                              const camber_piece *piece) {
+/* Draws polylines [first, end) of a part, which is bound. */
+static camber_status draw_part(camber_renderer *renderer, const camber_mesh *mesh, const camber_mesh_part *part,
+                               size_t first, size_t end, size_t *draw_calls) {
     /* A count is a signed 32-bit number, and restarts lie wherever a strip ends: cut at a polyline's. */
     enum { INDICES_MAX = 1 << 30 };
+    const camber_gl *gl = &renderer->share.surface->gl;
+    while (first < end) {
+        size_t until = end;
+        uint64_t from, to;
+        camber_status status = camber_part_first_index(mesh, part, first, &from);
+        if (status == CAMBER_OK)
+            status = camber_part_first_index(mesh, part, until, &to);
+        while (status == CAMBER_OK && to - from > INDICES_MAX && until - first > 1) {
+            until = first + (until - first) / 2;
+            status = camber_part_first_index(mesh, part, until, &to);
+        }
+        if (status != CAMBER_OK)
+            return status;
+        if (to > from) {
+            gl->DrawElements(mesh->mesh_info.strips ? GL_TRIANGLE_STRIP : GL_TRIANGLES, (GLsizei)(to - from),
+                             GL_UNSIGNED_INT, (const void *)(uintptr_t)(4 * from));
+            ++*draw_calls;
+        }
+        first = until;
+    }
+    return CAMBER_OK;
+}
+
+/* Draws the polylines of a run with the rows that are in the texture. */
+static camber_status draw_run(camber_renderer *renderer, const camber_mesh *mesh, const pass_run *run,
+                              const camber_piece *piece) {
     const camber_gl *gl = &renderer->share.surface->gl;
     const camber_shader *shader;
     camber_status status = camber_renderer_mesh_shader(
@@ -131,28 +157,18 @@ static camber_status draw_run(camber_renderer *renderer, camber_mesh *mesh, cons
     if (status != CAMBER_OK)
         return status;
     camber_renderer_use_shader(renderer, shader, piece);
-    camber_renderer_bind_mesh(renderer, mesh);
-    for (size_t first = run->first; first < run->end;) {
-        size_t end = run->end;
-        uint64_t from, to;
-        status = camber_mesh_first_index(mesh, first, &from);
-        if (status == CAMBER_OK)
-            status = camber_mesh_first_index(mesh, end, &to);
-        while (status == CAMBER_OK && to - from > INDICES_MAX && end - first > 1) {
-            end = first + (end - first) / 2;
-            status = camber_mesh_first_index(mesh, end, &to);
-        }
-        if (status != CAMBER_OK)
-            return status;
-        if (to > from) {
-            gl->DrawElements(mesh->mesh_info.strips ? GL_TRIANGLE_STRIP : GL_TRIANGLES, (GLsizei)(to - from),
-                             GL_UNSIGNED_INT, (const void *)(uintptr_t)(4 * from));
-            ++*piece->draw_calls;
-        }
-        first = end;
+    for (size_t i = 0; i < mesh->part_count && status == CAMBER_OK; i++) {
+        const camber_mesh_part *part = mesh->parts + i;
+        const size_t part_end = part->first_polyline + part->polyline_count;
+        const size_t first = run->first > part->first_polyline ? run->first : part->first_polyline;
+        const size_t end = run->end < part_end ? run->end : part_end;
+        if (first >= end || part->index_count == 0)
+            continue;
+        camber_renderer_bind_part(renderer, part);
+        status = draw_part(renderer, mesh, part, first, end, piece->draw_calls);
     }
     gl->BindVertexArray(0);
-    return CAMBER_OK;
+    return status;
 }
 
 static camber_status draw_layered(camber_renderer *renderer, const camber_pass *pass, const pass_run *run,

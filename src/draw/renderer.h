@@ -65,8 +65,8 @@ camber_status camber_renderer_mesh_shader(camber_renderer *renderer, const cambe
                                           const camber_shader **shader);
 /* Uses a shader, with its uniforms set for a piece. */
 void camber_renderer_use_shader(camber_renderer *renderer, const camber_shader *shader, const camber_piece *piece);
-/* Binds a mesh's vertices and indices, and the row texture. */
-void camber_renderer_bind_mesh(camber_renderer *renderer, const camber_mesh *mesh);
+/* Binds a part's vertices and indices, and the row texture. */
+void camber_renderer_bind_part(camber_renderer *renderer, const camber_mesh_part *part);
 
 /* Logs what GL reports; CAMBER_OK where it reports nothing. */
 camber_status camber_renderer_check(camber_renderer *renderer, const char *what);

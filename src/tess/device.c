@@ -153,6 +153,25 @@ static camber_status choose(camber_device *device, const char *match, uint32_t n
     return CAMBER_OK;
 }
 
+enum { LEAST_BUFFER_BYTES = 4096 };
+
+/* The desc's bounds on what the kernels are given. */
+static camber_status bound(camber_device *device, const camber_device_desc *desc) {
+    const uint32_t size = desc->work_group_size;
+    if (size != 0 && size != 64 && size != 128 && size != 256)
+        return camber_fail(device->context, CAMBER_ERROR_ARGUMENT,
+                           "a work-group of %u points; it must be 64, 128, 256, or 0 for 256", size);
+    if (desc->largest_buffer_bytes != 0 && desc->largest_buffer_bytes < LEAST_BUFFER_BYTES)
+        return camber_fail(device->context, CAMBER_ERROR_ARGUMENT,
+                           "a largest buffer of %llu bytes; it must be %d or more, or 0 for the device's own limit",
+                           (unsigned long long)desc->largest_buffer_bytes, LEAST_BUFFER_BYTES);
+    device->block = size ? size : CAMBER_BLOCK;
+    uint64_t *largest = &device->info.largest_buffer_bytes;
+    if (desc->largest_buffer_bytes && desc->largest_buffer_bytes < *largest)
+        *largest = desc->largest_buffer_bytes;
+    return CAMBER_OK;
+}
+
 static camber_status open_cl(camber_device *device, camber_surface *surface) {
     cl_int code;
     const camber_gl_handles gl =
@@ -189,7 +208,10 @@ camber_status camber_device_create(camber_context *context, const camber_device_
     if (!made)
         return CAMBER_ERROR_MEMORY;
     made->context = context;
-    camber_status status = choose(made, desc ? desc->match : NULL, desc ? desc->number : 0);
+    const camber_device_desc full = desc ? *desc : (camber_device_desc){0};
+    camber_status status = choose(made, full.match, full.number);
+    if (status == CAMBER_OK)
+        status = bound(made, &full);
     if (status == CAMBER_OK)
         status = open_cl(made, surface);
     if (status != CAMBER_OK) {

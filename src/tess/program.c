@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char *const OPTIONS = "-cl-std=CL1.2 -DCAMBER_METHOD=%d%s";
+static const char *const OPTIONS = "-cl-std=CL1.2 -DCAMBER_METHOD=%d%s%s";
 
 /* Everything that a binary depends on. */
 static uint64_t cache_key(const camber_device_info *info, const char *options) {
@@ -102,8 +102,11 @@ camber_status camber_device_program(camber_device *device, camber_method method,
     cl_device_fp_config rounding = 0;
     clGetDeviceInfo(device->id, CL_DEVICE_SINGLE_FP_CONFIG, sizeof rounding, &rounding, NULL);
     const bool correct = (rounding & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
-    char options[128];
-    snprintf(options, sizeof options, OPTIONS, (int)method, correct ? " -cl-fp32-correctly-rounded-divide-sqrt" : "");
+    char options[128], block[32] = "";
+    if (device->block != CAMBER_BLOCK)
+        snprintf(block, sizeof block, " -DCAMBER_BLOCK=%zu", device->block);
+    snprintf(options, sizeof options, OPTIONS, (int)method, correct ? " -cl-fp32-correctly-rounded-divide-sqrt" : "",
+             block);
     made->key = cache_key(&device->info, options);
     camber_status status = CAMBER_OK;
     if (!load(device, made, options))

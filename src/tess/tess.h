@@ -18,6 +18,7 @@ struct camber_device {
     camber_device_info info;
     bool host_memory;                   /* the device works in the host's memory */
     bool gl_context;                    /* cl was made for a GL context: GL buffers can be shared */
+    size_t block;                       /* points a work-group: CAMBER_BLOCK as its kernels see it */
     struct camber_program *programs[3]; /* by camber_method, built when first used */
 };
 
@@ -67,39 +68,70 @@ typedef struct camber_buffer_ops {
 
 /* ---- Meshes ---- */
 
+/* A run of polylines that is tessellated by itself, its vertices numbered from 0. Most meshes are one part; where
+ * the device makes no buffer that is large enough, several in the order of their polylines. */
+typedef struct camber_mesh_part {
+    camber_buffer buffers[2]; /* vertices, indices */
+    size_t first_polyline, polyline_count;
+    size_t first_slot, slot_count; /* of the polylines; slot_count is padded to whole blocks */
+    bool uploaded;
+    cl_mem x, y, info, joins, offsets, sums, bases;
+    size_t slot_capacity;
+    uint64_t *host_bases; /* first vertex and first index of each block, and the totals behind the last */
+    size_t base_capacity;
+    size_t vertex_count, index_count;
+    size_t first_vertex, first_index; /* of the mesh: what the parts before have */
+} camber_mesh_part;
+
 struct camber_mesh {
     camber_device *device;
     camber_renderer *renderer; /* NULL: cannot be drawn */
     const camber_buffer_ops *ops;
     void *ops_user;
-    camber_buffer buffers[2]; /* vertices, indices */
 
-    /* The polylines last tessellated, on the device. */
-    uint64_t uploaded_serial;
-    cl_mem x, y, info, rows, joins, offsets, sums, bases;
-    size_t slot_capacity, row_capacity;
-    size_t slot_count;
-
-    /* Of the polylines: polyline_count + 1 slots, where a polyline's indices begin; polyline_count rows. */
+    /* Of the polylines last tessellated: polyline_count + 1 slots, where a polyline begins; polyline_count rows. */
+    uint64_t serial; /* 0: of none */
     uint32_t *first_slots, *polyline_rows;
     size_t polyline_count, polyline_capacity, row_list_capacity;
-    size_t row_count;     /* every polyline's row is below it */
-    uint64_t *host_bases; /* first vertex and first index of each block, and the totals behind the last */
-    size_t base_capacity;
+    size_t row_count;        /* every polyline's row is below it */
+    camber_mesh_part *parts; /* part_capacity, of which part_count are the mesh */
+    size_t part_count, part_capacity;
+
+    cl_mem rows;
+    size_t row_capacity;
     camber_mesh_info mesh_info;
     bool joins_counted; /* mesh_info's counts of joins and triangles are there */
     bool sharp_joins;   /* a row has miter or bevel joins */
     bool flat_caps;     /* a row has butt or square caps */
     bool done;          /* the last tessellation succeeded */
-    bool empty;         /* nothing tessellated yet, or nothing came of it */
+    bool empty;         /* nothing to draw: nothing tessellated yet, it failed, or nothing came of it */
 };
 
 enum { CAMBER_BUFFER_VERTICES, CAMBER_BUFFER_INDICES };
 
 camber_status camber_mesh_create_on(camber_device *device, const camber_buffer_ops *ops, void *ops_user,
                                     camber_mesh **mesh);
-/* First index of a polyline in the mesh's index buffer; polyline_count gives the end. */
-camber_status camber_mesh_first_index(camber_mesh *mesh, size_t polyline, uint64_t *first_index);
+/* First index of a polyline in the index buffer of its part; the part's first polyline + polyline_count gives the
+ * end. */
+camber_status camber_part_first_index(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline,
+                                      uint64_t *first_index);
+/* The same in the indices of the mesh, as camber_mesh_read gives them. */
+camber_status camber_mesh_first_index(const camber_mesh *mesh, size_t polyline, uint64_t *first_index);
+
+/* parts.c: lays out the parts of a mesh, each small enough for the device to upload; keeps them, and what is uploaded,
+ * where the polylines are those of last time. CAMBER_ERROR_LIMIT names a polyline that fits no part. */
+camber_status camber_mesh_plan(camber_mesh *mesh, const camber_polylines *polylines);
+/* Cuts a part that has been scanned, and whose output is too large, into parts whose output fits. The part's place is
+ * taken by the first of them. */
+camber_status camber_mesh_split(camber_mesh *mesh, size_t part);
+bool camber_part_fits(const camber_mesh *mesh, const camber_mesh_part *part);
+camber_status camber_part_upload(const camber_mesh *mesh, camber_mesh_part *part, const camber_polylines *polylines);
+void camber_mesh_release_parts(camber_mesh *mesh);
+
+/* OpenCL calls that log. camber_make_buffer leaves *mem alone on failure. */
+camber_status camber_make_buffer(const camber_device *device, size_t size_bytes, cl_mem *mem);
+camber_status camber_write_buffer(const camber_device *device, cl_mem mem, size_t offset_bytes, size_t size_bytes,
+                                  const void *bytes);
 
 /* ---- Rows ---- */
 
@@ -111,6 +143,7 @@ camber_status camber_rows_create(camber_context *context, const camber_polylines
  * 2 * (block_count + 1): each block's first vertex and first index, and the totals behind the last. CAMBER_ERROR_LIMIT
  * where 32-bit indices do not reach all vertices. */
 camber_status camber_scan_blocks(camber_context *context, const uint32_t *sums, size_t block_count, uint64_t *bases);
+camber_status camber_check_vertices(camber_context *context, uint64_t vertex_count);
 
 /* Adds a point's join word to the counts of a mesh's info. */
 void camber_mesh_info_count(camber_mesh_info *info, uint32_t join, uint32_t point);

@@ -1,0 +1,193 @@
+/* Meshes: making them, what is told about them, reading them back. */
+#include "tess/tess.h"
+
+#include "kernels/join.h"
+
+/* ---- Output buffers in OpenCL memory, for a mesh that no renderer draws ---- */
+
+static camber_status plain_reserve(void *user, camber_buffer *buffer, size_t size_bytes) {
+    const camber_device *device = user;
+    if (size_bytes <= buffer->capacity_bytes)
+        return CAMBER_OK;
+    if (buffer->mem)
+        clReleaseMemObject(buffer->mem);
+    cl_int code;
+    buffer->capacity_bytes = 0;
+    buffer->mem = clCreateBuffer(device->cl, CL_MEM_READ_WRITE, size_bytes, NULL, &code);
+    if (code != CL_SUCCESS) {
+        buffer->mem = NULL;
+        return camber_fail_cl(device->context, "mesh buffer", code);
+    }
+    buffer->capacity_bytes = size_bytes;
+    return CAMBER_OK;
+}
+
+static camber_status plain_begin(void *user, camber_buffer *buffers, size_t count) {
+    (void)user;
+    (void)buffers;
+    (void)count;
+    return CAMBER_OK;
+}
+
+static camber_status plain_finish(void *user, camber_buffer *buffers, size_t count, bool written) {
+    (void)written;
+    return plain_begin(user, buffers, count);
+}
+
+static void plain_release(void *user, camber_buffer *buffer) {
+    (void)user;
+    if (buffer->mem)
+        clReleaseMemObject(buffer->mem);
+    *buffer = (camber_buffer){0};
+}
+
+static const camber_buffer_ops plain_ops = {plain_reserve, plain_begin, plain_finish, plain_release};
+
+/* ---- Mesh ---- */
+
+camber_status camber_mesh_create_on(camber_device *device, const camber_buffer_ops *ops, void *ops_user,
+                                    camber_mesh **mesh) {
+    camber_mesh *made = camber_alloc_zero(device->context, 1, sizeof *made);
+    if (!made)
+        return CAMBER_ERROR_MEMORY;
+    made->device = device;
+    made->ops = ops ? ops : &plain_ops;
+    made->ops_user = ops ? ops_user : device;
+    made->empty = true;
+    *mesh = made;
+    return CAMBER_OK;
+}
+
+void camber_mesh_destroy(camber_mesh *mesh) {
+    if (!mesh)
+        return;
+    camber_context *context = mesh->device->context;
+    camber_mesh_release_parts(mesh);
+    if (mesh->rows)
+        clReleaseMemObject(mesh->rows);
+    camber_free(context, mesh->polyline_rows);
+    camber_free(context, mesh->first_slots);
+    camber_free(context, mesh);
+}
+
+/* ---- What is told ---- */
+
+static void count_words(const cl_uint *joins, const cl_uint *info, size_t slot_count, camber_mesh_info *counts,
+                        size_t *segments) {
+    for (size_t i = 1; i <= slot_count; i++) {
+        camber_mesh_info_count(counts, joins[i], info[i]);
+        *segments += info[i] & CAMBER_POINT_REAL && !(info[i] & CAMBER_POINT_FIRST);
+        *segments += camber_join_kind(joins[i]) == CAMBER_KIND_DOT;
+    }
+}
+
+static camber_status count_part(const camber_mesh *mesh, const camber_mesh_part *part, camber_mesh_info *counts,
+                                size_t *segments) {
+    cl_command_queue queue = mesh->device->queue;
+    const size_t size_bytes = 4 * (part->slot_count + 2);
+    cl_int code;
+    cl_uint *joins = clEnqueueMapBuffer(queue, part->joins, CL_TRUE, CL_MAP_READ, 0, size_bytes, 0, NULL, NULL, &code);
+    if (code == CL_SUCCESS) {
+        cl_uint *info =
+            clEnqueueMapBuffer(queue, part->info, CL_TRUE, CL_MAP_READ, 0, size_bytes, 0, NULL, NULL, &code);
+        if (code == CL_SUCCESS) {
+            count_words(joins, info, part->slot_count, counts, segments);
+            clEnqueueUnmapMemObject(queue, part->info, info, 0, NULL, NULL);
+        }
+        clEnqueueUnmapMemObject(queue, part->joins, joins, 0, NULL, NULL);
+    }
+    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(mesh->device->context, "clEnqueueMapBuffer", code);
+}
+
+/* Kinds of joins and triangles, from the join words. */
+static camber_status count_joins(camber_mesh *mesh) {
+    camber_mesh_info counts = mesh->mesh_info;
+    camber_status status = CAMBER_OK;
+    size_t segments = 0;
+    for (size_t i = 0; i < mesh->part_count && !mesh->joins_counted && status == CAMBER_OK; i++)
+        status = count_part(mesh, mesh->parts + i, &counts, &segments);
+    if (status != CAMBER_OK || mesh->joins_counted)
+        return status;
+    counts.triangle_count = counts.strips ? 2 * segments : counts.index_count / 3;
+    mesh->mesh_info = counts;
+    mesh->joins_counted = true;
+    return CAMBER_OK;
+}
+
+camber_mesh_info camber_mesh_get_info(camber_mesh *mesh) {
+    (void)count_joins(mesh); /* on failure the log tells, and the counts stay 0 */
+    return mesh->mesh_info;
+}
+
+camber_status camber_part_first_index(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline,
+                                      uint64_t *first_index) {
+    const size_t slot = mesh->first_slots[polyline] - part->first_slot, block = slot / mesh->device->block;
+    cl_uint packed = 0;
+    if (slot < part->slot_count && slot % mesh->device->block != 0) {
+        const cl_int code =
+            clEnqueueReadBuffer(mesh->device->queue, part->offsets, CL_TRUE, 4 * slot, 4, &packed, 0, NULL, NULL);
+        if (code != CL_SUCCESS)
+            return camber_fail_cl(mesh->device->context, "clEnqueueReadBuffer", code);
+    }
+    *first_index = part->host_bases[2 * block + 1] + (packed >> 16);
+    return CAMBER_OK;
+}
+
+camber_status camber_mesh_first_index(const camber_mesh *mesh, size_t polyline, uint64_t *first_index) {
+    size_t i = 0;
+    while (i + 1 < mesh->part_count && mesh->parts[i + 1].first_polyline <= polyline)
+        i++;
+    uint64_t first = 0;
+    const camber_status status =
+        mesh->part_count ? camber_part_first_index(mesh, mesh->parts + i, polyline, &first) : CAMBER_OK;
+    if (status == CAMBER_OK)
+        *first_index = first + (mesh->part_count ? mesh->parts[i].first_index : 0);
+    return status;
+}
+
+/* ---- Reading back ---- */
+
+static camber_status read_buffer(const camber_mesh *mesh, const camber_buffer *buffer, void *bytes) {
+    const cl_int code =
+        clEnqueueReadBuffer(mesh->device->queue, buffer->mem, CL_TRUE, 0, buffer->used_bytes, bytes, 0, NULL, NULL);
+    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(mesh->device->context, "clEnqueueReadBuffer", code);
+}
+
+static camber_status read_part(const camber_mesh *mesh, camber_mesh_part *part, camber_mesh_data *data) {
+    camber_vertex *vertices = data->vertices + part->first_vertex;
+    uint32_t *indices = data->indices + part->first_index;
+    camber_status status = mesh->ops->begin(mesh->ops_user, part->buffers, 2);
+    if (status != CAMBER_OK)
+        return status;
+    status = read_buffer(mesh, part->buffers + CAMBER_BUFFER_VERTICES, vertices);
+    if (status == CAMBER_OK)
+        status = read_buffer(mesh, part->buffers + CAMBER_BUFFER_INDICES, indices);
+    const camber_status finished = mesh->ops->finish(mesh->ops_user, part->buffers, 2, false);
+    const uint32_t base = (uint32_t)part->first_vertex;
+    for (size_t i = 0; base != 0 && i < part->index_count; i++)
+        if (indices[i] != CAMBER_RESTART_INDEX)
+            indices[i] += base;
+    return status == CAMBER_OK ? finished : status;
+}
+
+camber_status camber_mesh_read(camber_mesh *mesh, camber_mesh_data *data) {
+    camber_context *context = mesh->device->context;
+    camber_status status = count_joins(mesh);
+    camber_mesh_data made = {.info = mesh->mesh_info};
+    if (status != CAMBER_OK)
+        return status;
+    made.vertices = camber_alloc(context, made.info.vertex_count, sizeof *made.vertices);
+    if (made.vertices)
+        made.indices = camber_alloc(context, made.info.index_count, sizeof *made.indices);
+    if (!made.indices)
+        status = CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < mesh->part_count && !mesh->empty && status == CAMBER_OK; i++)
+        if (mesh->parts[i].vertex_count > 0)
+            status = read_part(mesh, mesh->parts + i, &made);
+    if (status != CAMBER_OK) {
+        camber_mesh_data_free(context, &made);
+        return status;
+    }
+    *data = made;
+    return CAMBER_OK;
+}

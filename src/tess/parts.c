@@ -1,0 +1,271 @@
+/* The parts of a mesh: which polylines each has, its buffers, and what is uploaded to them. */
+#include "tess/tess.h"
+
+#include <string.h>
+
+/* ---- OpenCL buffers ---- */
+
+camber_status camber_make_buffer(const camber_device *device, size_t size_bytes, cl_mem *mem) {
+    cl_int code;
+    cl_mem made = clCreateBuffer(device->cl, CL_MEM_READ_WRITE, size_bytes, NULL, &code);
+    if (code != CL_SUCCESS)
+        return camber_fail_cl(device->context, "clCreateBuffer", code);
+    *mem = made;
+    return CAMBER_OK;
+}
+
+camber_status camber_write_buffer(const camber_device *device, cl_mem mem, size_t offset_bytes, size_t size_bytes,
+                                  const void *bytes) {
+    const cl_int code =
+        clEnqueueWriteBuffer(device->queue, mem, CL_TRUE, offset_bytes, size_bytes, bytes, 0, NULL, NULL);
+    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(device->context, "clEnqueueWriteBuffer", code);
+}
+
+static void release_input(camber_mesh_part *part) {
+    cl_mem *mems[] = {&part->x, &part->y, &part->info, &part->joins, &part->offsets, &part->sums, &part->bases};
+    for (size_t i = 0; i < sizeof mems / sizeof *mems; i++) {
+        if (*mems[i])
+            clReleaseMemObject(*mems[i]);
+        *mems[i] = NULL;
+    }
+    part->slot_capacity = 0;
+    part->uploaded = false;
+}
+
+static camber_status reserve_input(const camber_device *device, camber_mesh_part *part) {
+    if (part->slot_count <= part->slot_capacity)
+        return CAMBER_OK;
+    release_input(part);
+    const size_t slots = part->slot_count, blocks = slots / device->block, words = slots + 2;
+    camber_status status = CAMBER_OK;
+    const struct {
+        cl_mem *mem;
+        size_t size_bytes;
+    } wanted[] = {
+        {&part->x, 4 * words},       {&part->y, 4 * words},     {&part->info, 4 * words},    {&part->joins, 4 * words},
+        {&part->offsets, 4 * slots}, {&part->sums, 4 * blocks}, {&part->bases, 16 * blocks},
+    };
+    for (size_t i = 0; i < sizeof wanted / sizeof *wanted && status == CAMBER_OK; i++)
+        status = camber_make_buffer(device, wanted[i].size_bytes, wanted[i].mem);
+    if (status != CAMBER_OK) {
+        release_input(part);
+        return status;
+    }
+    part->slot_capacity = slots;
+    return CAMBER_OK;
+}
+
+static void release_part(camber_mesh *mesh, camber_mesh_part *part) {
+    for (int i = 0; i < 2; i++)
+        mesh->ops->release(mesh->ops_user, part->buffers + i);
+    release_input(part);
+    camber_free(mesh->device->context, part->host_bases);
+    *part = (camber_mesh_part){0};
+}
+
+void camber_mesh_release_parts(camber_mesh *mesh) {
+    for (size_t i = 0; i < mesh->part_capacity; i++)
+        release_part(mesh, mesh->parts + i);
+    camber_free(mesh->device->context, mesh->parts);
+    mesh->parts = NULL;
+    mesh->part_count = mesh->part_capacity = 0;
+}
+
+/* ---- Layout ---- */
+
+/* Parts past part_count are zero, but for the first, which keeps its buffers for the polylines that come next. */
+static bool hold_parts(camber_mesh *mesh, size_t count) {
+    const size_t before = mesh->part_capacity;
+    if (!camber_grow(mesh->device->context, &mesh->parts, &mesh->part_capacity, count, sizeof *mesh->parts))
+        return false;
+    memset(mesh->parts + before, 0, (mesh->part_capacity - before) * sizeof *mesh->parts);
+    return true;
+}
+
+static void set_polylines(const camber_mesh *mesh, camber_mesh_part *part, size_t first, size_t end) {
+    const size_t block = mesh->device->block, slots = mesh->first_slots[end] - mesh->first_slots[first];
+    part->first_polyline = first;
+    part->polyline_count = end - first;
+    part->first_slot = mesh->first_slots[first];
+    part->slot_count = (slots + block - 1) / block * block;
+    part->vertex_count = part->index_count = 0;
+    part->uploaded = false;
+}
+
+static camber_status fail_polyline(const camber_mesh *mesh, size_t polyline, uint64_t size_bytes) {
+    const camber_device *device = mesh->device;
+    return camber_fail(device->context, CAMBER_ERROR_LIMIT,
+                       "polyline %zu takes a buffer of %llu bytes, and %s makes none above %llu; cut it in two, or "
+                       "simplify it",
+                       polyline, (unsigned long long)size_bytes, device->info.name,
+                       (unsigned long long)device->info.largest_buffer_bytes);
+}
+
+/* The polyline behind the last that fits a part of so many slots beginning with first. */
+static size_t find_end(const camber_mesh *mesh, size_t first, size_t slots_max) {
+    const uint32_t *slots = mesh->first_slots;
+    size_t low = first, high = mesh->polyline_count;
+    if (slots[high] - slots[first] <= slots_max)
+        return high;
+    while (high - low > 1) {
+        const size_t middle = low + (high - low) / 2;
+        if (slots[middle] - slots[first] <= slots_max)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+static camber_status lay_out(camber_mesh *mesh) {
+    const size_t block = mesh->device->block, ghosts = 2;
+    const uint64_t words = mesh->device->info.largest_buffer_bytes / 4;
+    const uint64_t room = words > ghosts ? (words - ghosts) / block * block : 0;
+    const size_t slots_max = room < UINT32_MAX ? (size_t)room : UINT32_MAX;
+    const size_t polyline_count = mesh->first_slots[mesh->polyline_count] ? mesh->polyline_count : 0;
+    for (size_t first = 0; first < polyline_count; mesh->part_count++) {
+        const size_t end = find_end(mesh, first, slots_max);
+        if (end == first)
+            return fail_polyline(mesh, first,
+                                 4 * ((uint64_t)mesh->first_slots[first + 1] - mesh->first_slots[first] + ghosts));
+        if (!hold_parts(mesh, mesh->part_count + 1))
+            return CAMBER_ERROR_MEMORY;
+        set_polylines(mesh, mesh->parts + mesh->part_count, first, end);
+        first = end;
+    }
+    for (size_t i = mesh->part_count ? mesh->part_count : 1; i < mesh->part_capacity; i++)
+        release_part(mesh, mesh->parts + i);
+    return CAMBER_OK;
+}
+
+camber_status camber_mesh_plan(camber_mesh *mesh, const camber_polylines *polylines) {
+    camber_context *context = mesh->device->context;
+    const size_t count = polylines->polyline_count;
+    if (mesh->serial == polylines->serial)
+        return CAMBER_OK;
+    mesh->serial = mesh->part_count = mesh->polyline_count = 0;
+    if (!camber_grow(context, &mesh->first_slots, &mesh->polyline_capacity, count + 1, sizeof *mesh->first_slots) ||
+        !camber_grow(context, &mesh->polyline_rows, &mesh->row_list_capacity, count, sizeof *mesh->polyline_rows))
+        return CAMBER_ERROR_MEMORY;
+    memcpy(mesh->first_slots, polylines->first_slots, (count + 1) * sizeof *mesh->first_slots);
+    if (count)
+        memcpy(mesh->polyline_rows, polylines->polyline_rows, count * sizeof *mesh->polyline_rows);
+    mesh->polyline_count = count;
+    mesh->row_count = polylines->row_count;
+    const camber_status status = lay_out(mesh);
+    if (status == CAMBER_OK)
+        mesh->serial = polylines->serial;
+    return status;
+}
+
+camber_status camber_part_upload(const camber_mesh *mesh, camber_mesh_part *part, const camber_polylines *polylines) {
+    static const cl_uint zeros[CAMBER_BLOCK + 2];
+    const camber_device *device = mesh->device;
+    if (part->uploaded)
+        return CAMBER_OK;
+    camber_status status = reserve_input(device, part);
+    const size_t words = part->slot_count + 2, first = part->first_slot;
+    const size_t end = part->first_polyline + part->polyline_count;
+    /* The neighbour before, the part's slots, and ghosts: the polylines' own padding, or zeros. */
+    size_t given = end < mesh->polyline_count ? mesh->first_slots[end] - first + 1 : polylines->slot_count + 2 - first;
+    given = given < words ? given : words;
+    const struct {
+        cl_mem mem;
+        const void *bytes;
+    } arrays[] = {
+        {part->x, polylines->x + first}, {part->y, polylines->y + first}, {part->info, polylines->info + first}};
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
+        if (status == CAMBER_OK)
+            status = camber_write_buffer(device, arrays[i].mem, 0, 4 * given, arrays[i].bytes);
+        if (status == CAMBER_OK && given < words)
+            status = camber_write_buffer(device, arrays[i].mem, 4 * given, 4 * (words - given), zeros);
+    }
+    /* The words before and behind the points' are read by neighbours and written by nobody. */
+    if (status == CAMBER_OK)
+        status = camber_write_buffer(device, part->joins, 0, 4, zeros);
+    if (status == CAMBER_OK)
+        status = camber_write_buffer(device, part->joins, 4 * (words - 1), 4, zeros);
+    if (status == CAMBER_OK && !camber_grow(device->context, &part->host_bases, &part->base_capacity,
+                                            2 * (part->slot_count / device->block + 1), sizeof *part->host_bases))
+        status = CAMBER_ERROR_MEMORY;
+    part->uploaded = status == CAMBER_OK;
+    return status;
+}
+
+/* ---- Splitting ---- */
+
+typedef struct output_size {
+    uint64_t vertices, indices;
+} output_size;
+
+static uint64_t larger_bytes(output_size size) {
+    const uint64_t vertex_bytes = size.vertices * sizeof(camber_vertex), index_bytes = 4 * size.indices;
+    return vertex_bytes > index_bytes ? vertex_bytes : index_bytes;
+}
+
+bool camber_part_fits(const camber_mesh *mesh, const camber_mesh_part *part) {
+    const output_size size = {part->vertex_count, part->index_count};
+    return larger_bytes(size) <= mesh->device->info.largest_buffer_bytes;
+}
+
+/* What the part has before a polyline. */
+static output_size size_before(const camber_mesh *mesh, const camber_mesh_part *part, const cl_uint *offsets,
+                               size_t polyline) {
+    const size_t slot = mesh->first_slots[polyline] - part->first_slot, block = slot / mesh->device->block;
+    const cl_uint packed = slot < part->slot_count ? offsets[slot] : 0;
+    return (output_size){part->host_bases[2 * block] + (packed & 0xffffu),
+                         part->host_bases[2 * block + 1] + (packed >> 16)};
+}
+
+/* The polylines that parts after the first begin with: as many in each part as its output buffers take. */
+static camber_status find_cuts(const camber_mesh *mesh, const camber_mesh_part *part, const cl_uint *offsets,
+                               size_t **cuts, size_t *cut_count) {
+    const uint64_t limit = mesh->device->info.largest_buffer_bytes;
+    const size_t end = part->first_polyline + part->polyline_count;
+    size_t capacity = 0;
+    output_size start = {0, 0}, before = {0, 0};
+    for (size_t i = part->first_polyline; i < end; i++) {
+        const output_size after = size_before(mesh, part, offsets, i + 1);
+        if (larger_bytes((output_size){after.vertices - start.vertices, after.indices - start.indices}) > limit) {
+            const output_size alone = {after.vertices - before.vertices, after.indices - before.indices};
+            if (larger_bytes(alone) > limit)
+                return fail_polyline(mesh, i, larger_bytes(alone));
+            if (!camber_grow(mesh->device->context, cuts, &capacity, *cut_count + 1, sizeof **cuts))
+                return CAMBER_ERROR_MEMORY;
+            (*cuts)[(*cut_count)++] = i;
+            start = before;
+        }
+        before = after;
+    }
+    return CAMBER_OK;
+}
+
+static camber_status insert_parts(camber_mesh *mesh, size_t which, const size_t *cuts, size_t cut_count) {
+    if (!hold_parts(mesh, mesh->part_count + cut_count))
+        return CAMBER_ERROR_MEMORY;
+    camber_mesh_part *part = mesh->parts + which;
+    const size_t first = part->first_polyline, end = first + part->polyline_count;
+    memmove(part + 1 + cut_count, part + 1, (mesh->part_count - which - 1) * sizeof *part);
+    memset(part + 1, 0, cut_count * sizeof *part);
+    mesh->part_count += cut_count;
+    for (size_t i = 0; i <= cut_count; i++)
+        set_polylines(mesh, part + i, i ? cuts[i - 1] : first, i < cut_count ? cuts[i] : end);
+    return CAMBER_OK;
+}
+
+camber_status camber_mesh_split(camber_mesh *mesh, size_t which) {
+    const camber_device *device = mesh->device;
+    const camber_mesh_part *part = mesh->parts + which;
+    size_t *cuts = NULL, cut_count = 0;
+    cl_int code;
+    cl_uint *offsets = clEnqueueMapBuffer(device->queue, part->offsets, CL_TRUE, CL_MAP_READ, 0, 4 * part->slot_count,
+                                          0, NULL, NULL, &code);
+    if (code != CL_SUCCESS)
+        return camber_fail_cl(device->context, "clEnqueueMapBuffer", code);
+    camber_status status = find_cuts(mesh, part, offsets, &cuts, &cut_count);
+    clEnqueueUnmapMemObject(device->queue, part->offsets, offsets, 0, NULL, NULL);
+    if (status == CAMBER_OK)
+        status = insert_parts(mesh, which, cuts, cut_count);
+    camber_free(device->context, cuts);
+    return status;
+}

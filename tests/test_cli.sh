@@ -113,11 +113,24 @@ expect 2 "0 threads" info --threads 0
 expect 2 "bench without input" bench
 expect 2 "bench of both" bench "$osm" --polylines x
 expect 2 "standard input twice" render - - -o a.png
+expect 2 "where twice" render "$osm" -o a.png --where 'a = 1' --where 'b = 2'
+says 'AND or OR'
+expect 2 "compare without input" compare
+expect 2 "compare with a style" compare "$osm" --style x.json
+expect 2 "compare with an output" compare "$osm" -o a.png
+expect 2 "compare of both" compare "$osm" --polylines x
+expect 2 "compare polylines by an attribute" compare --polylines x --where 'a = 1'
+expect 2 "a plot of no known kind" compare "$osm" --plot a.pdf
+expect 2 "a plot on standard output" compare "$osm" --plot -
+expect 2 "an empty filter" compare "$osm" --where ''
+for tolerance in 0 -1 nan 2x; do
+    expect 2 "fan tolerance '$tolerance'" compare "$osm" --fan-tolerance-px "$tolerance"
+done
 expect 2 "where that does not parse" render "$osm" -o a.png --where 'highway = = 3'
 
 # ---- Help and the man page ----
 
-for verb in '' render tessellate validate bench info; do
+for verb in '' render tessellate compare validate bench info; do
     expect 0 "help of '$verb'" $verb --help
     [ -s "$tmp/stderr" ] && fail "something on standard error"
     grep -o -e '--[a-z][a-z-]*' "$tmp/stdout" | sort -u >"$tmp/options"
@@ -242,7 +255,112 @@ expect 65 "polylines cut off" bench --polylines "$tmp/in/cut.bin"
 expect 65 "polylines of text" validate --polylines "$here/test_cli.sh"
 expect 66 "no such polylines" bench --polylines "$tmp/in/none.bin"
 expect 65 "a folder of polylines" bench --polylines "$tmp/in"
+cp lines.bin "$tmp/in/lines.bin"
 rm -f lines.bin again.bin lines.png
+
+# ---- Compare ----
+
+# value NAME...: what stands at a path in the JSON on standard output.
+value() {
+    python3 -c 'import json, sys
+at = json.load(open(sys.argv[1]))
+for step in sys.argv[2:]:
+    at = at[int(step)] if isinstance(at, list) else at[step]
+print(len(at) if isinstance(at, list) else at)' "$tmp/stdout" "$@" 2>/dev/null
+}
+
+# holds EXPRESSION: of the JSON on standard output as j, its networks as n, their average as a.
+holds() {
+    python3 -c 'import json, sys
+j = json.load(open(sys.argv[1])); n = j["networks"]; a = j["average"]
+sys.exit(not eval(sys.argv[2]))' "$tmp/stdout" "$1" 2>"$tmp/why" || fail "not so: $1 $(tail -1 "$tmp/why")"
+}
+
+small=(--runs 1 --size 96x96)
+filters=(--where "type = 'primary'" --where "type IN ('primary', 'residential')")
+expect 0 "compare two networks" compare "$osm" "${filters[@]}" "${small[@]}" --json
+if command -v python3 >/dev/null; then
+    holds 'len(n) == 2 and n[0]["name"] == "type = '"'primary'"'"'
+    for member in polylines segments joins tight_joins split_joins; do
+        holds "0 < n[0]['$member'] < n[1]['$member'] or '$member' == 'split_joins'"
+        holds "abs(a['$member'] - (n[0]['$member'] + n[1]['$member']) / 2) < 1e-9"
+    done
+    holds 'all(sum(r["joins_by_turn_deg"].values()) == r["joins"] and len(r["joins_by_turn_deg"]) == 6 for r in n)'
+    for member in vertices triangles bytes draw_calls_16_bit draw_calls fragments drawn_pixels repeated_pixels \
+        mean_error max_error tessellate_ms draw_ms; do
+        holds "all(r['methods'][m]['$member'] > 0 for r in n for m in ('fan', 'kite', 'strip'))"
+        holds "abs(j['ratio_to_kite']['fan']['$member'] * a['methods']['kite']['$member'] /
+            a['methods']['fan']['$member'] - 1) < 1e-2"
+    done
+    # Two triangles a segment and none a join, at most; a fan and a kite have joins of their own.
+    holds 'all(r["methods"]["strip"]["triangles"] <= 2 * r["segments"] for r in n)'
+    holds 'all(r["methods"]["kite"]["triangles"] >= 2 * r["segments"] + 2 * r["joins"] for r in n)'
+    holds 'all(r["methods"][m]["fragments"] >= r["methods"][m]["drawn_pixels"] > r["methods"][m]["repeated_pixels"]
+        for r in n for m in r["methods"])'
+    # Lines cover the same pixels whatever draws them, and no pixel is off by more than all of it.
+    holds 'all(abs(r["methods"][m]["drawn_pixels"] / r["methods"]["strip"]["drawn_pixels"] - 1) < 0.02
+        for r in n for m in r["methods"])'
+    holds 'all(r["methods"][m]["mean_error"] < 10 and r["methods"][m]["max_error"] <= 255
+        for r in n for m in r["methods"])'
+    # The view is that of both networks together, also for the first, which reaches less far.
+    cp "$tmp/stdout" "$tmp/in/both.json"
+    both=$(value zoom)
+    expect 0 "the second network alone" compare "$osm" --where "type IN ('primary', 'residential')" "${small[@]}" --json
+    [ "$(value zoom)" = "$both" ] || fail "zoom $(value zoom), not $both"
+    expect 0 "the first network alone" compare "$osm" --where "type = 'primary'" "${small[@]}" --json
+    holds "j['zoom'] > $both and n[0]['segments'] == a['segments']"
+    # Twice the width, finer fans, one method.
+    expect 0 "wider" compare "$osm" --where "type = 'primary'" "${small[@]}" --json --width-px 16 --fan-tolerance-px 1e-3
+    fan=$(value average methods fan triangles)
+    kite=$(value average methods kite triangles)
+    [ "${fan:-0}" -gt "${kite:-0}" ] || fail "$fan triangles of fine fans, $kite of kites"
+    holds 'j["line_width_px"] == 16 and j["fan_tolerance_px"] == 0.001'
+    expect 0 "one method" compare "$osm" "${small[@]}" --json --method kite --coverage linear --simplify-px 1
+    holds 'list(a["methods"]) == ["kite"] and "ratio_to_kite" not in j and j["coverage"] == "linear"'
+    expect 0 "polylines" compare --polylines "$tmp/in/lines.bin" --width-px 3 --runs 1 --size 128x128 --json
+    holds "len(n) == 1 and n[0]['polylines'] == $polylines and n[0]['joins'] > 0"
+    expect 0 "a network without lines" compare "$osm" --where "type = 'primary'" --where "type = 'none such'" \
+        "${small[@]}" --json
+    holds 'n[1]["polylines"] == 0 and n[1]["methods"]["strip"]["vertices"] == 0 and n[0]["polylines"] > 0'
+    says '^camber: warning: '
+else
+    echo "skipped: what compare counts: no python3 to read its JSON"
+fi
+expect 0 "compare as a table" compare "$osm" "${filters[@]}" "${small[@]}"
+has "$tmp/stdout" '^network .* polylines .* joins .* 150-180' '^average .* fan ' '^average .* kite ' '^average .* strip ' \
+    "^to one of kite's  *fan "
+run sh -c "'$tool' compare - --where \"type = 'primary'\" --where \"type = 'residential'\" --runs 1 --size 64x64 <'$osm'"
+name="standard input, read more than once"
+verify 0
+[ -z "$(ls -A "$TMPDIR")" ] || fail "left in TMPDIR: $(ls -A "$TMPDIR")"
+expect 2 "one where that does not parse" compare "$osm" --where "type = 'primary'" --where 'type = = 3' "${small[@]}"
+expect 66 "compare of nothing" compare "$tmp/in/none.osm.pbf"
+expect 69 "compare on an unknown device" compare "$osm" --device 'no such device'
+run env PATH="$tmp/empty" "$tool" compare "$osm" --plot bars.svg
+name="a plot without gnuplot"
+verify 69
+says 'apt install gnuplot-nox'
+mkdir "$tmp/broken"
+printf '#!/bin/sh\n[ "$1" = --version ] && exit 0\ncat >/dev/null\necho no terminal here >&2\nexit 1\n' >"$tmp/broken/gnuplot"
+chmod +x "$tmp/broken/gnuplot"
+run env PATH="$tmp/broken:$PATH" "$tool" compare "$osm" "${filters[@]}" "${small[@]}" --plot bars.svg
+name="a gnuplot that fails"
+verify 69
+says 'no terminal here'
+touch bars.svg
+expect 73 "plot exists" compare "$osm" "${small[@]}" --plot bars.svg
+[ -s bars.svg ] && fail "the file has changed"
+expect 73 "plot in no folder" compare "$osm" "${small[@]}" --plot none/bars.svg
+if command -v gnuplot >/dev/null; then
+    expect 0 "plot as SVG" compare "$osm" "${filters[@]}" "${small[@]}" --plot bars.svg -f --json
+    has bars.svg '<svg' '</svg>' 'Fan, kite, strip: averages of 2 networks, 96 x 96 px, lines 8 px wide' \
+        '>vertices<' '>fragments shaded<' '>mean error' '>fan<' '>kite<' '>strip<'
+    expect 0 "plot as PNG" compare "$osm" "${small[@]}" --method fan --plot bars.PNG -q
+    is_png bars.PNG 2240 720
+else
+    echo "skipped: plots: no gnuplot"
+fi
+rm -f bars.svg bars.PNG
 
 # ---- Bad input ----
 

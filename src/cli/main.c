@@ -12,6 +12,7 @@ static int run(camber_session *session) {
     case CAMBER_VERB_RENDER:
     case CAMBER_VERB_TESSELLATE: break; /* no word for them in this build */
 #endif
+    case CAMBER_VERB_COMPARE: return camber_verb_compare(session);
     case CAMBER_VERB_VALIDATE: return camber_verb_validate(session);
     case CAMBER_VERB_BENCH: return camber_verb_bench(session);
     case CAMBER_VERB_INFO: return camber_verb_info(session);

@@ -12,17 +12,19 @@
 enum {
     RENDER = 1 << CAMBER_VERB_RENDER,
     TESSELLATE = 1 << CAMBER_VERB_TESSELLATE,
+    COMPARE = 1 << CAMBER_VERB_COMPARE,
     VALIDATE = 1 << CAMBER_VERB_VALIDATE,
     BENCH = 1 << CAMBER_VERB_BENCH,
     INFO = 1 << CAMBER_VERB_INFO,
     WRITING = RENDER | TESSELLATE | BENCH,
-    READING = RENDER | TESSELLATE | VALIDATE | BENCH,
+    READING = RENDER | TESSELLATE | COMPARE | VALIDATE | BENCH,
     EVERY = READING | INFO,
 #ifdef CAMBER_MAP
     MAPS = READING,
 #else
     MAPS = 0,
 #endif
+    STYLED = MAPS & ~COMPARE,
 };
 
 typedef struct verb_spec {
@@ -36,9 +38,12 @@ static const verb_spec verbs[] = {
 #ifdef CAMBER_MAP
     {"render", CAMBER_VERB_RENDER, "INPUT... -o OUT.png", "draws a map"},
     {"tessellate", CAMBER_VERB_TESSELLATE, "INPUT... -o OUT.glb", "writes the GPU-ready mesh"},
+    {"compare", CAMBER_VERB_COMPARE, "INPUT... | --polylines FILE",
+     "the paper's experiment: fan, kite, strip side by side"},
     {"validate", CAMBER_VERB_VALIDATE, "[INPUT... | --polylines FILE]", "checks the kernels against the CPU twin"},
     {"bench", CAMBER_VERB_BENCH, "INPUT... | --polylines FILE", "times every stage"},
 #else
+    {"compare", CAMBER_VERB_COMPARE, "--polylines FILE", "the paper's experiment: fan, kite, strip side by side"},
     {"validate", CAMBER_VERB_VALIDATE, "[--polylines FILE]", "checks the kernels against the CPU twin"},
     {"bench", CAMBER_VERB_BENCH, "--polylines FILE", "times every stage"},
 #endif
@@ -48,6 +53,7 @@ static const verb_spec verbs[] = {
 typedef enum option_kind {
     KIND_FLAG,   /* bool */
     KIND_TEXT,   /* const char * */
+    KIND_TEXTS,  /* wheres */
     KIND_NUMBER, /* double, least to most */
     KIND_COUNT,  /* uint32_t, least to most */
     KIND_CHOICE, /* int: the place in argument, whose words are parted by | */
@@ -72,7 +78,7 @@ typedef struct option_spec {
 /* Parsing, --help and the check of the man page all read this table. */
 static const option_spec specs[] = {
     {"output", 'o', KIND_TEXT, WRITING, FIELD(output), "OUT", "the file to write; -: standard output", 0, 0},
-    {"force", 'f', KIND_FLAG, WRITING, FIELD(force), NULL, "replace OUT where it exists", 0, 0},
+    {"force", 'f', KIND_FLAG, WRITING | COMPARE, FIELD(force), NULL, "replace the file to write where it exists", 0, 0},
     {"format", 0, KIND_CHOICE, WRITING, FIELD(format), "png|glb", "of OUT, where its extension does not tell", 0, 0},
     {"size", 0, KIND_SIZE, READING, 0, "WxH", "of the picture in CSS px (1024x1024; 2048x2048 with --polylines)", 0, 0},
     {"ratio", 0, KIND_NUMBER, READING, FIELD(view.ratio), "R", "device pixels a CSS px (1)", 1e-3, 1e3},
@@ -82,25 +88,28 @@ static const option_spec specs[] = {
     {"bearing", 0, KIND_NUMBER, MAPS, FIELD(view.bearing_deg), "DEG", "the direction that is up, clockwise (0)", -1e6,
      1e6},
     {"pitch", 0, KIND_NUMBER, MAPS, FIELD(pitch_deg), "DEG", "0: this version draws maps flat", -90, 90},
-    {"style", 0, KIND_TEXT, MAPS, FIELD(style), "FILE", "a MapLibre style (the built-in road style)", 0, 0},
-    {"theme", 0, KIND_CHOICE, MAPS, FIELD(theme), "light|dark", "of the built-in style (light)", 0, 0},
+    {"style", 0, KIND_TEXT, STYLED, FIELD(style), "FILE", "a MapLibre style (the built-in road style)", 0, 0},
+    {"theme", 0, KIND_CHOICE, STYLED, FIELD(theme), "light|dark", "of the built-in style (light)", 0, 0},
     {"layer", 0, KIND_TEXT, MAPS, FIELD(layer), "NAME", "read this layer of INPUT only", 0, 0},
-    {"where", 0, KIND_TEXT, MAPS, FIELD(where), "SQL", "an OGR attribute filter", 0, 0},
-    {"polylines", 0, KIND_TEXT, BENCH | VALIDATE, FIELD(polylines), "FILE", "polylines in pixels instead of a map", 0,
-     0},
-    {"width-px", 0, KIND_NUMBER, BENCH | VALIDATE, FIELD(width_px), "W", "of --polylines, device pixels (2)", 1e-3,
-     16384},
+    {"where", 0, KIND_TEXTS, MAPS, 0, "SQL", "an OGR attribute filter; compare: one a network", 0, 0},
+    {"polylines", 0, KIND_TEXT, COMPARE | BENCH | VALIDATE, FIELD(polylines), "FILE",
+     "polylines in pixels instead of a map", 0, 0},
+    {"width-px", 0, KIND_NUMBER, COMPARE | BENCH | VALIDATE, FIELD(width_px), "W",
+     "of the lines, device pixels (2; compare: 8)", 1e-3, 16384},
     {"dump", 0, KIND_TEXT, BENCH, FIELD(dump), "FILE", "write the polylines in pixels, as --polylines reads them", 0,
      0},
-    {"runs", 0, KIND_COUNT, BENCH, FIELD(runs), "N", "timed runs, after 3 that are not (9)", 1, 100000},
+    {"plot", 0, KIND_TEXT, COMPARE, FIELD(plot), "FILE", "bars of the averages, .svg or .png, drawn by gnuplot", 0, 0},
+    {"runs", 0, KIND_COUNT, COMPARE | BENCH, FIELD(runs), "N", "timed runs, after 3 that are not (9)", 1, 100000},
     {"method", 0, KIND_CHOICE, READING, FIELD(method), "strip|kite|fan",
-     "how lines become triangles (strip; validate: all)", 0, 0},
+     "how lines become triangles (strip; compare, validate: all)", 0, 0},
+    {"fan-tolerance-px", 0, KIND_NUMBER, COMPARE, FIELD(fan_tolerance_px), "T",
+     "farthest that a fan's chord lies from its arc (0.25)", 1e-6, 16384},
     {"coverage", 0, KIND_CHOICE, READING, FIELD(coverage), "exact|linear", "how edges are smoothed (exact)", 0, 0},
     {"simplify-px", 0, KIND_NUMBER, READING, FIELD(simplify_px), "T",
      "drop points that the line stays this close to (render: 0.1, else 0: none)", 0, 1e6},
     {"device", 0, KIND_TEXT, EVERY, FIELD(device), "TEXT", "OpenCL: cpu, gpu, or part of a device's name", 0, 0},
     {"backend", 0, KIND_CHOICE, EVERY, FIELD(backend), "auto|egl|osmesa", "where GL comes from (auto)", 0, 0},
-    {"sharing", 0, KIND_CHOICE, RENDER | BENCH | INFO, FIELD(sharing), "auto|gl|zero-copy|copy",
+    {"sharing", 0, KIND_CHOICE, RENDER | COMPARE | BENCH | INFO, FIELD(sharing), "auto|gl|zero-copy|copy",
      "how OpenCL's buffers reach GL (auto)", 0, 0},
     {"threads", 0, KIND_COUNT, EVERY, FIELD(threads), "N", "of OpenCL and GL on a CPU (all cores)", 1, 1024},
     {"json", 0, KIND_FLAG, EVERY, FIELD(json), NULL, "one JSON object on standard output", 0, 0},
@@ -249,9 +258,13 @@ static int parse_value(const parser *p, const option_spec *spec, const char *tex
     switch (spec->kind) {
     case KIND_FLAG: *(bool *)(void *)field = true; return CAMBER_EXIT_DONE;
     case KIND_TEXT:
+    case KIND_TEXTS:
         if (*text == 0)
             return usage(p, "--%s: empty; give %s", spec->name, spec->argument);
-        *(const char **)(void *)field = text;
+        if (spec->kind == KIND_TEXTS)
+            p->options->wheres[p->options->where_count++] = text;
+        else
+            *(const char **)(void *)field = text;
         return CAMBER_EXIT_DONE;
     case KIND_NUMBER: {
         double number;
@@ -421,7 +434,10 @@ static int check_inputs(const parser *p) {
     if (options->polylines && (options->style || options->theme >= 0 || options->layer || options->where ||
                                options->has_bbox || options->has_center || options->view.bearing_deg != 0.0))
         return usage(p, "--polylines: is in pixels already and has no style, layer or view; leave those out");
-    if (options->width_px > 0 && !options->polylines)
+    if (options->where_count > 1 && options->verb != CAMBER_VERB_COMPARE)
+        return usage(p, "--where: given %zu times; camber %s takes one, so join them with AND or OR",
+                     options->where_count, verb);
+    if (options->width_px > 0 && !options->polylines && options->verb != CAMBER_VERB_COMPARE)
         return usage(p, "--width-px: is for --polylines; a map's widths are its style's");
     if (options->style && options->theme >= 0)
         return usage(p, "--theme: is for the built-in style; leave it out with --style");
@@ -434,8 +450,15 @@ static int check_inputs(const parser *p) {
     const bool needs = options->verb != CAMBER_VERB_INFO && options->verb != CAMBER_VERB_VALIDATE;
     if (needs && !options->input_count && !options->polylines && !options->style)
         return usage(p, "%s: no input; give %s", verb,
-                     options->verb == CAMBER_VERB_BENCH ? "a file with lines or --polylines FILE"
-                                                        : "a file with lines, such as city.osm.pbf");
+                     1 << options->verb & (COMPARE | BENCH) ? "a file with lines or --polylines FILE"
+                                                            : "a file with lines, such as city.osm.pbf");
+    return CAMBER_EXIT_DONE;
+}
+
+static int check_plot(const parser *p) {
+    const char *plot = p->options->plot;
+    if (plot && !has_extension(plot, ".svg") && !has_extension(plot, ".png"))
+        return usage(p, "--plot %s: its extension tells no format; name it OUT.svg or OUT.png", plot);
     return CAMBER_EXIT_DONE;
 }
 
@@ -448,6 +471,8 @@ static int check(const parser *p) {
         status = check_view(p);
     if (status == CAMBER_EXIT_DONE && 1 << options->verb & WRITING)
         status = check_output(p);
+    if (status == CAMBER_EXIT_DONE)
+        status = check_plot(p);
     if (status == CAMBER_EXIT_DONE && options->dump && strcmp(options->dump, "-") == 0 && options->json)
         return usage(p, "--json and --dump -: both want standard output; give one of them");
     return status;
@@ -458,7 +483,8 @@ int camber_options_parse(int argc, char **argv, camber_options *options, char *m
         .format = -1, .theme = -1, .method = -1, .view = {.ratio = 1}, .zoom = NAN, .simplify_px = NAN, .runs = 9};
     const parser p = {options, message, message_size};
     options->inputs = calloc((size_t)argc + 1, sizeof *options->inputs);
-    if (!options->inputs)
+    options->wheres = calloc((size_t)argc + 1, sizeof *options->wheres);
+    if (!options->inputs || !options->wheres)
         return usage(&p, "out of memory for %d arguments; give fewer", argc);
     int status = CAMBER_EXIT_DONE;
     bool only_operands = false;
@@ -476,6 +502,7 @@ int camber_options_parse(int argc, char **argv, camber_options *options, char *m
         else
             options->inputs[options->input_count++] = text;
     }
+    options->where = options->wheres[0];
     if (isnan(options->simplify_px))
         options->simplify_px = options->verb == CAMBER_VERB_RENDER ? RENDER_SIMPLIFY_PX : 0;
     if (status == CAMBER_EXIT_DONE && !options->help && !options->version)
@@ -485,4 +512,5 @@ int camber_options_parse(int argc, char **argv, camber_options *options, char *m
 
 void camber_options_free(camber_options *options) {
     free(options->inputs);
+    free(options->wheres);
 }

@@ -24,6 +24,7 @@ typedef enum camber_verb {
     CAMBER_VERB_NONE = 0,
     CAMBER_VERB_RENDER,
     CAMBER_VERB_TESSELLATE,
+    CAMBER_VERB_COMPARE,
     CAMBER_VERB_VALIDATE,
     CAMBER_VERB_BENCH,
     CAMBER_VERB_INFO,
@@ -35,14 +36,16 @@ typedef struct camber_options {
     camber_verb verb;
     const char **inputs; /* input_count */
     size_t input_count;
+    const char **wheres; /* where_count, each as --where gave it */
+    size_t where_count;
     bool help, version, json, quiet, verbose, force;
-    const char *output, *dump, *polylines, *style, *layer, *where, *device;
-    int format; /* 0: png, 1: glb */
+    const char *output, *dump, *polylines, *plot, *style, *layer, *where, *device; /* where: the first */
+    int format;                                                                    /* 0: png, 1: glb */
     int theme, method, coverage, backend, sharing;
     camber_view_desc view; /* width and height are set by camber_options_parse */
     bool has_bbox, has_center;
     double zoom, pitch_deg; /* zoom: NAN where not given */
-    double simplify_px, width_px;
+    double simplify_px, width_px, fan_tolerance_px;
     uint32_t threads; /* 0: as many as there are */
     uint32_t runs;
 } camber_options;

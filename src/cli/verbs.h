@@ -6,6 +6,7 @@
 
 int camber_verb_render(camber_session *session);
 int camber_verb_tessellate(camber_session *session);
+int camber_verb_compare(camber_session *session);
 int camber_verb_validate(camber_session *session);
 int camber_verb_bench(camber_session *session);
 int camber_verb_info(camber_session *session);

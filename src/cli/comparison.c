@@ -1,0 +1,323 @@
+#include "cli/comparison.h"
+#include "cli/truth_bands.h"
+#include "proof/batches.h"
+#include "proof/turns.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define WARM_UPS 3
+
+_Static_assert(CAMBER_FIGURE_TIGHT_JOINS - CAMBER_FIGURE_TURNS == CAMBER_TURN_CLASSES, "a figure a class of turns");
+_Static_assert(CAMBER_METHODS <= CAMBER_PICTURES_MAX, "a picture a method");
+
+const camber_method camber_methods_shown[CAMBER_METHODS] = {CAMBER_METHOD_FAN, CAMBER_METHOD_KITE, CAMBER_METHOD_STRIP};
+
+const camber_measure_info camber_figures[CAMBER_FIGURE_COUNT] = {
+    {"polylines", "polylines", 10, 0}, {"segments", "segments", 10, 0},
+    {"joins", "joins", 10, 0},         {"0-30", "0-30", 9, 0},
+    {"30-60", "30-60", 7, 0},          {"60-90", "60-90", 7, 0},
+    {"90-120", "90-120", 7, 0},        {"120-150", "120-150", 8, 0},
+    {"150-180", "150-180", 8, 0},      {"tight_joins", "tight", 9, 0},
+    {"split_joins", "split", 7, 0},
+};
+
+const camber_measure_info camber_measures[CAMBER_MEASURE_COUNT] = {
+    {"vertices", "vertices", 11, 0},
+    {"triangles", "triangles", 11, 0},
+    {"bytes", "bytes", 13, 0},
+    {"draw_calls_16_bit", "calls, 16-bit", 15, 0},
+    {"draw_calls", "calls", 7, 0},
+    {"fragments", "fragments", 13, 0},
+    {"drawn_pixels", "drawn px", 12, 0},
+    {"repeated_pixels", "repeated px", 13, 0},
+    {"mean_error", "error", 8, 3},
+    {"max_error", "max", 5, 0},
+    {"tessellate_ms", "tess. ms", 10, 3},
+    {"draw_ms", "draw ms", 10, 2},
+};
+
+/* ---- Progress ---- */
+
+/* How far all is: networks of equal shares, in each the methods and then the truth. */
+typedef struct place {
+    camber_comparison *comparison;
+    size_t network;
+} place;
+
+static void tell(const place *p, double fraction) {
+    camber_comparison *c = p->comparison;
+    camber_report_progress(c->session->report, "comparing",
+                           ((double)p->network + fraction) / (double)c->networks.count);
+}
+
+static void tell_truth(void *user, double fraction) {
+    tell(user, 0.5 + 0.5 * fraction);
+}
+
+/* ---- A method on a network ---- */
+
+typedef struct trial {
+    camber_comparison *comparison;
+    const camber_network *network;
+    camber_paint *paints; /* black, of the strokes' widths */
+    camber_comparison_row *row;
+    int method; /* of camber_methods_shown */
+} trial;
+
+static camber_status tessellate(const trial *t) {
+    const camber_tessellation_desc desc = {.strokes = t->network->strokes,
+                                           .stroke_count = t->network->stroke_count,
+                                           .method = camber_methods_shown[t->method],
+                                           .fan_tolerance_px =
+                                               (float)t->comparison->session->options->fan_tolerance_px};
+    return camber_tessellate(t->comparison->mesh, t->network->polylines, &desc);
+}
+
+/* Rows of coverage: black on nothing has it as alpha. */
+typedef struct level_rows {
+    uint8_t *levels;
+    size_t width;
+} level_rows;
+
+static bool keep_levels(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
+    const level_rows *to = user;
+    uint8_t *levels = to->levels + first_row * to->width;
+    for (size_t i = 0; i < row_count * to->width; i++)
+        levels[i] = rgba[4 * i + 3];
+    return true;
+}
+
+static camber_status draw(const trial *t, bool keep, camber_frame_stats *stats) {
+    camber_comparison *c = t->comparison;
+    const camber_pass pass = {.mesh = c->mesh, .paints = t->paints, .paint_count = t->network->stroke_count};
+    const camber_frame frame = {.width = c->networks.width,
+                                .height = c->networks.height,
+                                .passes = &pass,
+                                .pass_count = 1,
+                                .coverage = (camber_coverage)c->session->options->coverage};
+    level_rows to = {c->levels[t->method], frame.width};
+    return camber_render(c->session->renderer, &frame, keep ? keep_levels : NULL, &to, stats);
+}
+
+static int ascending(const void *a, const void *b) {
+    double x, y;
+    memcpy(&x, a, sizeof x);
+    memcpy(&y, b, sizeof y);
+    return (x > y) - (x < y);
+}
+
+static double median(double *series, size_t count) {
+    qsort(series, count, sizeof *series, ascending);
+    return count % 2 ? series[count / 2] : (series[count / 2 - 1] + series[count / 2]) / 2;
+}
+
+static camber_status time_runs(const trial *t) {
+    camber_comparison *c = t->comparison;
+    const size_t runs = c->session->options->runs;
+    double *tessellate_ms = calloc(runs, sizeof *tessellate_ms), *draw_ms = calloc(runs, sizeof *draw_ms);
+    camber_status status = tessellate_ms && draw_ms ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < WARM_UPS + runs && status == CAMBER_OK; i++) {
+        camber_frame_stats stats;
+        status = tessellate(t);
+        if (status == CAMBER_OK)
+            status = draw(t, false, &stats);
+        if (status != CAMBER_OK || i < WARM_UPS)
+            continue;
+        const camber_mesh_info info = camber_mesh_get_info(c->mesh);
+        tessellate_ms[i - WARM_UPS] = info.classify_ms + info.scan_ms + info.emit_ms;
+        draw_ms[i - WARM_UPS] = stats.draw_ms;
+    }
+    if (status == CAMBER_OK) {
+        t->row->measures[t->method][CAMBER_MEASURE_TESSELLATE_MS] = median(tessellate_ms, runs);
+        t->row->measures[t->method][CAMBER_MEASURE_DRAW_MS] = median(draw_ms, runs);
+    }
+    free(tessellate_ms);
+    free(draw_ms);
+    return status;
+}
+
+static camber_status count_mesh(const trial *t) {
+    double *measures = t->row->measures[t->method], *figures = t->row->figures;
+    camber_mesh_data data;
+    const camber_mesh_info info = camber_mesh_get_info(t->comparison->mesh);
+    const camber_status status = camber_mesh_read(t->comparison->mesh, &data);
+    if (status != CAMBER_OK)
+        return status;
+    measures[CAMBER_MEASURE_VERTICES] = (double)info.vertex_count;
+    measures[CAMBER_MEASURE_TRIANGLES] = (double)info.triangle_count;
+    measures[CAMBER_MEASURE_BYTES] =
+        (double)(info.vertex_count * sizeof(camber_vertex) + info.index_count * sizeof(uint32_t));
+    measures[CAMBER_MEASURE_DRAW_CALLS_16_BIT] = (double)camber_batches_count(&data, CAMBER_BATCH_VERTICES);
+    figures[CAMBER_FIGURE_TIGHT_JOINS] = (double)info.tight_joins;
+    figures[CAMBER_FIGURE_SPLIT_JOINS] = (double)info.split_joins;
+    camber_mesh_data_free(t->comparison->session->context, &data);
+    return CAMBER_OK;
+}
+
+static camber_status count_pixels(const trial *t) {
+    camber_comparison *c = t->comparison;
+    const camber_overdraw_desc desc = {.width = c->networks.width,
+                                       .height = c->networks.height,
+                                       .mesh = c->mesh,
+                                       .paints = t->paints,
+                                       .paint_count = t->network->stroke_count};
+    camber_overdraw overdraw;
+    const camber_status status = camber_overdraw_count(c->session->renderer, &desc, &overdraw);
+    if (status != CAMBER_OK)
+        return status;
+    double *measures = t->row->measures[t->method];
+    measures[CAMBER_MEASURE_FRAGMENTS] = (double)overdraw.fragments;
+    measures[CAMBER_MEASURE_DRAWN_PIXELS] = (double)overdraw.drawn_pixels;
+    measures[CAMBER_MEASURE_REPEATED_PIXELS] = (double)overdraw.repeated_pixels;
+    return CAMBER_OK;
+}
+
+static camber_status try_method(const trial *t) {
+    camber_frame_stats stats = {0};
+    camber_status status = time_runs(t);
+    if (status == CAMBER_OK)
+        status = draw(t, true, &stats);
+    t->row->measures[t->method][CAMBER_MEASURE_DRAW_CALLS] = (double)stats.draw_calls;
+    if (status == CAMBER_OK)
+        status = count_mesh(t);
+    if (status == CAMBER_OK)
+        status = count_pixels(t);
+    return status;
+}
+
+/* ---- A network ---- */
+
+static void count_network(const camber_network *network, camber_comparison_row *row) {
+    const camber_polylines_stats stats = camber_polylines_get_stats(network->polylines);
+    size_t turns[CAMBER_TURN_CLASSES] = {0};
+    camber_turns_count(network->lines, network->keep_open, turns);
+    row->figures[CAMBER_FIGURE_POLYLINES] = (double)stats.polylines;
+    row->figures[CAMBER_FIGURE_SEGMENTS] = (double)stats.kept_segments;
+    for (int i = 0; i < CAMBER_TURN_CLASSES; i++) {
+        row->figures[CAMBER_FIGURE_TURNS + i] = (double)turns[i];
+        row->figures[CAMBER_FIGURE_JOINS] += (double)turns[i];
+    }
+}
+
+static camber_status measure_errors(const camber_comparison *c, const camber_network *network, place *here,
+                                    camber_comparison_row *row) {
+    camber_truth_job job = {.truth = {.lines = network->lines,
+                                      .rows = network->rows,
+                                      .strokes = network->strokes,
+                                      .keep_open = network->keep_open,
+                                      .kind = CAMBER_TRUTH_UNION},
+                            .width = (int)c->networks.width,
+                            .height = (int)c->networks.height,
+                            .threads = c->session->options->threads,
+                            .progress = tell_truth,
+                            .user = here};
+    int methods[CAMBER_METHODS];
+    for (int i = 0; i < CAMBER_METHODS; i++)
+        if (c->shown[i]) {
+            methods[job.picture_count] = i;
+            job.pictures[job.picture_count++] = c->levels[i];
+        }
+    camber_difference differences[CAMBER_PICTURES_MAX];
+    if (!camber_truth_bands(&job, differences))
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < job.picture_count; i++) {
+        row->measures[methods[i]][CAMBER_MEASURE_MEAN_ERROR] = camber_difference_mean(&differences[i]);
+        row->measures[methods[i]][CAMBER_MEASURE_MAX_ERROR] = differences[i].max;
+    }
+    return CAMBER_OK;
+}
+
+static int measure_network(camber_comparison *c, size_t i) {
+    place here = {c, i};
+    camber_network network;
+    const int projected = camber_networks_project(&c->networks, i, &network);
+    if (projected != CAMBER_EXIT_DONE)
+        return projected;
+    camber_comparison_row *row = &c->rows[i];
+    row->name = network.name;
+    count_network(&network, row);
+    if (!(row->figures[CAMBER_FIGURE_POLYLINES] > 0))
+        camber_report_warn(c->session->report, "%s: nothing in the view; its row is empty", network.name);
+    camber_paint *paints = calloc(network.stroke_count + 1, sizeof *paints);
+    camber_status status = paints ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    for (size_t k = 0; k < network.stroke_count && paints; k++)
+        paints[k] = (camber_paint){network.strokes[k].width_px, {0, 0, 0, 1}};
+    for (int method = 0; method < CAMBER_METHODS && status == CAMBER_OK; method++) {
+        const trial t = {c, &network, paints, row, method};
+        tell(&here, method * 0.5 / CAMBER_METHODS);
+        if (c->shown[method])
+            status = try_method(&t);
+    }
+    if (status == CAMBER_OK)
+        status = measure_errors(c, &network, &here, row);
+    free(paints);
+    return camber_report_status(c->session->report, status);
+}
+
+/* ---- All ---- */
+
+static void average(camber_comparison *c) {
+    camber_comparison_row *sum = &c->average;
+    const double count = (double)c->networks.count;
+    sum->name = "average";
+    for (size_t i = 0; i < c->networks.count; i++) {
+        for (int k = 0; k < CAMBER_FIGURE_COUNT; k++)
+            sum->figures[k] += c->rows[i].figures[k] / count;
+        for (int method = 0; method < CAMBER_METHODS; method++)
+            for (int k = 0; k < CAMBER_MEASURE_COUNT; k++) {
+                const double measure = c->rows[i].measures[method][k];
+                double *to = &sum->measures[method][k];
+                *to = k != CAMBER_MEASURE_MAX_ERROR ? *to + measure / count : measure > *to ? measure : *to;
+            }
+    }
+}
+
+static int prepare(camber_comparison *c) {
+    camber_session *session = c->session;
+    camber_status status = CAMBER_OK;
+    c->rows = calloc(c->networks.count, sizeof *c->rows);
+    for (int i = 0; i < CAMBER_METHODS && status == CAMBER_OK; i++) {
+        c->shown[i] = session->options->method < 0 || session->options->method == (int)camber_methods_shown[i];
+        if (c->shown[i] && !(c->levels[i] = calloc((size_t)c->networks.width * c->networks.height, 1)))
+            status = CAMBER_ERROR_MEMORY;
+    }
+    if (!c->rows)
+        status = CAMBER_ERROR_MEMORY;
+    if (status == CAMBER_OK)
+        status = camber_mesh_create(session->device, session->renderer, &c->mesh);
+    return camber_report_status(session->report, status);
+}
+
+int camber_comparison_run(camber_comparison *comparison, camber_session *session) {
+    *comparison = (camber_comparison){.session = session};
+    int status = camber_session_need(session, CAMBER_NEEDS_RENDERER);
+    if (status == CAMBER_EXIT_DONE)
+        status = camber_networks_open(&comparison->networks, session);
+    if (status == CAMBER_EXIT_DONE)
+        status = prepare(comparison);
+    for (size_t i = 0; i < comparison->networks.count && status == CAMBER_EXIT_DONE; i++)
+        status = measure_network(comparison, i);
+    camber_report_erase_bar(session->report);
+    if (status == CAMBER_EXIT_DONE)
+        average(comparison);
+    return status;
+}
+
+void camber_comparison_close(camber_comparison *comparison) {
+    for (int i = 0; i < CAMBER_METHODS; i++)
+        free(comparison->levels[i]);
+    camber_mesh_destroy(comparison->mesh);
+    camber_networks_close(&comparison->networks);
+    free(comparison->rows);
+    *comparison = (camber_comparison){0};
+}
+
+double camber_comparison_ratio(const camber_comparison *comparison, int method, int measure) {
+    for (int i = 0; i < CAMBER_METHODS; i++) {
+        const double kite = comparison->average.measures[i][measure];
+        if (camber_methods_shown[i] == CAMBER_METHOD_KITE && kite > 0)
+            return comparison->average.measures[method][measure] / kite;
+    }
+    return 0;
+}

@@ -1,0 +1,204 @@
+#include "cli/plot.h"
+#include "cli/verbs.h"
+
+#include <math.h>
+#include <string.h>
+
+#define NAME_COLUMNS 28
+
+/* ---- JSON ---- */
+
+static json_t *number_json(double value, int decimals) {
+    return decimals == 0 && value == floor(value) ? json_integer((json_int_t)value) : json_real(value);
+}
+
+static json_t *measures_json(const double *measures) {
+    json_t *object = json_object();
+    for (int i = 0; i < CAMBER_MEASURE_COUNT; i++) {
+        const bool ms = i == CAMBER_MEASURE_TESSELLATE_MS || i == CAMBER_MEASURE_DRAW_MS;
+        json_object_set_new(object, camber_measures[i].key,
+                            ms ? camber_json_ms(measures[i]) : number_json(measures[i], camber_measures[i].decimals));
+    }
+    return object;
+}
+
+static json_t *row_json(const camber_comparison *c, const camber_comparison_row *row) {
+    json_t *object = json_object(), *turns = json_object(), *methods = json_object();
+    for (int i = 0; i < CAMBER_FIGURE_COUNT; i++) {
+        const bool turn = i >= CAMBER_FIGURE_TURNS && i < CAMBER_FIGURE_TIGHT_JOINS;
+        json_object_set_new(turn ? turns : object, camber_figures[i].key, number_json(row->figures[i], 0));
+    }
+    for (int i = 0; i < CAMBER_METHODS; i++)
+        if (c->shown[i])
+            json_object_set_new(methods, camber_method_name(camber_methods_shown[i]), measures_json(row->measures[i]));
+    json_object_set_new(object, "joins_by_turn_deg", turns);
+    json_object_set_new(object, "methods", methods);
+    return object;
+}
+
+static json_t *ratios_json(const camber_comparison *c) {
+    json_t *object = json_object();
+    for (int i = 0; i < CAMBER_METHODS; i++) {
+        json_t *ratios = json_object();
+        for (int k = 0; k < CAMBER_MEASURE_COUNT; k++)
+            json_object_set_new(ratios, camber_measures[k].key, json_real(camber_comparison_ratio(c, i, k)));
+        json_object_set_new(object, camber_method_name(camber_methods_shown[i]), ratios);
+    }
+    return object;
+}
+
+static int print_json(const camber_comparison *c) {
+    const camber_options *options = c->session->options;
+    json_t *object =
+        json_pack("{s:I, s:I, s:f, s:s, s:f, s:I}", "width", (json_int_t)c->networks.width, "height",
+                  (json_int_t)c->networks.height, "line_width_px", c->networks.width_px, "coverage",
+                  options->coverage == CAMBER_COVERAGE_EXACT ? "exact" : "linear", "fan_tolerance_px",
+                  options->fan_tolerance_px > 0 ? options->fan_tolerance_px : 0.25, "runs", (json_int_t)options->runs);
+    json_t *networks = json_array();
+    if (!object || !networks)
+        return camber_report_json(c->session->report, NULL);
+    if (c->networks.features) {
+        json_object_set_new(object, "longitude", json_real(c->networks.info.longitude));
+        json_object_set_new(object, "latitude", json_real(c->networks.info.latitude));
+        json_object_set_new(object, "zoom", json_real(c->networks.info.zoom));
+    }
+    camber_session_describe(c->session, object);
+    for (size_t i = 0; i < c->networks.count; i++) {
+        json_t *row = row_json(c, &c->rows[i]);
+        json_object_set_new(row, "name", camber_json_text(c->rows[i].name));
+        json_array_append_new(networks, row);
+    }
+    json_object_set_new(object, "networks", networks);
+    json_object_set_new(object, "average", row_json(c, &c->average));
+    if (options->method < 0)
+        json_object_set_new(object, "ratio_to_kite", ratios_json(c));
+    json_object_set_new(object, "peak_rss_bytes", camber_json_count(camber_peak_rss_bytes()));
+    return camber_report_json(c->session->report, object);
+}
+
+/* ---- A table ---- */
+
+/* Right-aligned, thousands set apart by commas. */
+static void put_number(double value, int decimals, int width) {
+    char digits[64], text[96];
+    const int size = snprintf(digits, sizeof digits, "%.*f", decimals, value);
+    const int whole = decimals ? size - decimals - 1 : size;
+    int used = 0;
+    for (int i = 0; i < size; i++) {
+        if (i > 0 && i < whole && (whole - i) % 3 == 0)
+            text[used++] = ',';
+        text[used++] = digits[i];
+    }
+    text[used] = 0;
+    printf("%*s", width, text);
+}
+
+/* A count's average has a decimal where it is small. */
+static int decimals_of(const camber_measure_info *info, double value) {
+    return info->decimals == 0 && value != floor(value) && value < 1000 ? 1 : info->decimals;
+}
+
+static void put_name(const char *name, int width) {
+    if ((int)strlen(name) > width)
+        printf("%.*s...", width - 3, name);
+    else
+        printf("%-*s", width, name);
+}
+
+static int name_width(const camber_comparison *c) {
+    size_t width = strlen(c->average.name);
+    for (size_t i = 0; i < c->networks.count; i++)
+        width = strlen(c->rows[i].name) > width ? strlen(c->rows[i].name) : width;
+    return width < NAME_COLUMNS ? (int)width : NAME_COLUMNS;
+}
+
+/* The networks, and their average where there are several. */
+static const camber_comparison_row *row_at(const camber_comparison *c, size_t i) {
+    return i < c->networks.count ? &c->rows[i] : &c->average;
+}
+
+static size_t row_count(const camber_comparison *c) {
+    return c->networks.count + (c->networks.count > 1);
+}
+
+static void print_figures(const camber_comparison *c, int width) {
+    printf("\n%-*s", width, "network");
+    for (int i = 0; i < CAMBER_FIGURE_COUNT; i++)
+        printf("%*s", camber_figures[i].width, camber_figures[i].head);
+    putchar('\n');
+    for (size_t i = 0; i < row_count(c); i++) {
+        const camber_comparison_row *row = row_at(c, i);
+        put_name(row->name, width);
+        for (int k = 0; k < CAMBER_FIGURE_COUNT; k++)
+            put_number(row->figures[k], decimals_of(&camber_figures[k], row->figures[k]), camber_figures[k].width);
+        putchar('\n');
+    }
+    puts("0-30 and so on: joins that turn by so many degrees; tight: the inner side has no room; split: past 127 "
+         "degrees");
+}
+
+static void print_measures(const camber_comparison *c, int width) {
+    printf("\n%-*s  %-7s", width, "network", "method");
+    for (int i = 0; i < CAMBER_MEASURE_COUNT; i++)
+        printf("%*s", camber_measures[i].width, camber_measures[i].head);
+    putchar('\n');
+    for (size_t i = 0; i < row_count(c); i++)
+        for (int method = 0; method < CAMBER_METHODS; method++) {
+            if (!c->shown[method])
+                continue;
+            const double *measures = row_at(c, i)->measures[method];
+            put_name(row_at(c, i)->name, width);
+            printf("  %-7s", camber_method_name(camber_methods_shown[method]));
+            for (int k = 0; k < CAMBER_MEASURE_COUNT; k++)
+                put_number(measures[k], decimals_of(&camber_measures[k], measures[k]), camber_measures[k].width);
+            putchar('\n');
+        }
+    for (int method = 0; method < CAMBER_METHODS && c->session->options->method < 0; method++) {
+        printf("%-*s  %-7s", width, method ? "" : "to one of kite's", camber_method_name(camber_methods_shown[method]));
+        for (int k = 0; k < CAMBER_MEASURE_COUNT; k++)
+            put_number(camber_comparison_ratio(c, method, k), 2, camber_measures[k].width);
+        putchar('\n');
+    }
+    puts("error: mean absolute difference from 256 samples a pixel, in 255ths, over the pixels that lines or picture "
+         "touch;\n"
+         "max: the largest; times: medians; tess.: the kernels");
+}
+
+static int print_text(const camber_comparison *c) {
+    const camber_networks *networks = &c->networks;
+    const camber_device_info device = camber_device_get_info(c->session->device);
+    int width = name_width(c);
+    width = width < 16 ? 16 : width;
+    printf("%s; %s\n", device.name, camber_surface_get_info(c->session->surface).renderer);
+    printf("%u x %u px", networks->width, networks->height);
+    if (networks->features)
+        printf(" at zoom %.2f", networks->info.zoom);
+    printf(", lines %g px wide, round joins, butt caps; runs: %u\n", networks->width_px, c->session->options->runs);
+    print_figures(c, width);
+    print_measures(c, width);
+    return camber_report_flush(c->session->report);
+}
+
+/* ---- The verb ---- */
+
+int camber_verb_compare(camber_session *session) {
+    const camber_options *options = session->options;
+    camber_comparison c = {.session = session};
+    camber_output plot = {0};
+    int status = CAMBER_EXIT_DONE;
+    if (options->plot)
+        status = camber_output_open(&plot, session->report, session->guard, options->plot, options->force);
+    if (status == CAMBER_EXIT_DONE && options->plot)
+        status = camber_plot_check(session->report);
+    if (status == CAMBER_EXIT_DONE)
+        status = camber_comparison_run(&c, session);
+    if (status == CAMBER_EXIT_DONE && options->plot)
+        status = camber_plot_write(&c, &plot);
+    if (status == CAMBER_EXIT_DONE && options->plot)
+        status = camber_output_publish(&plot);
+    if (status == CAMBER_EXIT_DONE)
+        status = options->json ? print_json(&c) : print_text(&c);
+    camber_comparison_close(&c);
+    camber_output_discard(&plot);
+    return status;
+}

@@ -270,6 +270,10 @@ CAMBER_API camber_status camber_surface_create(camber_context *context, const ca
 CAMBER_API void camber_surface_destroy(camber_surface *surface);
 /* Lets go of the GL context on the calling thread, so that another thread can use the surface. */
 CAMBER_API void camber_surface_release(camber_surface *surface);
+/* Whether the GL context is lost, as it is when the GPU is reset or its driver restarts. What needs it then returns
+ * CAMBER_ERROR_DEVICE. Destroy the meshes, renderers and the surface, and make them again: that works in the same
+ * process. A device that was opened with the surface goes the same way; polylines and scenes stay. */
+CAMBER_API bool camber_surface_is_lost(const camber_surface *surface);
 /* The strings live as long as the surface. */
 CAMBER_API camber_surface_info camber_surface_get_info(const camber_surface *surface);
 

@@ -30,6 +30,13 @@ char *camber_copy_string(camber_context *context, const char *text);
 void camber_log(camber_context *context, camber_log_level level, const char *format, ...) CAMBER_PRINTF(3, 4);
 /* Logs an error and returns status, so that a failure is one line: return camber_fail(...). */
 camber_status camber_fail(camber_context *context, camber_status status, const char *format, ...) CAMBER_PRINTF(3, 4);
+/* Errors become information until the log is restored: those of an attempt that something else stands in for. */
+typedef struct camber_soft_log {
+    camber_log_fn *log;
+    void *user;
+} camber_soft_log;
+void camber_log_soften(camber_context *context, camber_soft_log *kept);
+void camber_log_restore(camber_context *context, const camber_soft_log *kept);
 void camber_progress(camber_context *context, const char *stage, double fraction);
 
 /* Milliseconds of a monotonic clock. */

@@ -78,12 +78,14 @@
 
 /* In the driver's extensions, not in every one. */
 typedef void camber_gl_buffer_storage_fn(GLenum target, GLsizeiptr size, const void *data, GLbitfield flags);
+typedef GLenum camber_gl_reset_status_fn(void);
 
 typedef struct camber_gl {
 #define CAMBER_GL_MEMBER(result, name, parameters) result(*name) parameters;
     CAMBER_GL_FUNCTIONS(CAMBER_GL_MEMBER)
 #undef CAMBER_GL_MEMBER
-    camber_gl_buffer_storage_fn *BufferStorage; /* NULL: absent */
+    camber_gl_buffer_storage_fn *BufferStorage;        /* NULL: absent */
+    camber_gl_reset_status_fn *GetGraphicsResetStatus; /* NULL: absent */
 } camber_gl;
 
 /* Any function, before it is cast to its type. */

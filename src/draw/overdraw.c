@@ -326,8 +326,9 @@ camber_status camber_overdraw_count(camber_renderer *renderer, const camber_over
     camber_status status = CAMBER_OK;
     if (!desc->mesh->empty) {
         status = camber_surface_make_current(renderer->share.surface);
-        if (status == CAMBER_OK)
-            status = prepare(&c, &list);
+        if (status != CAMBER_OK)
+            return status;
+        status = prepare(&c, &list);
         if (status == CAMBER_OK)
             status = count_pieces(&c);
         renderer->share.surface->gl.BindVertexArray(0);
@@ -335,5 +336,7 @@ camber_status camber_overdraw_count(camber_renderer *renderer, const camber_over
     }
     if (status == CAMBER_OK)
         *overdraw = c.sum;
+    else
+        camber_surface_forget_errors(renderer->share.surface);
     return status;
 }

@@ -55,7 +55,12 @@ static camber_status reserve_rows(camber_renderer *renderer, size_t row_count) {
     gl->TexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA32F, ROW_TEXTURE_WIDTH, renderer->row_height);
     gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    return CAMBER_OK;
+    const camber_status status = camber_renderer_check(renderer, "the table of rows");
+    if (status != CAMBER_OK) {
+        gl->DeleteTextures(1, &renderer->row_texture);
+        renderer->row_texture = 0;
+    }
+    return status;
 }
 
 static void upload_rows(camber_renderer *renderer, size_t row_count) {

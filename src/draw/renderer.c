@@ -19,6 +19,11 @@ camber_status camber_renderer_create(camber_device *device, camber_surface *surf
         return status;
     }
     surface->gl.GenVertexArrays(1, &made->vertex_array);
+    status = camber_surface_check(surface, "opening");
+    if (status != CAMBER_OK) {
+        camber_renderer_destroy(made);
+        return status;
+    }
     *renderer = made;
     return CAMBER_OK;
 }
@@ -28,7 +33,7 @@ void camber_renderer_destroy(camber_renderer *renderer) {
         return;
     camber_context *context = renderer->share.device->context;
     const camber_gl *gl = &renderer->share.surface->gl;
-    if (camber_surface_make_current(renderer->share.surface) == CAMBER_OK) {
+    if (camber_surface_try_current(renderer->share.surface)) {
         for (int i = 0; i < CAMBER_VARIANTS; i++)
             gl->DeleteProgram(renderer->strokes[i].program);
         for (int i = 0; i < 2; i++)
@@ -67,8 +72,9 @@ static camber_status current_finish(void *user, camber_buffer *buffers, size_t c
 
 static void current_release(void *user, camber_buffer *buffer) {
     camber_renderer *renderer = user;
-    if (camber_surface_make_current(renderer->share.surface) == CAMBER_OK)
-        renderer->path->ops.release(&renderer->share, buffer);
+    if (!camber_surface_try_current(renderer->share.surface))
+        buffer->gl_name = 0; /* it goes with its context */
+    renderer->path->ops.release(&renderer->share, buffer);
 }
 
 static const camber_buffer_ops current_ops = {current_reserve, current_begin, current_finish, current_release};
@@ -84,13 +90,7 @@ camber_status camber_mesh_create(camber_device *device, camber_renderer *rendere
 /* ---- Frame ---- */
 
 camber_status camber_renderer_check(camber_renderer *renderer, const char *what) {
-    const GLenum error = renderer->share.surface->gl.GetError();
-    if (error == GL_NO_ERROR)
-        return CAMBER_OK;
-    return camber_fail(renderer->share.device->context,
-                       error == GL_OUT_OF_MEMORY ? CAMBER_ERROR_MEMORY : CAMBER_ERROR_DEVICE,
-                       "%s: GL error 0x%x on %s; draw less at once, or update its driver", what, error,
-                       renderer->share.surface->info.renderer);
+    return camber_surface_check(renderer->share.surface, what);
 }
 
 static camber_status check_frame(camber_renderer *renderer, const camber_frame *frame) {
@@ -191,6 +191,8 @@ camber_status camber_render(camber_renderer *renderer, const camber_frame *frame
             camber_progress(context, "drawing", (double)(piece.y + piece.height) / frame->height);
     }
     camber_free(context, band);
+    if (status != CAMBER_OK)
+        camber_surface_forget_errors(renderer->share.surface); /* the next frame's are its own */
     if (stats && status == CAMBER_OK)
         *stats = counted;
     return status;

@@ -7,7 +7,17 @@
 
 enum { LOG_SIZE = 2048 };
 
-static GLuint compile(camber_renderer *renderer, GLenum kind, const char *head, const char *source) {
+/* A step that failed: GL's own error tells more than the step's log, where there is one. */
+static camber_status fail_step(camber_renderer *renderer, const char *step, const char *log) {
+    const camber_status status = camber_renderer_check(renderer, "shaders");
+    if (status != CAMBER_OK)
+        return status;
+    return camber_fail(renderer->share.device->context, CAMBER_ERROR_DEVICE, "%s on %s; update its driver: %s", step,
+                       renderer->share.surface->info.renderer, log[0] ? log : "it does not say why");
+}
+
+static camber_status compile(camber_renderer *renderer, GLenum kind, const char *head, const char *source,
+                             GLuint *made) {
     const camber_gl *gl = &renderer->share.surface->gl;
     const GLchar *parts[] = {"#version 300 es\n", head, "#line 1\n", source};
     const GLuint shader = gl->CreateShader(kind);
@@ -15,41 +25,43 @@ static GLuint compile(camber_renderer *renderer, GLenum kind, const char *head, 
     gl->ShaderSource(shader, 4, parts, NULL);
     gl->CompileShader(shader);
     gl->GetShaderiv(shader, GL_COMPILE_STATUS, &built);
+    *made = shader;
     if (built)
-        return shader;
+        return CAMBER_OK;
     char log[LOG_SIZE] = "";
     gl->GetShaderInfoLog(shader, LOG_SIZE, NULL, log);
-    camber_log(renderer->share.device->context, CAMBER_LOG_ERROR,
-               "a shader does not compile on %s; update its driver: %s", renderer->share.surface->info.renderer, log);
-    gl->DeleteShader(shader);
-    return 0;
+    return fail_step(renderer, "a shader does not compile", log);
+}
+
+static camber_status link(camber_renderer *renderer, GLuint program, const GLuint parts[2]) {
+    const camber_gl *gl = &renderer->share.surface->gl;
+    GLint linked = 0;
+    for (int i = 0; i < 2; i++)
+        gl->AttachShader(program, parts[i]);
+    gl->LinkProgram(program);
+    gl->GetProgramiv(program, GL_LINK_STATUS, &linked);
+    if (linked)
+        return CAMBER_OK;
+    char log[LOG_SIZE] = "";
+    gl->GetProgramInfoLog(program, LOG_SIZE, NULL, log);
+    return fail_step(renderer, "shaders do not link", log);
 }
 
 static camber_status build(camber_renderer *renderer, const char *head, const char *vertex, const char *fragment,
                            camber_shader *shader) {
     const camber_gl *gl = &renderer->share.surface->gl;
-    const GLuint parts[2] = {compile(renderer, GL_VERTEX_SHADER, head, vertex),
-                             compile(renderer, GL_FRAGMENT_SHADER, head, fragment)};
+    GLuint parts[2] = {0, 0};
     const GLuint program = gl->CreateProgram();
-    GLint linked = 0;
-    if (parts[0] && parts[1]) {
-        gl->AttachShader(program, parts[0]);
-        gl->AttachShader(program, parts[1]);
-        gl->LinkProgram(program);
-        gl->GetProgramiv(program, GL_LINK_STATUS, &linked);
-        if (!linked) {
-            char log[LOG_SIZE] = "";
-            gl->GetProgramInfoLog(program, LOG_SIZE, NULL, log);
-            camber_log(renderer->share.device->context, CAMBER_LOG_ERROR,
-                       "shaders do not link on %s; update its driver: %s", renderer->share.surface->info.renderer, log);
-        }
-    }
+    camber_status status = compile(renderer, GL_VERTEX_SHADER, head, vertex, parts);
+    if (status == CAMBER_OK)
+        status = compile(renderer, GL_FRAGMENT_SHADER, head, fragment, parts + 1);
+    if (status == CAMBER_OK)
+        status = link(renderer, program, parts);
     for (int i = 0; i < 2; i++)
-        if (parts[i])
-            gl->DeleteShader(parts[i]);
-    if (!linked) {
+        gl->DeleteShader(parts[i]); /* 0 is none */
+    if (status != CAMBER_OK) {
         gl->DeleteProgram(program);
-        return CAMBER_ERROR_DEVICE;
+        return status;
     }
     /* Samplers stay at unit 0, where GL starts them. */
     *shader = (camber_shader){program, gl->GetUniformLocation(program, "u_origin"),

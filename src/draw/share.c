@@ -1,6 +1,8 @@
 /* Choosing a sharing path by trying it. */
 #include "draw/share.h"
 
+#include <stdio.h>
+
 const char *camber_sharing_name(camber_sharing sharing) {
     switch (sharing) {
     case CAMBER_SHARING_AUTO: return "auto";
@@ -41,40 +43,58 @@ static bool gl_sees(const camber_gl *gl, GLuint buffer, cl_uint word) {
 }
 
 /* Writes a word with OpenCL and reads it with GL. */
-static bool works(camber_share *share, const camber_share_path *path) {
+static camber_status try_path(camber_share *share, const camber_share_path *path) {
     const cl_uint word = 0x63616d62u;
-    const camber_gl *gl = &share->surface->gl;
+    cl_command_queue queue = share->device->queue;
     camber_buffer buffer = {0};
-    bool same = false;
     if (!path->is_possible(share))
-        return false;
-    if (path->ops.reserve(share, &buffer, PROBE_BYTES) == CAMBER_OK) {
-        buffer.used_bytes = PROBE_BYTES;
-        if (path->ops.begin(share, &buffer, 1) == CAMBER_OK) {
-            const cl_int code = clEnqueueFillBuffer(share->device->queue, buffer.mem, &word, sizeof word, 0,
-                                                    PROBE_BYTES, 0, NULL, NULL);
-            clFinish(share->device->queue);
-            same = path->ops.finish(share, &buffer, 1, true) == CAMBER_OK && code == CL_SUCCESS;
-        }
-        same = same && gl_sees(gl, buffer.gl_name, word);
+        return CAMBER_ERROR_DEVICE;
+    camber_status status = path->ops.reserve(share, &buffer, PROBE_BYTES);
+    buffer.used_bytes = PROBE_BYTES;
+    if (status == CAMBER_OK)
+        status = path->ops.begin(share, &buffer, 1);
+    if (status == CAMBER_OK) {
+        const cl_int code = clEnqueueFillBuffer(queue, buffer.mem, &word, sizeof word, 0, PROBE_BYTES, 0, NULL, NULL);
+        clFinish(queue);
+        status = path->ops.finish(share, &buffer, 1, true);
+        const bool same =
+            code == CL_SUCCESS && status == CAMBER_OK && gl_sees(&share->surface->gl, buffer.gl_name, word);
+        if (status == CAMBER_OK)
+            status = camber_share_check(share, PROBE_BYTES);
+        if (status == CAMBER_OK && !same)
+            status = CAMBER_ERROR_DEVICE;
     }
     path->ops.release(share, &buffer);
-    while (gl->GetError() != GL_NO_ERROR) {
-    }
-    return same;
+    camber_surface_forget_errors(share->surface);
+    return status;
+}
+
+camber_status camber_share_check(const camber_share *share, size_t size_bytes) {
+    char what[64];
+    snprintf(what, sizeof what, "a GL buffer of %zu bytes", size_bytes);
+    return camber_surface_check(share->surface, what);
 }
 
 camber_status camber_share_choose(camber_share *share, camber_sharing wanted, const camber_share_path **path) {
     static const camber_share_path *const paths[] = {&camber_share_gl, &camber_share_zero_copy, &camber_share_copy};
+    camber_context *context = share->device->context;
+    camber_status status = CAMBER_ERROR_DEVICE;
     for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
         if (wanted != CAMBER_SHARING_AUTO && wanted != paths[i]->sharing)
             continue;
-        if (works(share, paths[i])) {
+        camber_soft_log kept;
+        camber_log_soften(context, &kept); /* of a path that does not work, one line tells */
+        status = try_path(share, paths[i]);
+        camber_log_restore(context, &kept);
+        if (status == CAMBER_OK) {
             *path = paths[i];
             return CAMBER_OK;
         }
     }
-    return camber_fail(share->device->context, CAMBER_ERROR_DEVICE,
-                       "sharing '%s' does not work between %s and %s; use auto", camber_sharing_name(wanted),
-                       share->device->info.name, share->surface->info.renderer);
+    if (share->surface->lost)
+        return camber_surface_make_current(share->surface);
+    return camber_fail(context, status, "sharing '%s' does not work between %s and %s%s; use %s",
+                       camber_sharing_name(wanted), share->device->info.name, share->surface->info.renderer,
+                       status == CAMBER_ERROR_MEMORY ? ": out of memory" : "",
+                       wanted == CAMBER_SHARING_AUTO ? "another device or back end" : "auto");
 }

@@ -23,6 +23,9 @@ extern const camber_share_path camber_share_copy;
 /* Frees both sides of a buffer. */
 void camber_share_release(void *user, camber_buffer *buffer);
 
+/* What GL says to a buffer of this size. */
+camber_status camber_share_check(const camber_share *share, size_t size_bytes);
+
 /* Chooses a path, the first that works for AUTO, by writing a buffer through it. */
 camber_status camber_share_choose(camber_share *share, camber_sharing wanted, const camber_share_path **path);
 

@@ -22,11 +22,10 @@ static camber_status reserve(void *user, camber_buffer *buffer, size_t size_byte
     gl->BindBuffer(GL_ARRAY_BUFFER, buffer->gl_name);
     gl->BufferData(GL_ARRAY_BUFFER, (GLsizeiptr)size_bytes, NULL, GL_DYNAMIC_DRAW);
     gl->BindBuffer(GL_ARRAY_BUFFER, 0);
-    if (gl->GetError() != GL_NO_ERROR)
-        return camber_fail(share->device->context, CAMBER_ERROR_MEMORY, "a GL buffer of %zu bytes; draw less at once",
-                           size_bytes);
-    buffer->capacity_bytes = size_bytes;
-    return CAMBER_OK;
+    const camber_status status = camber_share_check(share, size_bytes);
+    if (status == CAMBER_OK)
+        buffer->capacity_bytes = size_bytes;
+    return status;
 }
 
 static camber_status begin(void *user, camber_buffer *buffers, size_t count) {
@@ -50,6 +49,9 @@ static camber_status finish(void *user, camber_buffer *buffers, size_t count, bo
         gl->BindBuffer(GL_ARRAY_BUFFER, 0);
         clEnqueueUnmapMemObject(share->device->queue, buffers[i].mem, bytes, 0, NULL, NULL);
         clFinish(share->device->queue);
+        const camber_status status = camber_share_check(share, buffers[i].used_bytes);
+        if (status != CAMBER_OK)
+            return status;
     }
     return CAMBER_OK;
 }

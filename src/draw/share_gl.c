@@ -18,9 +18,9 @@ static camber_status reserve(void *user, camber_buffer *buffer, size_t size_byte
     gl->BufferData(GL_ARRAY_BUFFER, (GLsizeiptr)size_bytes, NULL, GL_STATIC_DRAW);
     gl->BindBuffer(GL_ARRAY_BUFFER, 0);
     gl->Finish();
-    if (gl->GetError() != GL_NO_ERROR)
-        return camber_fail(share->device->context, CAMBER_ERROR_MEMORY, "a GL buffer of %zu bytes; draw less at once",
-                           size_bytes);
+    const camber_status status = camber_share_check(share, size_bytes);
+    if (status != CAMBER_OK)
+        return status;
     cl_int code;
     buffer->mem = clCreateFromGLBuffer(share->device->cl, CL_MEM_READ_WRITE, buffer->gl_name, &code);
     if (code != CL_SUCCESS) {

@@ -18,9 +18,12 @@ static camber_status reserve(void *user, camber_buffer *buffer, size_t size_byte
     gl->BufferStorage(GL_ARRAY_BUFFER, (GLsizeiptr)size_bytes, NULL, flags);
     buffer->map = gl->MapBufferRange(GL_ARRAY_BUFFER, 0, (GLsizeiptr)size_bytes, flags);
     gl->BindBuffer(GL_ARRAY_BUFFER, 0);
+    const camber_status status = camber_share_check(share, size_bytes);
+    if (status != CAMBER_OK)
+        return status;
     if (!buffer->map)
         return camber_fail(share->device->context, CAMBER_ERROR_MEMORY,
-                           "a mapped GL buffer of %zu bytes; draw less at once", size_bytes);
+                           "a GL buffer of %zu bytes cannot be mapped; draw less at once", size_bytes);
     cl_int code;
     buffer->mem =
         clCreateBuffer(share->device->cl, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, size_bytes, buffer->map, &code);

@@ -6,9 +6,11 @@
 static bool has_extension(const camber_gl *gl, const char *name) {
     GLint count = 0;
     gl->GetIntegerv(GL_NUM_EXTENSIONS, &count);
-    for (GLint i = 0; i < count; i++)
-        if (strcmp((const char *)gl->GetStringi(GL_EXTENSIONS, (GLuint)i), name) == 0)
+    for (GLint i = 0; i < count; i++) {
+        const char *extension = (const char *)gl->GetStringi(GL_EXTENSIONS, (GLuint)i);
+        if (extension && strcmp(extension, name) == 0)
             return true;
+    }
     return false;
 }
 
@@ -17,7 +19,23 @@ static bool is_software(const char *renderer) {
            strstr(renderer, "SwiftShader") || strstr(renderer, "Software");
 }
 
+/* A function under the first of its names whose extension is there; NULL where none is. */
+typedef struct optional_name {
+    const char *extension, *function;
+} optional_name;
+
+static camber_function *load_optional(camber_surface *surface, const optional_name *names, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        if (has_extension(&surface->gl, names[i].extension))
+            return surface->ops->load(surface, names[i].function);
+    return NULL;
+}
+
 static camber_status load_gl(camber_surface *surface) {
+    static const optional_name storage[] = {{"GL_EXT_buffer_storage", "glBufferStorageEXT"},
+                                            {"GL_ARB_buffer_storage", "glBufferStorage"}};
+    static const optional_name reset[] = {{"GL_EXT_robustness", "glGetGraphicsResetStatusEXT"},
+                                          {"GL_ARB_robustness", "glGetGraphicsResetStatusARB"}};
     camber_gl *gl = &surface->gl;
     camber_function *function;
 #define LOAD(result, call, parameters)                                                                                 \
@@ -28,11 +46,10 @@ static camber_status load_gl(camber_surface *surface) {
     memcpy(&gl->call, &function, sizeof function);
     CAMBER_GL_FUNCTIONS(LOAD)
 #undef LOAD
-    const char *storage = has_extension(gl, "GL_EXT_buffer_storage")   ? "glBufferStorageEXT"
-                          : has_extension(gl, "GL_ARB_buffer_storage") ? "glBufferStorage"
-                                                                       : NULL;
-    function = storage ? surface->ops->load(surface, storage) : NULL;
+    function = load_optional(surface, storage, sizeof storage / sizeof *storage);
     memcpy(&gl->BufferStorage, &function, sizeof function);
+    function = load_optional(surface, reset, sizeof reset / sizeof *reset);
+    memcpy(&gl->GetGraphicsResetStatus, &function, sizeof function);
     return CAMBER_OK;
 }
 
@@ -72,28 +89,14 @@ static camber_status open_backend(camber_context *context, const camber_surface_
     return CAMBER_OK;
 }
 
-/* A log that tells errors as information: a back end that is not there is none while another may be. */
-typedef struct softened_log {
-    camber_log_fn *log;
-    void *user;
-} softened_log;
-
-static void log_softened(void *user, camber_log_level level, const char *message) {
-    const softened_log *softened = user;
-    if (softened->log)
-        softened->log(softened->user, level == CAMBER_LOG_ERROR ? CAMBER_LOG_INFO : level, message);
-}
-
 static camber_status try_backend(camber_context *context, const camber_surface_ops *ops, bool is_last,
                                  camber_surface **surface) {
     if (is_last)
         return open_backend(context, ops, surface);
-    softened_log softened = {context->desc.log, context->desc.log_user};
-    context->desc.log = log_softened;
-    context->desc.log_user = &softened;
+    camber_soft_log kept;
+    camber_log_soften(context, &kept); /* a back end that is not there is no error while another may be */
     const camber_status status = open_backend(context, ops, surface);
-    context->desc.log = softened.log;
-    context->desc.log_user = softened.user;
+    camber_log_restore(context, &kept);
     return status;
 }
 
@@ -126,11 +129,63 @@ camber_surface_info camber_surface_get_info(const camber_surface *surface) {
     return surface->info;
 }
 
-camber_status camber_surface_make_current(camber_surface *surface) {
-    if (surface->ops->make_current(surface))
-        return CAMBER_OK;
+bool camber_surface_is_lost(const camber_surface *surface) {
+    return surface->lost;
+}
+
+static camber_status fail_lost(const camber_surface *surface) {
     return camber_fail(surface->context, CAMBER_ERROR_DEVICE,
-                       "%s: the GL context cannot be made current; open it again", surface->name);
+                       "%s: the GL context is lost, as when the GPU is reset; start again with a new surface",
+                       surface->name);
+}
+
+bool camber_surface_try_current(camber_surface *surface) {
+    return !surface->lost && surface->ops->make_current(surface);
+}
+
+camber_status camber_surface_make_current(camber_surface *surface) {
+    if (camber_surface_try_current(surface))
+        return CAMBER_OK;
+    if (surface->lost)
+        return fail_lost(surface);
+    return camber_fail(surface->context, CAMBER_ERROR_DEVICE,
+                       "%s: the GL context cannot be made current; start again with a new surface", surface->name);
+}
+
+/* ---- What GL reports ---- */
+
+/* The first error since the last look. There may be a flag a part of the driver, and a lost context may report its
+ * loss for ever. */
+static GLenum take_errors(camber_surface *surface) {
+    enum { FLAGS_MAX = 16 };
+    const camber_gl *gl = &surface->gl;
+    const GLenum first = gl->GetError();
+    GLenum error = first;
+    for (int i = 0; i < FLAGS_MAX && error != GL_NO_ERROR; i++) {
+        surface->lost = surface->lost || error == GL_CONTEXT_LOST_KHR;
+        error = gl->GetError();
+    }
+    if (gl->GetGraphicsResetStatus && gl->GetGraphicsResetStatus() != GL_NO_ERROR)
+        surface->lost = true;
+    return first;
+}
+
+void camber_surface_forget_errors(camber_surface *surface) {
+    (void)take_errors(surface);
+}
+
+camber_status camber_surface_check(camber_surface *surface, const char *what) {
+    const GLenum error = take_errors(surface);
+    if (surface->lost)
+        return fail_lost(surface);
+    if (error == GL_OUT_OF_MEMORY)
+        return camber_fail(surface->context, CAMBER_ERROR_MEMORY, "%s: %s is out of memory; draw less at once", what,
+                           surface->info.renderer);
+    if (error != GL_NO_ERROR)
+        return camber_fail(surface->context, CAMBER_ERROR_DEVICE,
+                           "%s: GL error 0x%x on %s; update its driver, or use another back end", what, error,
+                           surface->info.renderer);
+    return CAMBER_OK;
 }
 
 void camber_surface_release(camber_surface *surface) {

@@ -17,6 +17,7 @@ enum { DEVICES_MAX = 16 };
     X(EGLBoolean, eglDestroyContext, (EGLDisplay, EGLContext))                                                         \
     X(EGLBoolean, eglMakeCurrent, (EGLDisplay, EGLSurface, EGLSurface, EGLContext))                                    \
     X(EGLContext, eglGetCurrentContext, (void))                                                                        \
+    X(EGLint, eglGetError, (void))                                                                                     \
     X(const char *, eglQueryString, (EGLDisplay, EGLint))                                                              \
     X(camber_function *, eglGetProcAddress, (const char *))
 
@@ -49,17 +50,30 @@ static camber_function *load(camber_surface *surface, const char *name) {
     return egl->eglGetProcAddress(name);
 }
 
+/* A GLES 3 context that tells of its loss, where there are such; else one that may draw garbage then, or end the
+ * process. */
+static EGLContext create_context(const egl_state *egl, EGLConfig config) {
+    static const EGLint telling[] = {EGL_CONTEXT_MAJOR_VERSION_KHR, 3,
+                                     EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT, EGL_LOSE_CONTEXT_ON_RESET_EXT,
+                                     EGL_NONE};
+    static const EGLint plain[] = {EGL_CONTEXT_MAJOR_VERSION_KHR, 3, EGL_NONE};
+    const char *extensions = egl->eglQueryString(egl->display, EGL_EXTENSIONS);
+    EGLContext made = EGL_NO_CONTEXT;
+    if (extensions && strstr(extensions, "EGL_EXT_create_context_robustness"))
+        made = egl->eglCreateContext(egl->display, config, EGL_NO_CONTEXT, telling);
+    return made != EGL_NO_CONTEXT ? made : egl->eglCreateContext(egl->display, config, EGL_NO_CONTEXT, plain);
+}
+
 /* A context on a display that is initialised; false leaves nothing behind but the display. */
 static bool make_context(egl_state *egl) {
     static const EGLint config_wanted[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_ES3_BIT_KHR, EGL_SURFACE_TYPE, 0, EGL_NONE};
-    static const EGLint context_wanted[] = {EGL_CONTEXT_MAJOR_VERSION_KHR, 3, EGL_NONE};
     EGLConfig config = NULL;
     EGLint count = 0;
     if (!egl->eglBindAPI(EGL_OPENGL_ES_API))
         return false;
     if (!egl->eglChooseConfig(egl->display, config_wanted, &config, 1, &count) || count < 1)
         config = NULL; /* EGL_NO_CONFIG_KHR: no surface is ever made */
-    egl->context = egl->eglCreateContext(egl->display, config, EGL_NO_CONTEXT, context_wanted);
+    egl->context = create_context(egl, config);
     if (egl->context == EGL_NO_CONTEXT)
         return false;
     if (egl->eglMakeCurrent(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, egl->context))
@@ -125,7 +139,10 @@ static bool make_current(camber_surface *surface) {
     if (egl->eglGetCurrentContext() == egl->context)
         egl->eglMakeCurrent(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     egl->eglBindAPI(EGL_OPENGL_ES_API);
-    return egl->eglMakeCurrent(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, egl->context);
+    if (egl->eglMakeCurrent(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, egl->context))
+        return true;
+    surface->lost = egl->eglGetError() == EGL_CONTEXT_LOST;
+    return false;
 }
 
 static void release(camber_surface *surface) {

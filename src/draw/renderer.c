@@ -72,6 +72,8 @@ static camber_status current_finish(void *user, camber_buffer *buffers, size_t c
 
 static void current_release(void *user, camber_buffer *buffer) {
     camber_renderer *renderer = user;
+    if (!buffer->mem && !buffer->gl_name)
+        return;
     if (!camber_surface_try_current(renderer->share.surface))
         buffer->gl_name = 0; /* it goes with its context */
     renderer->path->ops.release(&renderer->share, buffer);

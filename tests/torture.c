@@ -10,6 +10,8 @@ torture_set torture_begin(int width) {
 void torture_free(torture_set *set) {
     scene_free(&set->lines);
     free(set->figures);
+    for (size_t i = 0; i < sizeof set->truths / sizeof *set->truths; i++)
+        free(set->truths[i]);
     *set = (torture_set){0};
 }
 
@@ -245,7 +247,7 @@ static void add_scribbles(torture_set *set) {
     torture_end_figure(set, "trembling track", 14);
     pen p = pen_at(set, 90);
     for (int i = 0; i < 16; i++) {
-        go(&p, 44, i == 0 ? 0 : i % 2 ? 90 : -90);
+        go(&p, 44, i == 0 ? 0 : i % 2 ? -90 : 90);
         go(&p, 5, i % 2 ? 90 : -90);
     }
     torture_end_figure(set, "comb narrower than the width", 14);
@@ -260,7 +262,7 @@ static void add_meetings(torture_set *set) {
     torture_end_figure(set, "hairpin, gap of the width", 20);
     p = pen_at(set, 31);
     for (int i = 0; i < 6; i++) {
-        go(&p, 50, i == 0 ? 0 : i % 2 ? 90 : -90);
+        go(&p, 50, i == 0 ? 0 : i % 2 ? -90 : 90);
         go(&p, 10, i % 2 ? 90 : -90);
     }
     torture_end_figure(set, "comb, pitch of the width", 10);
@@ -275,11 +277,11 @@ static void add_long_line(torture_set *set) {
     double bend = 0;
     for (int i = 1; i < POINTS; i++) {
         const double chance = random_between(&seed, 0, 1);
-        const double step = pow(10, random_between(&seed, -1.5, 0.9));
+        const double step = pow(10, random_between(&seed, -1.7, 0.75));
         if (i % 40 == 0)
             bend = random_between(&seed, -14, 14);
         /* Bound for the middle of a box, so that it stays there. */
-        const double home = atan2(90 - p.y, 150 - p.x) - p.direction, away = hypot((90 - p.y) / 90, (150 - p.x) / 150);
+        const double home = atan2(70 - p.y, 110 - p.x) - p.direction, away = hypot((70 - p.y) / 70, (110 - p.x) / 110);
         const double pull = away > 0.8 ? 30 * sin(home) : 0;
         go(&p, step, chance < 0.02 ? 180 * (chance < 0.01) + 90 : bend + pull + random_between(&seed, -25, 25));
     }

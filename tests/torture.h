@@ -18,6 +18,7 @@ typedef struct torture_set {
     torture_figure *figures;
     size_t count;
     int width, height; /* of the picture, px */
+    float *truths[9];  /* the coverage of the whole picture by join and cap, made when first asked for */
 } torture_set;
 
 torture_set torture_make(void);
@@ -35,6 +36,7 @@ typedef struct torture_verdict {
      * it takes parts of the line that lie farther apart to cover the pixel, each of them in part only. Coverage line
      * over line cannot add up to 1 there. */
     size_t torn, meeting;
+    int torn_levels;  /* by how many levels the worst of torn differs */
     int level, worst; /* of 255: that level, and the one farthest from it */
     int x, y;         /* of the first that is the worst, in its cell */
 } torture_verdict;
@@ -52,11 +54,13 @@ torture_verdict torture_judge(const torture_picture *drawn, size_t figure);
 
 /* Pixels of one picture of the whole set that are known to differ. */
 typedef struct torture_known {
-    size_t torn, meeting;
+    size_t torn;
+    int torn_levels;
+    size_t meeting;
 } torture_known;
 
 /* Draws the set half transparent and flattened with every join, cap and back end; prints each figure that is not of one
  * alpha inside; fails where a picture has more such pixels than are known. */
-void torture_check(const studio *s, const torture_set *set, camber_method method, torture_known known);
+void torture_check(const studio *s, torture_set *set, camber_method method, torture_known known);
 
 #endif

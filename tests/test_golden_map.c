@@ -1,0 +1,79 @@
+/* Golden pictures of a map: a crossing in Santa Cruz, from its file through the built-in style. */
+#include "golden.h"
+
+#include "camber_map.h"
+
+static camber_scene *load(camber_context *context, camber_theme theme, camber_style **style,
+                          camber_features **features) {
+    camber_scene *map = NULL;
+    const camber_source_desc source = {.path = CAMBER_TEST_DATA "/santa_cruz/osm.mbtiles"};
+    const camber_scene_desc desc = {.view = {CAMBER_VIEW_CENTER, .longitude = -122.0268, .latitude = 36.9735,
+                                             .zoom = 15.8, .width = 300, .height = 200, .ratio = 1.25},
+                                    .simplify_px = 0.1};
+    assert_int_equal(camber_style_builtin(context, theme, style), CAMBER_OK);
+    assert_int_equal(camber_features_create(context, *style, features), CAMBER_OK);
+    assert_int_equal(camber_features_read(*features, &source), CAMBER_OK);
+    assert_int_equal(camber_scene_create(*features, &desc, &map), CAMBER_OK);
+    return map;
+}
+
+static void draw_crossing(void **state, const char *name, camber_theme theme) {
+    const studio *s = *state;
+    camber_style *style = NULL;
+    camber_features *features = NULL;
+    camber_scene *map = load(s->context, theme, &style, &features);
+    size_t stroke_count = 0;
+    const camber_stroke *strokes = camber_scene_strokes(map, &stroke_count);
+    bool good = true;
+    for (int b = 0; b < BACKENDS && good; b++) {
+        if (!s->renderer[b])
+            continue;
+        camber_mesh *mesh = NULL;
+        const camber_tessellation_desc desc = {strokes, stroke_count, CAMBER_METHOD_STRIP, 0};
+        assert_int_equal(camber_mesh_create(s->device, s->renderer[b], &mesh), CAMBER_OK);
+        assert_int_equal(camber_tessellate(mesh, camber_scene_polylines(map), &desc), CAMBER_OK);
+        const camber_frame frame = camber_scene_frame(map, mesh);
+        picture drawn = picture_draw(s->renderer[b], &frame);
+        good = golden_judge(name, &drawn);
+        if (!good)
+            printf("%s: not as it should be with %s\n", name, BACKEND_NAME[b]);
+        picture_free(&drawn);
+        camber_mesh_destroy(mesh);
+    }
+    camber_scene_destroy(map);
+    camber_features_destroy(features);
+    camber_style_destroy(style);
+    assert_true(good);
+}
+
+static void test_light(void **state) {
+    draw_crossing(state, "santa-cruz-light", CAMBER_THEME_LIGHT);
+}
+
+static void test_dark(void **state) {
+    draw_crossing(state, "santa-cruz-dark", CAMBER_THEME_DARK);
+}
+
+static int open_studio(void **state) {
+    static studio s;
+    *state = &s;
+    return studio_open(&s) ? 0 : -1;
+}
+
+static int close_studio(void **state) {
+    studio_close(*state);
+    return 0;
+}
+
+int main(void) {
+    char cache[64];
+    pocl_cache_apart(cache);
+    if (!device_is_there()) {
+        printf("no OpenCL device\n");
+        return 77;
+    }
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_light), cmocka_unit_test(test_dark)};
+    const int failed = cmocka_run_group_tests(tests, open_studio, close_studio);
+    folder_remove(cache);
+    return failed;
+}

@@ -533,7 +533,8 @@ typedef struct camber_png_desc {
 
 typedef struct camber_png camber_png;
 
-/* Writes the head of a PNG. Then camber_png_write_rows until all rows are there, then camber_png_finish. */
+/* Writes the head of a PNG. Then camber_png_write_rows until all rows are there, then camber_png_finish. They return
+ * CAMBER_ERROR_IO when the sink refuses, and CAMBER_ERROR_MEMORY; once a writer has failed, it stays so. */
 CAMBER_API camber_status camber_png_create(camber_context *context, const camber_png_desc *desc, camber_sink sink,
                                            camber_png **png);
 /* rgba: premultiplied, row_count rows of width * 4 bytes; written unpremultiplied, as PNG wants it. */

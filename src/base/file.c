@@ -63,7 +63,7 @@ uint64_t camber_hash(uint64_t hash, const void *bytes, size_t size_bytes) {
 
 /* ---- Cache ---- */
 
-enum { PATH_SIZE = 1024 };
+enum { PATH_SIZE = 1024, LARGEST_BYTES = 64 << 20 };
 
 /* The folder, made where it is missing; false: no cache. */
 static bool cache_folder(const camber_context *context, char folder[PATH_SIZE]) {
@@ -97,9 +97,13 @@ bool camber_cache_load(camber_context *context, const char *name, char **bytes, 
         return false;
     snprintf(path, sizeof path, "%s/%s", folder, name);
     struct stat about;
-    if (stat(path, &about) != 0 || !S_ISREG(about.st_mode) || access(path, R_OK) != 0)
+    if (stat(path, &about) != 0 || !S_ISREG(about.st_mode) || about.st_size > LARGEST_BYTES)
         return false;
-    return camber_read_file(context, path, bytes, size_bytes) == CAMBER_OK;
+    camber_soft_log kept;
+    camber_log_soften(context, &kept);
+    const camber_status status = camber_read_file(context, path, bytes, size_bytes);
+    camber_log_restore(context, &kept);
+    return status == CAMBER_OK;
 }
 
 void camber_cache_save(camber_context *context, const char *name, const void *bytes, size_t size_bytes) {

@@ -11,29 +11,46 @@ struct camber_png {
     png_infop info;
     camber_sink sink;
     uint32_t width, rows_left;
-    bool opaque, failed;
+    bool opaque;
+    camber_status failed; /* once and for all */
     uint8_t *row;
 };
 
 static void on_error(png_structp png, png_const_charp message) {
     camber_png *writer = png_get_error_ptr(png);
-    /* A sink that refuses says why by itself. */
-    if (!writer->failed)
-        camber_log(writer->context, CAMBER_LOG_ERROR, "PNG: %s; write a smaller picture", message);
-    writer->failed = true;
+    /* A sink that refuses says why by itself, and what memory there is not for has been told. */
+    if (writer->failed == CAMBER_OK)
+        writer->failed = camber_fail(writer->context, CAMBER_ERROR_IO, "PNG: %s; write a smaller picture", message);
     png_longjmp(png, 1);
 }
 
 static void on_warning(png_structp png, png_const_charp message) {
     const camber_png *writer = png_get_error_ptr(png);
-    camber_log(writer->context, CAMBER_LOG_WARNING, "PNG: %s", message);
+    if (writer->failed == CAMBER_OK)
+        camber_log(writer->context, CAMBER_LOG_WARNING, "PNG: %s", message);
+}
+
+/* zlib's memory too. libpng does without some of what it does not get; a writer does not. */
+static png_voidp on_allocate(png_structp png, png_alloc_size_t size_bytes) {
+    camber_png *writer = png_get_mem_ptr(png);
+    const camber_context_desc *host = &writer->context->desc;
+    void *block = host->reallocate(host->allocator_user, NULL, size_bytes);
+    if (!block && writer->failed == CAMBER_OK)
+        writer->failed = camber_fail(writer->context, CAMBER_ERROR_MEMORY,
+                                     "PNG: out of memory: %zu bytes; write a smaller picture", (size_t)size_bytes);
+    return block;
+}
+
+static void on_free(png_structp png, png_voidp block) {
+    const camber_png *writer = png_get_mem_ptr(png);
+    camber_free(writer->context, block);
 }
 
 static void on_write(png_structp png, png_bytep bytes, size_t size_bytes) {
     camber_png *writer = png_get_io_ptr(png);
     if (writer->sink.write(writer->sink.user, bytes, size_bytes))
         return;
-    writer->failed = true;
+    writer->failed = CAMBER_ERROR_IO;
     png_error(png, "the output takes no more");
 }
 
@@ -42,9 +59,9 @@ static void on_flush(png_structp png) {
 }
 
 /* Between setjmp and the calls that may jump no local changes. */
-static bool write_head(camber_png *writer, const camber_png_desc *desc) {
+static camber_status write_head(camber_png *writer, const camber_png_desc *desc) {
     if (setjmp(png_jmpbuf(writer->png)))
-        return false;
+        return writer->failed;
     png_set_write_fn(writer->png, writer, on_write, on_flush);
     png_set_compression_level(writer->png, desc->compression ? desc->compression : 3);
     /* Maps are flat areas and thin lines: one filter does as well as trying all five, in a third of the time. */
@@ -60,7 +77,7 @@ static bool write_head(camber_png *writer, const camber_png_desc *desc) {
         png_set_text(writer->png, writer->info, &text, 1);
     }
     png_write_info(writer->png, writer->info);
-    return true;
+    return writer->failed;
 }
 
 static camber_status check_desc(camber_context *context, const camber_png_desc *desc) {
@@ -81,7 +98,7 @@ static camber_status check_desc(camber_context *context, const camber_png_desc *
 
 camber_status camber_png_create(camber_context *context, const camber_png_desc *desc, camber_sink sink,
                                 camber_png **png) {
-    const camber_status status = check_desc(context, desc);
+    camber_status status = check_desc(context, desc);
     if (status != CAMBER_OK)
         return status;
     camber_png *made = camber_alloc_zero(context, 1, sizeof *made);
@@ -90,18 +107,20 @@ camber_status camber_png_create(camber_context *context, const camber_png_desc *
     *made = (camber_png){
         .context = context, .sink = sink, .width = desc->width, .rows_left = desc->height, .opaque = desc->opaque};
     made->row = camber_alloc(context, desc->width, 4);
-    made->png = !made->row ? NULL : png_create_write_struct(PNG_LIBPNG_VER_STRING, made, on_error, on_warning);
+    made->png = !made->row ? NULL
+                           : png_create_write_struct_2(PNG_LIBPNG_VER_STRING, made, on_error, on_warning, made,
+                                                       on_allocate, on_free);
     made->info = made->png ? png_create_info_struct(made->png) : NULL;
     if (!made->info) {
         camber_png_destroy(made);
         return CAMBER_ERROR_MEMORY;
     }
-    if (!write_head(made, desc)) {
+    status = write_head(made, desc);
+    if (status == CAMBER_OK)
+        *png = made;
+    else
         camber_png_destroy(made);
-        return CAMBER_ERROR_IO;
-    }
-    *png = made;
-    return CAMBER_OK;
+    return status;
 }
 
 static void pack_opaque(uint8_t *to, const uint8_t *from, uint32_t width) {
@@ -120,16 +139,16 @@ static void unpremultiply(uint8_t *to, const uint8_t *from, uint32_t width) {
     }
 }
 
-static bool write_row(camber_png *writer) {
+static camber_status write_row(camber_png *writer) {
     if (setjmp(png_jmpbuf(writer->png)))
-        return false;
+        return writer->failed;
     png_write_row(writer->png, writer->row);
-    return true;
+    return writer->failed;
 }
 
 camber_status camber_png_write_rows(camber_png *png, const uint8_t *rgba, uint32_t row_count) {
-    if (png->failed)
-        return CAMBER_ERROR_IO; /* told when it failed */
+    if (png->failed != CAMBER_OK)
+        return png->failed; /* told when it failed */
     if (row_count > png->rows_left)
         return camber_fail(png->context, CAMBER_ERROR_IO,
                            "PNG: %u rows, and it takes %u more; write those of its height", row_count, png->rows_left);
@@ -139,27 +158,28 @@ camber_status camber_png_write_rows(camber_png *png, const uint8_t *rgba, uint32
             pack_opaque(png->row, from, png->width);
         else
             unpremultiply(png->row, from, png->width);
-        if (!write_row(png))
-            return CAMBER_ERROR_IO;
+        const camber_status status = write_row(png);
+        if (status != CAMBER_OK)
+            return status;
         png->rows_left--;
     }
     return CAMBER_OK;
 }
 
-static bool write_end(camber_png *writer) {
+static camber_status write_end(camber_png *writer) {
     if (setjmp(png_jmpbuf(writer->png)))
-        return false;
+        return writer->failed;
     png_write_end(writer->png, NULL);
-    return true;
+    return writer->failed;
 }
 
 camber_status camber_png_finish(camber_png *png) {
-    if (png->failed)
-        return CAMBER_ERROR_IO; /* told when it failed */
+    if (png->failed != CAMBER_OK)
+        return png->failed; /* told when it failed */
     if (png->rows_left > 0)
         return camber_fail(png->context, CAMBER_ERROR_IO, "PNG: %u rows are missing; write them before the end",
                            png->rows_left);
-    return write_end(png) ? CAMBER_OK : CAMBER_ERROR_IO;
+    return write_end(png);
 }
 
 void camber_png_destroy(camber_png *png) {

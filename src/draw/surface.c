@@ -97,6 +97,8 @@ static camber_status try_backend(camber_context *context, const camber_surface_o
     camber_log_soften(context, &kept); /* a back end that is not there is no error while another may be */
     const camber_status status = open_backend(context, ops, surface);
     camber_log_restore(context, &kept);
+    if (status == CAMBER_ERROR_MEMORY) /* no other is tried then */
+        return camber_fail(context, status, "out of memory for a GL surface; give it more memory");
     return status;
 }
 

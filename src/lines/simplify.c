@@ -127,11 +127,11 @@ camber_status camber_lines_simplify(camber_context *context, const camber_lines 
     }
     camber_status status = CAMBER_ERROR_MEMORY;
     camber_lines made = {.polyline_count = lines->polyline_count};
-    double *points = camber_alloc(context, longest, 2 * sizeof *points);
-    unsigned char *keep = camber_alloc(context, longest, 1);
-    made.points = camber_alloc(context, lines->point_count, 2 * sizeof *made.points);
-    made.offsets = camber_alloc(context, lines->polyline_count + 1, sizeof *made.offsets);
-    if (!points || !keep || !made.points || !made.offsets)
+    double *points;
+    unsigned char *keep = NULL;
+    if (!(points = camber_alloc(context, longest, 2 * sizeof *points)) || !(keep = camber_alloc(context, longest, 1)) ||
+        !(made.points = camber_alloc(context, lines->point_count, 2 * sizeof *made.points)) ||
+        !(made.offsets = camber_alloc(context, lines->polyline_count + 1, sizeof *made.offsets)))
         goto done;
     made.offsets[0] = 0;
     for (size_t i = 0; i < lines->polyline_count; i++) {

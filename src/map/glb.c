@@ -30,7 +30,6 @@
 #include <jansson.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* glTF's numbers, which are GL's. */
@@ -329,7 +328,7 @@ static void describe_mesh(json_t *root, const writer *w, uint64_t vertex_bytes, 
     set(root, "buffers", json_pack("[{s:I}]", "byteLength", (json_int_t)(vertex_bytes + index_bytes)), ok);
 }
 
-/* The JSON chunk's text; free() it. NULL where memory is short. */
+/* The JSON chunk's text; freed with camber_free. NULL where memory is short, and then nothing is logged. */
 static char *make_json(const writer *w, uint64_t vertex_bytes) {
     bool ok = true;
     char generator[32];
@@ -340,16 +339,37 @@ static char *make_json(const writer *w, uint64_t vertex_bytes) {
     json_t *root = json_pack("{s:o, s:i, s:[o]}", "asset", asset, "scene", 0, "scenes", scene);
     if (w->index_count)
         describe_mesh(root, w, vertex_bytes, &ok);
-    char *text = root && ok ? json_dumps(root, JSON_COMPACT) : NULL;
+    const size_t size = root && ok ? json_dumpb(root, NULL, 0, JSON_COMPACT) : 0;
+    const camber_context_desc *host = &w->context->desc;
+    char *text = size ? host->reallocate(host->allocator_user, NULL, size + 1) : NULL;
+    if (text)
+        text[size] = 0;
+    if (text && json_dumpb(root, text, size, JSON_COMPACT) != size) {
+        camber_free(w->context, text);
+        text = NULL;
+    }
     json_decref(root);
     return text;
 }
 
+/* RFC 3629: no longer than needed, no surrogates, up to U+10FFFF. */
 static bool is_utf8(const char *text) {
-    json_t *string = json_string(text);
-    const bool valid = string != NULL;
-    json_decref(string);
-    return valid;
+    static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
+    for (const unsigned char *c = (const unsigned char *)text; *c;) {
+        const int length = *c < 0x80 ? 1 : *c >> 5 == 6 ? 2 : *c >> 4 == 14 ? 3 : *c >> 3 == 30 ? 4 : 0;
+        if (length == 0)
+            return false;
+        uint32_t point = length == 1 ? *c : *c & (0x7fu >> length);
+        for (int i = 1; i < length; i++) {
+            if (c[i] >> 6 != 2)
+                return false;
+            point = point << 6 | (c[i] & 0x3fu);
+        }
+        if (point < least[length] || point > 0x10ffff || point >> 11 == 0x1b)
+            return false;
+        c += length;
+    }
+    return true;
 }
 
 /* ---- The file ---- */
@@ -426,7 +446,7 @@ camber_status camber_glb_write(camber_context *context, const camber_mesh_data *
                              "GLB: no memory for the style table of %zu rows; give it fewer rows or more memory",
                              desc->stroke_count);
 done:
-    free(json);
+    camber_free(context, json);
     camber_free(context, colors);
     camber_free(context, w.block);
     return status;

@@ -355,6 +355,8 @@ camber_status camber_features_read(camber_features *features, const camber_sourc
     /* Or GDAL writes a .properties file beside a .gz. */
     const char *old = CPLGetThreadLocalConfigOption(option, NULL);
     char *kept = old ? camber_copy_string(features->context, old) : NULL;
+    if (old && !kept)
+        return CAMBER_ERROR_MEMORY;
     CPLSetThreadLocalConfigOption(option, "NO");
     bool unsorted = false;
     camber_status status = read_once(features, desc, &unsorted);

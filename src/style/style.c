@@ -4,6 +4,7 @@
 #include "base/embedded.h"
 #include "style/compiler.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -229,13 +230,12 @@ static bool write_filter_key(camber_compiler *c, const json_t *filter, char **ke
         c->status = CAMBER_ERROR_MEMORY;
         return false;
     }
-    if (size > 0 && json_dumpb(filter, *key, size, JSON_COMPACT | JSON_ENCODE_ANY) != size) {
+    (*key)[size] = 0;
+    /* No filter's text is empty: jansson found no memory of its own. */
+    if (filter && (size == 0 || json_dumpb(filter, *key, size, JSON_COMPACT | JSON_ENCODE_ANY) != size))
         c->status =
             camber_fail(c->context, CAMBER_ERROR_MEMORY, "%s: out of memory for a filter; make it shorter", c->name);
-        return false;
-    }
-    (*key)[size] = 0;
-    return true;
+    return c->status == CAMBER_OK;
 }
 
 static bool read_filter(camber_compiler *c, const json_t *json, camber_style_layer *layer) {
@@ -377,7 +377,8 @@ static bool read_document(parser *p) {
 }
 
 static camber_status fail_json(camber_context *context, const char *name, const json_error_t *error) {
-    if (json_error_code(error) == json_error_out_of_memory)
+    /* jansson takes what it has no memory for to be a wrong character, mostly. */
+    if (json_error_code(error) == json_error_out_of_memory || errno == ENOMEM)
         return camber_fail(context, CAMBER_ERROR_MEMORY, "%s: out of memory; make the document shorter", name);
     return camber_fail(context, CAMBER_ERROR_INPUT, "%s: line %d, column %d: %s; correct the JSON there", name,
                        error->line, error->column, error->text);
@@ -396,6 +397,7 @@ camber_status camber_style_parse(camber_context *context, const char *json, size
     if (!c->style)
         return CAMBER_ERROR_MEMORY;
     c->style->context = context;
+    errno = 0;
     p.root = json_loadb(json, size_bytes, JSON_DECODE_ANY | JSON_DECODE_INT_AS_REAL, &error);
     if (!p.root)
         c->status = fail_json(context, name, &error);

@@ -21,7 +21,13 @@ static void cache_name(uint64_t key, char name[64]) {
     snprintf(name, 64, "kernels-%016llx.bin", (unsigned long long)key);
 }
 
-/* The binary behind its own hash: what a crash or a full disk left is told from a whole one. */
+/* Of a binary and its key: what a crash or a full disk left is told from a whole one, and so is a file under another's
+ * name. */
+static uint64_t hash_binary(uint64_t key, const unsigned char *binary, size_t size_bytes) {
+    return camber_hash(camber_hash(CAMBER_HASH_START, &key, sizeof key), binary, size_bytes);
+}
+
+/* The binary behind its hash. */
 static bool load(camber_device *device, camber_program *program, const char *options) {
     char name[64], *bytes = NULL;
     size_t size = 0;
@@ -34,7 +40,7 @@ static bool load(camber_device *device, camber_program *program, const char *opt
         memcpy(&hash, bytes, sizeof hash);
         const unsigned char *binary = (const unsigned char *)bytes + sizeof hash;
         const size_t binary_size = size - sizeof hash;
-        if (hash == camber_hash(CAMBER_HASH_START, binary, binary_size))
+        if (hash == hash_binary(program->key, binary, binary_size))
             program->cl =
                 clCreateProgramWithBinary(device->cl, 1, &device->id, &binary_size, &binary, &binary_code, &code);
     }
@@ -138,7 +144,7 @@ void camber_program_save(camber_device *device, camber_program *program) {
     unsigned char *binary = bytes + sizeof hash;
     if (clGetProgramInfo(program->cl, CL_PROGRAM_BINARIES, sizeof binary, &binary, NULL) == CL_SUCCESS) {
         char name[64];
-        hash = camber_hash(CAMBER_HASH_START, binary, size);
+        hash = hash_binary(program->key, binary, size);
         memcpy(bytes, &hash, sizeof hash);
         cache_name(program->key, name);
         camber_cache_save(device->context, name, bytes, size + sizeof hash);

@@ -90,7 +90,7 @@ static inline void each_allocation_fails(host *h, camber_status (*attempt)(cambe
     const size_t live = h->live_blocks;
     for (int forever = 0; forever < 2; forever++) {
         for (size_t n = 1;; n++) {
-            assert_true(n < 1000);
+            assert_true(n < 10000);
             const size_t refused = h->refuse_first = h->calls + n;
             h->refuse_count = forever ? SIZE_MAX : 1;
             h->errors = 0;

@@ -333,8 +333,9 @@ static char *make_json(const writer *w, uint64_t vertex_bytes) {
     bool ok = true;
     char generator[32];
     snprintf(generator, sizeof generator, "camber %s", camber_version());
-    json_t *asset =
-        json_pack("{s:s, s:s, s:s*}", "version", "2.0", "generator", generator, "copyright", w->desc->copyright);
+    json_t *asset = json_pack("{s:s, s:s}", "version", "2.0", "generator", generator);
+    if (w->desc->copyright) /* what is optional to json_pack is left out where memory is short */
+        set(asset, "copyright", json_string(w->desc->copyright), &ok);
     json_t *scene = w->index_count ? json_pack("{s:[i]}", "nodes", 0) : json_object();
     json_t *root = json_pack("{s:o, s:i, s:[o]}", "asset", asset, "scene", 0, "scenes", scene);
     if (w->index_count)

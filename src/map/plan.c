@@ -74,9 +74,8 @@ static bool shares_polylines(const camber_style_layer *a, const camber_style_lay
 }
 
 static camber_status group_layers(camber_plan *plan, const camber_style *style, size_t first, double zoom) {
-    plan->layers = camber_alloc(plan->context, style->layer_count, sizeof *plan->layers);
-    plan->sets = camber_alloc_zero(plan->context, style->layer_count, sizeof *plan->sets);
-    if (!plan->layers || !plan->sets)
+    if (!(plan->layers = camber_alloc(plan->context, style->layer_count, sizeof *plan->layers)) ||
+        !(plan->sets = camber_alloc_zero(plan->context, style->layer_count, sizeof *plan->sets)))
         return CAMBER_ERROR_MEMORY;
     for (size_t i = first; i < style->layer_count; i++) {
         const camber_style_layer *layer = style->layers + i;
@@ -248,11 +247,10 @@ camber_status camber_plan_create(const camber_features *features, const camber_v
     while (table.slot_count / 2 < features->class_count)
         table.slot_count *= 2;
     status = CAMBER_ERROR_MEMORY;
-    table.tuple = camber_alloc(context, plan->layer_count, sizeof *table.tuple);
-    table.slots = camber_alloc(context, table.slot_count, sizeof *table.slots);
-    /* One more than needed, so that no element is empty; classes are in memory, so their count cannot overflow. */
-    class_rows = camber_alloc(context, plan->set_count, (features->class_count + 1) * sizeof *class_rows);
-    if (!table.tuple || !table.slots || !class_rows)
+    /* Of rows one more than needed, so that no element is empty; classes are in memory: their count cannot overflow. */
+    if (!(table.tuple = camber_alloc(context, plan->layer_count, sizeof *table.tuple)) ||
+        !(table.slots = camber_alloc(context, table.slot_count, sizeof *table.slots)) ||
+        !(class_rows = camber_alloc(context, plan->set_count, (features->class_count + 1) * sizeof *class_rows)))
         goto done;
     for (size_t s = 0; s < plan->set_count; s++) {
         status = match_set(features, view, plan, plan->sets + s, class_rows + s * features->class_count, &table);

@@ -101,8 +101,8 @@ static camber_status make_passes(camber_scene *scene, const camber_plan *plan) {
     camber_context *context = scene->context;
     camber_status status = CAMBER_ERROR_MEMORY;
     bool *row_used = camber_alloc_zero(context, plan->row_count, sizeof *row_used);
-    layer_run *runs = camber_alloc(context, plan->layer_count, sizeof *runs);
-    if (!row_used || !runs)
+    layer_run *runs = row_used ? camber_alloc(context, plan->layer_count, sizeof *runs) : NULL;
+    if (!runs)
         goto done;
     for (size_t i = 0; i < scene->geometry.lines.polyline_count; i++)
         row_used[scene->geometry.rows[i]] = true;
@@ -110,9 +110,8 @@ static camber_status make_passes(camber_scene *scene, const camber_plan *plan) {
     size_t paint_count = 0;
     for (size_t i = 0; i < count; i++)
         paint_count += runs[i].end_row;
-    scene->paints = camber_alloc(context, paint_count, sizeof *scene->paints);
-    scene->passes = camber_alloc(context, count, sizeof *scene->passes);
-    if (!scene->paints || !scene->passes)
+    if (!(scene->paints = camber_alloc(context, paint_count, sizeof *scene->paints)) ||
+        !(scene->passes = camber_alloc(context, count, sizeof *scene->passes)))
         goto done;
     camber_paint *paints = scene->paints;
     for (size_t i = 0; i < count; i++) {

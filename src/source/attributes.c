@@ -46,13 +46,9 @@ camber_status camber_columns_find(camber_columns *columns, camber_features *feat
     size_t keys = 0;
     while (camber_osm_area_keys[keys])
         keys++;
-    if (!columns->items)
-        columns->items = camber_alloc(context, count, sizeof *columns->items);
-    if (!columns->values)
-        columns->values = camber_alloc(context, count, sizeof *columns->values);
-    if (!columns->areas)
-        columns->areas = camber_alloc(context, keys, sizeof *columns->areas);
-    if (!columns->items || !columns->values || !columns->areas)
+    if ((!columns->items && !(columns->items = camber_alloc(context, count, sizeof *columns->items))) ||
+        (!columns->values && !(columns->values = camber_alloc(context, count, sizeof *columns->values))) ||
+        (!columns->areas && !(columns->areas = camber_alloc(context, keys, sizeof *columns->areas))))
         return CAMBER_ERROR_MEMORY;
     columns->features = features;
     find_properties(columns, features->style, schema);

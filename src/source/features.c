@@ -14,15 +14,14 @@ enum { FIRST_SLOTS = 256 };
 
 camber_status camber_features_create(camber_context *context, const camber_style *style, camber_features **features) {
     camber_features *made = camber_alloc_zero(context, 1, sizeof *made);
-    interner *set = camber_alloc_zero(context, 1, sizeof *set);
-    if (!made || !set)
+    interner *set = made ? camber_alloc_zero(context, 1, sizeof *set) : NULL;
+    if (!set)
         goto failed;
     made->context = context;
     made->style = style;
     made->interned = set;
-    set->strings = camber_alloc_zero(context, FIRST_SLOTS, sizeof *set->strings);
-    set->classes = camber_alloc_zero(context, FIRST_SLOTS, sizeof *set->classes);
-    if (!set->strings || !set->classes)
+    if (!(set->strings = camber_alloc_zero(context, FIRST_SLOTS, sizeof *set->strings)) ||
+        !(set->classes = camber_alloc_zero(context, FIRST_SLOTS, sizeof *set->classes)))
         goto failed;
     set->string_slots = set->class_slots = FIRST_SLOTS;
     *features = made;

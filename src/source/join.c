@@ -255,11 +255,12 @@ static camber_status emit(const joiner *join, camber_features *features) {
     camber_context *context = tiles->context;
     chain_list list = {0};
     camber_status status = CAMBER_ERROR_MEMORY;
-    list.chains = camber_alloc(context, tiles->piece_count, sizeof *list.chains);
-    list.visited = camber_alloc_zero(context, tiles->piece_count, sizeof *list.visited);
-    size_t *starts = camber_alloc_zero(context, tiles->feature_count + 1, sizeof *starts);
-    uint32_t *order = camber_alloc(context, tiles->piece_count, sizeof *order);
-    if (!list.chains || !list.visited || !starts || !order)
+    size_t *starts = NULL;
+    uint32_t *order = NULL;
+    if (!(list.chains = camber_alloc(context, tiles->piece_count, sizeof *list.chains)) ||
+        !(list.visited = camber_alloc_zero(context, tiles->piece_count, sizeof *list.visited)) ||
+        !(starts = camber_alloc_zero(context, tiles->feature_count + 1, sizeof *starts)) ||
+        !(order = camber_alloc(context, tiles->piece_count, sizeof *order)))
         goto done;
     find_chains(join, &list);
     for (size_t i = 0; i < list.count; i++)
@@ -285,10 +286,9 @@ camber_status camber_tiles_finish(camber_tiles *tiles, camber_features *features
     camber_status status = CAMBER_ERROR_MEMORY;
     while (join.head_count < 2 * tiles->piece_count)
         join.head_count *= 2;
-    join.heads = camber_alloc(context, join.head_count, sizeof *join.heads);
-    join.next = camber_alloc(context, 2 * tiles->piece_count, sizeof *join.next);
-    join.partner = camber_alloc(context, 2 * tiles->piece_count, sizeof *join.partner);
-    if (!join.heads || !join.next || !join.partner)
+    if (!(join.heads = camber_alloc(context, join.head_count, sizeof *join.heads)) ||
+        !(join.next = camber_alloc(context, 2 * tiles->piece_count, sizeof *join.next)) ||
+        !(join.partner = camber_alloc(context, 2 * tiles->piece_count, sizeof *join.partner)))
         goto done;
     for (size_t i = 0; i < 2 * tiles->piece_count; i++)
         join.partner[i] = NONE;

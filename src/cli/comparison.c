@@ -1,14 +1,18 @@
 #include "cli/comparison.h"
 #include "cli/truth_bands.h"
 #include "proof/batches.h"
+#include "proof/joins.h"
 #include "proof/turns.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define WARM_UPS 3
 
 _Static_assert(CAMBER_FIGURE_TIGHT_JOINS - CAMBER_FIGURE_TURNS == CAMBER_TURN_CLASSES, "a figure a class of turns");
+_Static_assert(CAMBER_MEASURE_REPEATED_ELSEWHERE - CAMBER_MEASURE_REPEATED_AT_PLAIN == CAMBER_JOIN_ROOMS,
+               "a measure a room of joins");
 _Static_assert(CAMBER_METHODS <= CAMBER_PICTURES_MAX, "a picture a method");
 
 const camber_method camber_methods_shown[CAMBER_METHODS] = {CAMBER_METHOD_FAN, CAMBER_METHOD_KITE, CAMBER_METHOD_STRIP};
@@ -28,13 +32,17 @@ const camber_measure_info camber_measures[CAMBER_MEASURE_COUNT] = {
     {"bytes", "bytes", 13, 0},
     {"draw_calls_16_bit", "calls, 16-bit", 15, 0},
     {"draw_calls", "calls", 7, 0},
-    {"fragments", "fragments", 13, 0},
-    {"drawn_pixels", "drawn px", 12, 0},
-    {"repeated_pixels", "repeated px", 13, 0},
-    {"mean_error", "error", 8, 3},
-    {"max_error", "max", 5, 0},
     {"tessellate_ms", "tess. ms", 10, 3},
     {"draw_ms", "draw ms", 10, 2},
+    {"mean_error", "error", 8, 3},
+    {"max_error", "max", 5, 0},
+    {"fragments", "fragments", 13, 0},
+    {"drawn_pixels", "drawn", 12, 0},
+    {"repeated_pixels", "repeated", 10, 0},
+    {"repeated_at_plain_joins", "at plain", 10, 0},
+    {"repeated_at_tight_joins", "at tight", 10, 0},
+    {"repeated_at_split_joins", "at split", 10, 0},
+    {"repeated_elsewhere", "elsewhere", 11, 0},
 };
 
 /* ---- Progress ---- */
@@ -137,52 +145,92 @@ static camber_status time_runs(const trial *t) {
     return status;
 }
 
-static camber_status count_mesh(const trial *t) {
+static void count_mesh(const trial *t, const camber_mesh_data *mesh) {
     double *measures = t->row->measures[t->method], *figures = t->row->figures;
-    camber_mesh_data data;
-    const camber_mesh_info info = camber_mesh_get_info(t->comparison->mesh);
-    const camber_status status = camber_mesh_read(t->comparison->mesh, &data);
-    if (status != CAMBER_OK)
-        return status;
-    measures[CAMBER_MEASURE_VERTICES] = (double)info.vertex_count;
-    measures[CAMBER_MEASURE_TRIANGLES] = (double)info.triangle_count;
+    const camber_mesh_info *info = &mesh->info;
+    measures[CAMBER_MEASURE_VERTICES] = (double)info->vertex_count;
+    measures[CAMBER_MEASURE_TRIANGLES] = (double)info->triangle_count;
     measures[CAMBER_MEASURE_BYTES] =
-        (double)(info.vertex_count * sizeof(camber_vertex) + info.index_count * sizeof(uint32_t));
-    measures[CAMBER_MEASURE_DRAW_CALLS_16_BIT] = (double)camber_batches_count(&data, CAMBER_BATCH_VERTICES);
-    figures[CAMBER_FIGURE_TIGHT_JOINS] = (double)info.tight_joins;
-    figures[CAMBER_FIGURE_SPLIT_JOINS] = (double)info.split_joins;
-    camber_mesh_data_free(t->comparison->session->context, &data);
-    return CAMBER_OK;
+        (double)(info->vertex_count * sizeof(camber_vertex) + info->index_count * sizeof(uint32_t));
+    measures[CAMBER_MEASURE_DRAW_CALLS_16_BIT] = (double)camber_batches_count(mesh, CAMBER_BATCH_VERTICES);
+    figures[CAMBER_FIGURE_TIGHT_JOINS] = (double)info->tight_joins;
+    figures[CAMBER_FIGURE_SPLIT_JOINS] = (double)info->split_joins;
 }
 
-static camber_status count_pixels(const trial *t) {
+/* ---- Pixels ---- */
+
+/* Counts ranges, each by itself; map takes where they repeat. */
+static camber_status count_ranges(const trial *t, const camber_index_range *ranges, size_t count, uint8_t *map,
+                                  camber_overdraw *overdraw) {
     camber_comparison *c = t->comparison;
     const camber_overdraw_desc desc = {.width = c->networks.width,
                                        .height = c->networks.height,
                                        .mesh = c->mesh,
                                        .paints = t->paints,
-                                       .paint_count = t->network->stroke_count};
-    camber_overdraw overdraw;
-    const camber_status status = camber_overdraw_count(c->session->renderer, &desc, &overdraw);
-    if (status != CAMBER_OK)
-        return status;
+                                       .paint_count = t->network->stroke_count,
+                                       .ranges = ranges,
+                                       .range_count = count,
+                                       .map = map};
+    /* Its progress would stand where that of the whole does. */
+    const bool bars = c->session->report->bars;
+    c->session->report->bars = false;
+    const camber_status status = camber_overdraw_count(c->session->renderer, &desc, overdraw);
+    c->session->report->bars = bars;
+    return status;
+}
+
+/* What the joins of a room repeat; c->repeated keeps what no join has repeated. */
+static camber_status count_joins(const trial *t, const camber_joins *joins, camber_join_room room) {
+    camber_comparison *c = t->comparison;
+    camber_index_range *ranges = malloc((joins->count + 1) * sizeof *ranges);
+    size_t count = 0;
+    for (size_t i = 0; i < joins->count && ranges; i++)
+        if (joins->items[i].room == room)
+            ranges[count++] = joins->items[i].range;
+    camber_overdraw overdraw = {0};
+    camber_status status = ranges ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    if (count > 0)
+        status = count_ranges(t, ranges, count, c->at_joins, &overdraw);
+    for (size_t i = 0; i < (size_t)c->networks.width * c->networks.height && count > 0; i++)
+        c->repeated[i] = c->at_joins[i] ? 0 : c->repeated[i];
+    t->row->measures[t->method][CAMBER_MEASURE_REPEATED_AT_PLAIN + (int)room] = (double)overdraw.repeated_pixels;
+    free(ranges);
+    return status;
+}
+
+static camber_status count_pixels(const trial *t, const camber_mesh_data *mesh) {
+    camber_comparison *c = t->comparison;
     double *measures = t->row->measures[t->method];
+    camber_joins joins = {0};
+    camber_overdraw overdraw = {0};
+    camber_status status = count_ranges(t, NULL, 0, c->repeated, &overdraw);
     measures[CAMBER_MEASURE_FRAGMENTS] = (double)overdraw.fragments;
     measures[CAMBER_MEASURE_DRAWN_PIXELS] = (double)overdraw.drawn_pixels;
     measures[CAMBER_MEASURE_REPEATED_PIXELS] = (double)overdraw.repeated_pixels;
-    return CAMBER_OK;
+    if (status == CAMBER_OK && !camber_joins_find(mesh, t->network->strokes, &joins))
+        status = CAMBER_ERROR_MEMORY;
+    for (int room = 0; room < CAMBER_JOIN_ROOMS && status == CAMBER_OK; room++)
+        status = count_joins(t, &joins, (camber_join_room)room);
+    for (size_t i = 0; i < (size_t)c->networks.width * c->networks.height; i++)
+        measures[CAMBER_MEASURE_REPEATED_ELSEWHERE] += c->repeated[i];
+    camber_joins_free(&joins);
+    return status;
 }
 
 static camber_status try_method(const trial *t) {
     camber_frame_stats stats = {0};
+    camber_mesh_data mesh;
     camber_status status = time_runs(t);
     if (status == CAMBER_OK)
         status = draw(t, true, &stats);
     t->row->measures[t->method][CAMBER_MEASURE_DRAW_CALLS] = (double)stats.draw_calls;
     if (status == CAMBER_OK)
-        status = count_mesh(t);
-    if (status == CAMBER_OK)
-        status = count_pixels(t);
+        status = camber_mesh_read(t->comparison->mesh, &mesh);
+    if (status != CAMBER_OK)
+        return status;
+    count_mesh(t, &mesh);
+    status = count_pixels(t, &mesh);
+    camber_mesh_data_free(t->comparison->session->context, &mesh);
     return status;
 }
 
@@ -275,17 +323,18 @@ static void average(camber_comparison *c) {
 
 static int prepare(camber_comparison *c) {
     camber_session *session = c->session;
-    camber_status status = CAMBER_OK;
+    const size_t pixels = (size_t)c->networks.width * c->networks.height;
     c->rows = calloc(c->networks.count, sizeof *c->rows);
-    for (int i = 0; i < CAMBER_METHODS && status == CAMBER_OK; i++) {
+    c->repeated = calloc(pixels, 1);
+    c->at_joins = calloc(pixels, 1);
+    bool made = c->rows && c->repeated && c->at_joins;
+    for (int i = 0; i < CAMBER_METHODS; i++) {
         c->shown[i] = session->options->method < 0 || session->options->method == (int)camber_methods_shown[i];
-        if (c->shown[i] && !(c->levels[i] = calloc((size_t)c->networks.width * c->networks.height, 1)))
-            status = CAMBER_ERROR_MEMORY;
+        if (c->shown[i])
+            made = (c->levels[i] = calloc(pixels, 1)) && made;
     }
-    if (!c->rows)
-        status = CAMBER_ERROR_MEMORY;
-    if (status == CAMBER_OK)
-        status = camber_mesh_create(session->device, session->renderer, &c->mesh);
+    const camber_status status =
+        made ? camber_mesh_create(session->device, session->renderer, &c->mesh) : CAMBER_ERROR_MEMORY;
     return camber_report_status(session->report, status);
 }
 
@@ -307,6 +356,8 @@ int camber_comparison_run(camber_comparison *comparison, camber_session *session
 void camber_comparison_close(camber_comparison *comparison) {
     for (int i = 0; i < CAMBER_METHODS; i++)
         free(comparison->levels[i]);
+    free(comparison->repeated);
+    free(comparison->at_joins);
     camber_mesh_destroy(comparison->mesh);
     camber_networks_close(&comparison->networks);
     free(comparison->rows);
@@ -319,5 +370,5 @@ double camber_comparison_ratio(const camber_comparison *comparison, int method, 
         if (camber_methods_shown[i] == CAMBER_METHOD_KITE && kite > 0)
             return comparison->average.measures[method][measure] / kite;
     }
-    return 0;
+    return NAN;
 }

@@ -4,6 +4,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <signal.h>
 #include <spawn.h>
 #include <stdlib.h>
@@ -133,14 +134,15 @@ static const panel panels[COLUMNS * ROWS] = {
 /* Grey, orange, blue: told apart by people who see fewer colours, and in print. */
 static const char *const colors[CAMBER_METHODS] = {"0x98a1ad", "0xe69f00", "0x0072b2"};
 
-/* "1.23 M", "45.6 k", "7.89": three digits. */
+/* "1.23 M", "45.6 k", "7.89": three digits, and no decimals of a small whole number. */
 static void abbreviate(double value, char *text, size_t size) {
     const char *const units[] = {"", " k", " M", " G"};
+    const bool whole = value < 999.5 && value == floor(value);
     int unit = 0;
     for (; value >= 999.5 && unit < 3; unit++)
         value /= 1000;
-    const int decimals = value >= 99.95 ? 0 : value >= 9.995 ? 1 : 2;
-    snprintf(text, size, "%.*f%s", value > 0 ? decimals : 0, value, units[unit]);
+    const int decimals = whole || value >= 99.95 ? 0 : value >= 9.995 ? 1 : 2;
+    snprintf(text, size, "%.*f%s", decimals, value, units[unit]);
 }
 
 static void put_panel(const camber_comparison *c, const panel *p, FILE *script) {

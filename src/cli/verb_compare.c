@@ -40,8 +40,10 @@ static json_t *ratios_json(const camber_comparison *c) {
     json_t *object = json_object();
     for (int i = 0; i < CAMBER_METHODS; i++) {
         json_t *ratios = json_object();
-        for (int k = 0; k < CAMBER_MEASURE_COUNT; k++)
-            json_object_set_new(ratios, camber_measures[k].key, json_real(camber_comparison_ratio(c, i, k)));
+        for (int k = 0; k < CAMBER_MEASURE_COUNT; k++) {
+            const double ratio = camber_comparison_ratio(c, i, k);
+            json_object_set_new(ratios, camber_measures[k].key, isnan(ratio) ? json_null() : json_real(ratio));
+        }
         json_object_set_new(object, camber_method_name(camber_methods_shown[i]), ratios);
     }
     return object;
@@ -137,10 +139,11 @@ static void print_figures(const camber_comparison *c, int width) {
          "degrees");
 }
 
-static void print_measures(const camber_comparison *c, int width) {
+/* Measures first to end - 1: a row a network and method, and then the ratios. */
+static void print_measures(const camber_comparison *c, int width, int first, int end) {
     printf("\n%-*s  %-7s", width, "network", "method");
-    for (int i = 0; i < CAMBER_MEASURE_COUNT; i++)
-        printf("%*s", camber_measures[i].width, camber_measures[i].head);
+    for (int k = first; k < end; k++)
+        printf("%*s", camber_measures[k].width, camber_measures[k].head);
     putchar('\n');
     for (size_t i = 0; i < row_count(c); i++)
         for (int method = 0; method < CAMBER_METHODS; method++) {
@@ -149,19 +152,21 @@ static void print_measures(const camber_comparison *c, int width) {
             const double *measures = row_at(c, i)->measures[method];
             put_name(row_at(c, i)->name, width);
             printf("  %-7s", camber_method_name(camber_methods_shown[method]));
-            for (int k = 0; k < CAMBER_MEASURE_COUNT; k++)
+            for (int k = first; k < end; k++)
                 put_number(measures[k], decimals_of(&camber_measures[k], measures[k]), camber_measures[k].width);
             putchar('\n');
         }
     for (int method = 0; method < CAMBER_METHODS && c->session->options->method < 0; method++) {
         printf("%-*s  %-7s", width, method ? "" : "to one of kite's", camber_method_name(camber_methods_shown[method]));
-        for (int k = 0; k < CAMBER_MEASURE_COUNT; k++)
-            put_number(camber_comparison_ratio(c, method, k), 2, camber_measures[k].width);
+        for (int k = first; k < end; k++) {
+            const double ratio = camber_comparison_ratio(c, method, k);
+            if (isnan(ratio))
+                printf("%*s", camber_measures[k].width, "-");
+            else
+                put_number(ratio, 2, camber_measures[k].width);
+        }
         putchar('\n');
     }
-    puts("error: mean absolute difference from 256 samples a pixel, in 255ths, over the pixels that lines or picture "
-         "touch;\n"
-         "max: the largest; times: medians; tess.: the kernels");
 }
 
 static int print_text(const camber_comparison *c) {
@@ -175,7 +180,14 @@ static int print_text(const camber_comparison *c) {
         printf(" at zoom %.2f", networks->info.zoom);
     printf(", lines %g px wide, round joins, butt caps; runs: %u\n", networks->width_px, c->session->options->runs);
     print_figures(c, width);
-    print_measures(c, width);
+    print_measures(c, width, 0, CAMBER_MEASURE_OF_PIXELS);
+    puts("16-bit: batches of 65,535 vertices; times: medians, tess. is the kernels; error: mean absolute difference "
+         "from 256\n"
+         "samples a pixel, in 255ths, over the pixels that lines or picture touch; max: the largest");
+    print_measures(c, width, CAMBER_MEASURE_OF_PIXELS, CAMBER_MEASURE_COUNT);
+    puts("fragments: shaded; drawn: pixels, once a polyline; repeated: more than once within a polyline; at plain, "
+         "tight, split\n"
+         "joins: by the two segments that meet, once a join; elsewhere: by no join, where a line comes back to itself");
     return camber_report_flush(c->session->report);
 }
 

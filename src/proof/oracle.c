@@ -78,6 +78,11 @@ static int pixel_side(const shape *s, double x, double y) {
     return side;
 }
 
+/* In a dense network most pixels are, long before the last line. */
+static bool is_full(const camber_oracle_sample_set *set) {
+    return (set->bits[0] & set->bits[1] & set->bits[2] & set->bits[3]) == UINT64_MAX;
+}
+
 static void cover(camber_oracle_window *w, const shape *s) {
     const double left = fmax(s->left - w->x0, 0), right = fmin(s->right - w->x0, w->width);
     const double top = fmax(s->top - w->y0, 0), bottom = fmin(s->bottom - w->y0, w->height);
@@ -85,6 +90,8 @@ static void cover(camber_oracle_window *w, const shape *s) {
         for (int column = (int)floor(left); column < right; column++) {
             camber_oracle_sample_set *set = w->pixels + (size_t)row * (size_t)w->width + (size_t)column;
             const double x = w->x0 + column, y = w->y0 + row;
+            if (is_full(set))
+                continue;
             const int side = pixel_side(s, x + 0.5, y + 0.5);
             if (side > 0)
                 memset(set, 0xff, sizeof *set);

@@ -2,6 +2,7 @@
 #include "picture.h"
 
 #include "proof/oracle.h"
+#include "tess/tess.h"
 
 static int set_up(void **state) {
     studio *s = malloc(sizeof *s);
@@ -412,6 +413,63 @@ static void test_backends_agree(void **state) {
     scene_free(&lines);
 }
 
+/* A mesh in parts counts like a whole one, by its polylines, by ranges across the parts, and by all at once. */
+static void test_parts(void **state) {
+    studio *s = *state;
+    const camber_stroke stroke = {5, CAMBER_JOIN_ROUND, CAMBER_CAP_ROUND, 0};
+    const camber_paint paint = {5, {0, 0, 0, 1}};
+    scene lines = {0};
+    uint64_t seed = 23;
+    for (size_t i = 0; i < 300; i++) {
+        scene_walk(&lines, &seed, 60, (const double[]){2, 30}, 1);
+        scene_end(&lines, 0);
+    }
+    camber_device *small = NULL;
+    camber_renderer *renderers[2] = {studio_any(s), NULL};
+    camber_surface *surface = NULL;
+    assert_int_equal(
+        camber_device_create(s->context, &(camber_device_desc){.largest_buffer_bytes = 1 << 17}, NULL, &small),
+        CAMBER_OK);
+    assert_int_equal(camber_surface_create(s->context, NULL, &surface), CAMBER_OK);
+    assert_int_equal(camber_renderer_create(small, surface, NULL, &renderers[1]), CAMBER_OK);
+    for (int method = 0; method < 3; method++) {
+        counts made[2][3];
+        for (int i = 0; i < 2; i++) {
+            const camber_tessellation_desc desc = {&stroke, 1, (camber_method)method, 0};
+            camber_polylines *polylines = scene_polylines(s->context, &lines);
+            camber_mesh *mesh = NULL;
+            assert_int_equal(camber_mesh_create(i ? small : s->device, renderers[i], &mesh), CAMBER_OK);
+            assert_int_equal(camber_tessellate(mesh, polylines, &desc), CAMBER_OK);
+            assert_true(i == 0 ? mesh->part_count == 1 : mesh->part_count > 4);
+            const uint64_t end = camber_mesh_get_info(mesh).index_count, third = end / 9 * 3;
+            const camber_index_range all = {0, end},
+                                     thirds[] = {{0, third}, {third, third}, {2 * third, end - 2 * third}};
+            camber_overdraw_desc wanted = {
+                .width = 1000, .height = 1000, .mesh = mesh, .paints = &paint, .paint_count = 1};
+            made[i][0] = count(renderers[i], wanted);
+            wanted.ranges = &all;
+            wanted.range_count = 1;
+            made[i][1] = count(renderers[i], wanted);
+            wanted.ranges = thirds;
+            wanted.range_count = 3;
+            made[i][2] = count(renderers[i], wanted);
+            camber_mesh_destroy(mesh);
+            camber_polylines_destroy(polylines);
+        }
+        for (int k = 0; k < 3; k++) {
+            assert_memory_equal(&made[0][k].sum, &made[1][k].sum, sizeof made[0][k].sum);
+            assert_memory_equal(made[0][k].map, made[1][k].map, 1000 * 1000);
+            assert_true(made[0][k].sum.repeated_pixels > 1000);
+            free(made[0][k].map);
+            free(made[1][k].map);
+        }
+    }
+    camber_renderer_destroy(renderers[1]);
+    camber_surface_destroy(surface);
+    camber_device_destroy(small);
+    scene_free(&lines);
+}
+
 /* Pictures drawn before and after a count are the same, on the same renderer. */
 static void test_pictures_after(void **state) {
     studio *s = *state;
@@ -471,21 +529,14 @@ static void test_no_memory(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_bar),
-        cmocka_unit_test(test_crossing),
-        cmocka_unit_test(test_two_polylines),
-        cmocka_unit_test(test_slanted_crossings),
-        cmocka_unit_test(test_bends),
-        cmocka_unit_test(test_reversal),
-        cmocka_unit_test(test_layers),
-        cmocka_unit_test(test_layers_of_one),
-        cmocka_unit_test(test_full_map),
-        cmocka_unit_test(test_ranges),
-        cmocka_unit_test(test_paints),
-        cmocka_unit_test(test_nothing),
-        cmocka_unit_test(test_pieces),
-        cmocka_unit_test(test_backends_agree),
-        cmocka_unit_test(test_pictures_after),
+        cmocka_unit_test(test_bar),           cmocka_unit_test(test_crossing),
+        cmocka_unit_test(test_two_polylines), cmocka_unit_test(test_slanted_crossings),
+        cmocka_unit_test(test_bends),         cmocka_unit_test(test_reversal),
+        cmocka_unit_test(test_layers),        cmocka_unit_test(test_layers_of_one),
+        cmocka_unit_test(test_full_map),      cmocka_unit_test(test_ranges),
+        cmocka_unit_test(test_paints),        cmocka_unit_test(test_nothing),
+        cmocka_unit_test(test_pieces),        cmocka_unit_test(test_backends_agree),
+        cmocka_unit_test(test_parts),         cmocka_unit_test(test_pictures_after),
         cmocka_unit_test(test_no_memory),
     };
     char pocl_cache[64];

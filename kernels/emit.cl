@@ -203,11 +203,13 @@ kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK, 1, 1))) void emit(
     const size_t k = (size_t)bases[2 * block] + (offset & 0xffffu);
     global camber_u32 *restrict index = indices + (size_t)bases[2 * block + 1] + (offset >> 16);
     const camber_u32 point = info[i], before = joins[i - 1], after = joins[i + 1];
+    const camber_u32 earlier = joins[i > 1 ? i - 2 : 0];
     const float dx = x[i] - x[i - 1], dy = y[i] - y[i - 1], ex = x[i + 1] - x[i], ey = y[i + 1] - y[i];
     const float half_shorter = camber_half_shorter(dx, dy, ex, ey);
     const camber_u32 row = point >> CAMBER_POINT_ROW_SHIFT;
     segment_end in = {x[i], y[i], dx, dy, half_shorter, 1.0f, join, 0, 0, row};
-    in.flags = camber_join_end(before) | camber_join_end(join) << 3 | 64u;
+    in.flags =
+        camber_join_end(before) | camber_join_end(join) << 3 | 64u | camber_line_ends(earlier, before, join, after);
     in.turns = (before & 0xffffu) | join << 16;
     segment_end out = {x[i], y[i], ex, ey, half_shorter, -1.0f, join, 0, 0, row};
     out.flags = camber_join_end(join) | camber_join_end(after) << 3;

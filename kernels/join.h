@@ -70,6 +70,16 @@ CAMBER_FN camber_u32 camber_join_end(camber_u32 join) {
     return join >> CAMBER_JOIN_END_SHIFT & 7u;
 }
 
+/* Whether the line begins with the segment before A, or ends with that behind B, as bits 7 and 8 of a vertex's flags:
+ * from the join words of a point before A, of A and B, and of a point behind B. */
+CAMBER_FN camber_u32 camber_line_ends(camber_u32 before, camber_u32 a, camber_u32 b, camber_u32 behind) {
+    const camber_u32 begins =
+        camber_join_kind(before) == CAMBER_KIND_CAP && camber_join_kind(a) != CAMBER_KIND_CAP ? 128u : 0u;
+    const camber_u32 ends =
+        camber_join_kind(behind) == CAMBER_KIND_CAP && camber_join_kind(b) != CAMBER_KIND_CAP ? 256u : 0u;
+    return begins | ends;
+}
+
 CAMBER_FN camber_u32 camber_join_triangles(camber_u32 join) {
     return join >> CAMBER_JOIN_TRIANGLES_SHIFT & 127u;
 }

@@ -51,21 +51,27 @@ struct End {
     uint kind;
     float past; // px past the end, along the segment
     float c, s; // cosine and sine of half the turn; s > 0 where it turns towards +y
+    bool ends_soon; // the neighbour is its line's first or last segment
 };
 
-End end_at(uint kind, float past, float q) {
+End end_at(uint flags, float past, float q) {
     float scale = 1.0 / (1.0 + q * q);
-    return End(kind, past, (1.0 - q * q) * scale, 2.0 * q * scale);
+    return End(flags & 7u, past, (1.0 - q * q) * scale, 2.0 * q * scale, (flags & 128u) != 0u);
 }
 
 bool is_round(uint kind) {
     return kind == ROUND || kind == SPLIT_ROUND;
 }
 
-// Past a split end a segment has its own side of the bisector only; on the inner side, nothing past the end. The two
-// sides know the turn to 16 bits only: between them lies a strip of tie px, which both draw, so that neither leaves a hole.
-bool is_foreign(End e, float y, float tie) {
-    return e.kind >= SPLIT_ROUND && e.past > 0.0 && e.c * e.past + e.s * y > tie;
+// Past a split end a segment has its own side of the bisector only. What its body has past the bisector on the inner
+// side it gives up where that is no wider than a pixel: bends that gentle follow each other on curves, and their edges
+// would be drawn twice. More it keeps, and a third of that where the line ends soon, as then nothing may cover it. The two
+// sides know the turn to 16 bits only: between them lies a strip of tie px, which both draw, so that neither leaves a
+// hole.
+bool is_foreign(End e, float y, float half_width) {
+    float tie = 4e-5 * (half_width + 1.0); // the turn is off by at most 4 / 65534
+    bool kept = e.past <= 0.0 && half_width * abs(e.s) > (e.ends_soon ? 0.35 : 0.9) * e.c;
+    return e.kind >= SPLIT_ROUND && e.c * e.past + e.s * y > tie && !kept;
 }
 
 #if FLAT_CAPS
@@ -112,8 +118,8 @@ void main() {
     float x = dot(q, u), y = q.y * u.x - q.x * u.y;
     Edge edge = edge_of(u); // of the sides and, turned by a right angle, of flat caps
 
-    End end_a = end_at(v_ends & 7u, -x, v_shape.z);
-    End end_b = end_at(v_ends >> 3, x - len, v_shape.w);
+    End end_a = end_at(v_ends, -x, v_shape.z);
+    End end_b = end_at((v_ends >> 3 & 7u) | (v_ends >> 1 & 128u), x - len, v_shape.w);
     float past = max(max(is_round(end_a.kind) ? end_a.past : 0.0, is_round(end_b.kind) ? end_b.past : 0.0), 0.0);
     // On an arc farther than a pixel from the segment, the distance is all.
     float bent = y - (bend(end_a, y) + bend(end_b, y)) * max(1.0 - past, 0.0);
@@ -127,8 +133,7 @@ void main() {
 #if FLAT_CAPS
     area *= max(covered(inside_cap(end_a, half_width), edge) + covered(inside_cap(end_b, half_width), edge) - 1.0, 0.0);
 #endif
-    float tie = 4e-5 * (half_width + 1.0); // the turn is off by at most 4 / 65534
-    bool foreign = is_foreign(end_a, y, tie) || is_foreign(end_b, y, tie);
+    bool foreign = is_foreign(end_a, y, half_width) || is_foreign(end_b, y, half_width);
 #if COUNT
     if (foreign || area <= 0.0)
         discard;

@@ -14,7 +14,7 @@ uniform vec2 u_scale;           // 2 / size of the piece
 flat out highp vec4 v_segment; // A, direction
 flat out highp vec4 v_shape;   // length px, half width px, turns
 flat out mediump vec4 v_color;
-flat out highp uint v_ends; // camber_end at A, << 3 at B
+flat out highp uint v_ends; // the vertex's flags
 
 const float PAD_PX = 0.75;
 const uint AT_END = 64u;
@@ -34,7 +34,7 @@ void main() {
 
     v_segment = vec4((a_flags & AT_END) != 0u ? a_point - a_segment : a_point, u);
     v_shape = vec4(len, half_width, a_turns);
-    v_ends = a_flags & 63u;
+    v_ends = a_flags;
     // A row that is not drawn leaves no area.
     gl_Position = half_width < 0.0 ? vec4(2.0, 2.0, 0.0, 1.0) : vec4((place - u_origin) * u_scale - 1.0, 0.0, 1.0);
 }

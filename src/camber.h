@@ -333,7 +333,9 @@ typedef struct camber_vertex {
     float along;    /* in units of g */
     float limit_px; /* bound on the offset along the segment; 3e38: none */
     int16_t across; /* in units of g / 16384 */
-    uint16_t flags; /* bits 0-2: camber_end at A; 3-5: camber_end at B; 6: at_end */
+    /* Bits 0-2: camber_end at A; 3-5: camber_end at B; 6: at_end, and with it 7: the segment before A is its line's
+     * first, 8: that behind B is its line's last. */
+    uint16_t flags;
     int16_t turn_a; /* tan(turn angle / 4) * 32767 at A, positive from x to y (clockwise as drawn); 0: a cap */
     int16_t turn_b; /* the same at B */
     uint32_t row;   /* of the polyline */

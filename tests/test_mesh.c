@@ -94,7 +94,7 @@ static void check_mesh(const camber_mesh_data *mesh, size_t row_count, size_t ri
         const camber_vertex *v = mesh->vertices + i;
         assert_true(isfinite(v->x) && isfinite(v->y) && isfinite(v->dx) && isfinite(v->dy) && isfinite(v->along));
         assert_true(v->limit_px >= 0.0f && v->limit_px <= 3.0e38f);
-        assert_true(abs(v->across) <= 2 * 16384 && v->flags < 128 && v->row < row_count);
+        assert_true(abs(v->across) <= 2 * 16384 && v->flags < 512 && v->row < row_count);
         assert_true(abs(v->turn_a) <= 32767 && abs(v->turn_b) <= 32767);
     }
     assert_int_equal(each_triangle(mesh, check_triangle, used), mesh->info.triangle_count);

@@ -16,7 +16,8 @@
  *     _TURN     VEC2 short, normalised   tan(turn angle / 4) at A and at B, positive counter-clockwise as seen
  *     _ROW      SCALAR float    of the style table; rows are below 2^24, so a float holds them exactly (glTF allows
  *                               no 32-bit integers here)
- *     _FLAGS    SCALAR unsigned short    camber_vertex.flags: bits 0-2 the end at A, 3-5 at B (camber_end), 6: P is B
+ *     _FLAGS    SCALAR unsigned short    camber_vertex.flags: bits 0-2 the end at A, 3-5 at B (camber_end), 6: P is B,
+ *                               7, 8: the line begins or ends one segment further
  *     COLOR_0   VEC4 unsigned short, normalised   the row's paint, linear as glTF wants it; absent without paints
  *
  * In both modes the last (provoking) vertex of a triangle carries the segment that the triangle draws.

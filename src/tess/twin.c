@@ -23,6 +23,7 @@ typedef struct twin {
 typedef struct segment {
     float dx, dy;
     uint32_t join_a, join_b, row;
+    uint32_t line_ends; /* camber_line_ends */
 } segment;
 
 static uint32_t push_vertex(twin *t, camber_vertex vertex) {
@@ -60,7 +61,8 @@ static camber_vertex make_vertex(const twin *t, size_t slot, segment s, bool at_
         .dx = s.dx,
         .dy = s.dy,
         .limit_px = CAMBER_NO_LIMIT_PX,
-        .flags = (uint16_t)(camber_join_end(s.join_a) | camber_join_end(s.join_b) << 3 | (at_end ? 64u : 0u)),
+        .flags =
+            (uint16_t)(camber_join_end(s.join_a) | camber_join_end(s.join_b) << 3 | (at_end ? 64u | s.line_ends : 0u)),
         .turn_a = (int16_t)(uint16_t)(s.join_a & 0xffffu),
         .turn_b = (int16_t)(uint16_t)(s.join_b & 0xffffu),
         .row = s.row,
@@ -112,7 +114,7 @@ static void walk_dot(twin *t, size_t slot, camber_u32 join) {
     if (camber_join_kind(join) == CAMBER_KIND_GHOST)
         return;
     const camber_u32 end = join & 7u << CAMBER_JOIN_END_SHIFT;
-    const segment s = {0.0f, 0.0f, end, end, t->polylines->info[slot] >> CAMBER_POINT_ROW_SHIFT};
+    const segment s = {0.0f, 0.0f, end, end, t->polylines->info[slot] >> CAMBER_POINT_ROW_SHIFT, 0};
     const uint32_t a = push_edges(t, slot, s, false, join, 0.0f), b = push_edges(t, slot, s, true, join, 0.0f);
     if (t->method == CAMBER_STRIP) {
         push_index(t, CAMBER_RESTART_INDEX);
@@ -294,10 +296,11 @@ static void note_stages(twin *t, size_t slot, camber_u32 join) {
 
 static void walk(twin *t) {
     const camber_polylines *p = t->polylines;
-    camber_u32 before = 0, join = 0, after = 0;
+    camber_u32 earlier = 0, before = 0, join = 0, after = 0;
     float half_shorter = 0.0f, half_after = 0.0f;
     after = join_word(t, 1, &half_after);
     for (size_t slot = 1; slot <= p->slot_count && !t->failed; slot++) {
+        earlier = before;
         before = join;
         join = after;
         half_shorter = half_after;
@@ -307,8 +310,13 @@ static void walk(twin *t) {
         note_stages(t, slot, join);
         camber_mesh_info_count(&t->data->info, join, p->info[slot]);
         const camber_u32 row = p->info[slot] >> CAMBER_POINT_ROW_SHIFT;
-        const segment in = {p->x[slot] - p->x[slot - 1], p->y[slot] - p->y[slot - 1], before, join, row};
-        const segment out = {p->x[slot + 1] - p->x[slot], p->y[slot + 1] - p->y[slot], join, after, row};
+        const segment in = {p->x[slot] - p->x[slot - 1],
+                            p->y[slot] - p->y[slot - 1],
+                            before,
+                            join,
+                            row,
+                            camber_line_ends(earlier, before, join, after)};
+        const segment out = {p->x[slot + 1] - p->x[slot], p->y[slot + 1] - p->y[slot], join, after, row, 0};
         if (camber_join_kind(join) <= CAMBER_KIND_DOT)
             walk_dot(t, slot, join);
         else if (t->method == CAMBER_STRIP)

@@ -2,6 +2,8 @@
 
 #include "cli/output.h"
 
+#include "cli/leftovers.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
@@ -19,6 +21,14 @@ static char *temporary_name(const char *path, unsigned attempt, const char *suff
     if (name)
         snprintf(name, size, "%.*s.camber-%ld-%u%s", (int)folder, path, (long)getpid(), attempt, suffix);
     return name;
+}
+
+static void remove_temporary(camber_guard *guard, char *path) {
+    camber_guard_lock(guard);
+    unlink(path);
+    camber_guard_remove(guard, path);
+    camber_guard_unlock(guard);
+    free(path);
 }
 
 /* Creates a file beside path that the guard knows. Returns its descriptor, or -1 with errno. */
@@ -39,9 +49,14 @@ static int create_beside(camber_guard *guard, const char *path, const char *suff
             cause = EMFILE;
         }
         camber_guard_unlock(guard);
-        if (descriptor >= 0) {
+        if (descriptor >= 0 && camber_leftovers_spare(descriptor)) {
             *made = name;
             return descriptor;
+        }
+        if (descriptor >= 0) {
+            close(descriptor);
+            remove_temporary(guard, name);
+            continue;
         }
         free(name);
         errno = cause;
@@ -49,14 +64,6 @@ static int create_beside(camber_guard *guard, const char *path, const char *suff
             return -1;
     }
     return -1;
-}
-
-static void remove_temporary(camber_guard *guard, char *path) {
-    camber_guard_lock(guard);
-    unlink(path);
-    camber_guard_remove(guard, path);
-    camber_guard_unlock(guard);
-    free(path);
 }
 
 static bool disk_refuses(int cause) {
@@ -133,7 +140,9 @@ int camber_output_open(camber_output *output, camber_report *report, camber_guar
         return cannot_create(output, ENOMEM);
     if (output->target[strlen(output->target) - 1] == '/')
         return camber_report_fail(report, CAMBER_EXIT_CREATE, "%s: names a folder; name a file in it", path);
+    camber_leftovers_remove(output->target);
     const int descriptor = create_beside(guard, output->target, ".tmp", 0666, &output->temporary);
+    output->mark = descriptor >= 0 ? fcntl(descriptor, F_DUPFD_CLOEXEC, STDERR_FILENO + 1) : 0;
     if (descriptor >= 0 && mode)
         fchmod(descriptor, mode); /* best effort: the new file is as readable as the one it replaces */
     return open_stream(output, descriptor);
@@ -159,6 +168,12 @@ int camber_output_status(camber_output *output, camber_status status) {
                                                    : "write elsewhere";
     return camber_report_fail(output->report, CAMBER_EXIT_IO, "%s: %s; %s", output->path, strerror(output->error),
                               cure);
+}
+
+static void remove_mark(camber_output *output) {
+    if (output->mark > 0)
+        close(output->mark);
+    output->mark = 0;
 }
 
 /* Gives the temporary file its name. Without force a file that has appeared meanwhile stays: link refuses it. */
@@ -204,6 +219,7 @@ int camber_output_publish(camber_output *output) {
         return cannot_create(output, cause);
     free(output->temporary);
     output->temporary = NULL;
+    remove_mark(output);
     return CAMBER_EXIT_DONE;
 }
 
@@ -212,6 +228,7 @@ void camber_output_discard(camber_output *output) {
         fclose(output->file);
     if (output->temporary)
         remove_temporary(output->guard, output->temporary);
+    remove_mark(output);
     free(output->target);
     *output = (camber_output){0};
 }

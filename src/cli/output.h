@@ -12,6 +12,7 @@ typedef struct camber_output {
     FILE *file;      /* NULL: not open */
     char *target;    /* path, or what it links to. NULL: written in place (standard output, a device, a pipe) */
     char *temporary; /* beside target */
+    int mark;        /* a descriptor of it that stays open until it has its name; 0: none */
     bool force;
     int error; /* errno of the first write that failed */
     size_t size_bytes;

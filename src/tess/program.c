@@ -115,7 +115,9 @@ camber_status camber_device_program(camber_device *device, camber_method method,
              block);
     made->key = cache_key(&device->info, options);
     camber_status status = CAMBER_OK;
-    if (!load(device, made, options))
+    const double begin = camber_now_ms();
+    const bool cached = load(device, made, options);
+    if (!cached)
         status = build(device, made, options);
     if (status == CAMBER_OK)
         status = make_kernels(device, made);
@@ -123,6 +125,8 @@ camber_status camber_device_program(camber_device *device, camber_method method,
         camber_program_destroy(device->context, made);
         return status;
     }
+    camber_log(device->context, CAMBER_LOG_INFO, "kernels of %s: %s in %.0f ms", camber_method_name(method),
+               cached ? "from the cache" : "built", camber_now_ms() - begin);
     device->programs[method] = made;
     *program = made;
     return CAMBER_OK;

@@ -1,0 +1,53 @@
+#include "cli/leftovers.h"
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* The mark is an advisory lock: the system takes it off whatever ends the process. Where a file system has none, files
+ * are neither marked nor removed. */
+bool camber_leftovers_spare(int descriptor) {
+    struct stat info;
+    (void)flock(descriptor, LOCK_EX); /* waits for no longer than remove_one takes */
+    return fstat(descriptor, &info) != 0 || info.st_nlink > 0;
+}
+
+static const char *skip_number(const char *text) {
+    const size_t digits = strspn(text, "0123456789");
+    return digits ? text + digits : "";
+}
+
+static bool is_ours(const char *name) {
+    static const char head[] = ".camber-";
+    if (strncmp(name, head, sizeof head - 1) != 0)
+        return false;
+    name = skip_number(name + sizeof head - 1);
+    return *name == '-' && strcmp(skip_number(name + 1), ".tmp") == 0;
+}
+
+static void remove_one(int folder, const char *name) {
+    struct stat info;
+    const int descriptor = openat(folder, name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (descriptor < 0)
+        return;
+    if (fstat(descriptor, &info) == 0 && S_ISREG(info.st_mode) && info.st_uid == geteuid() &&
+        flock(descriptor, LOCK_EX | LOCK_NB) == 0)
+        unlinkat(folder, name, 0);
+    close(descriptor);
+}
+
+void camber_leftovers_remove(const char *path) {
+    const char *slash = strrchr(path, '/');
+    char *name = slash ? strndup(path, (size_t)(slash - path) + 1) : strdup(".");
+    DIR *folder = name ? opendir(name) : NULL;
+    for (struct dirent *entry; folder && (entry = readdir(folder)) != NULL;)
+        if (is_ours(entry->d_name))
+            remove_one(dirfd(folder), entry->d_name);
+    if (folder)
+        closedir(folder);
+    free(name);
+}

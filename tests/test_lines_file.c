@@ -244,12 +244,48 @@ static void test_sink_refuses(void **state) {
     host_done(&h, context);
 }
 
+/* Points that are no numbers, or beyond 1e9 px, stay bit for bit where they are, and the line is straightened between
+ * them, not across. */
+static void test_simplify(void **state) {
+    (void)state;
+    host h;
+    camber_context *context = host_context(&h);
+    const uint32_t signalling = 0x7f800001u;
+    float nan;
+    memcpy(&nan, &signalling, sizeof nan);
+    float points[][2] = {{0, 0}, {5, 0.1f},     {9, 0}, {nan, 3}, {2e9f, 0}, {9, 9},       {9, 9}, {7, 9.2f}, {3, 9},
+                         {7, 7}, {8, INFINITY}, {9, 7}, {1, 1},   {2, 2},    {1, 1.0625f}, {0, 0}, {0, 1},    {1, 1}};
+    float wanted[][2] = {{0, 0},        {9, 0}, {nan, 3}, {2e9f, 0}, {9, 9}, {3, 9}, {7, 7},
+                         {8, INFINITY}, {9, 7}, {1, 1},   {2, 2},    {0, 0}, {1, 1}};
+    uint32_t offsets[] = {0, 9, 9, 12, 18};
+    const uint32_t wanted_offsets[] = {0, 6, 6, 9, 13};
+    memcpy(&points[3][0], &signalling, sizeof signalling); /* compilers quieten it */
+    memcpy(&wanted[2][0], &signalling, sizeof signalling);
+    const camber_lines lines = {points[0], offsets, 18, 4};
+    camber_lines made = {0};
+    assert_int_equal(camber_lines_simplify(context, &lines, 1, &made), CAMBER_OK);
+    assert_int_equal(made.polyline_count, 4);
+    assert_int_equal(made.point_count, 13);
+    assert_memory_equal(made.offsets, wanted_offsets, sizeof wanted_offsets);
+    assert_memory_equal(made.points, wanted, sizeof wanted);
+    camber_lines_free(context, &made);
+    assert_int_equal(camber_lines_simplify(context, &lines, 0, &made), CAMBER_OK);
+    assert_memory_equal(made.points, points, sizeof points);
+    camber_lines_free(context, &made);
+    assert_int_equal(camber_lines_simplify(context, &lines, -1, &made), CAMBER_ERROR_ARGUMENT);
+    assert_story(&h, "tolerance");
+    assert_int_equal(camber_lines_simplify(context, &lines, (double)NAN, &made), CAMBER_ERROR_ARGUMENT);
+    assert_story(&h, "tolerance");
+    host_done(&h, context);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_parse),        cmocka_unit_test(test_round_trip),
         cmocka_unit_test(test_nothing),      cmocka_unit_test(test_cut_off_everywhere),
         cmocka_unit_test(test_damaged),      cmocka_unit_test(test_counts_that_overflow),
         cmocka_unit_test(test_random_bytes), cmocka_unit_test(test_sink_refuses),
+        cmocka_unit_test(test_simplify),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

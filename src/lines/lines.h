@@ -20,6 +20,14 @@ struct camber_polylines {
     camber_polylines_stats stats;
 };
 
+/* Farther away a float's steps are larger than a city block; the view cuts long before. */
+#define CAMBER_FARTHEST_PX 1e9f
+
+/* Whether a point is drawn: false for NaN. */
+static inline bool camber_point_is_valid(const float *point) {
+    return fabsf(point[0]) <= CAMBER_FARTHEST_PX && fabsf(point[1]) <= CAMBER_FARTHEST_PX;
+}
+
 /* The polyline whose slots hold slot. */
 size_t camber_polylines_find(const camber_polylines *polylines, size_t slot);
 

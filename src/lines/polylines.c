@@ -3,13 +3,6 @@
 #include <assert.h>
 #include <string.h>
 
-/* Farther away a float's steps are larger than a city block; the view cuts long before. */
-static const float FARTHEST_PX = 1e9f;
-
-static bool is_valid(const float *point) {
-    return fabsf(point[0]) <= FARTHEST_PX && fabsf(point[1]) <= FARTHEST_PX; /* false for NaN */
-}
-
 static bool is_repeated(const float *a, const float *b) {
     const float dx = b[0] - a[0], dy = b[1] - a[1];
     return dx * dx + dy * dy <= 1e-18f;
@@ -98,7 +91,7 @@ static void put_polyline(camber_polylines *p, const camber_polylines_desc *desc,
     p->stats.empty_polylines += count == 0;
     size_t first = 0;
     for (size_t i = 0; i <= count; i++) {
-        if (i < count && is_valid(points + 2 * i))
+        if (i < count && camber_point_is_valid(points + 2 * i))
             continue;
         if (i > first)
             put_run(p, points + 2 * first, i - first, row, !desc->keep_open && first == 0 && i == count);

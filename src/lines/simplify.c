@@ -1,6 +1,7 @@
 #include "lines/simplify.h"
 
 #include "base/base.h"
+#include "lines/lines.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -105,14 +106,37 @@ size_t camber_simplify(double *points, size_t count, double tolerance, unsigned 
     return kept;
 }
 
-/* One polyline: to double, simplified, back. Doubles hold every float, so what stays is bit for bit what came. */
-static uint32_t simplify_line(const float *from, size_t count, double tolerance_px, double *points, unsigned char *keep,
-                              float *to) {
+/* Valid points, in double; what stays is copied from where it came. Gives how many stay. */
+static size_t simplify_run(const float *from, size_t count, double tolerance_px, double *points, unsigned char *keep,
+                           float *to) {
     for (size_t i = 0; i < 2 * count; i++)
         points[i] = (double)from[i];
-    const size_t kept = camber_simplify(points, count, tolerance_px, keep);
-    for (size_t i = 0; i < 2 * kept; i++)
-        to[i] = (float)points[i];
+    memset(keep, 1, count);
+    camber_simplify(points, count, tolerance_px, keep);
+    size_t kept = 0;
+    for (size_t i = 0; i < count; i++) {
+        if (!keep[i])
+            continue;
+        memcpy(to + 2 * kept, from + 2 * i, 2 * sizeof *to);
+        kept++;
+    }
+    return kept;
+}
+
+/* One polyline. Points that are not drawn split it and stay, so that cleaning finds and counts them. */
+static uint32_t simplify_line(const float *from, size_t count, double tolerance_px, double *points, unsigned char *keep,
+                              float *to) {
+    size_t kept = 0, first = 0;
+    for (size_t i = 0; i <= count; i++) {
+        if (i < count && camber_point_is_valid(from + 2 * i))
+            continue;
+        kept += simplify_run(from + 2 * first, i - first, tolerance_px, points, keep, to + 2 * kept);
+        if (i < count) {
+            memcpy(to + 2 * kept, from + 2 * i, 2 * sizeof *to);
+            kept++;
+        }
+        first = i + 1;
+    }
     return (uint32_t)kept;
 }
 

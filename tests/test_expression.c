@@ -186,6 +186,11 @@ static void test_curves(void **state) {
         {"{\"stops\": [[0, 10], [1, 20], [1, 25], [2, 30]]}", NUMBER, 1.5, "{}", "25"},
         {"{\"stops\": [[10, \"#000\"], [14, \"#fff\"]]}", COLOR, 11, "{}", "[0.25, 0.25, 0.25, 1]"},
         {"[\"interpolate\", [\"exponential\", 1e300], [\"zoom\"], 0, 0, 20, 1]", NUMBER, 10, "{}", "0.5"},
+        /* Farther apart than a double reaches, and a denormal apart. */
+        {"[\"interpolate\", [\"linear\"], [\"zoom\"], -1.6e308, 0, 1.6e308, 1]", NUMBER, 10, "{}", "0.5"},
+        {"[\"interpolate\", [\"linear\"], [\"get\", \"n\"], -1.6e308, \"#000\", 1.6e308, \"#fff\"]", COLOR, 0,
+         "{\"n\": 0.8e308}", "[0.75, 0.75, 0.75, 1]"},
+        {"[\"interpolate\", [\"linear\"], [\"get\", \"n\"], 0, 0, 1e-323, 1]", NUMBER, 0, "{\"n\": 5e-324}", "0.5"},
     };
     check(samples, sizeof samples / sizeof *samples);
 }

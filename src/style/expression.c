@@ -312,7 +312,11 @@ static bool evaluate_step(camber_evaluation *e, const camber_node *node, camber_
 
 /* How far input is from low to high, as the specification's exponential interpolation has it. */
 static double interpolation_factor(double input, double base, double low, double high) {
-    const double span = high - low, progress = input - low;
+    double span = high - low, progress = input - low;
+    if (!isfinite(span)) { /* stops so far apart that only half of it is a number */
+        span = high * 0.5 - low * 0.5;
+        progress = input * 0.5 - low * 0.5;
+    }
     if (numbers_equal(base, 1.0))
         return progress / span;
     const double factor = (pow(base, progress) - 1.0) / (pow(base, span) - 1.0);

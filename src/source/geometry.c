@@ -160,6 +160,8 @@ static bool to_world(camber_parts *parts, double east, double north, double *x, 
             latitude = copysign(CAMBER_MERCATOR_LATITUDE, latitude);
         }
         camber_mercator_project(longitude, latitude, x, y);
+        /* The limit itself may come out a last bit beyond the world. */
+        *y = fmin(fmax(*y, 0), 1);
     }
     *x = camber_mercator_wrap(*x);
     return true;

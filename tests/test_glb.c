@@ -253,6 +253,8 @@ static void make_strokes(camber_stroke *strokes, camber_paint *paints) {
     for (unsigned i = 0; i < STROKES; i++) {
         strokes[i] =
             (camber_stroke){0.7f + 3.0f * (float)i, (camber_join)(i % 3), (camber_cap)(i / 3), (float)(i % 2) * 4};
+        if (i == 7)
+            strokes[i].miter_limit = INFINITY; /* which JSON does not have */
         paints[i] = (camber_paint){strokes[i].width_px, {0.5f, (float)i / 8, 1.0f, i == 4 ? 0.5f : 1.0f}};
     }
 }
@@ -307,6 +309,7 @@ static void test_random_lines(void **state) {
             assert_string_equal(json_string_value(get(at(rows_json, 5), "cap")), "round");
             assert_true(json_number_value(get(at(rows_json, 5), "width")) == (double)strokes[5].width_px);
             assert_true(json_number_value(get(at(rows_json, 4), "miterLimit")) == 2.0);
+            assert_true(json_number_value(get(at(rows_json, 7), "miterLimit")) > 3e38);
             assert_int_equal(json_object_get(get(primitive_of(&g), "attributes"), "COLOR_0") != NULL, painted);
             char name[64];
             snprintf(name, sizeof name, "%s%s", names[method], painted ? "_painted" : "");

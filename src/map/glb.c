@@ -254,7 +254,8 @@ static json_t *style_table(const camber_glb_desc *desc, bool *ok) {
     json_t *rows = json_array();
     for (size_t i = 0; i < desc->stroke_count; i++) {
         const camber_stroke *stroke = desc->strokes + i;
-        const double limit = stroke->miter_limit > 0.0f ? (double)stroke->miter_limit : 2.0;
+        /* JSON has no infinity. */
+        const double limit = stroke->miter_limit > 0.0f ? fmin((double)stroke->miter_limit, (double)FLT_MAX) : 2.0;
         json_t *row = json_pack("{s:f, s:s, s:s, s:f}", "width", (double)stroke->width_px, "join",
                                 join_name(stroke->join), "cap", cap_name(stroke->cap), "miterLimit", limit);
         if (desc->paints) {

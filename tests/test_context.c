@@ -248,8 +248,10 @@ static void test_log_is_one_line(void **state) {
     long_text[sizeof long_text - 1] = 0;
     long_text[7] = '\n';
     long_text[8] = '\r';
+    long_text[12] = 0x1b; /* a terminal would obey */
+    long_text[13] = 0x7f;
     assert_int_equal(camber_fail(context, CAMBER_ERROR_IO, "%s", long_text), CAMBER_ERROR_IO); /* host_log looks */
-    assert_story(&h, "xxxxxxx  xxx");
+    assert_story(&h, "xxxxxxx  xxx  xxx");
     camber_log(context, CAMBER_LOG_WARNING, "%d of %s", 3, "these");
     assert_int_equal(h.warnings, 1);
     assert_int_equal(h.errors, 0);

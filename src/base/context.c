@@ -125,8 +125,9 @@ static void log_list(camber_context *context, camber_log_level level, const char
     /* Long enough for any path and cause; a build log is cut, its beginning names the error. */
     char message[4096];
     vsnprintf(message, sizeof message, format, list);
+    /* Text of a file may stand in it: one line, and nothing that a terminal obeys. */
     for (char *c = message; *c; c++)
-        if (*c == '\n' || *c == '\r')
+        if ((unsigned char)*c < ' ' || *c == 0x7f)
             *c = ' ';
     context->desc.log(context->desc.log_user, level, message);
 }

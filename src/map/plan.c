@@ -84,8 +84,10 @@ static camber_status group_layers(camber_plan *plan, const camber_style *style, 
         size_t s = 0;
         while (s < plan->set_count && !shares_polylines(plan->sets[s].layer, layer))
             s++;
-        if (s == plan->set_count)
-            plan->sets[plan->set_count++].layer = layer;
+        if (s == plan->set_count) {
+            plan->sets[s] = (camber_plan_set){.layer = layer, .first_layer = plan->layer_count};
+            plan->set_count++;
+        }
         plan->layers[plan->layer_count++] = (camber_plan_layer){layer, s, plan->sets[s].layer_count++};
     }
     return CAMBER_OK;
@@ -147,12 +149,14 @@ static camber_status match_set(const camber_features *features, const camber_vie
             continue;
         const camber_feature_view feature = view_of(features, class);
         bool drawn = false;
-        for (size_t i = 0; i < plan->layer_count; i++) {
+        size_t found = 0;
+        for (size_t i = set->first_layer; found < set->layer_count; i++) {
             if (plan->layers[i].set != index)
                 continue;
             const camber_paint paint = paint_of(plan->layers[i].layer, view, &feature);
             table->tuple[plan->layers[i].slot] = paint;
             drawn |= paint.width_px > 0.0f;
+            found++;
         }
         if (!drawn)
             continue;

@@ -13,7 +13,7 @@
 /* Layers that agree in source layer, filter, cap and joins: one geometry, cut for the widest of them. */
 typedef struct camber_plan_set {
     const camber_style_layer *layer; /* the first of them */
-    size_t layer_count;
+    size_t first_layer, layer_count; /* the plan's index of the first; the others follow it, not at once */
     size_t first_row, row_count;
     size_t first_paint;                    /* into paints: row_count tuples of layer_count */
     float width_px;                        /* the largest, device px */

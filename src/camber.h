@@ -222,7 +222,7 @@ typedef struct camber_device_desc {
     /* Points a work-group takes: 64, 128 or 256. 0: 256. What comes out is the same bytes. */
     uint32_t work_group_size;
     /* No buffer is made larger: a mesh that needs more is made in parts of whole polylines, and what is read or drawn
-     * of it is the same. 4096 at least. 0, or more than the device allows: the device's own limit. */
+     * of it is the same. 4096 at least. 0, or more than that: the device's own limit, and below 2^31 for GL's sake. */
     uint64_t largest_buffer_bytes;
 } camber_device_desc;
 

@@ -154,6 +154,8 @@ static camber_status choose(camber_device *device, const char *match, uint32_t n
 }
 
 enum { LEAST_BUFFER_BYTES = 4096 };
+/* llvmpipe finds a vertex by 32 signed bits, and falls past them. */
+static const uint64_t LARGEST_BUFFER_BYTES = INT32_MAX;
 
 /* The desc's bounds on what the kernels are given. */
 static camber_status bound(camber_device *device, const camber_device_desc *desc) {
@@ -167,6 +169,8 @@ static camber_status bound(camber_device *device, const camber_device_desc *desc
                            (unsigned long long)desc->largest_buffer_bytes, LEAST_BUFFER_BYTES);
     device->block = size ? size : CAMBER_BLOCK;
     uint64_t *largest = &device->info.largest_buffer_bytes;
+    if (*largest > LARGEST_BUFFER_BYTES)
+        *largest = LARGEST_BUFFER_BYTES;
     if (desc->largest_buffer_bytes && desc->largest_buffer_bytes < *largest)
         *largest = desc->largest_buffer_bytes;
     return CAMBER_OK;

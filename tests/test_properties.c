@@ -136,7 +136,7 @@ static bool has_bad_vertex(const property_case *c, const camber_vertex *v, size_
         return is_bad(story, "a limit below nothing", i, (double)v->limit_px);
     if (abs(v->across) > across_most)
         return is_bad(story, "across out of range", i, v->across);
-    if (v->flags >> 7)
+    if (v->flags >> 9)
         return is_bad(story, "unknown flags", i, v->flags);
     if (v->turn_a < -32767 || v->turn_b < -32767)
         return is_bad(story, "a turn out of range", i, v->turn_a);
@@ -155,10 +155,23 @@ static bool is_segment(const property_case *c, const camber_vertex *v) {
         return false;
     for (size_t i = 0; i + 1 < c->count; i++) {
         const float *p = c->points + 2 * i, *end = at_end ? p + 2 : p;
-        if (v->x == end[0] && v->y == end[1] && v->dx == p[2] - p[0] && v->dy == p[3] - p[1])
+        const bool open = at_end && !property_is_ring(c);
+        const unsigned line_ends = (open && i == 1 ? 1u : 0u) | (open && i + 3 == c->count ? 2u : 0u);
+        if (v->x == end[0] && v->y == end[1] && v->dx == p[2] - p[0] && v->dy == p[3] - p[1] &&
+            v->flags >> 7 == line_ends)
             return true;
     }
     return v->dx == 0 && v->dy == 0; /* a dot */
+}
+
+/* As camber_polylines_create keeps them. */
+static property_case without_repeats(const property_case *c) {
+    property_case kept = *c;
+    kept.count = 0;
+    for (size_t i = 0; i < c->count; i++)
+        if (i == 0 || memcmp(c->points + 2 * i, c->points + 2 * (i - 1), 2 * sizeof *c->points) != 0)
+            memcpy(kept.points + 2 * kept.count++, c->points + 2 * i, 2 * sizeof *c->points);
+    return kept;
 }
 
 static property_outcome check_well_formed(void *user, const property_case *c, char story[PROPERTY_STORY]) {
@@ -169,10 +182,11 @@ static property_outcome check_well_formed(void *user, const property_case *c, ch
         bad = has_bad_vertex(c, &data.vertices[i], i, story);
     uint32_t(*triangles)[3];
     const size_t count = triangles_of(&data, &triangles);
+    const property_case kept = without_repeats(c);
     if (!bad && count != data.info.triangle_count)
         bad = is_bad(story, "another number of triangles", count, (double)data.info.triangle_count);
     for (size_t i = 0; i < count && !bad; i++)
-        if (!is_segment(c, &data.vertices[triangles[i][2]]))
+        if (!is_segment(&kept, &data.vertices[triangles[i][2]]))
             bad = is_bad(story, "a triangle whose last vertex carries no segment of the line", i, triangles[i][2]);
     free(triangles);
     camber_mesh_data_free(b->context, &data);

@@ -242,19 +242,12 @@ is_png lines.png 128 128
 cmp -s lines.bin again.bin || fail "the dump of the dump differs"
 expect 0 "bench as a table" bench --polylines lines.bin --runs 1 --size 64x64
 has "$tmp/stdout" '^tessellate ' '^draw ' '^frame ' '^classify ' '^scan ' '^emit '
-expect 0 "validate" validate --method strip
-plan=$(sed -n 's/^1\.\.//p' "$tmp/stdout")
-[ "${plan:-0}" -ge 50 ] || fail "plan of '$plan'"
-[ "$(grep -c '^ok ' "$tmp/stdout")" = "${plan:-0}" ] || fail "$(grep -c '^ok ' "$tmp/stdout") ok of $plan"
-lacks "$tmp/stdout" '^not ok'
-expect 0 "validate polylines" validate --polylines lines.bin --json
-has "$tmp/stdout" '"checks": [1-9]' '"failed": 0'
-expect 0 "validate a map" validate "$tiger" --method kite --size 200x200
 head -c 1000 lines.bin >"$tmp/in/cut.bin"
 expect 65 "polylines cut off" bench --polylines "$tmp/in/cut.bin"
 expect 65 "polylines of text" validate --polylines "$here/test_cli.sh"
 expect 66 "no such polylines" bench --polylines "$tmp/in/none.bin"
 expect 65 "a folder of polylines" bench --polylines "$tmp/in"
+cp lines.bin "$tmp/in/lines.bin"
 rm -f lines.bin again.bin lines.png
 
 # ---- Compare ----
@@ -369,6 +362,90 @@ else
     echo "skipped: plots: no gnuplot"
 fi
 rm -f bars.svg bars.PNG
+
+# ---- Validate ----
+
+# The report in $tmp/stdout is TAP whose plan counts its checks, all of which passed.
+passes() {
+    local plan
+    plan=$(sed -n 's/^1\.\.//p' "$tmp/stdout")
+    [ "$(head -n 1 "$tmp/stdout")" = "TAP version 14" ] || fail "no version of TAP"
+    [ "${plan:-0}" -ge "$1" ] || fail "plan of '$plan'"
+    [ "$(grep -c '^ok ' "$tmp/stdout")" = "${plan:-0}" ] || fail "$(grep -c '^ok ' "$tmp/stdout") ok of $plan"
+    [ "$(sed -n 's/^ok \([0-9]*\) .*/\1/p' "$tmp/stdout" | tail -n 1)" = "${plan:-0}" ] || fail "the last is not $plan"
+    lacks "$tmp/stdout" '^not ok'
+    lacks "$tmp/stdout" '# SKIP *$'
+}
+
+is_xml() {
+    if command -v xmllint >/dev/null; then
+        xmllint --noout "$1" || fail "$1 is not well-formed"
+    elif command -v python3 >/dev/null; then
+        python3 -c 'import sys, xml.etree.ElementTree as t; t.parse(sys.argv[1])' "$1" || fail "$1 is not well-formed"
+    fi
+}
+
+is_json() {
+    if command -v python3 >/dev/null; then
+        python3 -c 'import sys, json; json.load(open(sys.argv[1], encoding="utf-8"))' "$1" || fail "$1 is no JSON"
+    fi
+}
+
+lines=$tmp/in/lines.bin
+head -c 4 "$lines" >"$tmp/in/short.bin"
+expect 0 "validate" validate --method strip --windows 8 --junit built-in.xml --pictures pictures
+passes 100
+has "$tmp/stdout" ': as the CPU twin, on ' ': the same bytes from run to run, on ' ': the same bytes in work-groups of 64, on ' \
+    ': the same bytes in parts, on ' ': pixels, on ' '^# .* pixels: mean '
+is_xml built-in.xml
+has built-in.xml '<testsuites ' '<testsuite ' '<testcase ' 'failures="0"'
+[ "$(grep -c '<testcase ' built-in.xml)" = "$(sed -n 's/^1\.\.//p' "$tmp/stdout")" ] || fail "other cases than checks"
+[ -e pictures ] && fail "a folder of pictures without a failure"
+cp built-in.xml "$tmp/in/built-in.xml"
+expect 73 "the JUnit file exists" validate --polylines "$lines" --junit built-in.xml
+cmp -s built-in.xml "$tmp/in/built-in.xml" || fail "the file has changed"
+expect 65 "no JUnit file of a run that fails" validate --polylines "$tmp/in/short.bin" --junit new.xml
+expect 73 "a JUnit file in no folder" validate --polylines "$lines" --junit none/a.xml
+expect 73 "a folder as the JUnit file" validate --polylines "$lines" --junit "$tmp/in" -f
+expect 2 "JUnit to standard output" validate --junit -
+expect 2 "too few windows" validate --windows 7
+expect 73 "pictures into a file" validate --polylines "$lines" --pictures "$lines"
+expect 73 "pictures into a folder with files" validate --polylines "$lines" --pictures "$tmp/in"
+expect 73 "pictures into a folder in no folder" validate --polylines "$lines" --pictures none/pictures
+expect 0 "validate polylines" validate --polylines "$lines" --json --junit built-in.xml -f --windows 8
+is_json "$tmp/stdout"
+has "$tmp/stdout" '"checks": [1-9]' '"failed": 0' '"skipped": [0-9]' '"failures": \[\]' '"skips": \[' '"pixels": \[' \
+    '"reason": ' '"bounds": ' '"mean": ' '"past_64": ' '"windows": 8'
+cmp -s built-in.xml "$tmp/in/built-in.xml" && fail "the file has not changed"
+rm -f built-in.xml
+expect 0 "validate a map" validate "$tiger" --method kite --size 200x200 --backend osmesa
+passes 12
+lacks "$tmp/stdout" 'EGL'
+name="odd names"
+odd=$tmp/in/$'a#b\\<c>&"d\'\xff\n\x01.bin'
+cp "$lines" "$odd"
+run "$tool" validate --polylines "$odd" --method strip --windows 8 --junit odd.xml
+verify 0
+passes 12
+has "$tmp/stdout" 'a\\#b'
+is_xml odd.xml
+has odd.xml 'a#b' '&lt;c&gt;&amp;&quot;d'
+rm -f odd.xml "$odd"
+run env POCL_DEVICES='pthread pthread' "$tool" validate --polylines "$lines" --method strip --windows 8
+name="two devices of one name"
+verify 0
+if grep -q 'twin, on pthread' "$tmp/stdout"; then
+    has "$tmp/stdout" ': as the CPU twin, on pthread.* (2)$'
+fi
+name="no EGL"
+run env __EGL_VENDOR_LIBRARY_FILENAMES="$tmp/in/none.json" "$tool" validate --polylines "$lines" --method strip --windows 8
+verify 0
+passes 12
+if grep -q '^ok .* EGL # SKIP .' "$tmp/stdout"; then
+    run env __EGL_VENDOR_LIBRARY_FILENAMES="$tmp/in/none.json" "$tool" validate --polylines "$lines" --backend egl
+    name="no EGL, though asked for"
+    verify 69
+fi
 
 # ---- Bad input ----
 

@@ -74,22 +74,20 @@ static camber_status project_polylines(camber_input *input) {
     camber_context *context = input->session->context;
     const double simplify_px = input->session->options->simplify_px;
     camber_polylines_destroy(input->polylines);
+    camber_lines_free(context, &input->simplified);
     input->polylines = NULL;
-    camber_lines simplified = {0};
     if (simplify_px > 0) {
-        const camber_status status = camber_lines_simplify(context, &input->lines, simplify_px, &simplified);
+        const camber_status status = camber_lines_simplify(context, &input->lines, simplify_px, &input->simplified);
         if (status != CAMBER_OK)
             return status;
     }
-    const camber_lines *lines = simplify_px > 0 ? &simplified : &input->lines;
+    const camber_lines *lines = camber_input_lines(input);
     const camber_polylines_desc desc = {.points = lines->points,
                                         .point_count = lines->point_count,
                                         .offsets = lines->offsets,
                                         .polyline_count = lines->polyline_count,
                                         .keep_open = true};
-    const camber_status status = camber_polylines_create(context, &desc, &input->polylines);
-    camber_lines_free(context, &simplified);
-    return status;
+    return camber_polylines_create(context, &desc, &input->polylines);
 }
 
 static camber_frame polylines_frame(camber_input *input, camber_mesh *mesh) {
@@ -194,6 +192,7 @@ void camber_input_close(camber_input *input) {
     free(input->source);
 #endif
     camber_polylines_destroy(input->polylines);
+    camber_lines_free(input->session->context, &input->simplified);
     camber_lines_free(input->session->context, &input->lines);
     *input = (camber_input){0};
 }
@@ -231,7 +230,16 @@ const camber_lines *camber_input_lines(const camber_input *input) {
     if (input->scene)
         return camber_scene_lines(input->scene);
 #endif
-    return &input->lines;
+    return input->session->options->simplify_px > 0 ? &input->simplified : &input->lines;
+}
+
+const uint32_t *camber_input_rows(const camber_input *input) {
+#ifdef CAMBER_MAP
+    if (input->scene)
+        return camber_scene_rows(input->scene);
+#endif
+    (void)input;
+    return NULL;
 }
 
 const camber_stroke *camber_input_strokes(const camber_input *input, size_t *count) {

@@ -13,7 +13,7 @@ typedef struct camber_input {
     double read_ms, scene_ms;
 
     /* Polylines in pixels. */
-    camber_lines lines;
+    camber_lines lines, simplified; /* simplified: empty unless that is asked for */
     camber_polylines *polylines;
     camber_stroke stroke;
     camber_paint paint;
@@ -38,6 +38,8 @@ void camber_input_warn_empty(const camber_input *input, const char *consequence)
 /* The parts, after camber_input_project and until the next. */
 const camber_polylines *camber_input_polylines(const camber_input *input);
 const camber_lines *camber_input_lines(const camber_input *input);
+/* The row of each polyline; NULL: all 0. */
+const uint32_t *camber_input_rows(const camber_input *input);
 const camber_stroke *camber_input_strokes(const camber_input *input, size_t *count);
 camber_frame camber_input_frame(camber_input *input, camber_mesh *mesh);
 bool camber_input_opaque(const camber_input *input);

@@ -40,11 +40,12 @@ static const verb_spec verbs[] = {
     {"tessellate", CAMBER_VERB_TESSELLATE, "INPUT... -o OUT.glb", "writes the GPU-ready mesh"},
     {"compare", CAMBER_VERB_COMPARE, "INPUT... | --polylines FILE",
      "the paper's experiment: fan, kite, strip side by side"},
-    {"validate", CAMBER_VERB_VALIDATE, "[INPUT... | --polylines FILE]", "checks the kernels against the CPU twin"},
+    {"validate", CAMBER_VERB_VALIDATE, "[INPUT... | --polylines FILE]",
+     "checks kernels and pixels on every device here"},
     {"bench", CAMBER_VERB_BENCH, "INPUT... | --polylines FILE", "times every stage"},
 #else
     {"compare", CAMBER_VERB_COMPARE, "--polylines FILE", "the paper's experiment: fan, kite, strip side by side"},
-    {"validate", CAMBER_VERB_VALIDATE, "[--polylines FILE]", "checks the kernels against the CPU twin"},
+    {"validate", CAMBER_VERB_VALIDATE, "[--polylines FILE]", "checks kernels and pixels on every device here"},
     {"bench", CAMBER_VERB_BENCH, "--polylines FILE", "times every stage"},
 #endif
     {"info", CAMBER_VERB_INFO, "", "OpenCL devices, GL back ends, buffer sharing, versions, readable formats"},
@@ -78,7 +79,8 @@ typedef struct option_spec {
 /* Parsing, --help and the check of the man page all read this table. */
 static const option_spec specs[] = {
     {"output", 'o', KIND_TEXT, WRITING, FIELD(output), "OUT", "the file to write; -: standard output", 0, 0},
-    {"force", 'f', KIND_FLAG, WRITING | COMPARE, FIELD(force), NULL, "replace the file to write where it exists", 0, 0},
+    {"force", 'f', KIND_FLAG, WRITING | COMPARE | VALIDATE, FIELD(force), NULL,
+     "replace the file to write where it exists", 0, 0},
     {"format", 0, KIND_CHOICE, WRITING, FIELD(format), "png|glb", "of OUT, where its extension does not tell", 0, 0},
     {"size", 0, KIND_SIZE, READING, 0, "WxH", "of the picture in CSS px (1024x1024; 2048x2048 with --polylines)", 0, 0},
     {"ratio", 0, KIND_NUMBER, READING, FIELD(view.ratio), "R", "device pixels a CSS px (1)", 1e-3, 1e3},
@@ -112,6 +114,10 @@ static const option_spec specs[] = {
     {"sharing", 0, KIND_CHOICE, RENDER | COMPARE | BENCH | INFO, FIELD(sharing), "auto|gl|zero-copy|copy",
      "how OpenCL's buffers reach GL (auto)", 0, 0},
     {"threads", 0, KIND_COUNT, EVERY, FIELD(threads), "N", "of OpenCL and GL on a CPU (all cores)", 1, 1024},
+    {"junit", 0, KIND_TEXT, VALIDATE, FIELD(junit), "FILE", "write the results as JUnit's XML", 0, 0},
+    {"pictures", 0, KIND_TEXT, VALIDATE, FIELD(pictures), "FOLDER", "write PNGs of what differs", 0, 0},
+    {"windows", 0, KIND_COUNT, VALIDATE, FIELD(windows), "N", "of each picture, held against the oracle (24)", 8,
+     100000},
     {"json", 0, KIND_FLAG, EVERY, FIELD(json), NULL, "one JSON object on standard output", 0, 0},
     {"quiet", 'q', KIND_FLAG, EVERY, FIELD(quiet), NULL, "errors only", 0, 0},
     {"verbose", 'v', KIND_FLAG, EVERY, FIELD(verbose), NULL, "say what is chosen and how long it takes", 0, 0},
@@ -473,14 +479,22 @@ static int check(const parser *p) {
         status = check_output(p);
     if (status == CAMBER_EXIT_DONE)
         status = check_plot(p);
+    if (status == CAMBER_EXIT_DONE && options->junit && strcmp(options->junit, "-") == 0)
+        return usage(p, "--junit -: standard output is the report's; name a file");
     if (status == CAMBER_EXIT_DONE && options->dump && strcmp(options->dump, "-") == 0 && options->json)
         return usage(p, "--json and --dump -: both want standard output; give one of them");
     return status;
 }
 
 int camber_options_parse(int argc, char **argv, camber_options *options, char *message, size_t message_size) {
-    *options = (camber_options){
-        .format = -1, .theme = -1, .method = -1, .view = {.ratio = 1}, .zoom = NAN, .simplify_px = NAN, .runs = 9};
+    *options = (camber_options){.format = -1,
+                                .theme = -1,
+                                .method = -1,
+                                .view = {.ratio = 1},
+                                .zoom = NAN,
+                                .simplify_px = NAN,
+                                .runs = 9,
+                                .windows = 24};
     const parser p = {options, message, message_size};
     options->inputs = calloc((size_t)argc + 1, sizeof *options->inputs);
     options->wheres = calloc((size_t)argc + 1, sizeof *options->wheres);

@@ -39,8 +39,9 @@ typedef struct camber_options {
     const char **wheres; /* where_count, each as --where gave it */
     size_t where_count;
     bool help, version, json, quiet, verbose, force;
-    const char *output, *dump, *polylines, *plot, *style, *layer, *where, *device; /* where: the first */
-    int format;                                                                    /* 0: png, 1: glb */
+    const char *output, *dump, *polylines, *plot, *junit, *pictures, *style, *layer, *device;
+    const char *where; /* the first */
+    int format;        /* 0: png, 1: glb */
     int theme, method, coverage, backend, sharing;
     camber_view_desc view; /* width and height are set by camber_options_parse */
     bool has_bbox, has_center;
@@ -48,6 +49,7 @@ typedef struct camber_options {
     double simplify_px, width_px, fan_tolerance_px;
     uint32_t threads; /* 0: as many as there are */
     uint32_t runs;
+    uint32_t windows; /* of each picture, held against the oracle */
 } camber_options;
 
 /* Parses argv. Returns CAMBER_EXIT_DONE, or CAMBER_EXIT_USAGE with one line in message. --help and --version

@@ -88,14 +88,23 @@ static void short_segments(camber_builtin *scene) {
     }
 }
 
+/* The middle of a cell of a grid of columns x columns over the picture. */
+static void cell(size_t number, size_t columns, double *x, double *y) {
+    const double step = (double)CAMBER_SCENE_SIDE_PX / (double)columns;
+    *x = ((double)(number % columns) + 0.5) * step;
+    *y = ((double)(number / columns % columns) + 0.5) * step;
+}
+
 /* Hairpins: every turn from 0 to 180 degrees by a quarter of one, to the left and to the right, with arms of 1 to
  * 60 px. */
 static void turns(camber_builtin *scene) {
     for (int i = -720; i <= 720; i++) {
         const double angle = i * 0.25 * M_PI / 180, arm = 1 + (i + 720) % 60, start = i;
-        add_point(scene, 100 - arm * cos(start), 100 - arm * sin(start));
-        add_point(scene, 100, 100);
-        add_point(scene, 100 + arm * cos(start + angle), 100 + arm * sin(start + angle));
+        double x, y;
+        cell((size_t)(i + 720), 38, &x, &y);
+        add_point(scene, x - arm * cos(start), y - arm * sin(start));
+        add_point(scene, x, y);
+        add_point(scene, x + arm * cos(start + angle), y + arm * sin(start + angle));
         end_polyline(scene);
     }
 }
@@ -118,15 +127,16 @@ static void rings(camber_builtin *scene) {
     for (size_t sides = 1; sides <= 40; sides++)
         for (size_t copies = 0; copies < 3; copies++) {
             const double radius = copies == 1 ? 0.4 : 5 + (double)sides;
-            double x = 0, y = 0;
+            double middle_x, middle_y, x = 0, y = 0;
+            cell(scene->polyline_count, 11, &middle_x, &middle_y);
             for (size_t i = 0; i < sides; i++) {
-                x = 100 + radius * cos(2 * M_PI * (double)i / (double)sides);
-                y = 100 + radius * sin(2 * M_PI * (double)i / (double)sides);
+                x = middle_x + radius * cos(2 * M_PI * (double)i / (double)sides);
+                y = middle_y + radius * sin(2 * M_PI * (double)i / (double)sides);
                 add_point(scene, x, y);
             }
             for (size_t i = 0; i < copies; i++)
                 add_point(scene, x, y); /* repeated before the seam */
-            add_point(scene, 100 + radius, 100);
+            add_point(scene, middle_x + radius, middle_y);
             end_polyline(scene);
         }
 }
@@ -170,18 +180,22 @@ static void extreme_coordinates(camber_builtin *scene) {
 
 static void grid(camber_builtin *scene) {
     for (size_t i = 0; i < 40; i++) {
+        double x, y;
+        cell(i, 7, &x, &y);
+        x = floor(x);
+        y = floor(y);
         for (size_t k = 0; k < 30; k++) /* stairs: right angles, and straight on at every third */
-            add_point(scene, (double)((k + 1) / 2 * 8), (double)(k / 2 * 8 + (k % 3 ? 0 : i)));
+            add_point(scene, x + (double)((k + 1) / 2 * 8) - 60, y + (double)(k / 2 * 8 + (k % 3 ? 0 : i)) - 60);
         end_polyline(scene);
         for (size_t k = 0; k < 30; k++)
-            add_point(scene, (double)k * 0.1 * (double)(i + 1), (double)i);
+            add_point(scene, x + (double)k * 0.1 * (double)(i + 1), y + (double)i);
         end_polyline(scene);
     }
 }
 
 /* Longer than a work-group's and a scan's block, so that their borders lie within one line. */
 static void one_long_line(camber_builtin *scene) {
-    walk(scene, 70001, (const double[]){0.2, 9}, 1.2);
+    walk(scene, 20011, (const double[]){0.2, 9}, 1.2);
     end_polyline(scene);
 }
 

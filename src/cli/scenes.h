@@ -4,7 +4,8 @@
 
 #include "camber.h"
 
-#define CAMBER_SCENE_ROWS 4
+#define CAMBER_SCENE_ROWS 5
+#define CAMBER_SCENE_SIDE_PX 1024 /* of the picture that most scenes are laid out for */
 
 /* Freed with camber_builtin_free. */
 typedef struct camber_builtin {

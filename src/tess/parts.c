@@ -264,6 +264,10 @@ camber_status camber_mesh_split(camber_mesh *mesh, size_t which) {
         return camber_fail_cl(device->context, "clEnqueueMapBuffer", code);
     camber_status status = find_cuts(mesh, part, offsets, &cuts, &cut_count);
     clEnqueueUnmapMemObject(device->queue, part->offsets, offsets, 0, NULL, NULL);
+    if (status == CAMBER_OK && cut_count == 0)
+        status = camber_fail(device->context, CAMBER_ERROR_DEVICE,
+                             "%s: the scan's offsets contradict its sums; update the driver or try another device",
+                             device->info.name);
     if (status == CAMBER_OK)
         status = insert_parts(mesh, which, cuts, cut_count);
     camber_free(device->context, cuts);

@@ -1,0 +1,304 @@
+/* Pictures: against the oracle on sampled windows, the sharing paths against each other, the GL back ends against each
+ * other. */
+#include "cli/samples.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A subject in one style: its truth, and its pictures on one rig with one method. */
+typedef struct job {
+    camber_validation *v;
+    const camber_subject *s;
+    const camber_rig *rig;
+    camber_tessellation_desc desc;
+    char style[64]; /* "round joins, butt caps" */
+    bool is_shared; /* other sharing paths are tried too: the style does not matter to them */
+    camber_samples samples;
+    camber_pixel_bounds bounds;
+    uint8_t *first, *own, *other; /* of the first back end, of this one, of another path to it */
+} job;
+
+/* Which of the bounds is passed first; false: none. */
+static bool is_past(const camber_pixel_bounds *is, const camber_pixel_bounds *most, camber_finding *finding) {
+    const struct {
+        const char *name;
+        double got, most;
+    } values[] = {{"mean", is->mean, most->mean},
+                  {"past_16", is->past_16, most->past_16},
+                  {"past_64", is->past_64, most->past_64}};
+    for (size_t i = 0; i < sizeof values / sizeof *values; i++)
+        if (!(values[i].got <= values[i].most)) {
+            finding->field = values[i].name;
+            finding->got = values[i].got;
+            finding->expected = values[i].most;
+            return true;
+        }
+    return false;
+}
+
+static camber_status draw(const job *j, const camber_path *path, uint8_t *levels) {
+    const camber_drawing drawing = {j->desc.strokes, j->desc.stroke_count, j->s->width, j->s->height,
+                                    (camber_coverage)j->v->session->options->coverage};
+    const camber_status status = camber_tessellate(path->mesh, j->s->polylines, &j->desc);
+    return status == CAMBER_OK ? camber_draw_levels(path, &drawing, levels) : status;
+}
+
+/* ---- Against the truth ---- */
+
+static int check_truth(job *j, camber_check *check) {
+    size_t worst = 0;
+    int status = CAMBER_EXIT_DONE;
+    camber_finding *finding = &check->finding;
+    if (j->samples.count == 0) {
+        camber_verdicts_skip(&j->v->verdicts, *check, "no point lies in the picture");
+        return status;
+    }
+    check->has_error = true;
+    check->most = j->bounds;
+    camber_samples_compare(&j->samples, j->own, j->s->width, &check->error, &worst);
+    if (is_past(&check->error.of, &check->most, finding)) {
+        const camber_sample *sample = &j->samples.list[worst];
+        check->verdict = CAMBER_VERDICT_FAILED;
+        finding->stage = "pixels";
+        finding->has_point = true;
+        finding->polyline = sample->polyline;
+        finding->point = sample->point;
+        finding->x = sample->x;
+        finding->y = sample->y;
+        snprintf(finding->what, sizeof finding->what,
+                 "pixels: %s is %.4g, at most %.4g; worst in the %d x %d px at %d, %d, about polyline %zu, point %zu",
+                 finding->field, finding->got, finding->expected, sample->window.width, sample->window.height,
+                 sample->window.x0, sample->window.y0, sample->polyline, sample->point);
+        uint8_t *levels = calloc((size_t)sample->window.width, (size_t)sample->window.height);
+        if (!levels)
+            return camber_report_status(j->v->session->report, CAMBER_ERROR_MEMORY);
+        camber_sample_cut(sample, j->own, j->s->width, levels);
+        status = camber_evidence_write(j->v, sample->window, sample->truth, levels, finding);
+        free(levels);
+    }
+    if (status == CAMBER_EXIT_DONE)
+        camber_verdicts_add(&j->v->verdicts, check);
+    return status;
+}
+
+/* ---- Pictures against each other ---- */
+
+/* The window about the first pixel that differs, the first picture as the truth. */
+static int show_pixel(job *j, const uint8_t *first, const uint8_t *second, size_t at, camber_finding *finding) {
+    enum { SIDE_PX = 48 };
+    const int width = (int)j->s->width, height = (int)j->s->height;
+    const int x = (int)(at % j->s->width) - SIDE_PX / 2, y = (int)(at / j->s->width) - SIDE_PX / 2;
+    camber_window window = {x, y, width < SIDE_PX ? width : SIDE_PX, height < SIDE_PX ? height : SIDE_PX};
+    window.x0 = x > width - window.width ? width - window.width : x < 0 ? 0 : x;
+    window.y0 = y > height - window.height ? height - window.height : y < 0 ? 0 : y;
+    float truth[SIDE_PX * SIDE_PX];
+    uint8_t drawn[SIDE_PX * SIDE_PX];
+    for (int i = 0; i < window.width * window.height; i++) {
+        const size_t pixel =
+            (size_t)(window.y0 + i / window.width) * j->s->width + (size_t)(window.x0 + i % window.width);
+        truth[i] = (float)first[pixel] / 255.0f;
+        drawn[i] = second[pixel];
+    }
+    return camber_evidence_write(j->v, window, truth, drawn, finding);
+}
+
+/* The first pixel where two pictures differ. */
+static bool first_pixel(const job *j, const uint8_t *first, const uint8_t *second, camber_finding *finding,
+                        size_t *pixel) {
+    const size_t count = (size_t)j->s->width * j->s->height;
+    for (size_t i = 0; i < count; i++)
+        if (first[i] != second[i]) {
+            *pixel = i;
+            finding->field = "level";
+            finding->got = second[i];
+            finding->expected = first[i];
+            snprintf(finding->what, sizeof finding->what, "%s: pixel %zu, %zu: level %u, not %u", finding->stage,
+                     i % j->s->width, i / j->s->width, second[i], first[i]);
+            return true;
+        }
+    return false;
+}
+
+static camber_status meshes_differ(job *j, camber_easel *easel, size_t path, camber_finding *finding, bool *differ) {
+    camber_context *context = j->v->session->context;
+    camber_sight first = {0}, other = {0};
+    camber_status status = camber_sight_read(easel->paths[0].mesh, true, &first);
+    if (status == CAMBER_OK)
+        status = camber_sight_read(easel->paths[path].mesh, false, &other);
+    if (status == CAMBER_OK)
+        *differ = camber_sights_differ(&other, &first, finding);
+    camber_sight_close(context, &first);
+    camber_sight_close(context, &other);
+    return status;
+}
+
+/* A sharing path against the first: the mesh's bytes and the picture's. */
+static int check_path(job *j, camber_easel *easel, size_t path) {
+    camber_check check = camber_check_start(j->rig->name, easel->name, "%s: %s, %s: %s as %s, on %s, %s", j->s->name,
+                                            camber_method_name(j->desc.method), j->style, easel->paths[path].name,
+                                            easel->paths[0].name, j->rig->name, easel->name);
+    bool differ = false;
+    size_t pixel = 0;
+    camber_status drawn = draw(j, &easel->paths[path], j->other);
+    if (drawn == CAMBER_OK)
+        drawn = meshes_differ(j, easel, path, &check.finding, &differ);
+    int status = camber_report_status(j->v->session->report, drawn);
+    if (status != CAMBER_EXIT_DONE)
+        return status;
+    if (!differ) {
+        check.finding.stage = "sharing";
+        differ = first_pixel(j, j->own, j->other, &check.finding, &pixel);
+        if (differ)
+            status = show_pixel(j, j->own, j->other, pixel, &check.finding);
+    }
+    check.verdict = differ ? CAMBER_VERDICT_FAILED : CAMBER_VERDICT_PASSED;
+    if (status == CAMBER_EXIT_DONE)
+        camber_verdicts_add(&j->v->verdicts, &check);
+    return status;
+}
+
+/* A back end's picture against the first back end's. */
+static int check_backend(job *j, const camber_easel *easel) {
+    camber_check check = camber_check_start(j->rig->name, easel->name, "%s: %s, %s: %s as %s, on %s", j->s->name,
+                                            camber_method_name(j->desc.method), j->style, easel->name,
+                                            j->rig->easels[0].name, j->rig->name);
+    size_t pixel = 0;
+    check.has_error = true;
+    check.most = camber_bounds_of_backends();
+    int status = camber_report_status(
+        j->v->session->report, camber_pictures_compare(j->first, j->own, j->s->width, j->s->height, &check.error));
+    camber_finding past = {0};
+    if (status == CAMBER_EXIT_DONE && is_past(&check.error.of, &check.most, &past)) {
+        check.verdict = CAMBER_VERDICT_FAILED;
+        check.finding.stage = "back ends";
+        if (first_pixel(j, j->first, j->own, &check.finding, &pixel))
+            status = show_pixel(j, j->first, j->own, pixel, &check.finding);
+    }
+    if (status == CAMBER_EXIT_DONE)
+        camber_verdicts_add(&j->v->verdicts, &check);
+    return status;
+}
+
+/* ---- All of it ---- */
+
+static int check_easel(job *j, size_t which) {
+    camber_easel *easel = (camber_easel *)&j->rig->easels[which];
+    camber_check check = camber_check_start(j->rig->name, easel->name, "%s: %s, %s: pixels, on %s, %s", j->s->name,
+                                            camber_method_name(j->desc.method), j->style, j->rig->name, easel->name);
+    int status = camber_report_status(j->v->session->report, draw(j, &easel->paths[0], j->own));
+    if (status == CAMBER_EXIT_DONE)
+        status = check_truth(j, &check);
+    if (status == CAMBER_EXIT_DONE && which > 0)
+        status = check_backend(j, easel);
+    for (size_t path = 1; path < easel->path_count && j->is_shared && status == CAMBER_EXIT_DONE; path++)
+        status = check_path(j, easel, path);
+    if (which == 0)
+        memcpy(j->first, j->own, (size_t)j->s->width * j->s->height);
+    return status;
+}
+
+static int check_rig(job *j) {
+    int status = CAMBER_EXIT_DONE;
+    /* Wrong indices can take a GPU minutes, or down. */
+    if (j->rig->broken[j->desc.method]) {
+        camber_verdicts_skip(&j->v->verdicts,
+                             camber_check_start(j->rig->name, NULL, "%s: %s, %s: pixels, on %s", j->s->name,
+                                                camber_method_name(j->desc.method), j->style, j->rig->name),
+                             "the mesh is not the CPU twin's");
+        return status;
+    }
+    for (size_t e = 0; e < j->rig->easel_count && status == CAMBER_EXIT_DONE; e++)
+        status = check_easel(j, e);
+    return status;
+}
+
+static int check_style(job *j) {
+    const int wanted = j->v->session->options->method;
+    int status = CAMBER_EXIT_DONE;
+    for (size_t r = 0; r < j->v->rigs.count; r++)
+        for (int method = 0; method < 3 && status == CAMBER_EXIT_DONE; method++) {
+            j->rig = &j->v->rigs.list[r];
+            j->desc.method = (camber_method)method;
+            if (wanted < 0 || wanted == method)
+                status = check_rig(j);
+        }
+    return status;
+}
+
+/* Every join and every cap, and each variant of the shader that they ask for. */
+static const struct {
+    camber_join join;
+    camber_cap cap;
+} styles[] = {{CAMBER_JOIN_ROUND, CAMBER_CAP_ROUND},
+              {CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT},
+              {CAMBER_JOIN_MITER, CAMBER_CAP_ROUND},
+              {CAMBER_JOIN_MITER, CAMBER_CAP_SQUARE},
+              {CAMBER_JOIN_BEVEL, CAMBER_CAP_BUTT}};
+
+static void set_style(camber_stroke *stroke, size_t row, size_t number) {
+    (void)row;
+    stroke->join = styles[number].join;
+    stroke->cap = styles[number].cap;
+}
+
+static void keep_style(camber_stroke *stroke, size_t row, size_t number) {
+    (void)stroke;
+    (void)row;
+    (void)number;
+}
+
+/* With the share of tight and split joins, which the twin tells. */
+static camber_status find_bounds(job *j) {
+    camber_context *context = j->v->session->context;
+    camber_mesh_data twin = {0};
+    const camber_status status = camber_tessellate_on_host(context, j->s->polylines, &j->desc, &twin);
+    const double joins = (double)(twin.info.joins ? twin.info.joins : 1);
+    const double share = (double)(twin.info.tight_joins + twin.info.split_joins) / joins;
+    camber_mesh_data_free(context, &twin);
+    camber_bounds_of_pixels(j->s->scene, share, (camber_coverage)j->v->session->options->coverage, &j->bounds);
+    return status;
+}
+
+static int check_number(job *j, size_t number) {
+    const camber_subject *s = j->s;
+    camber_stroke *strokes =
+        camber_strokes_styled(s->drawn_strokes, s->stroke_count, s->scene ? set_style : keep_style, number);
+    camber_status made = CAMBER_ERROR_MEMORY;
+    j->desc.strokes = strokes;
+    j->is_shared = number == 0;
+    if (!s->scene)
+        snprintf(j->style, sizeof j->style, "as styled");
+    else
+        snprintf(j->style, sizeof j->style, "%s joins, %s caps", camber_join_name(styles[number].join),
+                 camber_cap_name(styles[number].cap));
+    if (strokes)
+        made = find_bounds(j);
+    if (made == CAMBER_OK)
+        made = camber_samples_make(s, strokes, j->v->session->options->windows, &j->samples);
+    int status = camber_report_status(j->v->session->report, made);
+    if (status == CAMBER_EXIT_DONE)
+        status = check_style(j);
+    camber_samples_free(&j->samples);
+    free(strokes);
+    return status;
+}
+
+int camber_check_pixels(camber_validation *validation, const camber_subject *subject) {
+    const size_t area = (size_t)subject->width * subject->height;
+    job j = {.v = validation, .s = subject, .desc = {.stroke_count = subject->stroke_count}};
+    int status = CAMBER_EXIT_DONE;
+    if (!camber_bounds_of_pixels(subject->scene, 0, CAMBER_COVERAGE_EXACT, &j.bounds))
+        return status;
+    j.first = malloc(area);
+    j.own = malloc(area);
+    j.other = malloc(area);
+    if (!j.first || !j.own || !j.other)
+        status = camber_report_status(validation->session->report, CAMBER_ERROR_MEMORY);
+    const size_t count = !subject->scene ? 1 : sizeof styles / sizeof *styles;
+    for (size_t number = 0; number < count && status == CAMBER_EXIT_DONE; number++)
+        status = check_number(&j, number);
+    free(j.other);
+    free(j.own);
+    free(j.first);
+    return status;
+}

@@ -1,0 +1,87 @@
+/* The checks of validate: a subject on all rigs. */
+#ifndef CAMBER_CLI_CHECKS_H
+#define CAMBER_CLI_CHECKS_H
+
+#include "cli/rigs.h"
+#include "proof/truth.h"
+
+/* Polylines and what they are checked with. */
+typedef struct camber_subject {
+    const char *name;
+    camber_lines lines;   /* borrowed */
+    const uint32_t *rows; /* NULL: all 0 */
+    bool keep_open;
+    const camber_polylines *polylines;  /* of the lines */
+    const camber_stroke *strokes;       /* stroke_count; joins and caps are set by the checks of meshes */
+    const camber_stroke *drawn_strokes; /* stroke_count: as pictures have them */
+    size_t stroke_count;
+    const char *scene; /* that is built in. NULL: what a user brought, whose drawn strokes keep their joins and caps */
+    uint32_t width, height; /* of the picture, px */
+} camber_subject;
+
+typedef struct camber_validation {
+    camber_session *session;
+    camber_verdicts verdicts;
+    camber_rigs rigs;
+    size_t picture_count; /* of differences, written so far */
+} camber_validation;
+
+/* Each returns an exit status, its line printed: what a check found is no failure of the call. */
+int camber_check_meshes(camber_validation *validation, const camber_subject *subject);
+int camber_check_pixels(camber_validation *validation, const camber_subject *subject);
+
+/* Sets a row's join and cap; number counts through what a subject is checked with. */
+typedef void camber_style_fn(camber_stroke *stroke, size_t row, size_t number);
+/* The subject's strokes with their joins and caps set, freed with free; NULL: out of memory. */
+camber_stroke *camber_strokes_styled(const camber_stroke *strokes, size_t count, camber_style_fn *style, size_t number);
+const char *camber_join_name(camber_join join);
+const char *camber_cap_name(camber_cap cap);
+
+/* ---- Meshes that differ: sight.c ---- */
+
+/* What can be seen of a tessellation. Valid when zeroed; closed in any case. */
+typedef struct camber_sight {
+    bool has_stages; /* else the mesh only */
+    camber_mesh_data mesh;
+    camber_stages stages;
+} camber_sight;
+
+camber_status camber_sight_read(camber_mesh *mesh, bool with_stages, camber_sight *sight);
+void camber_sight_close(camber_context *context, camber_sight *sight);
+
+/* The first element where what was got differs from what was expected, with its stage; false: none does. expected
+ * has its stages, which tell whose a vertex is. */
+bool camber_sights_differ(const camber_sight *got, const camber_sight *expected, camber_finding *finding);
+
+/* ---- Pictures of failures: evidence.c ---- */
+
+/* Writes truth | drawn | difference to --pictures, where that was asked for, and names it in the finding. */
+int camber_evidence_write(camber_validation *validation, camber_window window, const float *truth, const uint8_t *drawn,
+                          camber_finding *finding);
+/* The same of what a mesh on the rig looks like about the finding's point. */
+int camber_evidence_of_mesh(camber_validation *validation, const camber_rig *rig, const camber_subject *subject,
+                            const camber_tessellation_desc *desc, camber_finding *finding);
+/* Whether --pictures can be written to: known before the work. */
+int camber_evidence_check(const camber_session *session);
+
+/* ---- Bounds: bounds.c ---- */
+
+/* Of a built-in scene, or NULL for a user's lines, a share of whose joins is tight or split. false: it is not drawn. */
+bool camber_bounds_of_pixels(const char *scene, double tight_share, camber_coverage coverage,
+                             camber_pixel_bounds *bounds);
+/* Of one GL back end's picture against another's. */
+camber_pixel_bounds camber_bounds_of_backends(void);
+
+/* ---- Drawing: drawing.c ---- */
+
+typedef struct camber_drawing {
+    const camber_stroke *strokes; /* stroke_count: all rows are drawn, at their full widths */
+    size_t stroke_count;
+    uint32_t width, height; /* px */
+    camber_coverage coverage;
+} camber_drawing;
+
+/* Draws the path's mesh, opaque white on black, in one pass. levels takes width * height. */
+camber_status camber_draw_levels(const camber_path *path, const camber_drawing *drawing, uint8_t *levels);
+
+#endif

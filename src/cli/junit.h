@@ -1,0 +1,12 @@
+/* Verdicts as JUnit's XML, which CI systems read. */
+#ifndef CAMBER_CLI_JUNIT_H
+#define CAMBER_CLI_JUNIT_H
+
+#include "cli/output.h"
+#include "cli/verdicts.h"
+
+/* Writes to an open output and publishes it: a suite for each device and back end. Returns an exit status, its line
+ * printed. */
+int camber_junit_write(const camber_verdicts *verdicts, camber_output *output);
+
+#endif

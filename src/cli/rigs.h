@@ -1,0 +1,55 @@
+/* What the checks of validate run on: every OpenCL device, alone and with every GL back end and every sharing path. */
+#ifndef CAMBER_CLI_RIGS_H
+#define CAMBER_CLI_RIGS_H
+
+#include "cli/session.h"
+#include "cli/verdicts.h"
+
+enum { CAMBER_RIG_EASELS = 2, CAMBER_RIG_PATHS = 3, CAMBER_RIG_GROUPS = 2 };
+
+/* A way for a mesh to reach GL. */
+typedef struct camber_path {
+    const char *name;
+    camber_renderer *renderer;
+    camber_mesh *mesh;
+} camber_path;
+
+/* A GL back end, with the device opened once more for it. */
+typedef struct camber_easel {
+    const char *name; /* "EGL", "OSMesa" */
+    camber_surface *surface;
+    camber_device *device;
+    camber_path paths[CAMBER_RIG_PATHS]; /* path_count, those that work; never none */
+    size_t path_count;
+} camber_easel;
+
+typedef struct camber_rig {
+    char name[160];  /* of the device, and which of several of that name */
+    uint32_t number; /* camber_device_desc's */
+    camber_device *device;
+    camber_mesh *mesh;
+    struct {
+        uint32_t size;
+        camber_device *device;
+        camber_mesh *mesh;
+    } groups[CAMBER_RIG_GROUPS];            /* other work-group sizes */
+    camber_easel easels[CAMBER_RIG_EASELS]; /* easel_count */
+    size_t easel_count;
+    bool broken[3]; /* by camber_method: meshes of the subject at hand differ from the twin's, and are not drawn */
+} camber_rig;
+
+typedef struct camber_rigs {
+    camber_rig *list; /* count */
+    size_t count;
+} camber_rigs;
+
+/* Opens what --device and --backend allow. What is not there becomes a skip; no device at all, or not the one that was
+ * asked for, is CAMBER_EXIT_UNAVAILABLE, its line printed. Can be closed in any case. */
+int camber_rigs_open(camber_rigs *rigs, camber_session *session, camber_verdicts *verdicts);
+void camber_rigs_close(camber_rigs *rigs);
+
+/* The rig's device with no buffer larger than this, and a mesh on it. */
+camber_status camber_rig_open_small(const camber_rig *rig, camber_session *session, uint64_t largest_buffer_bytes,
+                                    camber_device **device, camber_mesh **mesh);
+
+#endif

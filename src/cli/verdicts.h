@@ -1,0 +1,82 @@
+/* What the checks of validate found: TAP as they end, JSON at the end, JUnit in junit.c. */
+#ifndef CAMBER_CLI_VERDICTS_H
+#define CAMBER_CLI_VERDICTS_H
+
+#include "cli/report.h"
+
+typedef enum camber_verdict {
+    CAMBER_VERDICT_PASSED,
+    CAMBER_VERDICT_FAILED,
+    CAMBER_VERDICT_SKIPPED,
+} camber_verdict;
+
+/* Where a check failed first. */
+typedef struct camber_finding {
+    const char *stage;      /* classify, scan, emit, ... */
+    bool has_point;         /* polyline and point are known */
+    size_t polyline, point; /* as in camber_point_stages */
+    double x, y;            /* px */
+    const char *field;      /* of what was compared */
+    double got, expected;   /* its values */
+    char what[256];         /* all of it in one line */
+    char *picture;          /* the file that shows it; freed by the verdicts. NULL: none */
+} camber_finding;
+
+/* What pixels are held to, over those that an edge crosses. */
+typedef struct camber_pixel_bounds {
+    double mean;             /* in 255ths */
+    double past_16, past_64; /* share of pixels that may differ by more */
+} camber_pixel_bounds;
+
+/* How far they are from the truth. */
+typedef struct camber_pixel_error {
+    camber_pixel_bounds of;
+    size_t windows, pixels;
+    int max;
+} camber_pixel_error;
+
+typedef struct camber_check {
+    char name[512];
+    const char *device, *backend; /* live as long as the verdicts. backend NULL: none took part */
+    camber_verdict verdict;
+    char reason[512]; /* of a skip */
+    double start_ms, ms;
+    bool has_error; /* pixels were measured, and held against most */
+    camber_pixel_error error;
+    camber_pixel_bounds most;
+    camber_finding finding;
+} camber_check;
+
+/* A value as people read it: whole numbers to the last digit, floats so that they can be told apart. */
+typedef struct camber_value_text {
+    char text[32];
+} camber_value_text;
+
+camber_value_text camber_value_print(double value);
+
+/* Bytes of the character at text, as reports may have it: UTF-8 that XML 1.0 allows. 0: it is none, and '?' stands for
+ * its first byte. */
+size_t camber_character_size(const char *text);
+
+typedef struct camber_verdicts {
+    camber_report *report;
+    bool tap;           /* prints each as it comes */
+    camber_check *list; /* count */
+    size_t count, capacity, failed, skipped;
+    bool full; /* of memory: the list is not whole */
+} camber_verdicts;
+
+void camber_verdicts_open(camber_verdicts *verdicts, camber_report *report, bool tap);
+/* Starts a check on a device and a back end, NULL where there is none: its clock and its name. */
+camber_check camber_check_start(const char *device, const char *backend, const char *format, ...) CAMBER_PRINTF(3, 4);
+/* Adds what came of it. Takes over the finding's picture. */
+void camber_verdicts_add(camber_verdicts *verdicts, const camber_check *check);
+/* A check that cannot be made here. */
+void camber_verdicts_skip(camber_verdicts *verdicts, camber_check check, const char *reason);
+/* TAP's word for an end before the last check. */
+void camber_verdicts_bail(const camber_verdicts *verdicts);
+/* TAP's plan, or JSON. Returns an exit status, its line printed; CAMBER_EXIT_CHECK where a check failed. */
+int camber_verdicts_print(const camber_verdicts *verdicts);
+void camber_verdicts_close(camber_verdicts *verdicts);
+
+#endif

@@ -1,0 +1,137 @@
+#!/bin/bash
+# Breaks kernels, shaders and join maths on purpose, one line at a time, and runs `camber validate` on each build: it
+# must end with 1 and name a check that failed. test_mutations.sh SOURCES [PART OF A ROW'S FILE OR WORDS]
+# kernels/join.h is compiled into kernels and CPU twin alike, so that pixels alone tell.
+set -u
+sources=$1
+only=${2:-}
+tmp=$(mktemp -d) || exit 1
+trap 'rm -rf "$tmp"' EXIT
+# Drivers keep their caches apart from those of other tests.
+export XDG_CACHE_HOME=$tmp/cache POCL_CACHE_DIR=$tmp/pocl
+mkdir "$POCL_CACHE_DIR" "$tmp/sources"
+caught=0
+failures=0
+
+fail() {
+    failures=$((failures + 1))
+    echo "FAILED: $*"
+}
+
+build() {
+    ninja -C "$tmp/build" camber_tool >"$tmp/build.log" 2>&1
+}
+
+# Runs validate; its report is in $tmp/tap. One back end and half of the windows tell as much.
+backend=auto
+validate() {
+    "$tmp/build/src/camber" validate --windows 12 --backend $backend "$@" >"$tmp/tap" 2>"$tmp/stderr"
+}
+
+# mutant METHOD FILE WHAT-IT-BREAKS OLD NEW: replaces the first OLD in FILE. METHOD is what validate is told to check.
+mutant() {
+    local method=$1 file=$2 what=$3 old=$4 new=$5 text
+    case "$file $what" in *"$only"*) ;; *) return ;; esac
+    text=$(cat "$sources/$file" && printf x) || { fail "$file: cannot be read"; return; }
+    text=${text%x}
+    if [ "${text/"$old"/}" = "$text" ]; then
+        fail "$file: $what: the old text is gone: $old"
+        return
+    fi
+    printf '%s' "${text/"$old"/"$new"}" >"$tmp/sources/$file"
+    if build; then
+        validate --method "$method"
+        local status=$? first
+        first=$(grep -m 1 '^not ok' "$tmp/tap")
+        if [ "$status" = 1 ] && [ -n "$first" ]; then
+            caught=$((caught + 1))
+            echo "caught: $file: $what"
+            echo "    $(grep -c '^not ok' "$tmp/tap") of $(sed -n 's/^1\.\.//p' "$tmp/tap") checks, the first: ${first#not ok }"
+            grep -m 1 '^  message: ' "$tmp/tap" | sed 's/^ */    /'
+        else
+            fail "$file: $what: not caught: exit status $status; $(head -c 300 "$tmp/stderr")"
+        fi
+    else
+        fail "$file: $what: does not build: $(grep -m 3 -i error "$tmp/build.log")"
+    fi
+    cp "$sources/$file" "$tmp/sources/$file"
+}
+
+# ---- The build that is broken ----
+
+for part in CMakeLists.txt LICENSE kernels shaders src bench; do
+    cp -r "$sources/$part" "$tmp/sources/" || exit 1
+done
+options=(-DCAMBER_MAP=OFF -DCAMBER_TESTS=OFF)
+command -v ccache >/dev/null && options+=(-DCMAKE_C_COMPILER_LAUNCHER=ccache)
+if ! cmake -S "$tmp/sources" -B "$tmp/build" -G Ninja "${options[@]}" >"$tmp/build.log" 2>&1 || ! build; then
+    tail -20 "$tmp/build.log"
+    echo "FAILED: the sources do not build"
+    exit 1
+fi
+validate
+case $? in
+0) echo "passes: the sources as they are, $(sed -n 's/^1\.\.//p' "$tmp/tap") checks" ;;
+69) echo "skipped: $(cat "$tmp/stderr")"; exit 77 ;;
+*)
+    grep -m 3 -A 4 '^not ok' "$tmp/tap"
+    cat "$tmp/stderr"
+    echo "FAILED: the sources as they are do not pass"
+    exit 1
+    ;;
+esac
+if ! grep -q ': pixels, on' "$tmp/tap"; then
+    echo "skipped: no GL back end: $(grep -m 1 SKIP "$tmp/tap")"
+    exit 77
+fi
+
+backend=osmesa
+grep -q ': pixels, on .*EGL$' "$tmp/tap" && backend=egl
+
+# ---- Kernels: the twin tells ----
+
+mutant strip kernels/classify.cl "a neighbour off by one" 'x_before[i - 1]' 'x_before[i]'
+mutant strip kernels/classify.cl "only first points are ends" 'point & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST)' \
+    'point & CAMBER_POINT_FIRST'
+mutant strip kernels/scan.cl "a lane's points all at one offset" 'base + before[i]' 'base + before[0]'
+mutant kite kernels/scan.cl "a point in its neighbour's place" 'joins[first + i - 1]' 'joins[first + i]'
+mutant strip kernels/emit.cl "a missing restart" 'index[0] = 0xffffffffu;' 'index[0] = v;'
+mutant strip kernels/emit.cl "the ends of a segment swapped" 'half_shorter, -1.0f, join' 'half_shorter, 1.0f, join'
+mutant strip kernels/emit.cl "a vertex at B that says A" 'camber_join_end(join) << 3 | 64u' 'camber_join_end(join) << 3'
+mutant kite kernels/emit.cl "a triangle that winds the other way" 'put_triangle(indices + 3, s + 1, e + 1, e)' \
+    'put_triangle(indices + 3, s + 1, e, e + 1)'
+mutant fan kernels/emit.cl "a fan that turns back" 'c * row.fan_cos - s * row.fan_sin' 'c * row.fan_cos + s * row.fan_sin'
+mutant strip kernels/layout.h "a pad of another width on the device" '#define CAMBER_PAD_PX 0.75f' \
+    '#define CAMBER_PAD_PX 0.7f'
+
+# ---- Join maths, which kernels and twin share: pixels tell ----
+
+mutant strip kernels/join.h "turns to the other side" 'aside = dx * ey - dy * ex' 'aside = dy * ex - dx * ey'
+mutant strip kernels/join.h "turns of half the angle" 'turn.c) * 32767.0f' 'turn.c) * 16383.0f'
+mutant strip kernels/join.h "cuts at the tangent of another angle" 'return 2.0f * q / (' 'return q / ('
+mutant strip kernels/join.h "cuts on the wrong side" 'cut = -end * side' 'cut = end * side'
+mutant strip kernels/join.h "no join is tight" 'tight = row->reach_px * sine > ' 'tight = -row->reach_px * sine > '
+mutant strip kernels/join.h "no turn is too sharp to cut" 'sine > 2.0f * turn.c' 'sine > 2e9f * turn.c'
+mutant strip kernels/join.h "tight joins that forget the bisector" 'end = split || tight ?' 'end = split ?'
+mutant strip kernels/join.h "a miter past its limit" 'turn.c * row->miter_limit >= 1.0f' 'turn.c * row->miter_limit <= 1.0f'
+mutant strip kernels/join.h "round and square caps swapped" 'cap == 1u ? 0u : cap == 2u ? 2u' 'cap == 1u ? 2u : cap == 2u ? 0u'
+mutant strip kernels/join.h "butt ends without a pad" 'is_butt ? CAMBER_PAD_PX' 'is_butt ? 0.0f'
+mutant kite kernels/join.h "kites whose tip runs away" 'sine > 1.7320508f * turn.c ? 4u' 'sine > 1.7320508f * turn.c ? 2u'
+mutant fan kernels/join.h "fans of one triangle" 'x > turn_cos && y > 0.0f' 'x < turn_cos && y > 0.0f'
+
+# ---- Shaders ----
+
+mutant strip shaders/stroke.vert "left and right swapped at A" 'a_point - a_segment' 'a_point + a_segment'
+mutant strip shaders/stroke.vert "no pad" 'PAD_PX = 0.75' 'PAD_PX = 0.0'
+mutant strip shaders/stroke.frag "the slope of an edge" '0.5 + s * e.slope' '0.5 + s * 0.8 * e.slope'
+mutant strip shaders/stroke.frag "the corner of a pixel" 'rest * rest * e.curve' 'rest * e.curve'
+mutant strip shaders/stroke.frag "half the width" 'covered(half_width - d, edge)' 'covered(0.9 * half_width - d, edge)'
+mutant strip shaders/stroke.frag "the sine of a turn" '2.0 * q * scale' 'q * scale'
+mutant strip shaders/stroke.frag "the wrong side of a bisector" 'e.c * e.past + e.s * y > tie' 'e.c * e.past - e.s * y > tie'
+mutant strip shaders/stroke.frag "square caps of a whole width" 'half_width - e.past' '2.0 * half_width - e.past'
+mutant strip shaders/stroke.frag "bevels that reach too far" 'bevel ? half_width * e.c' 'bevel ? half_width'
+mutant strip shaders/stroke.frag "a bend to the wrong side" 'y - (bend(end_a, y)' 'y + (bend(end_a, y)'
+mutant strip shaders/stroke.frag "caps of thin lines" 'clamp(0.5 + reach - e.past, 0.0, 1.0)' 'clamp(0.5 - e.past, 0.0, 1.0)'
+
+echo "$caught caught, $failures failures"
+[ "$failures" = 0 ]

@@ -1,5 +1,5 @@
 #include "cli/comparison.h"
-#include "cli/truth_bands.h"
+#include "proof/bands.h"
 #include "proof/batches.h"
 #include "proof/joins.h"
 #include "proof/turns.h"
@@ -250,16 +250,16 @@ static void count_network(const camber_network *network, camber_comparison_row *
 
 static camber_status measure_errors(const camber_comparison *c, const camber_network *network, place *here,
                                     camber_comparison_row *row) {
-    camber_truth_job job = {.truth = {.lines = network->lines,
-                                      .rows = network->rows,
-                                      .strokes = network->strokes,
-                                      .keep_open = network->keep_open,
-                                      .kind = CAMBER_TRUTH_UNION},
-                            .width = (int)c->networks.width,
-                            .height = (int)c->networks.height,
-                            .threads = c->session->options->threads,
-                            .progress = tell_truth,
-                            .user = here};
+    camber_bands_desc job = {.truth = {.lines = network->lines,
+                                       .rows = network->rows,
+                                       .strokes = network->strokes,
+                                       .keep_open = network->keep_open,
+                                       .kind = CAMBER_TRUTH_UNION},
+                             .width = (int)c->networks.width,
+                             .height = (int)c->networks.height,
+                             .threads = c->session->options->threads,
+                             .progress = tell_truth,
+                             .user = here};
     int methods[CAMBER_METHODS];
     for (int i = 0; i < CAMBER_METHODS; i++)
         if (c->shown[i]) {
@@ -267,7 +267,7 @@ static camber_status measure_errors(const camber_comparison *c, const camber_net
             job.pictures[job.picture_count++] = c->levels[i];
         }
     camber_difference differences[CAMBER_PICTURES_MAX];
-    if (!camber_truth_bands(&job, differences))
+    if (!camber_bands_measure(&job, differences))
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < job.picture_count; i++) {
         row->measures[methods[i]][CAMBER_MEASURE_MEAN_ERROR] = camber_difference_mean(&differences[i]);

@@ -1,4 +1,4 @@
-#include "cli/truth_bands.h"
+#include "proof/bands.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
@@ -8,7 +8,7 @@
 enum { BAND_ROWS = 32, THREADS_MAX = 64 };
 
 typedef struct crew {
-    const camber_truth_job *job;
+    const camber_bands_desc *desc;
     int bands;
     atomic_int next, done;
     atomic_bool failed;
@@ -23,14 +23,14 @@ typedef struct worker {
 } worker;
 
 static bool measure_band(worker *w, int band, float *coverage) {
-    const camber_truth_job *job = w->crew->job;
-    const int y0 = band * BAND_ROWS, height = job->height - y0 < BAND_ROWS ? job->height - y0 : BAND_ROWS;
-    const camber_window window = {0, y0, job->width, height};
-    const size_t first = (size_t)y0 * (size_t)job->width, count = (size_t)height * (size_t)job->width;
-    if (!camber_truth_make(&job->truth, window, coverage))
+    const camber_bands_desc *desc = w->crew->desc;
+    const int y0 = band * BAND_ROWS, height = desc->height - y0 < BAND_ROWS ? desc->height - y0 : BAND_ROWS;
+    const camber_window window = {0, y0, desc->width, height};
+    const size_t first = (size_t)y0 * (size_t)desc->width, count = (size_t)height * (size_t)desc->width;
+    if (!camber_truth_make(&desc->truth, window, coverage))
         return false;
-    for (size_t i = 0; i < job->picture_count; i++) {
-        const camber_difference d = camber_difference_of(coverage, job->pictures[i] + first, count);
+    for (size_t i = 0; i < desc->picture_count; i++) {
+        const camber_difference d = camber_difference_of(coverage, desc->pictures[i] + first, count);
         camber_difference_add(&w->differences[i], &d);
     }
     return true;
@@ -39,30 +39,30 @@ static bool measure_band(worker *w, int band, float *coverage) {
 static void *work(void *user) {
     worker *w = user;
     crew *c = w->crew;
-    float *coverage = malloc((size_t)c->job->width * BAND_ROWS * sizeof *coverage);
+    float *coverage = malloc((size_t)c->desc->width * BAND_ROWS * sizeof *coverage);
     if (!coverage)
         atomic_store(&c->failed, true);
     for (int band; !atomic_load(&c->failed) && (band = atomic_fetch_add(&c->next, 1)) < c->bands;) {
         if (!measure_band(w, band, coverage))
             atomic_store(&c->failed, true);
         const int done = atomic_fetch_add(&c->done, 1) + 1;
-        if (w->leads && c->job->progress)
-            c->job->progress(c->job->user, (double)done / c->bands);
+        if (w->leads && c->desc->progress)
+            c->desc->progress(c->desc->user, (double)done / c->bands);
     }
     free(coverage);
     return NULL;
 }
 
-static int threads_of(const camber_truth_job *job, int bands) {
-    const long cores = job->threads ? (long)job->threads : sysconf(_SC_NPROCESSORS_ONLN);
+static int threads_of(const camber_bands_desc *desc, int bands) {
+    const long cores = desc->threads ? (long)desc->threads : sysconf(_SC_NPROCESSORS_ONLN);
     const long least = cores < bands ? cores : bands;
     return least < 1 ? 1 : least > THREADS_MAX ? THREADS_MAX : (int)least;
 }
 
-bool camber_truth_bands(const camber_truth_job *job, camber_difference *differences) {
-    crew c = {.job = job, .bands = (job->height + BAND_ROWS - 1) / BAND_ROWS};
+bool camber_bands_measure(const camber_bands_desc *desc, camber_difference *differences) {
+    crew c = {.desc = desc, .bands = (desc->height + BAND_ROWS - 1) / BAND_ROWS};
     worker workers[THREADS_MAX] = {{.crew = &c, .leads = true}};
-    const int wanted = threads_of(job, c.bands);
+    const int wanted = threads_of(desc, c.bands);
     int made = 1;
     for (; made < wanted; made++) {
         workers[made].crew = &c;
@@ -72,7 +72,7 @@ bool camber_truth_bands(const camber_truth_job *job, camber_difference *differen
     work(&workers[0]);
     for (int i = 1; i < made; i++)
         pthread_join(workers[i].thread, NULL);
-    for (size_t i = 0; i < job->picture_count; i++) {
+    for (size_t i = 0; i < desc->picture_count; i++) {
         differences[i] = (camber_difference){0};
         for (int k = 0; k < made; k++)
             camber_difference_add(&differences[i], &workers[k].differences[i]);

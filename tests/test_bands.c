@@ -56,6 +56,7 @@ static void test_bands(void **state) {
             assert_int_equal(found[i].past_16, whole.past_16);
             assert_int_equal(found[i].past_64, whole.past_64);
             assert_int_equal(found[i].max, whole.max);
+            assert_int_equal(found[i].max_at, whole.max_at);
         }
         assert_int_equal(found[0].max,
                          abs((int)pictures[0][WIDTH * HEIGHT - 1] - (int)lrintf(255 * truth[WIDTH * HEIGHT - 1])));

@@ -272,6 +272,7 @@ static camber_status measure_errors(const camber_comparison *c, const camber_net
     for (size_t i = 0; i < job.picture_count; i++) {
         row->measures[methods[i]][CAMBER_MEASURE_MEAN_ERROR] = camber_difference_mean(&differences[i]);
         row->measures[methods[i]][CAMBER_MEASURE_MAX_ERROR] = differences[i].max;
+        row->max_at[methods[i]] = differences[i].max_at;
     }
     return CAMBER_OK;
 }

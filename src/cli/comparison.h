@@ -55,6 +55,7 @@ typedef struct camber_comparison_row {
     const char *name; /* of the network */
     double figures[CAMBER_FIGURE_COUNT];
     double measures[CAMBER_METHODS][CAMBER_MEASURE_COUNT]; /* as camber_methods_shown */
+    size_t max_at[CAMBER_METHODS];                         /* the pixel of the maximum error */
 } camber_comparison_row;
 
 typedef struct camber_comparison {

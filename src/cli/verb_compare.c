@@ -36,6 +36,16 @@ static json_t *row_json(const camber_comparison *c, const camber_comparison_row 
     return object;
 }
 
+/* Where to look: the pixel of each method's maximum error. */
+static void put_places(const camber_comparison *c, const camber_comparison_row *row, json_t *methods) {
+    for (int i = 0; i < CAMBER_METHODS; i++) {
+        const json_int_t at = (json_int_t)row->max_at[i], width = (json_int_t)c->networks.width;
+        if (c->shown[i])
+            json_object_set_new(json_object_get(methods, camber_method_name(camber_methods_shown[i])), "max_error_at",
+                                json_pack("[I, I]", at % width, at / width));
+    }
+}
+
 static json_t *ratios_json(const camber_comparison *c) {
     json_t *object = json_object();
     for (int i = 0; i < CAMBER_METHODS; i++) {
@@ -67,6 +77,7 @@ static int print_json(const camber_comparison *c) {
     camber_session_describe(c->session, object);
     for (size_t i = 0; i < c->networks.count; i++) {
         json_t *row = row_json(c, &c->rows[i]);
+        put_places(c, &c->rows[i], json_object_get(row, "methods"));
         json_object_set_new(row, "name", camber_json_text(c->rows[i].name));
         json_array_append_new(networks, row);
     }

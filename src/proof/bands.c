@@ -22,6 +22,13 @@ typedef struct worker {
     camber_difference differences[CAMBER_PICTURES_MAX];
 } worker;
 
+/* The first pixel of the picture that differs most, whichever thread has met it. */
+static void add(camber_difference *sum, const camber_difference *more) {
+    const bool first = more->max > sum->max || (more->max == sum->max && more->max_at < sum->max_at);
+    sum->max_at = first ? more->max_at : sum->max_at;
+    camber_difference_add(sum, more);
+}
+
 static bool measure_band(worker *w, int band, float *coverage) {
     const camber_bands_desc *desc = w->crew->desc;
     const int y0 = band * BAND_ROWS, height = desc->height - y0 < BAND_ROWS ? desc->height - y0 : BAND_ROWS;
@@ -30,8 +37,9 @@ static bool measure_band(worker *w, int band, float *coverage) {
     if (!camber_truth_make(&desc->truth, window, coverage))
         return false;
     for (size_t i = 0; i < desc->picture_count; i++) {
-        const camber_difference d = camber_difference_of(coverage, desc->pictures[i] + first, count);
-        camber_difference_add(&w->differences[i], &d);
+        camber_difference d = camber_difference_of(coverage, desc->pictures[i] + first, count);
+        d.max_at += first;
+        add(&w->differences[i], &d);
     }
     return true;
 }
@@ -75,7 +83,7 @@ bool camber_bands_measure(const camber_bands_desc *desc, camber_difference *diff
     for (size_t i = 0; i < desc->picture_count; i++) {
         differences[i] = (camber_difference){0};
         for (int k = 0; k < made; k++)
-            camber_difference_add(&differences[i], &workers[k].differences[i]);
+            add(&differences[i], &workers[k].differences[i]);
     }
     return !atomic_load(&c.failed);
 }

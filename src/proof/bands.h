@@ -18,7 +18,7 @@ typedef struct camber_bands_desc {
     void *user;
 } camber_bands_desc;
 
-/* One difference a picture; max_at of each is 0. false: out of memory. */
+/* One difference a picture, as camber_difference_of gives it of the whole. false: out of memory. */
 bool camber_bands_measure(const camber_bands_desc *desc, camber_difference *differences);
 
 #endif

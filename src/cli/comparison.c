@@ -260,7 +260,7 @@ static camber_status measure_errors(const camber_comparison *c, const camber_net
                              .threads = c->session->options->threads,
                              .progress = tell_truth,
                              .user = here};
-    int methods[CAMBER_METHODS];
+    int methods[CAMBER_METHODS] = {0};
     for (int i = 0; i < CAMBER_METHODS; i++)
         if (c->shown[i]) {
             methods[job.picture_count] = i;

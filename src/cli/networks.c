@@ -124,11 +124,14 @@ static int open_maps(camber_networks *networks) {
             return spooled;
     }
     networks->view = options->view;
-    networks->features = calloc(count, sizeof *networks->features);
-    camber_status status = networks->features ? open_style(networks) : CAMBER_ERROR_MEMORY;
-    networks->count = networks->features ? count : 0;
+    camber_features **features = calloc(count, sizeof *features);
+    if (!features)
+        return camber_report_status(session->report, CAMBER_ERROR_MEMORY);
+    networks->features = features;
+    networks->count = count;
+    camber_status status = open_style(networks);
     for (size_t i = 0; i < count && status == CAMBER_OK; i++)
-        status = read_features(networks, options->wheres[i], &networks->features[i]);
+        status = read_features(networks, options->wheres[i], &features[i]);
     if (status == CAMBER_OK)
         status = fit_view(networks);
     return camber_report_status(session->report, status);

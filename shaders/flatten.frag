@@ -1,4 +1,5 @@
-// A flattened layer onto the picture: COVERAGE takes one channel and a colour, else the layer has its own colours.
+// A flattened layer onto the picture. COVERAGE: it has one channel and takes a colour; UNION: it has the four that
+// stroke.frag leaves, and takes a colour; neither: it has its own colours.
 precision highp float;
 
 uniform mediump sampler2D u_layer;
@@ -6,9 +7,30 @@ uniform vec4 u_color; // premultiplied; with colours of its own, opacity in all 
 
 layout(location = 0) out mediump vec4 o_color;
 
+#if UNION
+// The area under all strokes of a pixel. Two areas a and b that edges cut off together cover
+//     the larger      where the edges face alike
+//     a + b - ab      where they cross at a right angle
+//     a + b           where they face each other
+// Their sum and a + b - ab give a and b; the sum of the edges' normals, each by a (1 - a), then gives the angle between
+// them. More than two are taken for two. Thin lines leave no sum.
+float united(vec4 layer) {
+    float sum = layer.b, over = layer.a;
+    float root = sqrt(max(sum * sum - 4.0 * max(sum - over, 0.0), 0.0));
+    float more = min(0.5 * (sum + root), 1.0), less = clamp(0.5 * (sum - root), 0.0, 1.0);
+    float a = more * (1.0 - more), b = less * (1.0 - less);
+    float cosine = clamp((dot(layer.rg, layer.rg) - a * a - b * b) / max(2.0 * a * b, 1e-6), -1.0, 1.0);
+    float area = mix(over, cosine < 0.0 ? min(sum, 1.0) : more, abs(cosine));
+    // Half floats lose as much: the inside is whole.
+    return sum <= over ? over : area > 0.99 ? 1.0 : area;
+}
+#endif
+
 void main() {
     vec4 layer = texelFetch(u_layer, ivec2(gl_FragCoord.xy), 0);
-#if COVERAGE
+#if UNION
+    o_color = u_color * united(layer);
+#elif COVERAGE
     o_color = u_color * layer.r;
 #else
     o_color = u_color * layer;

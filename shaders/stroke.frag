@@ -1,7 +1,9 @@
 // The coverage of a pixel by its segment's part of a stroke.
 // Built with LINEAR (a ramp in place of the exact area), SHARP_JOINS (miter, bevel) and FLAT_CAPS (butt, square), each
 // 0 or 1, so that a mesh pays for what it has: a software rasteriser runs every branch. With COUNT it adds 1 of 255 in
-// place of the colour, and fragments without coverage leave nothing, in the stencil neither.
+// place of the colour, and fragments without coverage leave nothing, in the stencil neither. With UNION it leaves, to be
+// summed over all fragments of a pixel, the edge's normal times a (1 - a) and the area a, and a once more, to be gathered
+// one over the other: flatten.frag makes the union of them.
 precision highp float;
 
 flat in highp vec4 v_segment;
@@ -111,6 +113,19 @@ float inside_tip(End e, float half_width) {
     return e.kind == ROUND && e.s == 0.0 ? clamp(0.5 + reach - e.past, 0.0, 1.0) : 1.0;
 }
 
+#if UNION
+// Into the stroke, across the edge that is nearest, in the picture.
+vec2 normal_of(End a, End b, float y, vec2 u, float half_width) {
+    vec2 off = vec2(is_round(b.kind) ? max(b.past, 0.0) : 0.0, y) - vec2(is_round(a.kind) ? max(a.past, 0.0) : 0.0, 0.0);
+    vec2 inward = -off / max(length(off), 1e-3);
+#if FLAT_CAPS
+    float cap_a = inside_cap(a, half_width), cap_b = inside_cap(b, half_width);
+    inward = min(cap_a, cap_b) < half_width - abs(y) ? vec2(cap_a < cap_b ? 1.0 : -1.0, 0.0) : inward;
+#endif
+    return inward.x * u + inward.y * vec2(-u.y, u.x);
+}
+#endif
+
 void main() {
     vec2 a = v_segment.xy, u = v_segment.zw;
     float len = v_shape.x, half_width = v_shape.y;
@@ -138,6 +153,12 @@ void main() {
     if (foreign || area <= 0.0)
         discard;
     o_color = vec4(1.0 / 255.0, 0.0, 0.0, 0.0);
+#elif UNION
+    // Lines thinner than this have both edges in a pixel, and no one normal.
+    bool thick = half_width > 0.4;
+    area = foreign ? 0.0 : area;
+    o_color = vec4(normal_of(end_a, end_b, y, u, half_width) * (area * (1.0 - area)), area, area);
+    o_color.rgb = thick ? o_color.rgb : vec3(0.0);
 #else
     o_color = v_color * (foreign ? 0.0 : area);
 #endif

@@ -445,6 +445,10 @@ typedef enum camber_overlap {
      * first and composited once. A run of polylines with equal alpha is flattened together. */
     CAMBER_OVERLAP_FLATTEN = 0,
     CAMBER_OVERLAP_ACCUMULATE, /* overlaps of translucent lines darken */
+    /* FLATTEN, and opaque runs of one colour are gathered and composited once as well. Where edges meet in a pixel, of
+     * one line or of several, the picture has the area of all lines together, which drawing one over the other
+     * misses: a third to three quarters of the error, for a fifth to twice more time. */
+    CAMBER_OVERLAP_UNITE,
 } camber_overlap;
 
 typedef enum camber_coverage {

@@ -177,6 +177,53 @@ static void test_flatten_is_even(void **state) {
 }
 
 /* Equal alphas and two colours: one run, the later line hides the earlier where they cross. */
+/* Two strokes side by side, their common edge in the middle of a pixel: together they leave nothing of it, one over the
+ * other a quarter. A third one over the second adds nothing to its edge. */
+static void test_united_edges(void **state) {
+    studio *s = *state;
+    camber_surface *surface = studio_any(s)->share.surface;
+    if (!surface->half_float_targets)
+        skip();
+    scene lines = {0};
+    line(&lines, 0, 4, 20.5, 60, 20.5); /* 15.5 to 25.5 */
+    line(&lines, 0, 4, 30.5, 60, 30.5); /* 25.5 to 35.5 */
+    line(&lines, 0, 10, 30.5, 50, 30.5);
+    for (int i = 0; i < 3; i++) {
+        static const camber_overlap overlaps[] = {CAMBER_OVERLAP_UNITE, CAMBER_OVERLAP_FLATTEN, CAMBER_OVERLAP_FLATTEN};
+        const float alpha = i == 1 ? 0.5f : 1.0f; /* opaque, FLATTEN draws line over line */
+        picture p = draw_lines(s, &lines, &(camber_paint){10, {1, 1, 1, alpha}}, 1, overlaps[i]);
+        assert_value(&p, 55, 25, 3, i == 2 ? 0.75 : (double)alpha);
+        assert_value(&p, 30, 35, 3, i == 2 ? 0.75 : 0.5 * (double)alpha);
+        assert_value(&p, 55, 35, 3, 0.5 * (double)alpha);
+        assert_value(&p, 30, 20, 3, (double)alpha);
+        picture_free(&p);
+    }
+    scene_free(&lines);
+}
+
+/* Where the driver has no such targets, one over the other. */
+static void test_without_half_floats(void **state) {
+    studio *s = *state;
+    camber_surface *surface = studio_any(s)->share.surface;
+    const bool had = surface->half_float_targets;
+    scene lines = {0};
+    line(&lines, 0, 4, 20.5, 60, 20.5);
+    line(&lines, 0, 4, 30.5, 60, 30.5);
+    camber_renderer *renderer = NULL, *old = studio_any(s);
+    surface->half_float_targets = false;
+    assert_int_equal(camber_renderer_create(s->device, surface, NULL, &renderer), CAMBER_OK);
+    const int which = s->renderer[0] ? 0 : 1;
+    s->renderer[which] = renderer;
+    picture p = draw_lines(s, &lines, &(camber_paint){10, {1, 1, 1, 0.5f}}, 1, CAMBER_OVERLAP_FLATTEN);
+    assert_value(&p, 30, 25, 3, 0.375);
+    assert_value(&p, 30, 20, 3, 0.5);
+    picture_free(&p);
+    s->renderer[which] = old;
+    surface->half_float_targets = had;
+    camber_renderer_destroy(renderer);
+    scene_free(&lines);
+}
+
 static void test_colors_of_one_run(void **state) {
     studio *s = *state;
     scene lines = {0};
@@ -439,6 +486,7 @@ static void test_mesh_changes(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_rectangles),        cmocka_unit_test(test_coverages),
+        cmocka_unit_test(test_united_edges),      cmocka_unit_test(test_without_half_floats),
         cmocka_unit_test(test_flatten_is_even),   cmocka_unit_test(test_colors_of_one_run),
         cmocka_unit_test(test_alphas_keep_order), cmocka_unit_test(test_paints_that_draw_nothing),
         cmocka_unit_test(test_some_rows),         cmocka_unit_test(test_thousands_of_rows),

@@ -16,6 +16,7 @@
     X(void, GetIntegerv, (GLenum, GLint *))                                                                            \
     X(void, Enable, (GLenum))                                                                                          \
     X(void, Disable, (GLenum))                                                                                         \
+    X(void, BlendFuncSeparate, (GLenum, GLenum, GLenum, GLenum))                                                       \
     X(void, BlendFunc, (GLenum, GLenum))                                                                               \
     X(void, StencilFunc, (GLenum, GLint, GLuint))                                                                      \
     X(void, StencilOp, (GLenum, GLenum, GLenum))                                                                       \

@@ -10,7 +10,8 @@ enum { ROW_TEXTURE_WIDTH = 2048, TEXELS_A_ROW = 2 };
 typedef struct pass_run {
     size_t first, end; /* polylines */
     float alpha;       /* of the flattened layer; 1: straight onto the picture */
-    bool one_color;    /* its layer is one channel of coverage, and color is put over it */
+    bool one_color;    /* its layer holds coverage alone, and color is put over it */
+    bool layered;
     camber_color color;
 } pass_run;
 
@@ -20,19 +21,19 @@ static bool is_drawn(const camber_pass *pass, uint32_t row) {
 
 /* The row texture of a run: rows of other alphas are left out, and a layer's rows are drawn opaque. Every row of the
  * mesh has its texels, since a run has polylines that are not drawn among those that are. */
-static void fill_rows(camber_renderer *renderer, const camber_pass *pass, const pass_run *run, bool layered) {
+static void fill_rows(camber_renderer *renderer, const camber_pass *pass, const pass_run *run) {
     for (size_t i = 0; i < pass->mesh->row_count; i++) {
         const camber_paint *paint = pass->paints + i;
         float *texel = renderer->row_texels + 4 * TEXELS_A_ROW * i;
         memset(texel, 0, 4 * TEXELS_A_ROW * sizeof *texel);
         texel[0] = -1.0f;
-        if (!is_drawn(pass, (uint32_t)i) || (layered && paint->color.a != run->alpha))
+        if (!is_drawn(pass, (uint32_t)i) || (run->layered && paint->color.a != run->alpha))
             continue;
-        const float alpha = layered ? 1.0f : paint->color.a;
+        const float alpha = run->layered ? 1.0f : paint->color.a;
         const float color[4] = {paint->color.r * alpha, paint->color.g * alpha, paint->color.b * alpha, alpha};
         texel[0] = 0.5f * paint->width_px;
         for (int c = 0; c < 4; c++)
-            texel[4 + c] = layered && run->one_color ? 1.0f : color[c];
+            texel[4 + c] = run->layered && run->one_color ? 1.0f : color[c];
     }
 }
 
@@ -152,13 +153,30 @@ static camber_status draw_part(camber_renderer *renderer, const camber_mesh *mes
     return CAMBER_OK;
 }
 
+/* What the layer of a run holds; of one that has none, colours. */
+static camber_flatten_kind kind_of(const camber_renderer *renderer, const pass_run *run) {
+    if (!run->layered || !run->one_color)
+        return CAMBER_FLATTEN_COLORS;
+    return renderer->share.surface->half_float_targets ? CAMBER_FLATTEN_UNION : CAMBER_FLATTEN_COVERAGE;
+}
+
+/* How the fragments of a layer come together. Of the union's four, the last gathers one over the other and the first
+ * three add up. One channel has no alpha of its own to blend by: a + b - ab is ONE, ONE_MINUS_SRC_COLOR. */
+static void set_blending(const camber_gl *gl, camber_flatten_kind kind) {
+    if (kind == CAMBER_FLATTEN_UNION)
+        gl->BlendFuncSeparate(GL_ONE, GL_ONE, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    else
+        gl->BlendFunc(GL_ONE, kind == CAMBER_FLATTEN_COVERAGE ? GL_ONE_MINUS_SRC_COLOR : GL_ONE_MINUS_SRC_ALPHA);
+}
+
 /* Draws the polylines of a run with the rows that are in the texture. */
 static camber_status draw_run(camber_renderer *renderer, const camber_mesh *mesh, const pass_run *run,
                               const camber_piece *piece) {
     const camber_gl *gl = &renderer->share.surface->gl;
     const camber_shader *shader;
-    camber_status status = camber_renderer_mesh_shader(
-        renderer, mesh, piece->coverage == CAMBER_COVERAGE_LINEAR ? CAMBER_VARIANT_LINEAR : 0u, &shader);
+    const unsigned variant = (piece->coverage == CAMBER_COVERAGE_LINEAR ? CAMBER_VARIANT_LINEAR : 0u) |
+                             (kind_of(renderer, run) == CAMBER_FLATTEN_UNION ? CAMBER_VARIANT_UNION : 0u);
+    camber_status status = camber_renderer_mesh_shader(renderer, mesh, variant, &shader);
     if (status != CAMBER_OK)
         return status;
     camber_renderer_use_shader(renderer, shader, piece);
@@ -187,11 +205,10 @@ static camber_status draw_layered(camber_renderer *renderer, const camber_pass *
         return status;
     gl->ClearColor(0.0f, 0.0f, 0.0f, 0.0f);
     gl->Clear(GL_COLOR_BUFFER_BIT);
-    /* One channel has no alpha of its own to blend by: a + b - ab is ONE, ONE_MINUS_SRC_COLOR. */
-    gl->BlendFunc(GL_ONE, run->one_color ? GL_ONE_MINUS_SRC_COLOR : GL_ONE_MINUS_SRC_ALPHA);
+    set_blending(gl, kind_of(renderer, run));
     status = draw_run(renderer, pass->mesh, run, piece);
     if (status == CAMBER_OK)
-        status = camber_renderer_flatten_shader(renderer, run->one_color, &shader);
+        status = camber_renderer_flatten_shader(renderer, kind_of(renderer, run), &shader);
     if (status == CAMBER_OK)
         status = camber_renderer_bind_target(renderer, CAMBER_TARGET_PICTURE, width, height);
     if (status != CAMBER_OK)
@@ -218,7 +235,7 @@ static bool same_color(camber_color a, camber_color b) {
 /* The longest run from a polyline on. Rows that are not drawn belong to any run. */
 static pass_run next_run(const camber_pass *pass, size_t first, size_t end) {
     const uint32_t *rows = pass->mesh->polyline_rows;
-    const bool layered = pass->overlap == CAMBER_OVERLAP_FLATTEN;
+    const bool layered = pass->overlap != CAMBER_OVERLAP_ACCUMULATE;
     pass_run run = {.first = first, .end = first, .alpha = 1.0f, .one_color = true};
     bool met = false;
     for (; run.end < end; run.end++) {
@@ -236,6 +253,7 @@ static pass_run next_run(const camber_pass *pass, size_t first, size_t end) {
     }
     if (!met)
         run.alpha = 0.0f; /* nothing to draw */
+    run.layered = run.alpha < 1.0f || (pass->overlap == CAMBER_OVERLAP_UNITE && run.one_color);
     return run;
 }
 
@@ -249,13 +267,12 @@ camber_status camber_renderer_draw_pass(camber_renderer *renderer, const camber_
     camber_status status = reserve_rows(renderer, mesh->row_count);
     for (size_t first = pass->first_polyline; first < end && status == CAMBER_OK;) {
         const pass_run run = next_run(pass, first, end);
-        const bool layered = run.alpha < 1.0f;
         first = run.end;
         if (run.alpha <= 0.0f)
             continue;
-        fill_rows(renderer, pass, &run, layered);
+        fill_rows(renderer, pass, &run);
         upload_rows(renderer, mesh->row_count);
-        if (layered) {
+        if (run.layered) {
             status = draw_layered(renderer, pass, &run, piece);
         } else {
             gl->BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);

@@ -36,7 +36,7 @@ void camber_renderer_destroy(camber_renderer *renderer) {
     if (camber_surface_try_current(renderer->share.surface)) {
         for (int i = 0; i < CAMBER_VARIANTS; i++)
             gl->DeleteProgram(renderer->strokes[i].program);
-        for (int i = 0; i < 2; i++)
+        for (int i = 0; i < CAMBER_FLATTEN_KINDS; i++)
             gl->DeleteProgram(renderer->flatten[i].program);
         gl->DeleteProgram(renderer->count.program);
         camber_renderer_release_targets(renderer);

@@ -9,9 +9,18 @@ enum {
     CAMBER_VARIANT_LINEAR = 1,
     CAMBER_VARIANT_SHARP_JOINS = 2,
     CAMBER_VARIANT_FLAT_CAPS = 4,
-    CAMBER_VARIANT_COUNT = 8, /* counts the fragments with coverage instead of drawing them */
-    CAMBER_VARIANTS = 16
+    CAMBER_VARIANT_COUNT = 8,  /* counts the fragments with coverage instead of drawing them */
+    CAMBER_VARIANT_UNION = 16, /* leaves what the union of a layer's strokes is made from */
+    CAMBER_VARIANTS = 32
 };
+
+/* What a flattened layer holds. */
+typedef enum camber_flatten_kind {
+    CAMBER_FLATTEN_COLORS,
+    CAMBER_FLATTEN_COVERAGE, /* one channel, gathered one over the other */
+    CAMBER_FLATTEN_UNION,    /* four, of which the union is made */
+    CAMBER_FLATTEN_KINDS
+} camber_flatten_kind;
 
 typedef struct camber_shader {
     GLuint program; /* 0: not built yet */
@@ -31,8 +40,8 @@ struct camber_renderer {
     camber_share share;
     const camber_share_path *path;
     camber_shader strokes[CAMBER_VARIANTS];
-    camber_shader flatten[2]; /* by whether the layer is one channel of coverage */
-    camber_shader count;      /* every fragment */
+    camber_shader flatten[CAMBER_FLATTEN_KINDS];
+    camber_shader count; /* every fragment */
     camber_target targets[CAMBER_TARGETS];
     GLuint vertex_array;
     GLuint row_texture;
@@ -43,7 +52,8 @@ struct camber_renderer {
 
 /* shaders.c */
 camber_status camber_renderer_stroke_shader(camber_renderer *renderer, unsigned variant, const camber_shader **shader);
-camber_status camber_renderer_flatten_shader(camber_renderer *renderer, bool coverage, const camber_shader **shader);
+camber_status camber_renderer_flatten_shader(camber_renderer *renderer, camber_flatten_kind kind,
+                                             const camber_shader **shader);
 camber_status camber_renderer_count_shader(camber_renderer *renderer, const camber_shader **shader);
 
 /* targets.c: binds a target of this size; what it holds is not defined. */

@@ -72,11 +72,13 @@ static camber_status build(camber_renderer *renderer, const char *head, const ch
 camber_status camber_renderer_stroke_shader(camber_renderer *renderer, unsigned variant, const camber_shader **shader) {
     camber_shader *wanted = renderer->strokes + variant;
     if (!wanted->program) {
-        char head[160];
+        char head[192];
         snprintf(head, sizeof head,
-                 "#define LINEAR %d\n#define SHARP_JOINS %d\n#define FLAT_CAPS %d\n#define COUNT %d\n",
+                 "#define LINEAR %d\n#define SHARP_JOINS %d\n#define FLAT_CAPS %d\n#define COUNT %d\n"
+                 "#define UNION %d\n",
                  (variant & CAMBER_VARIANT_LINEAR) != 0, (variant & CAMBER_VARIANT_SHARP_JOINS) != 0,
-                 (variant & CAMBER_VARIANT_FLAT_CAPS) != 0, (variant & CAMBER_VARIANT_COUNT) != 0);
+                 (variant & CAMBER_VARIANT_FLAT_CAPS) != 0, (variant & CAMBER_VARIANT_COUNT) != 0,
+                 (variant & CAMBER_VARIANT_UNION) != 0);
         const camber_status status = build(renderer, head, camber_stroke_vert, camber_stroke_frag, wanted);
         if (status != CAMBER_OK)
             return status;
@@ -85,11 +87,14 @@ camber_status camber_renderer_stroke_shader(camber_renderer *renderer, unsigned 
     return CAMBER_OK;
 }
 
-camber_status camber_renderer_flatten_shader(camber_renderer *renderer, bool coverage, const camber_shader **shader) {
-    camber_shader *wanted = renderer->flatten + coverage;
+camber_status camber_renderer_flatten_shader(camber_renderer *renderer, camber_flatten_kind kind,
+                                             const camber_shader **shader) {
+    static const char *const heads[CAMBER_FLATTEN_KINDS] = {"#define COVERAGE 0\n#define UNION 0\n",
+                                                            "#define COVERAGE 1\n#define UNION 0\n",
+                                                            "#define COVERAGE 0\n#define UNION 1\n"};
+    camber_shader *wanted = renderer->flatten + kind;
     if (!wanted->program) {
-        const camber_status status = build(renderer, coverage ? "#define COVERAGE 1\n" : "#define COVERAGE 0\n",
-                                           camber_flatten_vert, camber_flatten_frag, wanted);
+        const camber_status status = build(renderer, heads[kind], camber_flatten_vert, camber_flatten_frag, wanted);
         if (status != CAMBER_OK)
             return status;
     }

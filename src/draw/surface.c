@@ -53,6 +53,13 @@ static camber_status load_gl(camber_surface *surface) {
     return CAMBER_OK;
 }
 
+/* ES of 3.2 has them, and desktop GL, which OSMesa gives, since 3.0. */
+static bool has_half_float_targets(const camber_gl *gl) {
+    const char *version = (const char *)gl->GetString(GL_VERSION);
+    return has_extension(gl, "GL_EXT_color_buffer_half_float") || has_extension(gl, "GL_EXT_color_buffer_float") ||
+           (version && strncmp(version, "OpenGL ES", 9) != 0);
+}
+
 static void describe(camber_surface *surface) {
     const camber_gl *gl = &surface->gl;
     GLint texture = 0, viewport[2] = {0, 0};
@@ -69,6 +76,7 @@ static void describe(camber_surface *surface) {
         .software = renderer && is_software(renderer),
         .buffer_storage = gl->BufferStorage != NULL,
     };
+    surface->half_float_targets = has_half_float_targets(gl);
 }
 
 static camber_status open_backend(camber_context *context, const camber_surface_ops *ops, camber_surface **surface) {

@@ -26,7 +26,8 @@ struct camber_surface {
     const char *name; /* set by create: "EGL surfaceless", ... */
     camber_gl gl;
     camber_surface_info info;
-    bool lost; /* the GL context: nothing that is in it comes back */
+    bool half_float_targets; /* can be drawn into, with blending */
+    bool lost;               /* the GL context: nothing that is in it comes back */
 };
 
 /* Every public call that draws begins with it: the two libraries share one dispatch, and another surface may have

@@ -18,6 +18,12 @@ static void add_stencil(const camber_gl *gl, camber_target *target, GLsizei widt
     gl->FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER, target->stencil);
 }
 
+static GLenum format_of(const camber_renderer *renderer, int which) {
+    if (which != CAMBER_TARGET_COVERAGE)
+        return GL_RGBA8;
+    return renderer->share.surface->half_float_targets ? GL_RGBA16F : GL_R8;
+}
+
 static camber_status resize(camber_renderer *renderer, int which, GLsizei width, GLsizei height) {
     const camber_gl *gl = &renderer->share.surface->gl;
     camber_target *target = renderer->targets + which;
@@ -26,7 +32,7 @@ static camber_status resize(camber_renderer *renderer, int which, GLsizei width,
     release(gl, target);
     gl->GenTextures(1, &target->texture);
     gl->BindTexture(GL_TEXTURE_2D, target->texture);
-    gl->TexStorage2D(GL_TEXTURE_2D, 1, which == CAMBER_TARGET_COVERAGE ? GL_R8 : GL_RGBA8, width, height);
+    gl->TexStorage2D(GL_TEXTURE_2D, 1, format_of(renderer, which), width, height);
     gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     gl->GenFramebuffers(1, &target->framebuffer);

@@ -55,6 +55,8 @@ typedef struct camber_options {
 /* Parses argv. Returns CAMBER_EXIT_DONE, or CAMBER_EXIT_USAGE with one line in message. --help and --version
  * win over what is missing. The caller frees with camber_options_free in any case. */
 int camber_options_parse(int argc, char **argv, camber_options *options, char *message, size_t message_size);
+/* The part of it that looks at options together; verb is the verb's name. */
+int camber_options_check(camber_options *options, const char *verb, char *message, size_t message_size);
 void camber_options_free(camber_options *options);
 
 /* The help of the tool (CAMBER_VERB_NONE) or of a verb. */

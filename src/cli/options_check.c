@@ -1,0 +1,136 @@
+#include "cli/options.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+#include <strings.h>
+
+/* What must hold between options, once each has a value. */
+typedef struct checked {
+    camber_options *options;
+    const char *verb; /* its name */
+    char *message;
+    size_t message_size;
+} checked;
+
+static int usage(const checked *p, const char *format, ...) {
+    va_list list;
+    va_start(list, format);
+    vsnprintf(p->message, p->message_size, format, list);
+    va_end(list);
+    return CAMBER_EXIT_USAGE;
+}
+
+static bool has_extension(const char *path, const char *extension) {
+    const size_t length = strlen(path);
+    const size_t tail = strlen(extension);
+    return length > tail && strcasecmp(path + length - tail, extension) == 0;
+}
+
+static int check_output(const checked *p) {
+    camber_options *options = p->options;
+    const bool glb = options->verb == CAMBER_VERB_TESSELLATE;
+    const char *format = glb ? "glb" : "png";
+    if (!options->output && options->verb != CAMBER_VERB_BENCH)
+        return usage(p, "%s: no output; give -o OUT.%s", p->verb, format);
+    if (!options->output)
+        return CAMBER_EXIT_DONE;
+    const bool out = strcmp(options->output, "-") == 0;
+    if (out && options->json)
+        return usage(p, "--json and -o -: both want standard output; give one of them");
+    if (options->dump && strcmp(options->dump, "-") == 0 && out)
+        return usage(p, "--dump - and -o -: both want standard output; give one of them");
+    const bool png_name = has_extension(options->output, ".png");
+    const bool glb_name = has_extension(options->output, ".glb");
+    if (options->format < 0 && !out && !png_name && !glb_name)
+        return usage(p, "%s: its extension tells no format; name it OUT.%s, or give --format %s", options->output,
+                     format, format);
+    if ((glb ? png_name : glb_name) || (options->format >= 0 && options->format != glb))
+        return usage(p, "%s: %s writes %s; camber %s writes %s", options->output, p->verb, format,
+                     glb ? "render" : "tessellate", glb ? "png" : "glb");
+    return CAMBER_EXIT_DONE;
+}
+
+static int check_view(const checked *p) {
+    camber_options *options = p->options;
+    camber_view_desc *view = &options->view;
+    if (options->has_bbox && (options->has_center || !isnan(options->zoom)))
+        return usage(p, "--bbox and --center or --zoom: they exclude each other; give the box or the centre");
+    if (options->has_center != !isnan(options->zoom))
+        return usage(p, "--%s alone: give --center LON,LAT and --zoom Z together",
+                     options->has_center ? "center" : "zoom");
+    if (options->pitch_deg < 0 || options->pitch_deg > 0)
+        return usage(p, "--pitch %g: this version draws maps flat; leave it out", options->pitch_deg);
+    view->kind = options->has_bbox ? CAMBER_VIEW_BBOX : options->has_center ? CAMBER_VIEW_CENTER : CAMBER_VIEW_FIT;
+    view->zoom = options->has_center ? options->zoom : 0;
+    if (view->width == 0)
+        view->width = view->height = options->polylines ? 2048 : 1024;
+    const double width = floor(view->width * view->ratio + 0.5);
+    const double height = floor(view->height * view->ratio + 0.5);
+    if (width < 1 || height < 1 || width > 65535 || height > 65535 || width * height > 2147483648.0)
+        return usage(p, "%ux%u at ratio %g: out of range; after --ratio a side is 1 to 65535 px, all 2^31 at most",
+                     view->width, view->height, view->ratio);
+    return CAMBER_EXIT_DONE;
+}
+
+static int check_inputs(const checked *p) {
+    const camber_options *options = p->options;
+    const char *verb = p->verb;
+#ifndef CAMBER_MAP
+    if (options->input_count)
+        return usage(p, "%s: this build reads no maps (CAMBER_MAP=OFF); give --polylines FILE", options->inputs[0]);
+#endif
+    if (options->verb == CAMBER_VERB_INFO && options->input_count)
+        return usage(p, "%s: info takes no input; leave it out", options->inputs[0]);
+    if (options->polylines && options->input_count)
+        return usage(p, "--polylines and %s: both are inputs; give one of them", options->inputs[0]);
+    if (options->polylines && (options->style || options->theme >= 0 || options->layer || options->where ||
+                               options->has_bbox || options->has_center || options->view.bearing_deg != 0.0))
+        return usage(p, "--polylines: is in pixels already and has no style, layer or view; leave those out");
+    if (options->where_count > 1 && options->verb != CAMBER_VERB_COMPARE)
+        return usage(p, "--where: given %zu times; camber %s takes one, so join them with AND or OR",
+                     options->where_count, verb);
+    if (options->width_px > 0 && !options->polylines && options->verb != CAMBER_VERB_COMPARE)
+        return usage(p, "--width-px: is for --polylines; a map's widths are its style's");
+    if (options->style && options->theme >= 0)
+        return usage(p, "--theme: is for the built-in style; leave it out with --style");
+    size_t streams = options->polylines && strcmp(options->polylines, "-") == 0;
+    for (size_t i = 0; i < options->input_count; i++)
+        streams += strcmp(options->inputs[i], "-") == 0;
+    streams += options->style && strcmp(options->style, "-") == 0;
+    if (streams > 1)
+        return usage(p, "-: standard input can be read once; name the other file");
+    const bool takes_both = options->verb == CAMBER_VERB_COMPARE || options->verb == CAMBER_VERB_BENCH;
+    const bool needs = options->verb != CAMBER_VERB_INFO && options->verb != CAMBER_VERB_VALIDATE;
+    if (needs && !options->input_count && !options->polylines && !options->style)
+        return usage(p, "%s: no input; give %s", verb,
+                     takes_both ? "a file with lines or --polylines FILE" : "a file with lines, such as city.osm.pbf");
+    return CAMBER_EXIT_DONE;
+}
+
+static int check_plot(const checked *p) {
+    const char *plot = p->options->plot;
+    if (plot && !has_extension(plot, ".svg") && !has_extension(plot, ".png"))
+        return usage(p, "--plot %s: its extension tells no format; name it OUT.svg or OUT.png", plot);
+    return CAMBER_EXIT_DONE;
+}
+
+int camber_options_check(camber_options *options, const char *verb, char *message, size_t message_size) {
+    const checked it = {options, verb, message, message_size}, *p = &it;
+    const bool writes = options->verb == CAMBER_VERB_RENDER || options->verb == CAMBER_VERB_TESSELLATE ||
+                        options->verb == CAMBER_VERB_BENCH;
+    if (options->verb == CAMBER_VERB_NONE)
+        return usage(p, "no verb given; `camber --help` lists them");
+    int status = check_inputs(p);
+    if (status == CAMBER_EXIT_DONE)
+        status = check_view(p);
+    if (status == CAMBER_EXIT_DONE && writes)
+        status = check_output(p);
+    if (status == CAMBER_EXIT_DONE)
+        status = check_plot(p);
+    if (status == CAMBER_EXIT_DONE && options->junit && strcmp(options->junit, "-") == 0)
+        return usage(p, "--junit -: standard output is the report's; name a file");
+    if (status == CAMBER_EXIT_DONE && options->dump && strcmp(options->dump, "-") == 0 && options->json)
+        return usage(p, "--json and --dump -: both want standard output; give one of them");
+    return status;
+}

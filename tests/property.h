@@ -31,9 +31,9 @@ typedef struct property {
     size_t known; /* cases that are known to break it */
 } property;
 
-/* Tries all cases, prints those that break the property, and fails where more do than are known or where the property
- * speaks of less than a quarter of the cases. CAMBER_SEED in the environment begins elsewhere, CAMBER_CASES tries as
- * many. */
+/* Tries all cases, shrinks and prints the first three that break the property, and fails where more do than are known
+ * or where the property speaks of less than a quarter of the cases. CAMBER_SEED in the environment begins elsewhere,
+ * CAMBER_CASES tries as many. */
 void property_check(const property *p, void *user);
 
 /* ---- Makers ---- */
@@ -47,5 +47,17 @@ void property_make_plain(property_case *c, uint64_t *seed);
 void property_make_ring(property_case *c, uint64_t *seed);
 
 bool property_is_ring(const property_case *c);
+void property_reverse(property_case *c);
+
+/* ---- Meshes of cases ---- */
+
+camber_polylines *property_polylines(camber_context *context, const property_case *c);
+/* The twin's. */
+camber_mesh_data property_mesh(camber_context *context, const property_case *c);
+/* Writes the triangles as triples of indices, in the order and winding that GL draws them with; gives how many. The
+ * caller frees them. */
+size_t property_triangles(const camber_mesh_data *data, uint32_t (**triangles)[3]);
+/* Where a vertex lies when drawn with this width: the formula of camber_vertex. */
+void property_place(const camber_vertex *v, double width_px, double place[2]);
 
 #endif

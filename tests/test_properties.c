@@ -11,26 +11,9 @@ typedef struct bench {
 
 /* ---- Meshes of cases ---- */
 
-static camber_polylines *polylines_of(camber_context *context, const property_case *c) {
-    const uint32_t offsets[] = {0, (uint32_t)c->count};
-    const camber_polylines_desc desc = {c->points, c->count, offsets, 1, NULL, false};
-    camber_polylines *polylines = NULL;
-    assert_int_equal(camber_polylines_create(context, &desc, &polylines), CAMBER_OK);
-    return polylines;
-}
-
-static camber_mesh_data mesh_of(camber_context *context, const property_case *c) {
-    const camber_tessellation_desc desc = {&c->stroke, 1, c->method, 0};
-    camber_polylines *polylines = polylines_of(context, c);
-    camber_mesh_data data;
-    assert_int_equal(camber_tessellate_on_host(context, polylines, &desc, &data), CAMBER_OK);
-    camber_polylines_destroy(polylines);
-    return data;
-}
-
 static camber_stages stages_of(camber_context *context, const property_case *c) {
     const camber_tessellation_desc desc = {&c->stroke, 1, c->method, 0};
-    camber_polylines *polylines = polylines_of(context, c);
+    camber_polylines *polylines = property_polylines(context, c);
     camber_stages stages;
     assert_int_equal(camber_stages_on_host(context, polylines, &desc, &stages), CAMBER_OK);
     camber_polylines_destroy(polylines);
@@ -39,34 +22,6 @@ static camber_stages stages_of(camber_context *context, const property_case *c) 
 
 static uint32_t kind_of(const camber_point_stages *point) {
     return camber_join_kind(point->join);
-}
-
-/* Writes the triangles as triples of indices, in the order and winding that GL draws them with; gives how many. */
-static size_t triangles_of(const camber_mesh_data *data, uint32_t (**triangles)[3]) {
-    uint32_t(*list)[3] = malloc((data->info.index_count + 1) * sizeof *list);
-    assert_non_null(list);
-    size_t count = 0, run = 0;
-    for (size_t i = 0; i < data->info.index_count; i++) {
-        const uint32_t *at = data->indices + i;
-        run = at[0] == CAMBER_RESTART_INDEX ? 0 : run + 1;
-        if (data->info.strips ? run < 3 : run % 3 != 0)
-            continue;
-        const bool odd = data->info.strips && run % 2 == 0;
-        list[count][0] = at[odd ? -1 : -2], list[count][1] = at[odd ? -2 : -1], list[count][2] = at[0];
-        count++;
-    }
-    *triangles = list;
-    return count;
-}
-
-/* Where a vertex lies when drawn with this width: the formula of camber_vertex. */
-static void place_of(const camber_vertex *v, double width_px, double place[2]) {
-    const double g = width_px / 2 + (double)CAMBER_PAD_PX, length = hypot((double)v->dx, (double)v->dy);
-    const double ux = length > 0 ? (double)v->dx / length : 1, uy = length > 0 ? (double)v->dy / length : 0;
-    const double limit = (double)v->limit_px, along = fmax(-limit, fmin(limit, (double)v->along * g));
-    const double across = v->across / 16384.0 * g;
-    place[0] = (double)v->x + ux * along - uy * across;
-    place[1] = (double)v->y + uy * along + ux * across;
 }
 
 /* ---- Well-formed: indices, restarts, ranges ---- */
@@ -176,12 +131,12 @@ static property_case without_repeats(const property_case *c) {
 
 static property_outcome check_well_formed(void *user, const property_case *c, char story[PROPERTY_STORY]) {
     const bench *b = user;
-    camber_mesh_data data = mesh_of(b->context, c);
+    camber_mesh_data data = property_mesh(b->context, c);
     bool bad = has_bad_indices(&data, property_is_ring(c), story);
     for (size_t i = 0; i < data.info.vertex_count && !bad; i++)
         bad = has_bad_vertex(c, &data.vertices[i], i, story);
     uint32_t(*triangles)[3];
-    const size_t count = triangles_of(&data, &triangles);
+    const size_t count = property_triangles(&data, &triangles);
     const property_case kept = without_repeats(c);
     if (!bad && count != data.info.triangle_count)
         bad = is_bad(story, "another number of triangles", count, (double)data.info.triangle_count);
@@ -199,15 +154,15 @@ static property_outcome check_well_formed(void *user, const property_case *c, ch
  * included. Less than the rounding of a vertex' floats makes is no area. */
 static property_outcome check_winding(void *user, const property_case *c, char story[PROPERTY_STORY]) {
     const bench *b = user;
-    camber_mesh_data data = mesh_of(b->context, c);
+    camber_mesh_data data = property_mesh(b->context, c);
     uint32_t(*triangles)[3];
-    const size_t count = triangles_of(&data, &triangles);
+    const size_t count = property_triangles(&data, &triangles);
     const double widths_px[] = {(double)c->stroke.width_px, 0.3 * (double)c->stroke.width_px, 0};
     bool bad = false;
     for (size_t i = 0; i < 3 * count && !bad; i++) {
         double p[3][2], longest = 0;
         for (int k = 0; k < 3; k++)
-            place_of(&data.vertices[triangles[i / 3][k]], widths_px[i % 3], p[k]);
+            property_place(&data.vertices[triangles[i / 3][k]], widths_px[i % 3], p[k]);
         for (int k = 0; k < 3; k++)
             longest = fmax(longest, hypot(p[k][0] - p[(k + 1) % 3][0], p[k][1] - p[(k + 1) % 3][1]));
         /* Floats, and a turn that is stored to 6e-5 radians. */
@@ -226,21 +181,13 @@ static property_outcome check_winding(void *user, const property_case *c, char s
 
 /* ---- Reversed ---- */
 
-static void reverse(property_case *c) {
-    for (size_t i = 0, k = c->count - 1; i < k; i++, k--) {
-        const float x = c->points[2 * i], y = c->points[2 * i + 1];
-        c->points[2 * i] = c->points[2 * k], c->points[2 * i + 1] = c->points[2 * k + 1];
-        c->points[2 * k] = x, c->points[2 * k + 1] = y;
-    }
-}
-
 typedef struct place {
     double x, y;
 } place;
 
 /* Of the vertices that triangles use. */
 static size_t places_of(camber_context *context, const property_case *c, place **places) {
-    camber_mesh_data data = mesh_of(context, c);
+    camber_mesh_data data = property_mesh(context, c);
     const size_t count = data.info.vertex_count;
     bool *used = calloc(count + 1, sizeof *used);
     *places = malloc((count + 1) * sizeof **places);
@@ -251,7 +198,7 @@ static size_t places_of(camber_context *context, const property_case *c, place *
     size_t written = 0;
     for (size_t i = 0; i < count; i++) {
         double at[2];
-        place_of(&data.vertices[i], (double)c->stroke.width_px, at);
+        property_place(&data.vertices[i], (double)c->stroke.width_px, at);
         if (used[i])
             (*places)[written++] = (place){at[0], at[1]};
     }
@@ -303,7 +250,7 @@ static property_outcome check_reversed(void *user, const property_case *c, char 
     if ((c->method == CAMBER_METHOD_FAN && c->stroke.join == CAMBER_JOIN_ROUND) ||
         (c->method != CAMBER_METHOD_STRIP && property_is_ring(c)) || has_straight_join(b->context, c))
         return PROPERTY_SILENT;
-    reverse(&turned);
+    property_reverse(&turned);
     const size_t count = places_of(b->context, c, &there), other = places_of(b->context, &turned, &back);
     const size_t missing = count == other ? unmatched(there, back, count, rounding_px(c)) : count;
     if (missing > 0)
@@ -391,7 +338,7 @@ static property_outcome check_scaled(void *user, const property_case *c, char st
     camber_stages_free(b->context, &large);
     if (!same_kinds || c->method == CAMBER_METHOD_FAN) /* whose steps come from a tolerance in px */
         return bad ? PROPERTY_BROKEN : PROPERTY_SILENT;
-    camber_mesh_data one = mesh_of(b->context, c), two = mesh_of(b->context, &twice);
+    camber_mesh_data one = property_mesh(b->context, c), two = property_mesh(b->context, &twice);
     for (size_t i = 0; i < one.info.vertex_count && !bad; i++) {
         const camber_vertex *v = one.vertices + i, *w = two.vertices + i;
         if (w->x != 2 * v->x || w->y != 2 * v->y || w->dx != 2 * v->dx || w->dy != 2 * v->dy)

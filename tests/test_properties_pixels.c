@@ -1,0 +1,284 @@
+/* Properties of pictures: the same stroke by other points, or elsewhere, is the same picture. */
+#include "easel.h"
+
+#include "kernels/join.h"
+
+enum { SIDE = PROPERTY_SIDE_PX };
+
+/* Pixels that differ by more than so many levels. */
+typedef struct apart {
+    size_t pixels;
+    int most, x, y;
+} apart;
+
+/* The place of a pixel of the first picture in the second. */
+typedef struct mapping {
+    int dx, dy;
+    bool turned; /* by a right angle: x, y -> SIDE - 1 - y, x */
+} mapping;
+
+/* GL rounds vertices to 1/256 px, and fills what lies on an edge on one side of it only. */
+static const double NEAR_PX = 1.0 / 64;
+
+static double distance_px(const double a[2], const double b[2], double x, double y) {
+    const double dx = b[0] - a[0], dy = b[1] - a[1], square = dx * dx + dy * dy;
+    const double t = square > 0 ? fmax(0, fmin(1, ((x - a[0]) * dx + (y - a[1]) * dy) / square)) : 0;
+    return hypot(x - a[0] - t * dx, y - a[1] - t * dy);
+}
+
+static bool is_on_edge(const camber_mesh_data *mesh, double width_px, double x, double y) {
+    uint32_t(*triangles)[3];
+    const size_t count = property_triangles(mesh, &triangles);
+    bool near = false;
+    for (size_t i = 0; i < 3 * count && !near; i++) {
+        double a[2], b[2];
+        property_place(mesh->vertices + triangles[i / 3][i % 3], width_px, a);
+        property_place(mesh->vertices + triangles[i / 3][(i + 1) % 3], width_px, b);
+        near = distance_px(a, b, x, y) < NEAR_PX;
+    }
+    free(triangles);
+    return near;
+}
+
+/* Whether a pixel may be drawn by either of two segments: its centre lies on an edge of the mesh, or square to the end
+ * of a segment, where the shader begins to look for the join. */
+static bool is_tied(easel *e, const property_case *c, int column, int row) {
+    const double x = column + 0.5, y = row + 0.5;
+    for (size_t i = 0; i + 1 < c->count; i++) {
+        const float *p = c->points + 2 * i;
+        const double dx = (double)(p[2] - p[0]), dy = (double)(p[3] - p[1]), length = hypot(dx, dy);
+        const double along = ((x - (double)p[0]) * dx + (y - (double)p[1]) * dy) / length;
+        if (fabs(along) < NEAR_PX || fabs(along - length) < NEAR_PX)
+            return true;
+    }
+    camber_mesh_data mesh = property_mesh(e->studio.context, c);
+    const bool tied = is_on_edge(&mesh, (double)c->stroke.width_px, x, y);
+    camber_mesh_data_free(e->studio.context, &mesh);
+    return tied;
+}
+
+typedef struct pair {
+    const property_case *first, *second;
+    mapping mapping;
+    easel_picture a, b;
+} pair;
+
+static apart compare(easel *e, const pair *p, int levels) {
+    const mapping m = p->mapping;
+    apart d = {0};
+    for (int y = 0; y < SIDE; y++)
+        for (int x = 0; x < SIDE; x++) {
+            const int u = (m.turned ? SIDE - 1 - y : x) + m.dx, v = (m.turned ? x : y) + m.dy;
+            const bool in = u >= 0 && v >= 0 && u < SIDE && v < SIDE;
+            const int off = in ? abs(p->a.level[y * SIDE + x] - p->b.level[v * SIDE + u]) : 0;
+            if (off > levels && levels > 0 && (is_tied(e, p->first, x, y) || is_tied(e, p->second, u, v)))
+                continue;
+            d.pixels += off > levels;
+            if (off > d.most)
+                d.most = off, d.x = x, d.y = y;
+        }
+    return d;
+}
+
+static property_outcome judge(easel *e, const property_case *c, const property_case *other, mapping m, int levels,
+                              char story[PROPERTY_STORY]) {
+    static pair p;
+    p.first = c, p.second = other, p.mapping = m;
+    easel_draw(e, c, &p.a);
+    easel_draw(e, other, &p.b);
+    const apart d = compare(e, &p, levels);
+    if (d.pixels == 0)
+        return PROPERTY_HOLDS;
+    snprintf(story, PROPERTY_STORY, "%zu pixels differ by more than %d, by up to %d at %d, %d", d.pixels, levels,
+             d.most, d.x, d.y);
+    return PROPERTY_BROKEN;
+}
+
+/* ---- The same stroke by other points ---- */
+
+/* The chords of a fan belong to the segment that comes in, but for the last: its round joins look elsewhere for their
+ * edge where the line is reversed. Strip and kite cut along the bisector. */
+static bool has_chords(const property_case *c) {
+    return c->method == CAMBER_METHOD_FAN && c->stroke.join == CAMBER_JOIN_ROUND;
+}
+
+static property_outcome check_reversed(void *user, const property_case *c, char story[PROPERTY_STORY]) {
+    property_case other = *c;
+    property_reverse(&other);
+    return has_chords(c) ? PROPERTY_SILENT : judge(user, c, &other, (mapping){0}, 1, story);
+}
+
+static camber_stages stages_of(const easel *e, const property_case *c) {
+    const camber_tessellation_desc desc = {&c->stroke, 1, c->method, 0};
+    camber_polylines *polylines = property_polylines(e->studio.context, c);
+    camber_stages stages;
+    assert_int_equal(camber_stages_on_host(e->studio.context, polylines, &desc, &stages), CAMBER_OK);
+    camber_polylines_destroy(polylines);
+    return stages;
+}
+
+/* A point in the middle of a segment: exact, since coordinates are multiples of 1/256. Its index, or 0: there is no
+ * segment, or its halves would be shorter than a pixel; only the last of such pieces knows of the cap. */
+static size_t add_point(const property_case *c, property_case *other) {
+    *other = *c;
+    if (c->count < 2 || c->count == PROPERTY_POINTS)
+        return 0;
+    const size_t at = c->dice % (c->count - 1);
+    float *p = other->points + 2 * at;
+    if (hypot((double)(p[2] - p[0]), (double)(p[3] - p[1])) < 2)
+        return 0;
+    memmove(p + 4, p + 2, 2 * (c->count - at - 1) * sizeof *p);
+    p[2] = (p[0] + p[4]) / 2;
+    p[3] = (p[1] + p[5]) / 2;
+    other->count++;
+    return at + 1;
+}
+
+/* Whether a line has joins with room only. */
+static bool is_plain(const easel *e, const property_case *c) {
+    camber_stages stages = stages_of(e, c);
+    bool plain = true;
+    for (size_t i = 0; i < stages.point_count; i++)
+        plain = plain && camber_join_kind(stages.points[i].join) <= CAMBER_KIND_CUT;
+    camber_stages_free(e->studio.context, &stages);
+    return plain;
+}
+
+/* Speaks of lines that have room at every join, with the point too, which makes segments shorter. */
+static property_outcome check_point_added(void *user, const property_case *c, char story[PROPERTY_STORY]) {
+    property_case other;
+    if (!add_point(c, &other) || !is_plain(user, c) || !is_plain(user, &other))
+        return PROPERTY_SILENT;
+    return judge(user, c, &other, (mapping){0}, 1, story);
+}
+
+/* Speaks of the others. */
+static property_outcome check_point_added_tight(void *user, const property_case *c, char story[PROPERTY_STORY]) {
+    property_case other;
+    if (!add_point(c, &other) || (is_plain(user, c) && is_plain(user, &other)))
+        return PROPERTY_SILENT;
+    return judge(user, c, &other, (mapping){0}, 1, story);
+}
+
+static property_outcome check_ring_begun_elsewhere(void *user, const property_case *c, char story[PROPERTY_STORY]) {
+    property_case other = *c;
+    if (!property_is_ring(c))
+        return PROPERTY_SILENT;
+    const size_t sides = c->count - 1, first = 1 + c->dice % (sides - 1);
+    for (size_t i = 0; i < c->count; i++)
+        memcpy(other.points + 2 * i, c->points + 2 * ((first + i) % sides), 2 * sizeof *c->points);
+    return judge(user, c, &other, (mapping){0}, 1, story);
+}
+
+/* ---- The same stroke elsewhere ---- */
+
+static property_outcome check_moved(void *user, const property_case *c, char story[PROPERTY_STORY]) {
+    property_case other = *c;
+    const mapping m = {.dx = (int)(c->dice % 17) - 8, .dy = (int)(c->dice / 17 % 17) - 8};
+    for (size_t i = 0; i < c->count; i++) {
+        other.points[2 * i] += (float)m.dx;
+        other.points[2 * i + 1] += (float)m.dy;
+    }
+    return judge(user, c, &other, m, 0, story);
+}
+
+/* A dot has a direction, to the right: its arcs are a little rounder above than beside. */
+static property_outcome check_turned(void *user, const property_case *c, char story[PROPERTY_STORY]) {
+    property_case other = *c;
+    bool dot = true;
+    for (size_t i = 0; i < c->count; i++) {
+        other.points[2 * i] = SIDE - c->points[2 * i + 1];
+        other.points[2 * i + 1] = c->points[2 * i];
+        dot = dot && memcmp(c->points, c->points + 2 * i, 2 * sizeof *c->points) == 0;
+    }
+    return judge(user, c, &other, (mapping){.turned = true}, dot ? 48 : 1, story);
+}
+
+/* ---- Device and twin, and method and method ---- */
+
+static property_outcome check_device(void *user, const property_case *c, char story[PROPERTY_STORY]) {
+    easel *e = user;
+    const uint32_t offsets[] = {0, (uint32_t)c->count};
+    const camber_polylines_desc desc = {c->points, c->count, offsets, 1, NULL, false};
+    const camber_tessellation_desc tessellation = {&c->stroke, 1, c->method, 0};
+    camber_polylines *polylines = NULL;
+    camber_mesh_data device, twin;
+    assert_int_equal(camber_polylines_create(e->studio.context, &desc, &polylines), CAMBER_OK);
+    assert_int_equal(camber_tessellate(e->mesh, polylines, &tessellation), CAMBER_OK);
+    assert_int_equal(camber_mesh_read(e->mesh, &device), CAMBER_OK);
+    assert_int_equal(camber_tessellate_on_host(e->studio.context, polylines, &tessellation, &twin), CAMBER_OK);
+    const bool same = device.info.vertex_count == twin.info.vertex_count &&
+                      device.info.index_count == twin.info.index_count &&
+                      memcmp(device.vertices, twin.vertices, twin.info.vertex_count * sizeof *twin.vertices) == 0 &&
+                      memcmp(device.indices, twin.indices, twin.info.index_count * sizeof *twin.indices) == 0;
+    if (!same)
+        snprintf(story, PROPERTY_STORY, "device and twin differ");
+    camber_mesh_data_free(e->studio.context, &device);
+    camber_mesh_data_free(e->studio.context, &twin);
+    camber_polylines_destroy(polylines);
+    return same ? PROPERTY_HOLDS : PROPERTY_BROKEN;
+}
+
+/* The joins of kite and fan against those of strip. A fan does not cut bodies on the inner side of a join, and its
+ * round joins have chords: within what that costs. */
+static property_outcome check_methods(void *user, const property_case *c, char story[PROPERTY_STORY]) {
+    property_case other = *c;
+    other.method = CAMBER_METHOD_STRIP;
+    if (c->method == CAMBER_METHOD_STRIP)
+        return PROPERTY_SILENT;
+    return judge(user, c, &other, (mapping){0}, c->method == CAMBER_METHOD_FAN ? 80 : 1, story);
+}
+
+/* ---- The list ---- */
+
+static void test_device(void **state) {
+    property_check(&(property){"device and twin", property_make_any, check_device, 300, 0}, *state);
+}
+
+/* Known: at tight bevels, and where a line ends soon, one segment gives up what the other does not take. */
+static void test_reversed(void **state) {
+    property_check(&(property){"reversed, plain joins", property_make_plain, check_reversed, 300, 0}, *state);
+    property_check(&(property){"reversed, any joins", property_make_any, check_reversed, 300, 6}, *state);
+}
+
+/* Known: a bevel's second line is looked for along the whole segment, so that a straight one on the way takes the
+ * bend's correction back; and neighbours that the point makes shorter turn joins tight. */
+static void test_point_added(void **state) {
+    property_check(&(property){"point added, plain joins", property_make_plain, check_point_added, 300, 20}, *state);
+    property_check(&(property){"point added, tight", property_make_any, check_point_added_tight, 300, 25}, *state);
+}
+
+static void test_ring(void **state) {
+    property_check(&(property){"ring begun elsewhere", property_make_ring, check_ring_begun_elsewhere, 300, 0}, *state);
+}
+
+static void test_moved(void **state) {
+    property_check(&(property){"moved by whole pixels", property_make_any, check_moved, 300, 0}, *state);
+}
+
+static void test_turned(void **state) {
+    property_check(&(property){"turned by a right angle", property_make_any, check_turned, 300, 0}, *state);
+}
+
+/* Known: tight joins, which strip and kite cut in other ways. */
+static void test_methods(void **state) {
+    property_check(&(property){"methods, plain joins", property_make_plain, check_methods, 300, 0}, *state);
+    property_check(&(property){"methods, any joins", property_make_any, check_methods, 300, 29}, *state);
+}
+
+int main(void) {
+    char cache[64];
+    pocl_cache_apart(cache);
+    if (!device_is_there()) {
+        printf("no OpenCL device\n");
+        return 77;
+    }
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_device),  cmocka_unit_test(test_reversed), cmocka_unit_test(test_point_added),
+        cmocka_unit_test(test_ring),    cmocka_unit_test(test_moved),    cmocka_unit_test(test_turned),
+        cmocka_unit_test(test_methods),
+    };
+    const int failed = cmocka_run_group_tests(tests, easel_open, easel_close);
+    folder_remove(cache);
+    return failed;
+}

@@ -66,13 +66,12 @@ bool is_round(uint kind) {
 }
 
 // Past a split end a segment has its own side of the bisector only. What its body has past the bisector on the inner
-// side it gives up where that is no wider than a pixel: bends that gentle follow each other on curves, and their edges
-// would be drawn twice. More it keeps, and a third of that where the line ends soon, as then nothing may cover it. The two
-// sides know the turn to 16 bits only: between them lies a strip of tie px, which both draw, so that neither leaves a
-// hole.
+// side it gives up where that is narrow: bends that gentle follow each other on curves, and their edges would be drawn
+// twice. More it keeps, and half of that where the line ends soon, as then nothing may cover it. The two sides know the
+// turn to 16 bits only: between them lies a strip of tie px, which both draw, so that neither leaves a hole.
 bool is_foreign(End e, float y, float half_width) {
     float tie = 4e-5 * (half_width + 1.0); // the turn is off by at most 4 / 65534
-    bool kept = e.past <= 0.0 && half_width * abs(e.s) > (e.ends_soon ? 0.35 : 0.9) * e.c;
+    bool kept = e.past <= 0.0 && half_width * abs(e.s) > (e.ends_soon ? 0.35 : 0.6) * e.c;
     return e.kind >= SPLIT_ROUND && e.c * e.past + e.s * y > tie && !kept;
 }
 

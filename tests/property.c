@@ -89,6 +89,12 @@ void property_make_plain(property_case *c, uint64_t *seed) {
     add_walk(c, seed, 2 + random_below(seed, 10), &(gait){least, fmax(30, 1.2 * least), 1.7});
 }
 
+void property_make_crossing(property_case *c, uint64_t *seed) {
+    make_stroke(c, seed);
+    const double least = (double)c->stroke.width_px + 0.1;
+    add_walk(c, seed, 2 + random_below(seed, 14), &(gait){least, fmax(50, 1.2 * least), SCENE_PI});
+}
+
 void property_make_ring(property_case *c, uint64_t *seed) {
     make_stroke(c, seed);
     add_ring(c, seed, 30);

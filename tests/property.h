@@ -43,6 +43,8 @@ void property_check(const property *p, void *user);
 void property_make_any(property_case *c, uint64_t *seed);
 /* Gentle: steps of at least twice the width, turns of at most 100 degrees: no join is tight. */
 void property_make_plain(property_case *c, uint64_t *seed);
+/* Steps of at least the width, any turns: lines that cross themselves and turn back on themselves. */
+void property_make_crossing(property_case *c, uint64_t *seed);
 /* A ring that does not repeat points, at least as plain. */
 void property_make_ring(property_case *c, uint64_t *seed);
 

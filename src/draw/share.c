@@ -54,8 +54,9 @@ static camber_status try_path(camber_share *share, const camber_share_path *path
     if (status == CAMBER_OK)
         status = path->ops.begin(share, &buffer, 1);
     if (status == CAMBER_OK) {
-        const cl_int code = clEnqueueFillBuffer(queue, buffer.mem, &word, sizeof word, 0, PROBE_BYTES, 0, NULL, NULL);
-        clFinish(queue);
+        cl_int code = clEnqueueFillBuffer(queue, buffer.mem, &word, sizeof word, 0, PROBE_BYTES, 0, NULL, NULL);
+        if (code == CL_SUCCESS)
+            code = clFinish(queue);
         status = path->ops.finish(share, &buffer, 1, true);
         const bool same =
             code == CL_SUCCESS && status == CAMBER_OK && gl_sees(&share->surface->gl, buffer.gl_name, word);

@@ -16,7 +16,7 @@ static camber_status reserve(void *user, camber_buffer *buffer, size_t size_byte
     buffer->mem = clCreateBuffer(share->device->cl, CL_MEM_READ_WRITE, size_bytes, NULL, &code);
     if (code != CL_SUCCESS) {
         buffer->mem = NULL;
-        return camber_fail_cl(share->device->context, "mesh buffer", code);
+        return camber_fail_cl(share->device->context, "clCreateBuffer", code);
     }
     gl->GenBuffers(1, &buffer->gl_name);
     gl->BindBuffer(GL_ARRAY_BUFFER, buffer->gl_name);
@@ -47,9 +47,11 @@ static camber_status finish(void *user, camber_buffer *buffers, size_t count, bo
         gl->BindBuffer(GL_ARRAY_BUFFER, buffers[i].gl_name);
         gl->BufferSubData(GL_ARRAY_BUFFER, 0, (GLsizeiptr)buffers[i].used_bytes, bytes);
         gl->BindBuffer(GL_ARRAY_BUFFER, 0);
-        clEnqueueUnmapMemObject(share->device->queue, buffers[i].mem, bytes, 0, NULL, NULL);
-        clFinish(share->device->queue);
-        const camber_status status = camber_share_check(share, buffers[i].used_bytes);
+        code = clEnqueueUnmapMemObject(share->device->queue, buffers[i].mem, bytes, 0, NULL, NULL);
+        if (code == CL_SUCCESS)
+            code = clFinish(share->device->queue);
+        const camber_status status = code == CL_SUCCESS ? camber_share_check(share, buffers[i].used_bytes)
+                                                        : camber_fail_cl(share->device->context, "clFinish", code);
         if (status != CAMBER_OK)
             return status;
     }

@@ -2,6 +2,7 @@
 #include "draw/share.h"
 
 #include <CL/cl_gl.h>
+#include <assert.h>
 
 static bool is_possible(const camber_share *share) {
     return share->device->gl_context;
@@ -31,26 +32,34 @@ static camber_status reserve(void *user, camber_buffer *buffer, size_t size_byte
     return CAMBER_OK;
 }
 
+enum { BUFFERS_MAX = 2 };
+
+static void list_mems(const camber_buffer *buffers, size_t count, cl_mem mems[BUFFERS_MAX]) {
+    assert(count <= BUFFERS_MAX);
+    for (size_t i = 0; i < count; i++)
+        mems[i] = buffers[i].mem;
+}
+
+/* All at once: none is OpenCL's where one cannot be. */
 static camber_status begin(void *user, camber_buffer *buffers, size_t count) {
     const camber_share *share = user;
+    cl_mem mems[BUFFERS_MAX];
+    list_mems(buffers, count, mems);
     share->surface->gl.Finish();
-    for (size_t i = 0; i < count; i++) {
-        const cl_int code = clEnqueueAcquireGLObjects(share->device->queue, 1, &buffers[i].mem, 0, NULL, NULL);
-        if (code != CL_SUCCESS)
-            return camber_fail_cl(share->device->context, "clEnqueueAcquireGLObjects", code);
-    }
-    return CAMBER_OK;
+    const cl_int code = clEnqueueAcquireGLObjects(share->device->queue, (cl_uint)count, mems, 0, NULL, NULL);
+    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(share->device->context, "clEnqueueAcquireGLObjects", code);
 }
 
 static camber_status finish(void *user, camber_buffer *buffers, size_t count, bool written) {
     const camber_share *share = user;
+    cl_mem mems[BUFFERS_MAX];
     (void)written;
-    cl_int code = CL_SUCCESS;
-    for (size_t i = 0; i < count && code == CL_SUCCESS; i++)
-        code = clEnqueueReleaseGLObjects(share->device->queue, 1, &buffers[i].mem, 0, NULL, NULL);
-    if (code == CL_SUCCESS)
-        code = clFinish(share->device->queue);
-    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(share->device->context, "clEnqueueReleaseGLObjects", code);
+    list_mems(buffers, count, mems);
+    cl_int code = clEnqueueReleaseGLObjects(share->device->queue, (cl_uint)count, mems, 0, NULL, NULL);
+    if (code != CL_SUCCESS)
+        return camber_fail_cl(share->device->context, "clEnqueueReleaseGLObjects", code);
+    code = clFinish(share->device->queue);
+    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(share->device->context, "clFinish", code);
 }
 
 const camber_share_path camber_share_gl = {

@@ -46,6 +46,7 @@ static camber_status begin(void *user, camber_buffer *buffers, size_t count) {
 /* OpenCL promises what it wrote to host memory only to a map of it; on the devices at hand it costs nothing. */
 static camber_status finish(void *user, camber_buffer *buffers, size_t count, bool written) {
     const camber_share *share = user;
+    const char *call = "clEnqueueMapBuffer";
     cl_int code = CL_SUCCESS;
     for (size_t i = 0; i < count && written && code == CL_SUCCESS; i++) {
         void *seen = clEnqueueMapBuffer(share->device->queue, buffers[i].mem, CL_TRUE, CL_MAP_READ, 0,
@@ -53,9 +54,11 @@ static camber_status finish(void *user, camber_buffer *buffers, size_t count, bo
         if (code == CL_SUCCESS)
             code = clEnqueueUnmapMemObject(share->device->queue, buffers[i].mem, seen, 0, NULL, NULL);
     }
-    if (code == CL_SUCCESS)
+    if (code == CL_SUCCESS) {
+        call = "clFinish";
         code = clFinish(share->device->queue);
-    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(share->device->context, "clEnqueueMapBuffer", code);
+    }
+    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(share->device->context, call, code);
 }
 
 const camber_share_path camber_share_zero_copy = {

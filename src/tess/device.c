@@ -32,32 +32,24 @@ static const char *cl_error_name(cl_int code) {
 camber_status camber_fail_cl(camber_context *context, const char *call, cl_int code) {
     const bool memory = code == CL_MEM_OBJECT_ALLOCATION_FAILURE || code == CL_OUT_OF_HOST_MEMORY ||
                         code == CL_OUT_OF_RESOURCES || code == CL_INVALID_BUFFER_SIZE;
+    const char *cure = memory ? "draw less at once or use a device with more memory" : "try another device";
+    if (code == CL_INVALID_WORK_GROUP_SIZE)
+        cure = "ask for smaller work-groups";
     return camber_fail(context, memory ? CAMBER_ERROR_MEMORY : CAMBER_ERROR_DEVICE, "%s: OpenCL %s (%d); %s", call,
-                       cl_error_name(code), code,
-                       memory ? "draw less at once or use a device with more memory" : "try another device");
+                       cl_error_name(code), code, cure);
 }
 
 typedef struct found_device {
     cl_platform_id platform;
     cl_device_id id;
+    camber_device_info info;
 } found_device;
 
-static size_t find_devices(found_device found[DEVICES_MAX]) {
-    cl_platform_id platforms[PLATFORMS_MAX];
-    cl_uint platform_count = 0;
-    size_t count = 0;
-    if (clGetPlatformIDs(PLATFORMS_MAX, platforms, &platform_count) != CL_SUCCESS)
-        return 0;
-    for (cl_uint p = 0; p < platform_count && p < PLATFORMS_MAX; p++) {
-        cl_device_id ids[DEVICES_MAX];
-        cl_uint id_count = 0;
-        if (clGetDeviceIDs(platforms[p], CL_DEVICE_TYPE_ALL, DEVICES_MAX, ids, &id_count) != CL_SUCCESS)
-            continue;
-        for (cl_uint d = 0; d < id_count && d < DEVICES_MAX && count < DEVICES_MAX; d++)
-            found[count++] = (found_device){platforms[p], ids[d]};
-    }
-    return count;
-}
+/* A call that failed while devices were looked for. */
+typedef struct failed_call {
+    const char *name; /* NULL: none failed */
+    cl_int code;
+} failed_call;
 
 static bool has_word(const char *text, const char *word) {
     const size_t length = strlen(word);
@@ -67,35 +59,93 @@ static bool has_word(const char *text, const char *word) {
     return false;
 }
 
-static camber_device_info describe(found_device found) {
-    camber_device_info info = {0};
+static cl_int get_text(cl_device_id id, cl_device_info what, char *text, size_t size) {
+    char whole[1024] = "";
+    const cl_int code = clGetDeviceInfo(id, what, sizeof whole - 1, whole, NULL);
+    snprintf(text, size, "%s", whole);
+    return code;
+}
+
+/* Gives CL_SUCCESS, or what the device answered: one that does not tell what it is cannot be used. */
+static cl_int describe(found_device *found) {
+    camber_device_info *info = &found->info;
     cl_device_type type = 0;
     cl_ulong memory = 0, largest = 0;
-    char extensions[16384] = "";
-    clGetPlatformInfo(found.platform, CL_PLATFORM_NAME, sizeof info.platform - 1, info.platform, NULL);
-    clGetDeviceInfo(found.id, CL_DEVICE_NAME, sizeof info.name - 1, info.name, NULL);
-    clGetDeviceInfo(found.id, CL_DEVICE_VERSION, sizeof info.version - 1, info.version, NULL);
-    clGetDeviceInfo(found.id, CL_DRIVER_VERSION, sizeof info.driver - 1, info.driver, NULL);
-    clGetDeviceInfo(found.id, CL_DEVICE_TYPE, sizeof type, &type, NULL);
-    clGetDeviceInfo(found.id, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof info.compute_units, &info.compute_units, NULL);
-    clGetDeviceInfo(found.id, CL_DEVICE_GLOBAL_MEM_SIZE, sizeof memory, &memory, NULL);
-    clGetDeviceInfo(found.id, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof largest, &largest, NULL);
-    clGetDeviceInfo(found.id, CL_DEVICE_EXTENSIONS, sizeof extensions - 1, extensions, NULL);
-    info.memory_bytes = memory;
-    info.largest_buffer_bytes = largest;
-    info.type = type & CL_DEVICE_TYPE_GPU   ? CAMBER_DEVICE_TYPE_GPU
-                : type & CL_DEVICE_TYPE_CPU ? CAMBER_DEVICE_TYPE_CPU
-                                            : CAMBER_DEVICE_TYPE_OTHER;
-    info.gl_sharing = has_word(extensions, "cl_khr_gl_sharing");
-    return info;
+    char extensions[16384] = ""; /* of more, buffers are copied */
+    const cl_int codes[] = {
+        get_text(found->id, CL_DEVICE_NAME, info->name, sizeof info->name),
+        get_text(found->id, CL_DEVICE_VERSION, info->version, sizeof info->version),
+        get_text(found->id, CL_DRIVER_VERSION, info->driver, sizeof info->driver),
+        clGetDeviceInfo(found->id, CL_DEVICE_TYPE, sizeof type, &type, NULL),
+        clGetDeviceInfo(found->id, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof info->compute_units, &info->compute_units, NULL),
+        clGetDeviceInfo(found->id, CL_DEVICE_GLOBAL_MEM_SIZE, sizeof memory, &memory, NULL),
+        clGetDeviceInfo(found->id, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof largest, &largest, NULL),
+    };
+    (void)clGetDeviceInfo(found->id, CL_DEVICE_EXTENSIONS, sizeof extensions - 1, extensions, NULL);
+    info->memory_bytes = memory;
+    info->largest_buffer_bytes = largest;
+    info->type = type & CL_DEVICE_TYPE_GPU   ? CAMBER_DEVICE_TYPE_GPU
+                 : type & CL_DEVICE_TYPE_CPU ? CAMBER_DEVICE_TYPE_CPU
+                                             : CAMBER_DEVICE_TYPE_OTHER;
+    info->gl_sharing = has_word(extensions, "cl_khr_gl_sharing");
+    for (size_t i = 0; i < sizeof codes / sizeof *codes; i++)
+        if (codes[i] != CL_SUCCESS)
+            return codes[i];
+    return CL_SUCCESS;
+}
+
+static size_t find_on_platform(cl_platform_id platform, found_device *found, size_t capacity, failed_call *failed) {
+    cl_device_id ids[DEVICES_MAX];
+    cl_uint id_count = 0;
+    size_t count = 0;
+    char name[1024] = "";
+    cl_int code = clGetPlatformInfo(platform, CL_PLATFORM_NAME, sizeof name - 1, name, NULL);
+    if (code != CL_SUCCESS) {
+        *failed = (failed_call){"clGetPlatformInfo", code};
+        return 0;
+    }
+    code = clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, DEVICES_MAX, ids, &id_count);
+    if (code != CL_SUCCESS) {
+        if (code != CL_DEVICE_NOT_FOUND)
+            *failed = (failed_call){"clGetDeviceIDs", code};
+        return 0;
+    }
+    for (cl_uint i = 0; i < id_count && i < DEVICES_MAX && count < capacity; i++) {
+        found[count] = (found_device){.platform = platform, .id = ids[i]};
+        snprintf(found[count].info.platform, sizeof found->info.platform, "%s", name);
+        code = describe(found + count);
+        if (code == CL_SUCCESS)
+            count++;
+        else
+            *failed = (failed_call){"clGetDeviceInfo", code};
+    }
+    return count;
+}
+
+/* failed takes what kept a device from being found, if anything did. */
+static size_t find_devices(found_device found[DEVICES_MAX], failed_call *failed) {
+    cl_platform_id platforms[PLATFORMS_MAX];
+    cl_uint platform_count = 0;
+    size_t count = 0;
+    *failed = (failed_call){0};
+    const cl_int code = clGetPlatformIDs(PLATFORMS_MAX, platforms, &platform_count);
+    if (code != CL_SUCCESS) {
+        if (code != PLATFORM_NOT_FOUND_KHR)
+            *failed = (failed_call){"clGetPlatformIDs", code};
+        return 0;
+    }
+    for (cl_uint i = 0; i < platform_count && i < PLATFORMS_MAX; i++)
+        count += find_on_platform(platforms[i], found + count, DEVICES_MAX - count, failed);
+    return count;
 }
 
 camber_status camber_device_list(camber_context *context, size_t capacity, camber_device_info *infos, size_t *count) {
     (void)context;
     found_device found[DEVICES_MAX];
-    *count = find_devices(found);
+    failed_call failed;
+    *count = find_devices(found, &failed);
     for (size_t i = 0; i < *count && i < capacity; i++)
-        infos[i] = describe(found[i]);
+        infos[i] = found[i].info;
     return CAMBER_OK;
 }
 
@@ -126,7 +176,10 @@ static int rank(const camber_device_info *info) {
 
 static camber_status choose(camber_device *device, const char *match, uint32_t number) {
     found_device found[DEVICES_MAX];
-    const size_t count = find_devices(found);
+    failed_call failed;
+    const size_t count = find_devices(found, &failed);
+    if (count == 0 && failed.name)
+        return camber_fail_cl(device->context, failed.name, failed.code);
     if (count == 0)
         return camber_fail(device->context, CAMBER_ERROR_DEVICE,
                            "no OpenCL device: no platform answers; install a driver (Debian: pocl-opencl-icd)");
@@ -134,7 +187,7 @@ static camber_status choose(camber_device *device, const char *match, uint32_t n
     uint32_t seen = 0;
     int best = -1;
     for (size_t i = 0; i < count; i++) {
-        const camber_device_info info = describe(found[i]);
+        const camber_device_info info = found[i].info;
         const size_t used = strlen(names);
         snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", info.name);
         if (!camber_device_matches(&info, match) || (number ? ++seen != number : rank(&info) <= best))
@@ -200,8 +253,13 @@ static camber_status open_cl(camber_device *device, camber_surface *surface) {
     device->queue = clCreateCommandQueue(device->cl, device->id, CL_QUEUE_PROFILING_ENABLE, &code);
     if (code != CL_SUCCESS)
         return camber_fail_cl(device->context, "clCreateCommandQueue", code);
-    cl_bool unified = CL_FALSE;
-    clGetDeviceInfo(device->id, CL_DEVICE_HOST_UNIFIED_MEMORY, sizeof unified, &unified, NULL);
+    cl_device_fp_config rounding = 0;
+    code = clGetDeviceInfo(device->id, CL_DEVICE_SINGLE_FP_CONFIG, sizeof rounding, &rounding, NULL);
+    if (code != CL_SUCCESS)
+        return camber_fail_cl(device->context, "clGetDeviceInfo", code);
+    device->rounds_correctly = (rounding & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
+    cl_bool unified = CL_FALSE; /* where the device does not tell, buffers are copied */
+    (void)clGetDeviceInfo(device->id, CL_DEVICE_HOST_UNIFIED_MEMORY, sizeof unified, &unified, NULL);
     device->host_memory = device->info.type == CAMBER_DEVICE_TYPE_CPU && unified;
     return CAMBER_OK;
 }

@@ -16,7 +16,7 @@ static camber_status plain_reserve(void *user, camber_buffer *buffer, size_t siz
     buffer->mem = clCreateBuffer(device->cl, CL_MEM_READ_WRITE, size_bytes, NULL, &code);
     if (code != CL_SUCCESS) {
         buffer->mem = NULL;
-        return camber_fail_cl(device->context, "mesh buffer", code);
+        return camber_fail_cl(device->context, "clCreateBuffer", code);
     }
     buffer->capacity_bytes = size_bytes;
     return CAMBER_OK;
@@ -147,6 +147,16 @@ camber_status camber_mesh_first_index(const camber_mesh *mesh, size_t polyline, 
 
 /* ---- Reading back ---- */
 
+camber_status camber_part_finish(const camber_mesh *mesh, camber_mesh_part *part, bool written, camber_status status) {
+    camber_soft_log kept;
+    if (status == CAMBER_OK)
+        return mesh->ops->finish(mesh->ops_user, part->buffers, 2, written);
+    camber_log_soften(mesh->device->context, &kept);
+    (void)mesh->ops->finish(mesh->ops_user, part->buffers, 2, written);
+    camber_log_restore(mesh->device->context, &kept);
+    return status;
+}
+
 static camber_status read_buffer(const camber_mesh *mesh, const camber_buffer *buffer, void *bytes) {
     const cl_int code =
         clEnqueueReadBuffer(mesh->device->queue, buffer->mem, CL_TRUE, 0, buffer->used_bytes, bytes, 0, NULL, NULL);
@@ -162,12 +172,12 @@ static camber_status read_part(const camber_mesh *mesh, camber_mesh_part *part, 
     status = read_buffer(mesh, part->buffers + CAMBER_BUFFER_VERTICES, vertices);
     if (status == CAMBER_OK)
         status = read_buffer(mesh, part->buffers + CAMBER_BUFFER_INDICES, indices);
-    const camber_status finished = mesh->ops->finish(mesh->ops_user, part->buffers, 2, false);
+    status = camber_part_finish(mesh, part, false, status);
     const uint32_t base = (uint32_t)part->first_vertex;
-    for (size_t i = 0; base != 0 && i < part->index_count; i++)
+    for (size_t i = 0; base != 0 && status == CAMBER_OK && i < part->index_count; i++)
         if (indices[i] != CAMBER_RESTART_INDEX)
             indices[i] += base;
-    return status == CAMBER_OK ? finished : status;
+    return status;
 }
 
 camber_status camber_mesh_read(camber_mesh *mesh, camber_mesh_data *data) {

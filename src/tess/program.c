@@ -54,16 +54,17 @@ static bool load(camber_device *device, camber_program *program, const char *opt
     return false;
 }
 
-static camber_status fail_build(camber_device *device, cl_program program, const char *call, cl_int code) {
+static camber_status fail_build(camber_device *device, cl_program program) {
     static const size_t LOG_MAX = 3000;
     size_t size = 0;
     clGetProgramBuildInfo(program, device->id, CL_PROGRAM_BUILD_LOG, 0, NULL, &size);
     char *log = camber_alloc_zero(device->context, size + 1, 1);
-    if (log)
-        clGetProgramBuildInfo(program, device->id, CL_PROGRAM_BUILD_LOG, size, log, NULL);
+    if (!log)
+        return CAMBER_ERROR_MEMORY;
+    clGetProgramBuildInfo(program, device->id, CL_PROGRAM_BUILD_LOG, size, log, NULL);
     camber_fail(device->context, CAMBER_ERROR_DEVICE,
-                "%s: the kernels do not build on %s (%d); update its driver or try another device: %.*s", call,
-                device->info.name, code, (int)LOG_MAX, log ? log : "");
+                "clBuildProgram: the kernels do not build on %s; update its driver or try another device: %.*s",
+                device->info.name, (int)LOG_MAX, log);
     camber_free(device->context, log);
     return CAMBER_ERROR_DEVICE;
 }
@@ -76,8 +77,10 @@ static camber_status build(camber_device *device, camber_program *program, const
     if (code != CL_SUCCESS)
         return camber_fail_cl(device->context, "clCreateProgramWithSource", code);
     code = clBuildProgram(program->cl, 1, &device->id, options, NULL, NULL);
+    if (code == CL_BUILD_PROGRAM_FAILURE)
+        return fail_build(device, program->cl);
     if (code != CL_SUCCESS)
-        return fail_build(device, program->cl, "clBuildProgram", code);
+        return camber_fail_cl(device->context, "clBuildProgram", code);
     program->to_save = true;
     return CAMBER_OK;
 }
@@ -91,7 +94,7 @@ static camber_status make_kernels(camber_device *device, camber_program *program
         cl_int code;
         *stages[i].kernel = clCreateKernel(program->cl, stages[i].name, &code);
         if (code != CL_SUCCESS)
-            return fail_build(device, program->cl, stages[i].name, code);
+            return camber_fail_cl(device->context, "clCreateKernel", code);
     }
     return CAMBER_OK;
 }
@@ -104,15 +107,11 @@ camber_status camber_device_program(camber_device *device, camber_method method,
     camber_program *made = camber_alloc_zero(device->context, 1, sizeof *made);
     if (!made)
         return CAMBER_ERROR_MEMORY;
-    /* Where the device can round like the twin, ask it to. */
-    cl_device_fp_config rounding = 0;
-    clGetDeviceInfo(device->id, CL_DEVICE_SINGLE_FP_CONFIG, sizeof rounding, &rounding, NULL);
-    const bool correct = (rounding & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
     char options[128], block[32] = "";
     if (device->block != CAMBER_BLOCK)
         snprintf(block, sizeof block, " -DCAMBER_BLOCK=%zu", device->block);
-    snprintf(options, sizeof options, OPTIONS, (int)method, correct ? " -cl-fp32-correctly-rounded-divide-sqrt" : "",
-             block);
+    snprintf(options, sizeof options, OPTIONS, (int)method,
+             device->rounds_correctly ? " -cl-fp32-correctly-rounded-divide-sqrt" : "", block);
     made->key = cache_key(&device->info, options);
     camber_status status = CAMBER_OK;
     const double begin = camber_now_ms();

@@ -16,6 +16,7 @@ struct camber_device {
     cl_context cl;
     cl_command_queue queue;
     camber_device_info info;
+    bool rounds_correctly;              /* divides and takes roots as the twin does */
     bool host_memory;                   /* the device works in the host's memory */
     bool gl_context;                    /* cl was made for a GL context: GL buffers can be shared */
     size_t block;                       /* points a work-group: CAMBER_BLOCK as its kernels see it */
@@ -127,6 +128,9 @@ camber_status camber_mesh_split(camber_mesh *mesh, size_t part);
 bool camber_part_fits(const camber_mesh *mesh, const camber_mesh_part *part);
 camber_status camber_part_upload(const camber_mesh *mesh, camber_mesh_part *part, const camber_polylines *polylines);
 void camber_mesh_release_parts(camber_mesh *mesh);
+
+/* Ends what ops->begin began on a part's output. Gives status where that is a failure, whose story is told. */
+camber_status camber_part_finish(const camber_mesh *mesh, camber_mesh_part *part, bool written, camber_status status);
 
 /* OpenCL calls that log. camber_make_buffer leaves *mem alone on failure. */
 camber_status camber_make_buffer(const camber_device *device, size_t size_bytes, cl_mem *mem);

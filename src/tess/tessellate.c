@@ -3,14 +3,9 @@
 
 #include "kernels/layout.h"
 
-/* ---- Stages ---- */
+#include <stdio.h>
 
-static cl_int set_arguments(cl_kernel kernel, const cl_mem *mems, cl_uint count) {
-    cl_int code = CL_SUCCESS;
-    for (cl_uint i = 0; i < count && code == CL_SUCCESS; i++)
-        code = clSetKernelArg(kernel, i, sizeof *mems, mems + i);
-    return code;
-}
+/* ---- Stages ---- */
 
 /* A stage: a kernel, its arguments, and how many points a work-item takes. */
 typedef struct stage {
@@ -21,13 +16,22 @@ typedef struct stage {
     size_t points;
 } stage;
 
+static camber_status fail_stage(const camber_device *device, const char *call, const char *name, cl_int code) {
+    char what[64];
+    snprintf(what, sizeof what, "%s of %s", call, name);
+    return camber_fail_cl(device->context, what, code);
+}
+
 /* Runs a stage over a part's slots, a work-group a block. */
 static camber_status run_stage(const camber_device *device, const camber_mesh_part *part, stage s, cl_event *event) {
     const size_t global = part->slot_count / s.points, local = device->block / s.points;
-    cl_int code = set_arguments(s.kernel, s.mems, s.mem_count);
-    if (code == CL_SUCCESS)
-        code = clEnqueueNDRangeKernel(device->queue, s.kernel, 1, NULL, &global, &local, 0, NULL, event);
-    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(device->context, s.name, code);
+    for (cl_uint i = 0; i < s.mem_count; i++) {
+        const cl_int code = clSetKernelArg(s.kernel, i, sizeof *s.mems, s.mems + i);
+        if (code != CL_SUCCESS)
+            return fail_stage(device, "clSetKernelArg", s.name, code);
+    }
+    const cl_int code = clEnqueueNDRangeKernel(device->queue, s.kernel, 1, NULL, &global, &local, 0, NULL, event);
+    return code == CL_SUCCESS ? CAMBER_OK : fail_stage(device, "clEnqueueNDRangeKernel", s.name, code);
 }
 
 camber_status camber_check_vertices(camber_context *context, uint64_t vertex_count) {
@@ -127,9 +131,9 @@ static camber_status emit(camber_mesh *mesh, camber_mesh_part *part, const cambe
     const cl_int code = clFinish(device->queue);
     if (status == CAMBER_OK && code != CL_SUCCESS)
         status = camber_fail_cl(device->context, "clFinish", code);
-    const camber_status finished = mesh->ops->finish(mesh->ops_user, part->buffers, 2, true);
+    status = camber_part_finish(mesh, part, true, status);
     add_ms(event, &mesh->mesh_info.emit_ms);
-    return status == CAMBER_OK ? finished : status;
+    return status;
 }
 
 /* ---- Parts ---- */

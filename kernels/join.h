@@ -71,10 +71,11 @@ CAMBER_FN camber_u32 camber_join_end(camber_u32 join) {
 }
 
 /* Whether the line begins with the segment before A, or ends with that behind B, as bits 7 and 8 of a vertex's flags:
- * from the join words of a point before A, of A and B, and of a point behind B. */
+ * from the join words of a point before A, of A and B, and of a point behind B. Before a ring A is a ghost, and the
+ * point before it is another polyline's. */
 CAMBER_FN camber_u32 camber_line_ends(camber_u32 before, camber_u32 a, camber_u32 b, camber_u32 behind) {
     const camber_u32 begins =
-        camber_join_kind(before) == CAMBER_KIND_CAP && camber_join_kind(a) != CAMBER_KIND_CAP ? 128u : 0u;
+        camber_join_kind(before) == CAMBER_KIND_CAP && camber_join_kind(a) > CAMBER_KIND_CAP ? 128u : 0u;
     const camber_u32 ends =
         camber_join_kind(behind) == CAMBER_KIND_CAP && camber_join_kind(b) != CAMBER_KIND_CAP ? 256u : 0u;
     return begins | ends;

@@ -194,6 +194,14 @@ static void test_borders(void **state) {
         scene_point(&s, i, i);
         scene_end(&s, (size_t)i % SCENE_ROWS);
     }
+    for (int i = 0; i < 80; i++) { /* rings behind open lines, whose ends are none of theirs */
+        for (int k = 0; k <= 3 + i % 5; k++)
+            scene_point(&s, 30 * k, i % 7);
+        scene_end(&s, 3);
+        for (int k = 0; k <= 8; k++)
+            scene_point(&s, 50 * cos(k % 8 * SCENE_PI / 4), 50 * sin(k % 8 * SCENE_PI / 4));
+        scene_end(&s, (size_t)i % SCENE_ROWS);
+    }
     for (int i = 0; i < 300; i++)
         scene_end(&s, 0);
     bench whole;

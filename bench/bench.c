@@ -21,7 +21,8 @@ typedef struct bench {
 } bench;
 
 typedef struct times {
-    double classify[RUNS], scan[RUNS], emit[RUNS], tessellate[RUNS], draw[RUNS], frame[RUNS], cairo[RUNS], copy[RUNS];
+    double classify[RUNS], scan[RUNS], emit[RUNS], tessellate[RUNS], draw[RUNS], united[RUNS], frame[RUNS], cairo[RUNS],
+        copy[RUNS];
 } times;
 
 static void on_log(void *user, camber_log_level level, const char *message) {
@@ -62,12 +63,17 @@ static camber_status tessellate(bench *b, const bench_scene *scene, const camber
     return camber_tessellate(b->mesh, polylines, &(camber_tessellation_desc){.strokes = &stroke, .stroke_count = 1});
 }
 
-/* A frame, from lines in memory to pixels in memory. */
-static camber_status run_frame(bench *b, const bench_scene *scene, uint8_t *picture, times *t, int run) {
+static camber_status draw(bench *b, const bench_scene *scene, camber_overlap overlap, uint8_t *picture,
+                          camber_frame_stats *stats) {
     const camber_paint paint = {scene->width_px, {0, 0, 0, 1}};
-    const camber_pass pass = {.mesh = b->mesh, .paints = &paint, .paint_count = 1};
+    const camber_pass pass = {.mesh = b->mesh, .paints = &paint, .paint_count = 1, .overlap = overlap};
     const camber_frame frame = {
         .width = BENCH_SIDE_PX, .height = BENCH_SIDE_PX, .background = {1, 1, 1, 1}, .passes = &pass, .pass_count = 1};
+    return camber_render(b->renderer, &frame, picture ? take_rows : NULL, picture, stats);
+}
+
+/* A frame, from lines in memory to pixels in memory; and its drawing once more, united. */
+static camber_status run_frame(bench *b, const bench_scene *scene, uint8_t *picture, times *t, int run) {
     camber_polylines *polylines = NULL;
     camber_frame_stats stats = {0};
     const double begin = camber_now_ms();
@@ -75,11 +81,15 @@ static camber_status run_frame(bench *b, const bench_scene *scene, uint8_t *pict
     if (status == CAMBER_OK)
         status = tessellate(b, scene, polylines);
     if (status == CAMBER_OK)
-        status = camber_render(b->renderer, &frame, take_rows, picture, &stats);
+        status = draw(b, scene, CAMBER_OVERLAP_FLATTEN, picture, &stats);
     if (status == CAMBER_OK && run >= 0) {
         t->frame[run] = camber_now_ms() - begin;
         t->draw[run] = stats.draw_ms;
     }
+    if (status == CAMBER_OK)
+        status = draw(b, scene, CAMBER_OVERLAP_UNITE, NULL, &stats);
+    if (status == CAMBER_OK && run >= 0)
+        t->united[run] = stats.draw_ms;
     camber_polylines_destroy(polylines);
     return status;
 }
@@ -119,12 +129,13 @@ static void print_row(bench *b, const bench_scene *scene, times *t) {
     }
     const double bytes = (double)(info.vertex_count * sizeof(camber_vertex) + 4 * info.index_count);
     const double tessellate = median(t->tessellate), frame = median(t->frame), cairo = median(t->cairo),
-                 draw = median(t->draw);
+                 draw_ms = median(t->draw), united = median(t->united);
     const double classify = median(t->classify), scan = median(t->scan), emit = median(t->emit), copy = median(t->copy);
     const double millions = (double)segments / 1e3;
-    printf("%-22s %7zu %8zu %5.1f %6.2f %6.2f %6.2f %7.2f %7.1f %6.1f %6.2f %7.1f %7.1f", scene->name,
+    printf("%-22s %7zu %8zu %5.1f %6.2f %6.2f %6.2f %7.2f %7.1f %6.1f %6.2f %7.1f %7.1f %7.1f", scene->name,
            scene->lines.polyline_count, segments, bytes / (double)segments, classify, scan, emit, tessellate,
-           millions / (classify + scan + emit), bytes / 1e6 / (classify + scan + emit), copy / emit, draw, frame);
+           millions / (classify + scan + emit), bytes / 1e6 / (classify + scan + emit), copy / emit, draw_ms, united,
+           frame);
     if (cairo > 0)
         printf(" %7.1f %6.2f", cairo, cairo / frame);
     printf("\n");
@@ -134,9 +145,9 @@ static void print_row(bench *b, const bench_scene *scene, times *t) {
             b->json,
             "{\"scene\":\"%s\",\"width_px\":%g,\"polylines\":%zu,\"segments\":%zu,\"vertices\":%zu,\"triangles\":%zu,"
             "\"bytes\":%.0f,\"classify_ms\":%.4f,\"scan_ms\":%.4f,\"emit_ms\":%.4f,\"tessellate_ms\":%.4f,"
-            "\"memcpy_ms\":%.4f,\"draw_ms\":%.3f,\"frame_ms\":%.3f,\"cairo_ms\":%.3f}\n",
+            "\"memcpy_ms\":%.4f,\"draw_ms\":%.3f,\"draw_united_ms\":%.3f,\"frame_ms\":%.3f,\"cairo_ms\":%.3f}\n",
             scene->name, (double)scene->width_px, scene->lines.polyline_count, segments, info.vertex_count,
-            info.triangle_count, bytes, classify, scan, emit, tessellate, copy, draw, frame, cairo);
+            info.triangle_count, bytes, classify, scan, emit, tessellate, copy, draw_ms, united, frame, cairo);
 }
 
 /* memcpy of the vertices, as often as the tessellation ran. */
@@ -243,8 +254,9 @@ static camber_status run_all(bench *b) {
            "kernels.\n"
            "GB/s: bytes written by the kernels; cpy/emit: memcpy of the vertices on one thread against emit.\n\n",
            BENCH_SIDE_PX, BENCH_SIDE_PX, RUNS, WARM_UPS);
-    printf("%-22s %7s %8s %5s %6s %6s %6s %7s %7s %6s %6s %7s %7s%s\n", "scene", "lines", "segments", "B/seg", "class.",
-           "scan", "emit", "tess.", "M/s", "GB/s", "cpy/em", "draw", "frame", cairo ? "   Cairo  ratio" : "");
+    printf("%-22s %7s %8s %5s %6s %6s %6s %7s %7s %6s %6s %7s %7s %7s%s\n", "scene", "lines", "segments", "B/seg",
+           "class.", "scan", "emit", "tess.", "M/s", "GB/s", "cpy/em", "draw", "united", "frame",
+           cairo ? "   Cairo  ratio" : "");
     for (size_t i = 0; i < list.count && status == CAMBER_OK; i++)
         status = run_scene(b, list.scenes + i);
     for (size_t i = 0; i < list.count; i++)

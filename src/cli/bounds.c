@@ -24,6 +24,9 @@ static const camber_pixel_bounds linear = {3.5, 0.020, 0.0010};
  * bytes. */
 static const camber_pixel_bounds backends = {0.25, 0.0020, 0.0005};
 
+/* How much more the union of all lines may be off: it has their crossings too. */
+static const double UNITED_MORE = 0.25;
+
 static void add(camber_pixel_bounds *sum, const camber_pixel_bounds *more, double times) {
     sum->mean += times * more->mean;
     sum->past_16 += times * more->past_16;
@@ -42,6 +45,12 @@ bool camber_bounds_of_pixels(const char *scene, double tight_share, camber_cover
         return true;
     }
     return false;
+}
+
+camber_pixel_bounds camber_bounds_of_united(camber_pixel_bounds over) {
+    const camber_pixel_bounds once = over;
+    add(&over, &once, UNITED_MORE);
+    return over;
 }
 
 camber_pixel_bounds camber_bounds_of_backends(void) {

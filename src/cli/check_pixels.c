@@ -36,16 +36,20 @@ static bool is_past(const camber_pixel_bounds *is, const camber_pixel_bounds *mo
     return false;
 }
 
-static camber_status draw(const job *j, const camber_path *path, uint8_t *levels) {
-    const camber_drawing drawing = {j->desc.strokes, j->desc.stroke_count, j->s->width, j->s->height,
-                                    (camber_coverage)j->v->session->options->coverage};
+static camber_status draw(const job *j, const camber_path *path, camber_overlap overlap, uint8_t *levels) {
+    const camber_drawing drawing = {.strokes = j->desc.strokes,
+                                    .stroke_count = j->desc.stroke_count,
+                                    .width = j->s->width,
+                                    .height = j->s->height,
+                                    .coverage = (camber_coverage)j->v->session->options->coverage,
+                                    .overlap = overlap};
     const camber_status status = camber_tessellate(path->mesh, j->s->polylines, &j->desc);
     return status == CAMBER_OK ? camber_draw_levels(path, &drawing, levels) : status;
 }
 
 /* ---- Against the truth ---- */
 
-static int check_truth(job *j, camber_check *check) {
+static int check_truth(job *j, camber_check *check, camber_truth_kind kind, const uint8_t *levels) {
     size_t worst = 0;
     int status = CAMBER_EXIT_DONE;
     camber_finding *finding = &check->finding;
@@ -54,8 +58,8 @@ static int check_truth(job *j, camber_check *check) {
         return status;
     }
     check->has_error = true;
-    check->most = j->bounds;
-    camber_samples_compare(&j->samples, j->own, j->s->width, &check->error, &worst);
+    check->most = kind == CAMBER_TRUTH_OVER ? j->bounds : camber_bounds_of_united(j->bounds);
+    camber_samples_compare(&j->samples, kind, levels, j->s->width, &check->error, &worst);
     if (is_past(&check->error.of, &check->most, finding)) {
         const camber_sample *sample = &j->samples.list[worst];
         check->verdict = CAMBER_VERDICT_FAILED;
@@ -69,12 +73,12 @@ static int check_truth(job *j, camber_check *check) {
                  "pixels: %s is %.4g, at most %.4g; worst in the %d x %d px at %d, %d, about polyline %zu, point %zu",
                  finding->field, finding->got, finding->expected, sample->window.width, sample->window.height,
                  sample->window.x0, sample->window.y0, sample->polyline, sample->point);
-        uint8_t *levels = calloc((size_t)sample->window.width, (size_t)sample->window.height);
-        if (!levels)
+        uint8_t *cut = calloc((size_t)sample->window.width, (size_t)sample->window.height);
+        if (!cut)
             return camber_report_status(j->v->session->report, CAMBER_ERROR_MEMORY);
-        camber_sample_cut(sample, j->own, j->s->width, levels);
-        status = camber_evidence_write(j->v, sample->window, sample->truth, levels, finding);
-        free(levels);
+        camber_sample_cut(sample, levels, j->s->width, cut);
+        status = camber_evidence_write(j->v, sample->window, sample->truths[kind], cut, finding);
+        free(cut);
     }
     if (status == CAMBER_EXIT_DONE)
         camber_verdicts_add(&j->v->verdicts, check);
@@ -139,7 +143,7 @@ static int check_path(job *j, camber_easel *easel, size_t path) {
                                             easel->paths[0].name, j->rig->name, easel->name);
     bool differ = false;
     size_t pixel = 0;
-    camber_status drawn = draw(j, &easel->paths[path], j->other);
+    camber_status drawn = draw(j, &easel->paths[path], CAMBER_OVERLAP_FLATTEN, j->other);
     if (drawn == CAMBER_OK)
         drawn = meshes_differ(j, easel, path, &check.finding, &differ);
     int status = camber_report_status(j->v->session->report, drawn);
@@ -181,13 +185,24 @@ static int check_backend(job *j, const camber_easel *easel) {
 
 /* ---- All of it ---- */
 
+/* The layers of translucent lines, drawn opaque: against the union of all lines. */
+static int check_united(job *j, const camber_easel *easel) {
+    camber_check check = camber_check_start(j->rig->name, easel->name, "%s: %s, %s: united, on %s, %s", j->s->name,
+                                            camber_method_name(j->desc.method), j->style, j->rig->name, easel->name);
+    const int status =
+        camber_report_status(j->v->session->report, draw(j, &easel->paths[0], CAMBER_OVERLAP_UNITE, j->other));
+    return status == CAMBER_EXIT_DONE ? check_truth(j, &check, CAMBER_TRUTH_UNION, j->other) : status;
+}
+
 static int check_easel(job *j, size_t which) {
     camber_easel *easel = (camber_easel *)&j->rig->easels[which];
     camber_check check = camber_check_start(j->rig->name, easel->name, "%s: %s, %s: pixels, on %s, %s", j->s->name,
                                             camber_method_name(j->desc.method), j->style, j->rig->name, easel->name);
-    int status = camber_report_status(j->v->session->report, draw(j, &easel->paths[0], j->own));
+    int status = camber_report_status(j->v->session->report, draw(j, &easel->paths[0], CAMBER_OVERLAP_FLATTEN, j->own));
     if (status == CAMBER_EXIT_DONE)
-        status = check_truth(j, &check);
+        status = check_truth(j, &check, CAMBER_TRUTH_OVER, j->own);
+    if (status == CAMBER_EXIT_DONE && j->desc.method == CAMBER_METHOD_STRIP)
+        status = check_united(j, easel);
     if (status == CAMBER_EXIT_DONE && which > 0)
         status = check_backend(j, easel);
     for (size_t path = 1; path < easel->path_count && j->is_shared && status == CAMBER_EXIT_DONE; path++)

@@ -69,6 +69,8 @@ int camber_evidence_check(const camber_session *session);
 /* Of a built-in scene, or NULL for a user's lines, a share of whose joins is tight or split. false: it is not drawn. */
 bool camber_bounds_of_pixels(const char *scene, double tight_share, camber_coverage coverage,
                              camber_pixel_bounds *bounds);
+/* The same for lines that are united, from those of lines that are drawn one over the other. */
+camber_pixel_bounds camber_bounds_of_united(camber_pixel_bounds over);
 /* Of one GL back end's picture against another's. */
 camber_pixel_bounds camber_bounds_of_backends(void);
 
@@ -79,6 +81,7 @@ typedef struct camber_drawing {
     size_t stroke_count;
     uint32_t width, height; /* px */
     camber_coverage coverage;
+    camber_overlap overlap;
 } camber_drawing;
 
 /* Draws the path's mesh, opaque white on black, in one pass. levels takes width * height. */

@@ -113,8 +113,11 @@ static camber_status look_at_indices(camber_context *context, camber_mesh *mesh,
 /* Draws nothing where the mesh is not fit for it. */
 static camber_status draw_lines(camber_validation *v, const camber_path *path, const camber_polylines_desc *lines,
                                 const camber_tessellation_desc *desc, uint8_t *levels) {
-    const camber_drawing drawing = {desc->strokes, desc->stroke_count, SIDE_PX, SIDE_PX,
-                                    (camber_coverage)v->session->options->coverage};
+    const camber_drawing drawing = {.strokes = desc->strokes,
+                                    .stroke_count = desc->stroke_count,
+                                    .width = SIDE_PX,
+                                    .height = SIDE_PX,
+                                    .coverage = (camber_coverage)v->session->options->coverage};
     camber_polylines *polylines = NULL;
     camber_status status = camber_polylines_create(v->session->context, lines, &polylines);
     if (status == CAMBER_OK)

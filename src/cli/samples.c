@@ -66,19 +66,17 @@ static size_t area_of(const camber_window *window) {
 
 camber_status camber_samples_make(const camber_subject *subject, const camber_stroke *strokes, size_t count,
                                   camber_samples *samples) {
-    const camber_truth_desc desc = {.lines = &subject->lines,
-                                    .rows = subject->rows,
-                                    .strokes = strokes,
-                                    .keep_open = subject->keep_open,
-                                    .kind = CAMBER_TRUTH_OVER};
+    camber_truth_desc desc = {
+        .lines = &subject->lines, .rows = subject->rows, .strokes = strokes, .keep_open = subject->keep_open};
     *samples = (camber_samples){.list = calloc(count + 1, sizeof *samples->list)};
     if (!samples->list)
         return CAMBER_ERROR_MEMORY;
     choose(subject, count, samples);
-    for (size_t i = 0; i < samples->count; i++) {
-        camber_sample *sample = &samples->list[i];
-        sample->truth = calloc(area_of(&sample->window), sizeof *sample->truth);
-        if (!sample->truth || !camber_truth_make(&desc, sample->window, sample->truth)) {
+    for (size_t i = 0; i < 2 * samples->count; i++) {
+        camber_sample *sample = &samples->list[i / 2];
+        desc.kind = i % 2 ? CAMBER_TRUTH_OVER : CAMBER_TRUTH_UNION;
+        float *truth = sample->truths[desc.kind] = calloc(area_of(&sample->window), sizeof *truth);
+        if (!truth || !camber_truth_make(&desc, sample->window, truth)) {
             camber_samples_free(samples);
             return CAMBER_ERROR_MEMORY;
         }
@@ -87,8 +85,8 @@ camber_status camber_samples_make(const camber_subject *subject, const camber_st
 }
 
 void camber_samples_free(camber_samples *samples) {
-    for (size_t i = 0; i < samples->count; i++)
-        free(samples->list[i].truth);
+    for (size_t i = 0; i < 2 * samples->count; i++)
+        free(samples->list[i / 2].truths[i % 2]);
     free(samples->list);
     *samples = (camber_samples){0};
 }
@@ -120,7 +118,7 @@ void camber_sample_cut(const camber_sample *sample, const uint8_t *picture, size
         memcpy(levels + y * w->width, picture + (size_t)(w->y0 + y) * width + (size_t)w->x0, (size_t)w->width);
 }
 
-void camber_samples_compare(const camber_samples *samples, const uint8_t *levels, size_t width,
+void camber_samples_compare(const camber_samples *samples, camber_truth_kind kind, const uint8_t *levels, size_t width,
                             camber_pixel_error *error, size_t *worst) {
     camber_difference sum = {0};
     double worst_sum = -1;
@@ -129,7 +127,7 @@ void camber_samples_compare(const camber_samples *samples, const uint8_t *levels
     for (size_t i = 0; i < samples->count; i++) {
         const camber_sample *sample = &samples->list[i];
         const size_t area = area_of(&sample->window);
-        memcpy(truth, sample->truth, area * sizeof *truth);
+        memcpy(truth, sample->truths[kind], area * sizeof *truth);
         camber_sample_cut(sample, levels, width, drawn);
         const camber_difference difference = compare_edges(truth, drawn, area);
         camber_difference_add(&sum, &difference);

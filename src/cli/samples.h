@@ -6,7 +6,7 @@
 
 typedef struct camber_sample {
     camber_window window;
-    float *truth;           /* width * height of the window */
+    float *truths[2];       /* by camber_truth_kind, width * height of the window */
     size_t polyline, point; /* as given: one that lies in it */
     double x, y;
 } camber_sample;
@@ -22,8 +22,9 @@ camber_status camber_samples_make(const camber_subject *subject, const camber_st
                                   camber_samples *samples);
 void camber_samples_free(camber_samples *samples);
 
-/* Holds a picture of the subject's size against the samples. worst: the sample with the largest sum of differences. */
-void camber_samples_compare(const camber_samples *samples, const uint8_t *levels, size_t width,
+/* Holds a picture of the subject's size against a kind of the samples' truth. worst: the sample with the largest sum of
+ * differences. */
+void camber_samples_compare(const camber_samples *samples, camber_truth_kind kind, const uint8_t *levels, size_t width,
                             camber_pixel_error *error, size_t *worst);
 /* A sample's part of the picture; levels takes width * height of its window. */
 void camber_sample_cut(const camber_sample *sample, const uint8_t *picture, size_t width, uint8_t *levels);

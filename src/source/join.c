@@ -151,6 +151,18 @@ static void drop_repeated_runs(joiner *join) {
     }
 }
 
+/* Where a line passes the corner of four tiles, one of them may hold nothing but a crumb between two cuts, and both
+ * ends of it lie within reach of the neighbours. Without it these find each other. */
+static void drop_crumbs(const joiner *join) {
+    camber_tiles *tiles = join->tiles;
+    for (uint32_t i = 0; i < tiles->piece_count; i++) {
+        camber_tile_piece *piece = &tiles->pieces[i];
+        const double *p = end_point(tiles, 2 * i);
+        if (piece->count == 2 && piece->cut[0] && piece->cut[1] && hypot(p[2] - p[0], p[3] - p[1]) < REACH / 2)
+            piece->count = 0;
+    }
+}
+
 /* ---- Chains ---- */
 
 typedef struct chain {
@@ -194,18 +206,23 @@ static void find_chains(const joiner *join, chain_list *list) {
     }
 }
 
+/* Whether the point that a piece is entered by is left out: at a joint one point is left, or none where both were made
+ * by cutting. */
+static bool skips_entry(const joiner *join, uint32_t enter) {
+    const camber_tile_piece *pieces = join->tiles->pieces;
+    const uint32_t leave = join->partner[enter];
+    return leave != NONE && (!pieces[leave / 2].cut[leave & 1] || pieces[enter / 2].cut[enter & 1]);
+}
+
 /* The chain's points, in world coordinates, to scratch. */
 static bool gather(const joiner *join, uint32_t start, size_t *count) {
     camber_tiles *tiles = join->tiles;
     size_t points = 0;
-    bool skip_entry = false;
     uint32_t end = start;
     do {
         const camber_tile_piece *piece = &tiles->pieces[end / 2];
         const uint32_t leave = end ^ 1, enter = join->partner[leave];
-        const bool joins = enter != NONE;
-        /* At a joint one point is left, or none where both were made by cutting. */
-        const bool skip_leave = joins && piece->cut[leave & 1];
+        const bool skip_entry = skips_entry(join, end), skip_leave = enter != NONE && piece->cut[leave & 1];
         if (!camber_grow(tiles->context, &tiles->scratch, &tiles->scratch_capacity, points + piece->count + 1,
                          2 * sizeof *tiles->scratch))
             return false;
@@ -217,8 +234,6 @@ static bool gather(const joiner *join, uint32_t start, size_t *count) {
             tiles->scratch[2 * points + 1] = from[1] / tiles->units;
             points++;
         }
-        if (joins)
-            skip_entry = !skip_leave || tiles->pieces[enter / 2].cut[enter & 1];
         end = enter;
     } while (end != NONE && end != start);
     if (end == start && points) {
@@ -293,6 +308,7 @@ camber_status camber_tiles_finish(camber_tiles *tiles, camber_features *features
     for (size_t i = 0; i < 2 * tiles->piece_count; i++)
         join.partner[i] = NONE;
     drop_repeated_runs(&join);
+    drop_crumbs(&join);
     const join_pass passes[] = {{true, EXACT}, {true, REACH}, {true, ID_REACH}, {false, EXACT}, {false, REACH}};
     for (size_t i = 0; i < sizeof passes / sizeof *passes; i++)
         find_partners(&join, &passes[i]);

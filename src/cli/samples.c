@@ -123,7 +123,7 @@ void camber_samples_compare(const camber_samples *samples, camber_truth_kind kin
     camber_difference sum = {0};
     double worst_sum = -1;
     float truth[SIDE_PX * SIDE_PX];
-    uint8_t drawn[SIDE_PX * SIDE_PX];
+    uint8_t drawn[SIDE_PX * SIDE_PX] = {0};
     for (size_t i = 0; i < samples->count; i++) {
         const camber_sample *sample = &samples->list[i];
         const size_t area = area_of(&sample->window);

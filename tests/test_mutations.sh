@@ -28,6 +28,21 @@ validate() {
     "$tmp/build/src/camber" validate --windows 12 --backend $backend "$@" >"$tmp/tap" 2>"$tmp/stderr"
 }
 
+# What a failure leaves: a picture that the report names, JUnit's failures, and JSON with what differs.
+evidence=()
+look_at_evidence() { # FILE METHOD
+    local picture member
+    picture=$(sed -n 's/^  picture: "\(.*\)"$/\1/p' "$tmp/tap" | head -n 1)
+    [ "$(head -c 4 "${picture:-/dev/null}" | tail -c 3)" = PNG ] || fail "$1: no picture: '$picture'"
+    [ "$(find "$tmp/pictures" -name '*.png' | wc -l)" -le 32 ] || fail "$1: more than 32 pictures"
+    [ "$(grep -c '<failure ' "$tmp/junit.xml")" = "$(grep -c '^not ok' "$tmp/tap")" ] || fail "$1: JUnit has other failures"
+    "$tmp/build/src/camber" validate --windows 12 --backend $backend --method "$2" --json >"$tmp/json" 2>"$tmp/stderr"
+    [ $? = 1 ] || fail "$1: another exit status with --json"
+    for member in '"stage": "' '"polyline": [0-9]' '"point": [0-9]' '"field": "' '"got": ' '"expected": ' '"difference": "'; do
+        grep -q "$member" "$tmp/json" || fail "$1: the JSON lacks $member"
+    done
+}
+
 # mutant METHOD FILE WHAT-IT-BREAKS OLD NEW: replaces the first OLD in FILE. METHOD is what validate is told to check.
 mutant() {
     local method=$1 file=$2 what=$3 old=$4 new=$5 text
@@ -40,7 +55,8 @@ mutant() {
     fi
     printf '%s' "${text/"$old"/"$new"}" >"$tmp/sources/$file"
     if build; then
-        validate --method "$method"
+        rm -rf "$tmp/pictures" "$tmp/junit.xml"
+        validate --method "$method" "${evidence[@]}"
         local status=$? first
         first=$(grep -m 1 '^not ok' "$tmp/tap")
         if [ "$status" = 1 ] && [ -n "$first" ]; then
@@ -48,6 +64,7 @@ mutant() {
             echo "caught: $file: $what"
             echo "    $(grep -c '^not ok' "$tmp/tap") of $(sed -n 's/^1\.\.//p' "$tmp/tap") checks, the first: ${first#not ok }"
             grep -m 1 '^  message: ' "$tmp/tap" | sed 's/^ */    /'
+            [ ${#evidence[@]} = 0 ] || look_at_evidence "$file" "$method"
         else
             fail "$file: $what: not caught: exit status $status; $(head -c 300 "$tmp/stderr")"
         fi
@@ -95,7 +112,9 @@ mutant strip kernels/classify.cl "only first points are ends" 'point & (CAMBER_P
     'point & CAMBER_POINT_FIRST'
 mutant strip kernels/scan.cl "a lane's points all at one offset" 'base + before[i]' 'base + before[0]'
 mutant kite kernels/scan.cl "a point in its neighbour's place" 'joins[first + i - 1]' 'joins[first + i]'
+evidence=(--pictures "$tmp/pictures" --junit "$tmp/junit.xml")
 mutant strip kernels/emit.cl "a missing restart" 'index[0] = 0xffffffffu;' 'index[0] = v;'
+evidence=()
 mutant strip kernels/emit.cl "the ends of a segment swapped" 'half_shorter, -1.0f, join' 'half_shorter, 1.0f, join'
 mutant strip kernels/emit.cl "a vertex at B that says A" 'camber_join_end(join) << 3 | 64u' 'camber_join_end(join) << 3'
 mutant kite kernels/emit.cl "a triangle that winds the other way" 'put_triangle(indices + 3, s + 1, e + 1, e)' \
@@ -111,12 +130,12 @@ mutant strip kernels/join.h "turns of half the angle" 'turn.c) * 32767.0f' 'turn
 mutant strip kernels/join.h "cuts at the tangent of another angle" 'return 2.0f * q / (' 'return q / ('
 mutant strip kernels/join.h "cuts on the wrong side" 'cut = -end * side' 'cut = end * side'
 mutant strip kernels/join.h "no join is tight" 'tight = row->reach_px * sine > ' 'tight = -row->reach_px * sine > '
-mutant strip kernels/join.h "no turn is too sharp to cut" 'sine > 2.0f * turn.c' 'sine > 2e9f * turn.c'
+mutant strip kernels/join.h "split miters cut like bevels" 'miter ? 7u : bevel ? 6u' 'miter ? 6u : bevel ? 7u'
 mutant strip kernels/join.h "tight joins that forget the bisector" 'end = split || tight ?' 'end = split ?'
 mutant strip kernels/join.h "a miter past its limit" 'turn.c * row->miter_limit >= 1.0f' 'turn.c * row->miter_limit <= 1.0f'
 mutant strip kernels/join.h "round and square caps swapped" 'cap == 1u ? 0u : cap == 2u ? 2u' 'cap == 1u ? 2u : cap == 2u ? 0u'
 mutant strip kernels/join.h "butt ends without a pad" 'is_butt ? CAMBER_PAD_PX' 'is_butt ? 0.0f'
-mutant kite kernels/join.h "kites whose tip runs away" 'sine > 1.7320508f * turn.c ? 4u' 'sine > 1.7320508f * turn.c ? 2u'
+mutant kite kernels/join.h "kites cut on the outer side" 'is_cut && side * q > 0.0f' 'is_cut && side * q < 0.0f'
 mutant fan kernels/join.h "fans of one triangle" 'x > turn_cos && y > 0.0f' 'x < turn_cos && y > 0.0f'
 
 # ---- Shaders ----
@@ -125,7 +144,9 @@ mutant strip shaders/stroke.vert "left and right swapped at A" 'a_point - a_segm
 mutant strip shaders/stroke.vert "no pad" 'PAD_PX = 0.75' 'PAD_PX = 0.0'
 mutant strip shaders/stroke.frag "the slope of an edge" '0.5 + s * e.slope' '0.5 + s * 0.8 * e.slope'
 mutant strip shaders/stroke.frag "the corner of a pixel" 'rest * rest * e.curve' 'rest * e.curve'
+evidence=(--pictures "$tmp/pictures" --junit "$tmp/junit.xml")
 mutant strip shaders/stroke.frag "half the width" 'covered(half_width - d, edge)' 'covered(0.9 * half_width - d, edge)'
+evidence=()
 mutant strip shaders/stroke.frag "the sine of a turn" '2.0 * q * scale' 'q * scale'
 mutant strip shaders/stroke.frag "the wrong side of a bisector" 'e.c * e.past + e.s * y > tie' 'e.c * e.past - e.s * y > tie'
 mutant strip shaders/stroke.frag "square caps of a whole width" 'half_width - e.past' '2.0 * half_width - e.past'

@@ -81,8 +81,10 @@ static int check_twin(job *j, size_t number) {
         made = compare_mesh(j, j->rig->mesh, &twin, true, &check);
     int status = camber_report_status(j->v->session->report, made);
     if (status == CAMBER_EXIT_DONE && check.verdict == CAMBER_VERDICT_FAILED) {
+        /* One picture: what breaks one style mostly breaks all of them. */
+        if (!j->rig->broken[j->desc.method])
+            status = camber_evidence_of_mesh(j->v, j->rig, j->s, &j->desc, &check.finding);
         j->rig->broken[j->desc.method] = true;
-        status = camber_evidence_of_mesh(j->v, j->rig, j->s, &j->desc, &check.finding);
     }
     if (status == CAMBER_EXIT_DONE)
         camber_verdicts_add(&j->v->verdicts, &check);

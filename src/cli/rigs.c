@@ -186,7 +186,7 @@ int camber_rigs_open(camber_rigs *rigs, camber_session *session, camber_verdicts
         listed = CAMBER_ERROR_MEMORY;
     }
     int status = camber_report_status(session->report, listed);
-    if (status == CAMBER_EXIT_DONE)
+    if (status == CAMBER_EXIT_DONE && infos && rigs->list)
         status = open_all(rigs, session, verdicts, infos, count);
     free(infos);
     return status;

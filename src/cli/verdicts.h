@@ -56,7 +56,7 @@ camber_value_text camber_value_print(double value);
 
 /* Bytes of the character at text, as reports may have it: UTF-8 that XML 1.0 allows. 0: it is none, and '?' stands for
  * its first byte. */
-size_t camber_character_size(const char *text);
+size_t camber_character_size(const char *character);
 
 typedef struct camber_verdicts {
     camber_report *report;

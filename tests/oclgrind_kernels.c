@@ -1,17 +1,17 @@
-/* Every kernel, method, join and cap on a few hundred points, against the twin: small enough for a simulator that
- * checks bounds and races. Run by test_oclgrind.sh; without the simulator it is a quick test of whatever device there
- * is. */
+/* Every kernel, method, join, cap, size of a work-group and border of a block on some hundred points, whole and in
+ * parts, against the twin: small enough for a simulator that checks bounds and races. Run by test_oclgrind.sh; without
+ * the simulator it is a quick test of whatever device there is. */
 #include "camber.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { POINTS_MAX = 1024, LINES_MAX = 200 };
+enum { POINTS_MAX = 2048, LINES_MAX = 200, ROWS = 9 };
 
 typedef struct scene {
     float points[2 * POINTS_MAX];
-    uint32_t offsets[LINES_MAX + 1];
+    uint32_t offsets[LINES_MAX + 1], rows[LINES_MAX];
     size_t point_count, line_count;
 } scene;
 
@@ -25,8 +25,19 @@ static void end_line(scene *s) {
     s->offsets[++s->line_count] = (uint32_t)s->point_count;
 }
 
-/* Rings, stars whose turns are tight or past 127 degrees, dots, reversals, repeated points: past one block. */
-static void fill(scene *s) {
+/* Lines that end before, on and behind the borders of blocks of 64, 128 and 256 points, with cut, tight and split joins
+ * there, and dots on both sides. */
+static void fill_blocks(scene *s) {
+    static const int counts[] = {63, 1, 1, 63, 64, 65, 62, 1, 192, 257, 255, 2, 126, 129};
+    for (size_t line = 0; line < sizeof counts / sizeof *counts; line++) {
+        for (int i = 0; i < counts[line]; i++)
+            add_point(s, 3 * i + i % 7 * 5, 300 + 40.0 * (double)line + (i % 3 ? 2 * (i % 5) : 25));
+        end_line(s);
+    }
+}
+
+/* Rings, stars whose turns are tight or past 127 degrees, dots, reversals, repeated points. */
+static void fill_shapes(scene *s) {
     for (int ring = 0; ring < 12; ring++) {
         const int corners = 3 + ring % 7;
         for (int i = 0; i <= corners; i++) {
@@ -46,56 +57,131 @@ static void fill(scene *s) {
     end_line(s);
 }
 
-static int check(camber_context *context, camber_mesh *mesh, const camber_polylines *polylines, camber_stroke stroke,
-                 camber_method method) {
-    const camber_tessellation_desc desc = {.strokes = &stroke, .stroke_count = 1, .method = method};
-    camber_mesh_data device = {0}, twin = {0};
-    int failed = camber_tessellate(mesh, polylines, &desc) != CAMBER_OK ||
-                 camber_mesh_read(mesh, &device) != CAMBER_OK ||
-                 camber_tessellate_on_host(context, polylines, &desc, &twin) != CAMBER_OK;
-    failed = failed || device.info.vertex_count != twin.info.vertex_count ||
-             device.info.index_count != twin.info.index_count ||
-             memcmp(device.indices, twin.indices, twin.info.index_count * sizeof *twin.indices) != 0;
-    /* A simulator need not divide as the twin does: numbers may differ in their last bits, integers may not. */
-    for (size_t i = 0; !failed && i < twin.info.vertex_count; i++) {
-        const camber_vertex a = device.vertices[i], b = twin.vertices[i];
-        failed = a.flags != b.flags || a.row != b.row || a.across != b.across || a.x != b.x || a.y != b.y ||
-                 fabsf(a.along - b.along) > 1e-3f * (1 + fabsf(b.along));
-    }
-    if (failed)
-        printf("not ok - %s, join %d, cap %d\n", camber_method_name(method), (int)stroke.join, (int)stroke.cap);
-    camber_mesh_data_free(context, &device);
-    camber_mesh_data_free(context, &twin);
-    return failed;
+/* Joins with caps, narrow and wide, with limits that miters keep and exceed. Each rotation gives a line another row. */
+static void rotate(scene *s, camber_stroke strokes[ROWS], size_t rotation) {
+    for (int row = 0; row < ROWS; row++)
+        strokes[row] = (camber_stroke){row % 2 ? 25.0f : 6.0f, (camber_join)(row % 3), (camber_cap)(row / 3),
+                                       row == 4   ? 1.05f
+                                       : row == 7 ? 10.0f
+                                                  : 0.0f};
+    for (size_t i = 0; i < s->line_count; i++)
+        s->rows[i] = (uint32_t)((i + rotation) % ROWS);
 }
 
-int main(void) {
-    static scene s;
-    const camber_context_desc quiet = {.cache_dir = ""};
-    camber_context *context = NULL;
+/* ---- Device against twin ---- */
+
+/* A simulator need not divide as the twin does: numbers may differ in their last bits, integers may not. */
+static bool same_meshes(const camber_mesh_data *device, const camber_mesh_data *twin) {
+    if (device->info.vertex_count != twin->info.vertex_count || device->info.index_count != twin->info.index_count ||
+        memcmp(device->indices, twin->indices, twin->info.index_count * sizeof *twin->indices) != 0)
+        return false;
+    for (size_t i = 0; i < twin->info.vertex_count; i++) {
+        const camber_vertex a = device->vertices[i], b = twin->vertices[i];
+        if (a.flags != b.flags || a.row != b.row || a.across != b.across || a.x != b.x || a.y != b.y ||
+            !(fabsf(a.along - b.along) <= 1e-3f * (1 + fabsf(b.along))))
+            return false;
+    }
+    return true;
+}
+
+static bool same_stages(const camber_stages *device, const camber_stages *twin) {
+    if (device->point_count != twin->point_count)
+        return false;
+    for (size_t i = 0; i < twin->point_count; i++) {
+        const camber_point_stages *a = device->points + i, *b = twin->points + i;
+        /* The upper half is integers, the lower a rounded tangent. */
+        if (a->polyline != b->polyline || a->point != b->point || a->join >> 16 != b->join >> 16 ||
+            a->first_vertex != b->first_vertex || a->first_index != b->first_index)
+            return false;
+    }
+    return true;
+}
+
+static bool check(camber_context *context, camber_mesh *mesh, const camber_polylines *polylines,
+                  const camber_tessellation_desc *desc) {
+    camber_mesh_data device = {0}, twin = {0};
+    camber_stages device_stages = {0}, twin_stages = {0};
+    const bool good = camber_tessellate(mesh, polylines, desc) == CAMBER_OK &&
+                      camber_mesh_read(mesh, &device) == CAMBER_OK &&
+                      camber_mesh_read_stages(mesh, &device_stages) == CAMBER_OK &&
+                      camber_tessellate_on_host(context, polylines, desc, &twin) == CAMBER_OK &&
+                      camber_stages_on_host(context, polylines, desc, &twin_stages) == CAMBER_OK &&
+                      same_meshes(&device, &twin) && same_stages(&device_stages, &twin_stages);
+    camber_stages_free(context, &twin_stages);
+    camber_stages_free(context, &device_stages);
+    camber_mesh_data_free(context, &twin);
+    camber_mesh_data_free(context, &device);
+    return good;
+}
+
+static int check_methods(camber_context *context, camber_mesh *mesh, const scene *s, const camber_stroke *strokes,
+                         const char *what) {
+    const camber_polylines_desc desc = {.points = s->points,
+                                        .point_count = s->point_count,
+                                        .offsets = s->offsets,
+                                        .polyline_count = s->line_count,
+                                        .rows = s->rows};
+    camber_polylines *polylines = NULL;
+    int failures = 0;
+    if (camber_polylines_create(context, &desc, &polylines) != CAMBER_OK)
+        return 1;
+    for (int method = 0; method < 3; method++) {
+        const camber_tessellation_desc tessellation = {
+            .strokes = strokes, .stroke_count = ROWS, .method = (camber_method)method};
+        if (check(context, mesh, polylines, &tessellation))
+            continue;
+        printf("not ok - %s, %s\n", camber_method_name(tessellation.method), what);
+        failures++;
+    }
+    camber_polylines_destroy(polylines);
+    return failures;
+}
+
+static int check_device(camber_context *context, scene *s, const camber_device_desc *desc, size_t rotations) {
     camber_device *device = NULL;
     camber_mesh *mesh = NULL;
-    camber_polylines *polylines = NULL;
+    camber_stroke strokes[ROWS];
     int failures = 1;
-    fill(&s);
-    const camber_polylines_desc desc = {
-        .points = s.points, .point_count = s.point_count, .offsets = s.offsets, .polyline_count = s.line_count};
-    if (camber_context_create(&quiet, &context) == CAMBER_OK &&
-        camber_polylines_create(context, &desc, &polylines) == CAMBER_OK &&
-        camber_device_create(context, NULL, NULL, &device) == CAMBER_OK &&
+    if (camber_device_create(context, desc, NULL, &device) == CAMBER_OK &&
         camber_mesh_create(device, NULL, &mesh) == CAMBER_OK) {
-        printf("%s, %zu points\n", camber_device_get_info(device).name, s.point_count);
         failures = 0;
-        for (int method = 0; method < 3; method++)
-            for (int join = 0; join < 3; join++)
-                for (int cap = 0; cap < 3; cap++)
-                    failures += check(context, mesh, polylines,
-                                      (camber_stroke){.width_px = 6, .join = (camber_join)join, .cap = (camber_cap)cap},
-                                      (camber_method)method);
+        printf("%s, work-groups of %u, buffers of up to %llu bytes\n", camber_device_get_info(device).name,
+               desc->work_group_size, (unsigned long long)camber_device_get_info(device).largest_buffer_bytes);
+        for (size_t rotation = 0; rotation < rotations; rotation++) {
+            char what[64];
+            snprintf(what, sizeof what, "work-groups of %u, rotation %zu", desc->work_group_size, rotation);
+            rotate(s, strokes, rotation);
+            failures += check_methods(context, mesh, s, strokes, what);
+        }
     }
     camber_mesh_destroy(mesh);
     camber_device_destroy(device);
-    camber_polylines_destroy(polylines);
+    return failures;
+}
+
+static void print_log(void *user, camber_log_level level, const char *message) {
+    (void)user;
+    if (level == CAMBER_LOG_ERROR)
+        printf("# %s\n", message);
+}
+
+int main(void) {
+    static const uint32_t sizes[] = {64, 128, 256};
+    static scene s;
+    const camber_context_desc desc = {.log = print_log, .cache_dir = ""};
+    camber_context *context = NULL;
+    int failures = 0;
+    fill_blocks(&s);
+    fill_shapes(&s);
+    if (camber_context_create(&desc, &context) != CAMBER_OK)
+        return 1;
+    printf("%zu points in %zu lines\n", s.point_count, s.line_count);
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        const camber_device_desc whole = {.work_group_size = sizes[i]};
+        const camber_device_desc parts = {.work_group_size = sizes[i], .largest_buffer_bytes = 65536};
+        failures += check_device(context, &s, &whole, ROWS);
+        failures += check_device(context, &s, &parts, 1);
+    }
     camber_context_destroy(context);
     printf("%d failures\n", failures);
     return failures ? 1 : 0;

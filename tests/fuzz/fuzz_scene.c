@@ -1,0 +1,46 @@
+#include "fuzz_scene.h"
+
+#include <math.h>
+
+static void check_color(camber_color c) {
+    REQUIRE(c.r >= 0.0f && c.r <= 1.0f && c.g >= 0.0f && c.g <= 1.0f && c.b >= 0.0f && c.b <= 1.0f);
+    REQUIRE(c.a >= 0.0f && c.a <= 1.0f);
+}
+
+/* Passes draw polylines that there are, with paints that the strokes are wide enough for. */
+static void check_frame(camber_scene *scene) {
+    size_t stroke_count;
+    const camber_stroke *strokes = camber_scene_strokes(scene, &stroke_count);
+    const camber_frame frame = camber_scene_frame(scene, NULL);
+    const camber_lines *lines = camber_scene_lines(scene);
+    fuzz_check_lines(lines);
+    for (size_t i = 0; i < lines->polyline_count; i++)
+        REQUIRE(camber_scene_rows(scene)[i] < stroke_count);
+    for (size_t i = 0; i < lines->point_count; i++)
+        REQUIRE(fabsf(lines->points[2 * i]) < 1e6f && fabsf(lines->points[2 * i + 1]) < 1e6f);
+    check_color(frame.background);
+    for (size_t i = 0; i < frame.pass_count; i++) {
+        const camber_pass *pass = frame.passes + i;
+        REQUIRE(pass->first_polyline + pass->polyline_count <= lines->polyline_count);
+        REQUIRE(pass->polyline_count > 0 && pass->paint_count <= stroke_count);
+        for (size_t row = 0; row < pass->paint_count; row++) {
+            check_color(pass->paints[row].color);
+            REQUIRE(pass->paints[row].width_px >= 0.0f && pass->paints[row].width_px <= strokes[row].width_px);
+        }
+    }
+}
+
+void fuzz_scene(fuzz_run *run, const camber_features *features, const camber_scene_desc *desc) {
+    camber_scene *scene = NULL;
+    if (!fuzz_done(run, camber_scene_create(features, desc, &scene)))
+        return;
+    check_frame(scene);
+    const camber_scene_info info = camber_scene_get_info(scene);
+    REQUIRE(isfinite(info.longitude) && fabs(info.longitude) <= 180.0 && fabs(info.latitude) <= 85.06);
+    REQUIRE(isfinite(info.zoom) && info.zoom <= 24.0);
+    camber_tessellation_desc tessellation = {.method = (camber_method)(run->hash >> 20 & 0xff) % 3};
+    tessellation.strokes = camber_scene_strokes(scene, &tessellation.stroke_count);
+    /* What a style says is never what a tessellation refuses. */
+    REQUIRE(fuzz_tessellate(run, camber_scene_polylines(scene), &tessellation, NULL) || run->refused);
+    camber_scene_destroy(scene);
+}

@@ -1,0 +1,12 @@
+/* What must hold for any scene, whatever the style and the features. */
+#ifndef CAMBER_FUZZ_SCENE_H
+#define CAMBER_FUZZ_SCENE_H
+
+#include "fuzz.h"
+
+#include "camber_map.h"
+
+/* Makes the scene, checks it and tessellates it. */
+void fuzz_scene(fuzz_run *run, const camber_features *features, const camber_scene_desc *desc);
+
+#endif

@@ -1,0 +1,117 @@
+/* Style documents: parsed, their layers evaluated over features with values of every kind, and drawn to a scene. */
+#include "fuzz_scene.h"
+
+#include "source/source.h"
+#include "style/style.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { CLASSES = 8 };
+
+static const camber_value values[] = {
+    {.type = CAMBER_VALUE_NULL},
+    {.type = CAMBER_VALUE_BOOL, .boolean = true},
+    {.type = CAMBER_VALUE_BOOL, .boolean = false},
+    {.type = CAMBER_VALUE_NUMBER, .number = 0.0},
+    {.type = CAMBER_VALUE_NUMBER, .number = -1.0},
+    {.type = CAMBER_VALUE_NUMBER, .number = 5.0},
+    {.type = CAMBER_VALUE_NUMBER, .number = 0.1},
+    {.type = CAMBER_VALUE_NUMBER, .number = 1e308},
+    {.type = CAMBER_VALUE_NUMBER, .number = -1e308},
+    {.type = CAMBER_VALUE_NUMBER, .number = 5e-324},
+    {.type = CAMBER_VALUE_NUMBER, .number = HUGE_VAL},
+    {.type = CAMBER_VALUE_NUMBER, .number = -HUGE_VAL},
+    {.type = CAMBER_VALUE_STRING, .string = ""},
+    {.type = CAMBER_VALUE_STRING, .string = "primary"},
+    {.type = CAMBER_VALUE_STRING, .string = "yes"},
+    {.type = CAMBER_VALUE_STRING, .string = "12.5"},
+    {.type = CAMBER_VALUE_STRING, .string = "1e400"},
+    {.type = CAMBER_VALUE_STRING, .string = "#f80"},
+    {.type = CAMBER_VALUE_STRING, .string = "hsla(200, 50%, 50%, 0.5)"},
+    {.type = CAMBER_VALUE_STRING, .string = "\xc3\xa9\xf0\x9f\x9b\xa3"},
+};
+enum { VALUES = sizeof values / sizeof *values };
+
+/* World coordinates; 360 px at zoom 10 and less than one at 0. */
+static const double shapes[][8] = {
+    {0.5, 0.5, 0.5006, 0.5003, 0.5004, 0.5007, 0.5, 0.5},
+    {0.4999, 0.5001, 0.5002, 0.5001, 0.5001, 0.5001, 0.50015, 0.50011},
+    {0.01, 0.2, 0.9, 0.8, 0.1, 0.9, 0.1, 0.9},
+};
+
+/* Features whose class gives the properties values one after the other, so that each meets each in time. */
+static bool add_features(fuzz_run *run, camber_features *features) {
+    const size_t count = features->style->property_count;
+    camber_value all[1024] = {0};
+    uint32_t layer = 0, class_index = 0;
+    REQUIRE(count <= sizeof all / sizeof *all);
+    for (size_t c = 0; c < CLASSES; c++) {
+        for (size_t i = 0; i < count; i++) {
+            all[i] = values[(run->hash + 7 * c + 3 * i) % VALUES];
+            if (all[i].type == CAMBER_VALUE_STRING &&
+                !fuzz_done(run, camber_features_intern(features, all[i].string, &all[i].string)))
+                return false;
+        }
+        if (!fuzz_done(run, camber_features_find_layer(features, c % 3 ? "roads" : "other", &layer)) ||
+            !fuzz_done(run,
+                       camber_features_find_class(features, layer, (camber_geometry_kind)(c % 2), all, &class_index)) ||
+            !fuzz_done(run, camber_features_add_feature(features, class_index)) ||
+            !fuzz_done(run, camber_features_add_polyline(features, shapes[c % 3], 1 + c % 4)))
+            return false;
+    }
+    return true;
+}
+
+static void check_layers(const camber_style *style, const camber_features *features) {
+    static const double zooms[] = {0.0, 9.75, 14.0, 24.0};
+    for (size_t i = 0; i < style->layer_count; i++) {
+        const camber_style_layer *layer = style->layers + i;
+        REQUIRE(layer->id && layer->min_zoom >= 0.0 && layer->max_zoom <= 24.0 && layer->miter_limit >= 1.0f);
+        for (size_t c = 0; c < features->class_count; c++) {
+            const camber_feature_view feature = {
+                .values = features->values ? features->values + features->classes[c].first_value : NULL,
+                .geometry_type = features->classes[c].geometry ? "Polygon" : "LineString"};
+            for (size_t z = 0; z < sizeof zooms / sizeof *zooms; z++) {
+                camber_style_layer_matches(layer, zooms[z], &feature);
+                const camber_layer_paint paint = camber_style_layer_paint(layer, zooms[z], &feature);
+                REQUIRE(paint.width >= 0.0 && isfinite(paint.width));
+                REQUIRE(paint.color.a >= 0.0f && paint.color.a <= 1.0f);
+            }
+        }
+    }
+}
+
+static void use_style(fuzz_run *run, const camber_style *style) {
+    static const double zooms[] = {0.0, 10.0, 14.5, 24.0};
+    camber_features *features = NULL;
+    if (!fuzz_done(run, camber_features_create(run->context, style, &features)))
+        return;
+    if (add_features(run, features)) {
+        check_layers(style, features);
+        const camber_view_desc fitted = {.width = 64, .height = 48, .ratio = run->hash & 1 ? 2.0 : 0.0};
+        const camber_view_desc centred = {.kind = CAMBER_VIEW_CENTER, .zoom = zooms[run->hash >> 4 & 3], .width = 300};
+        fuzz_scene(run, features, &(camber_scene_desc){.view = fitted});
+        fuzz_scene(run, features, &(camber_scene_desc){.view = centred, .simplify_px = 0.1});
+    }
+    camber_features_destroy(features);
+}
+
+static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
+    camber_style *style = NULL;
+    if (!fuzz_done(run, camber_style_parse(run->context, (const char *)bytes, size, "fuzzed", &style)))
+        return;
+    use_style(run, style);
+    camber_style_destroy(style);
+}
+
+int LLVMFuzzerInitialize(int *argument_count, char ***arguments) {
+    (void)argument_count;
+    (void)arguments;
+    return 0;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
+    fuzz_each(bytes, size, use);
+    return 0;
+}

@@ -1,34 +1,27 @@
 /* What classify and scan left on the device, a point at a time, for proofs. */
 #include "tess/tess.h"
 
-/* The device's arrays as the host sees them, in the order of their buffers in map_arrays. */
+/* A part's arrays as the host sees them. */
 typedef struct arrays {
-    const float *x, *y;
-    const cl_uint *info, *joins, *offsets;
+    float *x, *y;
+    cl_uint *info, *joins, *offsets;
 } arrays;
 
-enum { ARRAYS = 5 };
-
-static void unmap_arrays(const camber_mesh *mesh, const cl_mem mems[ARRAYS], void *const maps[ARRAYS]) {
-    for (size_t i = 0; i < ARRAYS; i++)
-        if (maps[i])
-            clEnqueueUnmapMemObject(mesh->device->queue, mems[i], maps[i], 0, NULL, NULL);
+static void *map(const camber_mesh *mesh, cl_mem mem, size_t words, camber_status *status) {
+    if (*status != CAMBER_OK)
+        return NULL;
+    cl_int code;
+    void *bytes =
+        clEnqueueMapBuffer(mesh->device->queue, mem, CL_TRUE, CL_MAP_READ, 0, 4 * words, 0, NULL, NULL, &code);
+    if (code == CL_SUCCESS)
+        return bytes;
+    *status = camber_fail_cl(mesh->device->context, "clEnqueueMapBuffer", code);
+    return NULL;
 }
 
-static camber_status map_arrays(const camber_mesh *mesh, size_t slot_count, const cl_mem mems[ARRAYS],
-                                void *maps[ARRAYS], arrays *seen) {
-    for (size_t i = 0; i < ARRAYS; i++) {
-        const size_t words = i + 1 < ARRAYS ? slot_count + 2 : slot_count;
-        cl_int code;
-        maps[i] =
-            clEnqueueMapBuffer(mesh->device->queue, mems[i], CL_TRUE, CL_MAP_READ, 0, 4 * words, 0, NULL, NULL, &code);
-        if (code != CL_SUCCESS) {
-            maps[i] = NULL;
-            return camber_fail_cl(mesh->device->context, "clEnqueueMapBuffer", code);
-        }
-    }
-    *seen = (arrays){maps[0], maps[1], maps[2], maps[3], maps[4]};
-    return CAMBER_OK;
+static void unmap(const camber_mesh *mesh, cl_mem mem, void *bytes) {
+    if (bytes)
+        clEnqueueUnmapMemObject(mesh->device->queue, mem, bytes, 0, NULL, NULL);
 }
 
 /* The points of a part, behind those that stages holds. */
@@ -68,13 +61,21 @@ camber_status camber_mesh_read_stages(camber_mesh *mesh, camber_stages *stages) 
     camber_status status = CAMBER_OK;
     for (size_t i = 0; i < mesh->part_count && mesh->done && status == CAMBER_OK; i++) {
         const camber_mesh_part *part = mesh->parts + i;
-        const cl_mem mems[ARRAYS] = {part->x, part->y, part->info, part->joins, part->offsets};
-        void *maps[ARRAYS] = {NULL};
-        arrays seen = {0};
-        status = map_arrays(mesh, part->slot_count, mems, maps, &seen);
-        if (status == CAMBER_OK)
+        const size_t words = part->slot_count + 2;
+        const arrays seen = {
+            .x = map(mesh, part->x, words, &status),
+            .y = map(mesh, part->y, words, &status),
+            .info = map(mesh, part->info, words, &status),
+            .joins = map(mesh, part->joins, words, &status),
+            .offsets = map(mesh, part->offsets, part->slot_count, &status),
+        };
+        if (seen.x && seen.y && seen.info && seen.joins && seen.offsets)
             status = append_points(mesh, part, &seen, &made);
-        unmap_arrays(mesh, mems, maps);
+        unmap(mesh, part->x, seen.x);
+        unmap(mesh, part->y, seen.y);
+        unmap(mesh, part->info, seen.info);
+        unmap(mesh, part->joins, seen.joins);
+        unmap(mesh, part->offsets, seen.offsets);
     }
     if (status != CAMBER_OK) {
         camber_stages_free(mesh->device->context, &made);

@@ -124,7 +124,7 @@ camber_status camber_mesh_first_index(const camber_mesh *mesh, size_t polyline, 
 camber_status camber_mesh_plan(camber_mesh *mesh, const camber_polylines *polylines);
 /* Cuts a part that has been scanned, and whose output is too large, into parts whose output fits. The part's place is
  * taken by the first of them. */
-camber_status camber_mesh_split(camber_mesh *mesh, size_t part);
+camber_status camber_mesh_split(camber_mesh *mesh, size_t which);
 bool camber_part_fits(const camber_mesh *mesh, const camber_mesh_part *part);
 camber_status camber_part_upload(const camber_mesh *mesh, camber_mesh_part *part, const camber_polylines *polylines);
 void camber_mesh_release_parts(camber_mesh *mesh);

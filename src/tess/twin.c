@@ -11,7 +11,8 @@ typedef struct twin {
     const camber_row *rows;
     camber_u32 method;
     camber_mesh_data *data;
-    camber_stages *stages; /* NULL: not wanted */
+    camber_stages *stages;    /* NULL: not wanted */
+    uint32_t polyline, point; /* of its next point */
     size_t vertex_capacity, index_capacity, stage_capacity;
     bool failed; /* out of memory, or of 32-bit indices */
     /* The segment under way: its start's left edge vertex, and its start's centre where that is a join. */
@@ -279,13 +280,13 @@ static void note_stages(twin *t, size_t slot, camber_u32 join) {
         t->failed = true;
         return;
     }
-    const camber_point_stages *before = stages->point_count ? stages->points + stages->point_count - 1 : NULL;
-    uint32_t polyline = before ? before->polyline : 0;
-    while (p->first_slots[polyline + 1] < slot)
-        polyline++;
+    while (p->first_slots[t->polyline + 1] < slot) {
+        t->polyline++;
+        t->point = 0;
+    }
     stages->points[stages->point_count++] = (camber_point_stages){
-        .polyline = polyline,
-        .point = before && before->polyline == polyline ? before->point + 1 : 0,
+        .polyline = t->polyline,
+        .point = t->point++,
         .x = p->x[slot],
         .y = p->y[slot],
         .join = join,

@@ -255,7 +255,7 @@ void property_check(const property *p, void *user) {
     const size_t cases = (size_t)number_from("CAMBER_CASES", p->cases);
     /* Counted with the seeds that are tried each time; others may give some more. */
     const bool elsewhere = getenv("CAMBER_SEED") || getenv("CAMBER_CASES");
-    const size_t known = elsewhere ? (2 * p->known * cases + p->cases - 1) / p->cases : p->known;
+    const size_t known = elsewhere ? (3 * p->known * cases + p->cases - 1) / p->cases : p->known;
     size_t broken = 0, silent = 0;
     for (size_t i = 0; i < cases; i++) {
         hunt h = {.property = p, .user = user};

@@ -219,8 +219,10 @@ static camber_status cut_segment(tile_cut *cut, const double *p, const double *q
 
 /* A ring that the border cuts comes in two pieces at the point where it happens to begin: makes them one. */
 static camber_status close_ring(camber_tiles *tiles, size_t first_piece, const double *start) {
+    if (tiles->piece_count < first_piece + 2)
+        return CAMBER_OK;
     camber_tile_piece *head = &tiles->pieces[first_piece], *tail = &tiles->pieces[tiles->piece_count - 1];
-    if (tiles->piece_count - first_piece < 2 || head->run || tail->run || head->cut[0] || tail->cut[1] ||
+    if (head->run || tail->run || head->cut[0] || tail->cut[1] ||
         !camber_tiles_same(tiles->points + 2 * head->first, start) ||
         !camber_tiles_same(tiles->points + 2 * (tail->first + tail->count - 1), start))
         return CAMBER_OK;

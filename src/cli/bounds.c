@@ -24,8 +24,9 @@ static const camber_pixel_bounds linear = {3.5, 0.020, 0.0010};
  * bytes. */
 static const camber_pixel_bounds backends = {0.25, 0.0020, 0.0005};
 
-/* How much more the union of all lines may be off: it has their crossings too. */
-static const double UNITED_MORE = 0.25;
+/* How much more the union of all lines may be off: it has their crossings too, and a city in 256 px is crossings all
+ * over. */
+static const double UNITED_MORE = 0.25, UNITED_MORE_OF_INPUT = 1.0;
 
 static void add(camber_pixel_bounds *sum, const camber_pixel_bounds *more, double times) {
     sum->mean += times * more->mean;
@@ -47,9 +48,9 @@ bool camber_bounds_of_pixels(const char *scene, double tight_share, camber_cover
     return false;
 }
 
-camber_pixel_bounds camber_bounds_of_united(camber_pixel_bounds over) {
+camber_pixel_bounds camber_bounds_of_united(const char *scene, camber_pixel_bounds over) {
     const camber_pixel_bounds once = over;
-    add(&over, &once, UNITED_MORE);
+    add(&over, &once, scene ? UNITED_MORE : UNITED_MORE_OF_INPUT);
     return over;
 }
 

@@ -58,7 +58,7 @@ static int check_truth(job *j, camber_check *check, camber_truth_kind kind, cons
         return status;
     }
     check->has_error = true;
-    check->most = kind == CAMBER_TRUTH_OVER ? j->bounds : camber_bounds_of_united(j->bounds);
+    check->most = kind == CAMBER_TRUTH_OVER ? j->bounds : camber_bounds_of_united(j->s->scene, j->bounds);
     camber_samples_compare(&j->samples, kind, levels, j->s->width, &check->error, &worst);
     if (is_past(&check->error.of, &check->most, finding)) {
         const camber_sample *sample = &j->samples.list[worst];

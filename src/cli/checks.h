@@ -70,7 +70,7 @@ int camber_evidence_check(const camber_session *session);
 bool camber_bounds_of_pixels(const char *scene, double tight_share, camber_coverage coverage,
                              camber_pixel_bounds *bounds);
 /* The same for lines that are united, from those of lines that are drawn one over the other. */
-camber_pixel_bounds camber_bounds_of_united(camber_pixel_bounds over);
+camber_pixel_bounds camber_bounds_of_united(const char *scene, camber_pixel_bounds over);
 /* Of one GL back end's picture against another's. */
 camber_pixel_bounds camber_bounds_of_backends(void);
 

@@ -447,7 +447,8 @@ typedef enum camber_overlap {
     CAMBER_OVERLAP_ACCUMULATE, /* overlaps of translucent lines darken */
     /* FLATTEN, and opaque runs of one colour are gathered and composited once as well. Where edges meet in a pixel, of
      * one line or of several, the picture has the area of all lines together, which drawing one over the other
-     * misses: a third to three quarters of the error, for a fifth to twice more time. */
+     * misses: a third to three quarters of the error, for 1.1 to 1.8
+     * times the drawing on llvmpipe. */
     CAMBER_OVERLAP_UNITE,
 } camber_overlap;
 

@@ -75,6 +75,7 @@ typedef struct desk {
 
 static uint64_t hash_features(const camber_features *f) {
     uint64_t hash = camber_hash(CAMBER_HASH_START, f->points, 2 * f->point_count * sizeof *f->points);
+    hash = camber_hash(hash, f->importance, f->point_count * sizeof *f->importance);
     hash = camber_hash(hash, f->offsets, (f->polyline_count + 1) * sizeof *f->offsets);
     hash = camber_hash(hash, f->polyline_feature, f->polyline_count * sizeof *f->polyline_feature);
     hash = camber_hash(hash, &f->stats, sizeof f->stats);

@@ -1,41 +1,12 @@
 #include "lines/simplify.h"
 
 #include "base/base.h"
+#include "lines/farthest.h"
 #include "lines/lines.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
-
-/* Ranges are split at their farthest point; past this depth in the middle, so that a spiral made for the worst
- * case costs n log n too. The result keeps its tolerance either way. */
-#define FARTHEST_SPLITS 48
-
-/* The squared distance of p from the segment a-b. */
-static double distance_squared(const double *p, const double *a, const double *b) {
-    const double dx = b[0] - a[0], dy = b[1] - a[1], px = p[0] - a[0], py = p[1] - a[1];
-    const double length_squared = dx * dx + dy * dy, along = px * dx + py * dy;
-    if (along <= 0.0 || length_squared == 0.0)
-        return px * px + py * py;
-    if (along >= length_squared)
-        return (p[0] - b[0]) * (p[0] - b[0]) + (p[1] - b[1]) * (p[1] - b[1]);
-    const double cross = px * dy - py * dx;
-    return cross * cross / length_squared;
-}
-
-/* The point strictly between first and last that lies farthest from their segment; first where all lie on it. */
-static size_t farthest(const double *points, size_t first, size_t last, double *largest) {
-    size_t found = first;
-    *largest = 0.0;
-    for (size_t i = first + 1; i < last; i++) {
-        const double d = distance_squared(points + 2 * i, points + 2 * first, points + 2 * last);
-        if (d > *largest) {
-            *largest = d;
-            found = i;
-        }
-    }
-    return found;
-}
 
 typedef struct range {
     size_t first, last;
@@ -49,14 +20,14 @@ static void mark(const double *points, range whole, double tolerance_squared, un
     range now = whole;
     for (;;) {
         double largest;
-        size_t at = farthest(points, now.first, now.last, &largest);
+        size_t at = camber_farthest(points, now.first, now.last, &largest);
         if (largest <= tolerance_squared) {
             if (count == 0)
                 return;
             now = waiting[--count];
             continue;
         }
-        if (now.depth >= FARTHEST_SPLITS)
+        if (now.depth >= CAMBER_FARTHEST_SPLITS)
             at = now.first + (now.last - now.first) / 2;
         keep[at] = 1;
         const range a = {now.first, at, now.depth + 1}, b = {at, now.last, now.depth + 1};
@@ -70,7 +41,7 @@ static void mark(const double *points, range whole, double tolerance_squared, un
  * farthest from that line stays too, so that an area stays one however small. */
 static void mark_ring(const double *points, size_t count, double tolerance_squared, unsigned char *keep) {
     double largest;
-    const size_t far = farthest(points, 0, count - 1, &largest);
+    const size_t far = camber_farthest(points, 0, count - 1, &largest);
     if (far == 0)
         return; /* all points are one */
     keep[far] = 1;
@@ -80,7 +51,7 @@ static void mark_ring(const double *points, size_t count, double tolerance_squar
         if (keep[i] && i != far)
             return;
     double before, after;
-    const size_t a = farthest(points, 0, far, &before), b = farthest(points, far, count - 1, &after);
+    const size_t a = camber_farthest(points, 0, far, &before), b = camber_farthest(points, far, count - 1, &after);
     if (before > 0.0 || after > 0.0)
         keep[before >= after ? a : b] = 1;
 }

@@ -1,3 +1,4 @@
+#include "lines/importance.h"
 #include "source/source.h"
 
 #include <string.h>
@@ -54,6 +55,7 @@ void camber_features_destroy(camber_features *features) {
     camber_free(context, features->feature_class);
     camber_free(context, features->polyline_feature);
     camber_free(context, features->offsets);
+    camber_free(context, features->importance);
     camber_free(context, features->points);
     camber_free(context, features);
 }
@@ -262,4 +264,14 @@ camber_status camber_features_add_polyline(camber_features *features, const doub
     features->point_count += point_count;
     features->offsets[++features->polyline_count] = features->point_count;
     return CAMBER_OK;
+}
+
+camber_status camber_features_weigh(camber_features *features, size_t first_polyline) {
+    if (first_polyline == features->polyline_count)
+        return CAMBER_OK;
+    if (!camber_grow(features->context, &features->importance, &features->importance_capacity, features->point_count,
+                     sizeof *features->importance))
+        return CAMBER_ERROR_MEMORY;
+    return camber_importance_weigh(features->context, features->points, features->offsets + first_polyline,
+                                   features->polyline_count - first_polyline, features->importance);
 }

@@ -27,6 +27,10 @@ struct camber_features {
     /* World coordinates: Web Mercator, x and y in 0 to 1 from the north-west, y down; pairs. */
     double *points;
     size_t point_count, point_capacity;
+    /* point_count: how much each matters, in world coordinates (lines/importance.h), once a file is read. Nodes that
+     * polylines of one file share have one importance. */
+    float *importance;
+    size_t importance_capacity;
     /* Polyline i has the points [offsets[i], offsets[i + 1]). polyline_count + 1 entries once not empty. */
     size_t *offsets;
     size_t polyline_count, polyline_capacity;

@@ -332,6 +332,8 @@ static camber_status read_once(camber_features *features, const camber_source_de
     CPLPushErrorHandlerEx(camber_gdal_collect, &self.dataset.errors);
     status = read_dataset(&self, unsorted);
     CPLPopErrorHandler();
+    if (status == CAMBER_OK)
+        status = camber_features_weigh(features, polylines);
     if (status == CAMBER_OK) {
         self.stats.invalid_points = self.parts.invalid_points;
         self.stats.clamped_points = self.parts.clamped_points;

@@ -35,6 +35,8 @@ static void check_features(const camber_features *features) {
     REQUIRE(features->polyline_count == 0 || features->offsets[features->polyline_count] == features->point_count);
     for (size_t i = 0; i < 2 * features->point_count; i++)
         REQUIRE(features->points[i] >= 0.0 && features->points[i] <= 1.0);
+    for (size_t i = 0; i < features->point_count; i++)
+        REQUIRE(features->importance[i] >= 0.0f);
     for (size_t i = 0; i < features->feature_count; i++)
         REQUIRE(features->feature_class[i] < features->class_count);
 }

@@ -11,7 +11,7 @@ flat in highp vec4 v_shape;
 flat in mediump vec4 v_color;
 flat in highp uint v_ends;
 
-uniform vec2 u_origin;
+uniform vec2 u_origin; // of this piece in the picture, px
 
 layout(location = 0) out mediump vec4 o_color;
 

@@ -8,8 +8,8 @@ layout(location = 5) in vec2 a_turns; // tan(turn / 4) at A and at B
 layout(location = 6) in uint a_row;
 
 uniform highp sampler2D u_rows; // two texels a row: half width px, -1 where not drawn; premultiplied colour
-uniform vec2 u_origin;          // of this piece in the picture, px
-uniform vec2 u_scale;           // 2 / size of the piece
+uniform vec2 u_corner;          // of the viewport in the picture, px
+uniform vec2 u_scale;           // 2 / size of the viewport
 
 flat out highp vec4 v_segment; // A, direction
 flat out highp vec4 v_shape;   // length px, half width px, turns
@@ -36,5 +36,5 @@ void main() {
     v_shape = vec4(len, half_width, a_turns);
     v_ends = a_flags;
     // A row that is not drawn leaves no area.
-    gl_Position = half_width < 0.0 ? vec4(2.0, 2.0, 0.0, 1.0) : vec4((place - u_origin) * u_scale - 1.0, 0.0, 1.0);
+    gl_Position = half_width < 0.0 ? vec4(2.0, 2.0, 0.0, 1.0) : vec4((place - u_corner) * u_scale - 1.0, 0.0, 1.0);
 }

@@ -21,6 +21,7 @@
     X(void, StencilFunc, (GLenum, GLint, GLuint))                                                                      \
     X(void, StencilOp, (GLenum, GLenum, GLenum))                                                                       \
     X(void, Viewport, (GLint, GLint, GLsizei, GLsizei))                                                                \
+    X(void, Scissor, (GLint, GLint, GLsizei, GLsizei))                                                                 \
     X(void, ClearColor, (GLfloat, GLfloat, GLfloat, GLfloat))                                                          \
     X(void, Clear, (GLbitfield))                                                                                       \
     X(void, Finish, (void))                                                                                            \

@@ -100,9 +100,13 @@ camber_status camber_renderer_mesh_shader(camber_renderer *renderer, const cambe
 
 void camber_renderer_use_shader(camber_renderer *renderer, const camber_shader *shader, const camber_piece *piece) {
     const camber_gl *gl = &renderer->share.surface->gl;
+    const GLfloat x = (GLfloat)piece->x, y = (GLfloat)piece->y, w = (GLfloat)piece->width, h = (GLfloat)piece->height;
+    const GLfloat guard_x = (GLfloat)camber_renderer_guard(renderer, 0, (GLsizei)piece->width),
+                  guard_y = (GLfloat)camber_renderer_guard(renderer, 1, (GLsizei)piece->height);
     gl->UseProgram(shader->program);
-    gl->Uniform2f(shader->origin, (GLfloat)piece->x, (GLfloat)piece->y);
-    gl->Uniform2f(shader->scale, 2.0f / (GLfloat)piece->width, 2.0f / (GLfloat)piece->height);
+    gl->Uniform2f(shader->origin, x, y);
+    gl->Uniform2f(shader->corner, x - guard_x, y - guard_y);
+    gl->Uniform2f(shader->scale, 2.0f / (w + 2.0f * guard_x), 2.0f / (h + 2.0f * guard_y));
 }
 
 void camber_renderer_bind_part(camber_renderer *renderer, const camber_mesh_part *part) {

@@ -24,7 +24,7 @@ typedef enum camber_flatten_kind {
 
 typedef struct camber_shader {
     GLuint program; /* 0: not built yet */
-    GLint origin, scale, layer_color;
+    GLint origin, corner, scale, layer_color;
 } camber_shader;
 
 /* A texture to draw into, of the size of a piece. */
@@ -56,8 +56,11 @@ camber_status camber_renderer_flatten_shader(camber_renderer *renderer, camber_f
                                              const camber_shader **shader);
 camber_status camber_renderer_count_shader(camber_renderer *renderer, const camber_shader **shader);
 
-/* targets.c: binds a target of this size; what it holds is not defined. */
+/* targets.c: binds a target of this size; what it holds is not defined. The viewport reaches past each of its sides by
+ * camber_renderer_guard, the scissor does not: a software driver clips a batch of triangles one by one where a single
+ * vertex lies outside the viewport. */
 camber_status camber_renderer_bind_target(camber_renderer *renderer, int which, GLsizei width, GLsizei height);
+GLsizei camber_renderer_guard(const camber_renderer *renderer, int axis, GLsizei side);
 void camber_renderer_release_targets(camber_renderer *renderer);
 
 /* pass.c: one piece of the picture. */

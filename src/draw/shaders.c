@@ -65,7 +65,8 @@ static camber_status build(camber_renderer *renderer, const char *head, const ch
     }
     /* Samplers stay at unit 0, where GL starts them. */
     *shader = (camber_shader){program, gl->GetUniformLocation(program, "u_origin"),
-                              gl->GetUniformLocation(program, "u_scale"), gl->GetUniformLocation(program, "u_color")};
+                              gl->GetUniformLocation(program, "u_corner"), gl->GetUniformLocation(program, "u_scale"),
+                              gl->GetUniformLocation(program, "u_color")};
     return CAMBER_OK;
 }
 

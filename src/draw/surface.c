@@ -76,6 +76,8 @@ static void describe(camber_surface *surface) {
         .software = renderer && is_software(renderer),
         .buffer_storage = gl->BufferStorage != NULL,
     };
+    surface->largest_viewport[0] = viewport[0];
+    surface->largest_viewport[1] = viewport[1];
     surface->half_float_targets = has_half_float_targets(gl);
 }
 

@@ -27,7 +27,8 @@ struct camber_surface {
     camber_gl gl;
     camber_surface_info info;
     bool half_float_targets; /* can be drawn into, with blending */
-    bool lost;               /* the GL context: nothing that is in it comes back */
+    GLint largest_viewport[2];
+    bool lost; /* the GL context: nothing that is in it comes back */
 };
 
 /* Every public call that draws begins with it: the two libraries share one dispatch, and another surface may have

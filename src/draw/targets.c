@@ -57,13 +57,22 @@ static camber_status resize(camber_renderer *renderer, int which, GLsizei width,
     return CAMBER_OK;
 }
 
+GLsizei camber_renderer_guard(const camber_renderer *renderer, int axis, GLsizei side) {
+    const GLsizei room = (renderer->share.surface->largest_viewport[axis] - side) / 2;
+    return room < 0 ? 0 : room < side ? room : side;
+}
+
 camber_status camber_renderer_bind_target(camber_renderer *renderer, int which, GLsizei width, GLsizei height) {
     const camber_gl *gl = &renderer->share.surface->gl;
     const camber_status status = resize(renderer, which, width, height);
     if (status != CAMBER_OK)
         return status;
     gl->BindFramebuffer(GL_FRAMEBUFFER, renderer->targets[which].framebuffer);
-    gl->Viewport(0, 0, width, height);
+    const GLsizei guard_x = camber_renderer_guard(renderer, 0, width),
+                  guard_y = camber_renderer_guard(renderer, 1, height);
+    gl->Viewport(-guard_x, -guard_y, width + 2 * guard_x, height + 2 * guard_y);
+    gl->Scissor(0, 0, width, height);
+    gl->Enable(GL_SCISSOR_TEST);
     return CAMBER_OK;
 }
 

@@ -38,18 +38,23 @@ typedef struct camber_source_desc {
     const char *path;  /* anything OGR opens, "/vsigzip/..." included; a .gz is opened through it */
     const char *layer; /* NULL: OSM's "lines"; a vector tile set's road layer; else every layer with lines */
     const char *where; /* OGR attribute filter. NULL: none */
+    /* Leaves all lines apart. By default lines that the style cannot tell apart become one where two of them, and no
+     * third, meet end to end; against their direction too, but for a style that names line-dasharray, line-offset,
+     * line-gradient or line-pattern. */
+    bool keep_apart;
 } camber_source_desc;
 
 typedef struct camber_features_stats {
     size_t features;         /* read, lines kept */
-    size_t polylines;        /* kept, after parts were split and tile pieces joined */
+    size_t polylines;        /* kept, after parts were split, tile pieces joined and lines merged */
     size_t points;           /* kept */
     size_t skipped_features; /* points, and polygons where no layer of the style wants outlines */
     size_t damaged_features; /* that came with a failure, or whose geometry does not parse */
     size_t invalid_points;   /* dropped: NaN or infinite */
     size_t clamped_points;   /* moved to latitude 85.051129 */
     size_t antimeridian_splits;
-    size_t joined_pieces; /* vector tiles: pieces of one feature joined at a tile border */
+    size_t joined_pieces;    /* vector tiles: pieces of one feature joined at a tile border */
+    size_t merged_polylines; /* so many polylines fewer, for lines were merged end to end */
 } camber_features_stats;
 
 typedef struct camber_features camber_features;
@@ -101,7 +106,8 @@ typedef struct camber_scene_info {
     double longitude, latitude, zoom; /* of the view's centre */
     uint32_t width, height;           /* device px */
     size_t layers;                    /* of the style that draw something here */
-    size_t features;                  /* of which something lies in the view, once for layers that share lines */
+    size_t features;                  /* of the polylines of which something lies in the view, once for layers that
+                                       * share lines; a merged polyline counts for all features that are in it */
     size_t polylines, points;         /* to tessellate */
     size_t points_in;                 /* of these features' polylines, before simplification and clipping */
     bool opaque;                      /* the background covers the picture */

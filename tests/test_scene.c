@@ -21,7 +21,7 @@ typedef struct town {
     camber_features features;
     double points[2 * MOST];
     size_t offsets[MOST];
-    uint32_t polyline_feature[MOST], feature_class[MOST];
+    uint32_t polyline_feature[MOST], feature_counts[MOST], feature_class[MOST];
     camber_feature_class classes[CLASSES];
     camber_value values[64];
     char *layer_names[2];
@@ -61,6 +61,7 @@ static void open_town(town *t, const char *layers) {
                                     .points = t->points,
                                     .offsets = t->offsets,
                                     .polyline_feature = t->polyline_feature,
+                                    .feature_counts = t->feature_counts,
                                     .feature_class = t->feature_class,
                                     .classes = t->classes,
                                     .values = t->values,
@@ -89,6 +90,7 @@ static void add_line(town *t, uint32_t class, const double *points, size_t count
         memcpy(t->points + 2 * f->point_count, points, 2 * count * sizeof *points);
     f->point_count += count;
     t->offsets[f->polyline_count + 1] = f->point_count;
+    t->feature_counts[f->polyline_count] = 1;
     t->polyline_feature[f->polyline_count++] = (uint32_t)f->feature_count;
     t->feature_class[f->feature_count++] = class;
 }
@@ -344,6 +346,7 @@ static void test_culling(void **state) {
     add_px(&t, c, (double[]){400, 400, 500, 400}, 2);
     add_px(&t, c, (double[]){400, 420, 500, 420}, 2);
     t.polyline_feature[5] = t.polyline_feature[4];
+    t.feature_counts[5] = 0;
     scene = make_scene(&t, view);
     assert_int_equal(camber_scene_get_info(scene).polylines, 3);
     assert_int_equal(camber_scene_get_info(scene).features, 2);

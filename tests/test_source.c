@@ -27,6 +27,7 @@ typedef struct fixture {
     camber_features *features;
     size_t errors, warnings;
     char error[1024];
+    bool keep_apart;
     char folder[64], path[128];
 } fixture;
 
@@ -91,7 +92,7 @@ static const char *write_file(fixture *it, const char *name, const void *bytes, 
 }
 
 static camber_status read_path(fixture *it, const char *path) {
-    const camber_source_desc desc = {.path = path};
+    const camber_source_desc desc = {.path = path, .keep_apart = it->keep_apart};
     return camber_features_read(it->features, &desc);
 }
 
@@ -137,6 +138,7 @@ static void expect_degrees(const camber_features *set, size_t point, double long
 /* Counted by a separate decoder of the tiles' protocol buffers: distinct ids of features of which some length lies
  * inside their tile, and that length in units of 1/2048 tile at zoom 15, each tile's part once. */
 static void check_tiles(fixture *it, const char *path, size_t ids, double length, size_t property) {
+    it->keep_apart = true;
     expect_ok(it, read_path(it, path));
     const camber_features *set = it->features;
     assert_int_equal(set->feature_count, ids);
@@ -227,6 +229,7 @@ static void test_real_files(void **state) {
         char path[1024];
         snprintf(path, sizeof path, "%s/data/%s", data, files[i].name);
         start_again(it);
+        it->keep_apart = true;
         expect_ok(it, read_path(it, path));
         const camber_features *set = it->features;
         size_t points = 0;
@@ -251,6 +254,7 @@ static void test_real_shapefile(void **state) {
     }
     char path[1024];
     snprintf(path, sizeof path, "%s/data/pittsburgh/edges.shp", data);
+    it->keep_apart = true;
     expect_ok(it, read_path(it, path));
     const camber_features *set = it->features;
     assert_int_equal(set->feature_count, 29834);

@@ -5,6 +5,7 @@
 #include "camber.h"
 
 #include <stdarg.h>
+#include <string.h>
 
 #if defined(__GNUC__)
 #define CAMBER_PRINTF(format_index, first) __attribute__((format(printf, format_index, first)))
@@ -46,11 +47,27 @@ double camber_now_ms(void);
  * CAMBER_ERROR_NOT_FOUND, CAMBER_ERROR_INPUT (a directory), CAMBER_ERROR_IO, CAMBER_ERROR_MEMORY. */
 camber_status camber_read_file(camber_context *context, const char *path, char **bytes, size_t *size_bytes);
 
-/* ---- Cache: small files by name in the context's cache folder; every failure is a miss ---- */
+/* ---- Hashes ---- */
 
 /* A 64-bit FNV-1a hash, to be chained from CAMBER_HASH_START. */
 #define CAMBER_HASH_START 14695981039346656037ull
 uint64_t camber_hash(uint64_t hash, const void *bytes, size_t size_bytes);
+
+/* A fast hash of words, for tables in memory: chained from 0. */
+static inline uint64_t camber_mix(uint64_t hash, uint64_t word) {
+    hash = (hash ^ word) * 0x9e3779b97f4a7c15ull;
+    return hash ^ hash >> 29;
+}
+
+/* Of a point's bits: equal coordinates that differ in the sign of a zero are two points. */
+static inline uint64_t camber_mix_point(uint64_t hash, const double *point) {
+    uint64_t words[2];
+    memcpy(words, point, sizeof words);
+    return camber_mix(camber_mix(hash, words[0]), words[1]);
+}
+
+/* ---- Cache: small files by name in the context's cache folder; every failure is a miss ---- */
+
 /* *bytes is freed with camber_free. */
 bool camber_cache_load(camber_context *context, const char *name, char **bytes, size_t *size_bytes);
 /* Written beside and renamed: readers see a whole file or none. */

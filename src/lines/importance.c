@@ -78,14 +78,6 @@ static void weigh_polyline(const double *points, size_t first, size_t end, float
 
 /* ---- Shared nodes ---- */
 
-static uint64_t hash_point(const double *point) {
-    uint64_t words[2];
-    memcpy(words, point, sizeof words);
-    uint64_t hash = words[0] * 0x9e3779b97f4a7c15ull;
-    hash = (hash ^ hash >> 32 ^ words[1]) * 0x9e3779b97f4a7c15ull;
-    return hash ^ hash >> 32;
-}
-
 typedef struct repeat {
     uint32_t node, point; /* the first point of a node, and a later one */
 } repeat;
@@ -99,7 +91,7 @@ typedef struct node_table {
 
 /* The first of the points equal to this one; itself where it is that. */
 static size_t find_node(node_table *table, const double *points, size_t point) {
-    size_t slot = (size_t)hash_point(points + 2 * point) & (table->slot_count - 1);
+    size_t slot = (size_t)camber_mix_point(0, points + 2 * point) & (table->slot_count - 1);
     for (; table->slots[slot]; slot = (slot + 1) & (table->slot_count - 1)) {
         const size_t other = table->slots[slot] - 1;
         if (memcmp(points + 2 * other, points + 2 * point, 2 * sizeof *points) == 0)

@@ -141,11 +141,13 @@ static camber_status draw_set(projector *p, const camber_plan *plan, camber_plan
         const camber_status status = draw_polyline(p, entry.polyline);
         if (status != CAMBER_OK)
             return status;
+        if (g->lines.polyline_count == before)
+            continue;
+        /* A later part of a feature counts where the first is not seen. */
         const uint32_t feature = p->features->polyline_feature[entry.polyline];
-        if (g->lines.polyline_count > before && feature != counted) {
-            g->feature_count++;
-            counted = feature;
-        }
+        const uint32_t features = p->features->feature_counts[entry.polyline];
+        g->feature_count += features || feature == counted ? features : 1;
+        counted = feature;
     }
     set->polyline_count = g->lines.polyline_count - set->first_polyline;
     return CAMBER_OK;

@@ -53,6 +53,7 @@ void camber_features_destroy(camber_features *features) {
     camber_free(context, features->values);
     camber_free(context, features->classes);
     camber_free(context, features->feature_class);
+    camber_free(context, features->feature_counts);
     camber_free(context, features->polyline_feature);
     camber_free(context, features->offsets);
     camber_free(context, features->importance);
@@ -246,13 +247,15 @@ camber_status camber_features_add_feature(camber_features *features, uint32_t cl
 
 camber_status camber_features_add_polyline(camber_features *features, const double *points, size_t point_count) {
     camber_context *context = features->context;
-    size_t offset_capacity = features->polyline_capacity;
+    size_t offset_capacity = features->polyline_capacity, count_capacity = offset_capacity;
     if (point_count > SIZE_MAX / 2 - features->point_count ||
         !camber_grow(context, &features->points, &features->point_capacity, features->point_count + point_count,
                      2 * sizeof *features->points))
         return CAMBER_ERROR_MEMORY;
-    /* Both arrays grow together: one capacity counts the entries of each. */
-    if (!camber_grow(context, &features->offsets, &offset_capacity, features->polyline_count + 2,
+    /* The arrays grow together: one capacity counts the entries of each. */
+    if (!camber_grow(context, &features->feature_counts, &count_capacity, features->polyline_count + 2,
+                     sizeof *features->feature_counts) ||
+        !camber_grow(context, &features->offsets, &offset_capacity, features->polyline_count + 2,
                      sizeof *features->offsets) ||
         !camber_grow(context, &features->polyline_feature, &features->polyline_capacity, features->polyline_count + 2,
                      sizeof *features->polyline_feature))
@@ -260,7 +263,10 @@ camber_status camber_features_add_polyline(camber_features *features, const doub
     if (point_count)
         memcpy(features->points + 2 * features->point_count, points, 2 * point_count * sizeof *points);
     features->offsets[features->polyline_count] = features->point_count;
-    features->polyline_feature[features->polyline_count] = (uint32_t)(features->feature_count - 1);
+    const uint32_t feature = (uint32_t)(features->feature_count - 1);
+    const size_t n = features->polyline_count;
+    features->polyline_feature[n] = feature;
+    features->feature_counts[n] = n == 0 || features->polyline_feature[n - 1] != feature;
     features->point_count += point_count;
     features->offsets[++features->polyline_count] = features->point_count;
     return CAMBER_OK;

@@ -34,7 +34,8 @@ struct camber_features {
     /* Polyline i has the points [offsets[i], offsets[i + 1]). polyline_count + 1 entries once not empty. */
     size_t *offsets;
     size_t polyline_count, polyline_capacity;
-    uint32_t *polyline_feature; /* polyline_count: the feature that it is a part of, ascending */
+    uint32_t *polyline_feature; /* polyline_count: the feature that it is a part of, or the first of them; ascending */
+    uint32_t *feature_counts;   /* polyline_count: features whose first line is a part of it; their sum is all */
 
     uint32_t *feature_class; /* feature_count */
     size_t feature_count, feature_capacity;

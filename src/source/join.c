@@ -4,6 +4,7 @@
  * both are cuts, they are no points of the feature and are dropped: their neighbours were neighbours. Chains of
  * partners become polylines. All is linear in the number of points.
  */
+#include "source/chains.h"
 #include "source/tiles.h"
 
 #include <math.h>
@@ -22,9 +23,8 @@ static const double EXACT = 0.01;
 /* Candidates looked at in a cell; more share one only in files made to slow us down. */
 enum { MAX_CANDIDATES = 64 };
 
-#define NONE UINT32_MAX
+#define NONE CAMBER_NO_END
 
-/* End e is the first point of piece e / 2, or its last where e is odd. */
 typedef struct joiner {
     camber_tiles *tiles;
     uint32_t *partner;
@@ -53,7 +53,7 @@ static int64_t cell_of(double unit, double cell) {
 }
 
 static size_t head_of(const joiner *join, uint32_t group, int64_t column, int64_t row) {
-    const uint64_t hash = camber_tiles_mix(camber_tiles_mix(group, (uint64_t)column), (uint64_t)row);
+    const uint64_t hash = camber_mix(camber_mix(group, (uint64_t)column), (uint64_t)row);
     return (size_t)hash & (join->head_count - 1);
 }
 
@@ -165,47 +165,6 @@ static void drop_crumbs(const joiner *join) {
 
 /* ---- Chains ---- */
 
-typedef struct chain {
-    uint32_t start;   /* end that it is entered by */
-    uint32_t feature; /* the first that has a piece in it */
-} chain;
-
-typedef struct chain_list {
-    chain *chains;
-    size_t count;
-    bool *visited; /* a piece */
-    size_t joined;
-} chain_list;
-
-static void follow(const joiner *join, uint32_t start, chain_list *list) {
-    chain made = {start, NONE};
-    size_t pieces = 0;
-    uint32_t end = start;
-    do {
-        const uint32_t feature = join->tiles->pieces[end / 2].feature;
-        if (feature < made.feature)
-            made.feature = feature;
-        list->visited[end / 2] = true;
-        pieces++;
-        end = join->partner[end ^ 1];
-    } while (end != NONE && end != start);
-    list->chains[list->count++] = made;
-    list->joined += pieces - 1;
-}
-
-/* Chains that begin where a feature begins come first, so that they keep its direction; then those with turned
- * pieces; rings are left. */
-static void find_chains(const joiner *join, chain_list *list) {
-    const camber_tiles *tiles = join->tiles;
-    for (int round = 0; round < 3; round++) {
-        for (uint32_t i = 0; i < tiles->piece_count; i++) {
-            const uint32_t start = round == 1 ? 2 * i + 1 : 2 * i;
-            if (tiles->pieces[i].count && !list->visited[i] && (round == 2 || join->partner[start] == NONE))
-                follow(join, start, list);
-        }
-    }
-}
-
 /* Whether the point that a piece is entered by is left out: at a joint one point is left, or none where both were made
  * by cutting. */
 static bool skips_entry(const joiner *join, uint32_t enter) {
@@ -244,21 +203,20 @@ static bool gather(const joiner *join, uint32_t start, size_t *count) {
     return true;
 }
 
-/* order: the chains sorted by feature, those of one feature as they were found. */
-static camber_status add_chains(const joiner *join, const chain_list *list, const uint32_t *order,
+static camber_status add_chains(const joiner *join, const camber_chain *chains, size_t count,
                                 camber_features *features) {
     uint32_t feature = NONE;
-    for (size_t i = 0; i < list->count; i++) {
-        const chain *one = &list->chains[order[i]];
+    for (size_t i = 0; i < count; i++) {
+        const camber_chain *one = &chains[i];
         camber_status status = CAMBER_OK;
-        if (one->feature != feature)
-            status = camber_features_add_feature(features, join->tiles->features[one->feature].class_index);
-        feature = one->feature;
-        size_t count = 0;
-        if (status == CAMBER_OK && !gather(join, one->start, &count))
+        if (one->key != feature)
+            status = camber_features_add_feature(features, join->tiles->features[one->key].class_index);
+        feature = one->key;
+        size_t points = 0;
+        if (status == CAMBER_OK && !gather(join, one->start, &points))
             status = CAMBER_ERROR_MEMORY;
         if (status == CAMBER_OK)
-            status = camber_features_add_polyline(features, join->tiles->scratch, count);
+            status = camber_features_add_polyline(features, join->tiles->scratch, points);
         if (status != CAMBER_OK)
             return status;
     }
@@ -268,30 +226,29 @@ static camber_status add_chains(const joiner *join, const chain_list *list, cons
 static camber_status emit(const joiner *join, camber_features *features) {
     camber_tiles *tiles = join->tiles;
     camber_context *context = tiles->context;
-    chain_list list = {0};
+    camber_chains_desc desc = {
+        .partner = join->partner, .piece_count = tiles->piece_count, .key_count = tiles->feature_count};
+    camber_chain *chains = NULL;
+    size_t count = 0, left = 0;
     camber_status status = CAMBER_ERROR_MEMORY;
-    size_t *starts = NULL;
-    uint32_t *order = NULL;
-    if (!(list.chains = camber_alloc(context, tiles->piece_count, sizeof *list.chains)) ||
-        !(list.visited = camber_alloc_zero(context, tiles->piece_count, sizeof *list.visited)) ||
-        !(starts = camber_alloc_zero(context, tiles->feature_count + 1, sizeof *starts)) ||
-        !(order = camber_alloc(context, tiles->piece_count, sizeof *order)))
+    uint32_t *keys = camber_alloc(context, tiles->piece_count, sizeof *keys);
+    desc.keys = keys;
+    if (!keys || !(desc.visited = camber_alloc_zero(context, tiles->piece_count, sizeof *desc.visited)))
         goto done;
-    find_chains(join, &list);
-    for (size_t i = 0; i < list.count; i++)
-        starts[list.chains[i].feature + 1]++;
-    for (size_t i = 0; i < tiles->feature_count; i++)
-        starts[i + 1] += starts[i];
-    for (size_t i = 0; i < list.count; i++)
-        order[starts[list.chains[i].feature]++] = (uint32_t)i;
-    status = add_chains(join, &list, order, features);
+    for (size_t i = 0; i < tiles->piece_count; i++) {
+        keys[i] = tiles->pieces[i].feature;
+        desc.visited[i] = tiles->pieces[i].count == 0;
+        left += !desc.visited[i];
+    }
+    status = camber_chains_find(context, &desc, &chains, &count);
     if (status == CAMBER_OK)
-        features->stats.joined_pieces += list.joined;
+        status = add_chains(join, chains, count, features);
+    if (status == CAMBER_OK)
+        features->stats.joined_pieces += left - count;
 done:
-    camber_free(context, order);
-    camber_free(context, starts);
-    camber_free(context, list.visited);
-    camber_free(context, list.chains);
+    camber_free(context, chains);
+    camber_free(context, desc.visited);
+    camber_free(context, keys);
     return status;
 }
 

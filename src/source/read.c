@@ -333,6 +333,8 @@ static camber_status read_once(camber_features *features, const camber_source_de
     status = read_dataset(&self, unsorted);
     CPLPopErrorHandler();
     if (status == CAMBER_OK)
+        status = desc->keep_apart ? CAMBER_OK : camber_features_merge(features, polylines, features->style->directed);
+    if (status == CAMBER_OK)
         status = camber_features_weigh(features, polylines);
     if (status == CAMBER_OK) {
         self.stats.invalid_points = self.parts.invalid_points;

@@ -40,7 +40,7 @@ void camber_tiles_destroy(camber_tiles *tiles) {
 /* ---- Features: one record for all the pieces with one id ---- */
 
 static size_t id_slot(const camber_tiles *tiles, uint64_t id, uint32_t class_index) {
-    return (size_t)camber_tiles_mix(camber_tiles_mix(0, id), class_index) & (tiles->slot_count - 1);
+    return (size_t)camber_mix(camber_mix(0, id), class_index) & (tiles->slot_count - 1);
 }
 
 static bool grow_slots(camber_tiles *tiles) {

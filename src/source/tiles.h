@@ -39,12 +39,6 @@ struct camber_tiles {
     size_t scratch_capacity;
 };
 
-/* Hashes words one after the other, from 0. */
-static inline uint64_t camber_tiles_mix(uint64_t hash, uint64_t word) {
-    hash = (hash ^ word) * 0x9e3779b97f4a7c15ull;
-    return hash ^ hash >> 29;
-}
-
 static inline bool camber_tiles_same(const double *p, const double *q) {
     return p[0] == q[0] && p[1] == q[1];
 }

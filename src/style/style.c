@@ -48,7 +48,17 @@ static bool ends_with(const char *text, const char *end) {
     return length >= end_length && strcmp(text + length - end_length, end) == 0;
 }
 
+static bool is_directed(const char *name) {
+    static const char *const names[] = {"line-dasharray", "line-offset", "line-gradient", "line-pattern",
+                                        "line-trim-offset"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (strcmp(name, names[i]) == 0)
+            return true;
+    return false;
+}
+
 static void warn_of_property(parser *p, const char *name, const char *prefix) {
+    p->compiler.style->directed |= is_directed(name);
     /* Transitions are for pictures that change. */
     if (ends_with(name, "-transition") || !first_time(p, name))
         return;

@@ -59,6 +59,7 @@ struct camber_style {
     size_t layer_count;
     char **properties; /* feature properties that any expression reads, each once */
     size_t property_count;
+    bool directed; /* a line layer names what follows its lines' direction: dashes, offsets, gradients, patterns */
     bool wants_polygons; /* a line layer's filter asks for outlines: it names the geometry type Polygon */
 };
 

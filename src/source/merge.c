@@ -1,0 +1,194 @@
+/* Merges lines of one class that meet end to end, as GEOS's LineMerge does: where exactly two ends of the class meet,
+ * they become one line. Lines of one class are drawn alike at every zoom, so only the ends' caps go, and fewer lines
+ * have fewer ends, which simplification has to keep.
+ */
+#include "source/chains.h"
+#include "source/source.h"
+
+#include <string.h>
+
+/* The lines from first_polyline on, as pieces. */
+typedef struct merger {
+    camber_features *features;
+    size_t first_polyline;
+    size_t piece_count;
+    uint32_t *partner; /* of the ends; CAMBER_NO_END */
+    uint8_t *met;      /* ends at the node of which this end was the first, up to 3 */
+    uint32_t *slots;   /* the first end at a node, + 1; 0: free. A power of two of them, at most half in use */
+    size_t slot_count;
+    bool *visited;
+    camber_chain *chains;
+    size_t chain_count;
+} merger;
+
+static const double *piece_points(const merger *m, size_t piece, size_t *count) {
+    const size_t *offsets = m->features->offsets + m->first_polyline + piece;
+    *count = offsets[1] - offsets[0];
+    return m->features->points + 2 * offsets[0];
+}
+
+static const double *end_point(const merger *m, uint32_t end) {
+    size_t count;
+    const double *points = piece_points(m, end / 2, &count);
+    return points + (end & 1 ? 2 * (count - 1) : 0);
+}
+
+static uint32_t class_of(const merger *m, uint32_t end) {
+    return m->features->feature_class[m->features->polyline_feature[m->first_polyline + end / 2]];
+}
+
+/* A line that goes nowhere is a dot, and has no ends. */
+static bool has_ends(const merger *m, size_t piece) {
+    size_t count;
+    const double *points = piece_points(m, piece, &count);
+    if (m->features->classes[class_of(m, (uint32_t)(2 * piece))].geometry != CAMBER_GEOMETRY_LINE)
+        return false;
+    for (size_t i = 1; i < count; i++)
+        if (memcmp(points, points + 2 * i, 2 * sizeof *points) != 0)
+            return true;
+    return false;
+}
+
+/* The first end that met at the end's node; itself where it is that. */
+static uint32_t find_node(merger *m, uint32_t end) {
+    const double *at = end_point(m, end);
+    const uint32_t class_index = class_of(m, end);
+    size_t slot = (size_t)camber_mix_point(camber_mix(0, class_index), at) & (m->slot_count - 1);
+    for (; m->slots[slot]; slot = (slot + 1) & (m->slot_count - 1)) {
+        const uint32_t other = m->slots[slot] - 1;
+        if (class_of(m, other) == class_index && memcmp(end_point(m, other), at, 2 * sizeof *at) == 0)
+            return other;
+    }
+    m->slots[slot] = end + 1;
+    return end;
+}
+
+static void part(merger *m, uint32_t end) {
+    if (m->partner[end] == CAMBER_NO_END)
+        return;
+    m->partner[m->partner[end]] = CAMBER_NO_END;
+    m->partner[end] = CAMBER_NO_END;
+}
+
+static void find_partners(merger *m, bool directed) {
+    for (size_t i = 0; i < m->piece_count; i++) {
+        if (!has_ends(m, i))
+            continue;
+        for (uint32_t end = (uint32_t)(2 * i); end <= 2 * i + 1; end++) {
+            const uint32_t first = find_node(m, end);
+            m->met[first] = (uint8_t)(m->met[first] < 3 ? m->met[first] + 1 : 3);
+            if (m->met[first] == 2) {
+                m->partner[first] = end;
+                m->partner[end] = first;
+            } else {
+                part(m, first);
+            }
+        }
+    }
+    for (uint32_t end = 0; end < 2 * m->piece_count; end++) {
+        const uint32_t other = m->partner[end];
+        const bool closes = other == (end ^ 1), turns = ((end ^ other) & 1) == 0;
+        if (other != CAMBER_NO_END && (closes || (directed && turns)))
+            part(m, end);
+    }
+}
+
+/* ---- The merged lines ---- */
+
+typedef struct merged {
+    double *points;
+    size_t *offsets; /* ends of the lines, from 0 */
+    uint32_t *polyline_feature, *feature_counts;
+    size_t point_count, polyline_count;
+} merged;
+
+static void append_chain(const merger *m, const camber_chain *chain, merged *made) {
+    const camber_features *features = m->features;
+    const size_t line = made->polyline_count;
+    uint32_t end = chain->start;
+    made->polyline_feature[line] = features->polyline_feature[m->first_polyline + chain->key];
+    made->feature_counts[line] = 0;
+    do {
+        size_t count;
+        const double *points = piece_points(m, end / 2, &count);
+        /* Where lines meet one point is left; a ring has its seam twice. */
+        for (size_t i = end != chain->start; i < count; i++) {
+            const double *from = points + 2 * (end & 1 ? count - 1 - i : i);
+            memcpy(made->points + 2 * made->point_count++, from, 2 * sizeof *from);
+        }
+        made->feature_counts[line] += features->feature_counts[m->first_polyline + end / 2];
+        end = m->partner[end ^ 1];
+    } while (end != CAMBER_NO_END && end != chain->start);
+    made->offsets[made->polyline_count++] = made->point_count;
+}
+
+static void replace(const merger *m, const merged *made) {
+    camber_features *features = m->features;
+    const size_t first = m->first_polyline, first_point = features->offsets[first];
+    memcpy(features->points + 2 * first_point, made->points, 2 * made->point_count * sizeof *made->points);
+    memcpy(features->polyline_feature + first, made->polyline_feature,
+           made->polyline_count * sizeof *made->polyline_feature);
+    memcpy(features->feature_counts + first, made->feature_counts, made->polyline_count * sizeof *made->feature_counts);
+    for (size_t i = 0; i < made->polyline_count; i++)
+        features->offsets[first + i + 1] = first_point + made->offsets[i];
+    features->polyline_count = first + made->polyline_count;
+    features->point_count = first_point + made->point_count;
+    features->stats.merged_polylines += m->piece_count - made->polyline_count;
+}
+
+static camber_status write_chains(const merger *m) {
+    camber_context *context = m->features->context;
+    const size_t points = m->features->point_count - m->features->offsets[m->first_polyline];
+    merged made = {0};
+    camber_status status = CAMBER_ERROR_MEMORY;
+    if (!(made.points = camber_alloc(context, points, 2 * sizeof *made.points)) ||
+        !(made.offsets = camber_alloc(context, m->chain_count, sizeof *made.offsets)) ||
+        !(made.polyline_feature = camber_alloc(context, m->chain_count, sizeof *made.polyline_feature)) ||
+        !(made.feature_counts = camber_alloc(context, m->chain_count, sizeof *made.feature_counts)))
+        goto done;
+    for (size_t i = 0; i < m->chain_count; i++)
+        append_chain(m, &m->chains[i], &made);
+    replace(m, &made);
+    status = CAMBER_OK;
+done:
+    camber_free(context, made.feature_counts);
+    camber_free(context, made.polyline_feature);
+    camber_free(context, made.offsets);
+    camber_free(context, made.points);
+    return status;
+}
+
+camber_status camber_features_merge(camber_features *features, size_t first_polyline, bool directed) {
+    camber_context *context = features->context;
+    merger m = {.features = features,
+                .first_polyline = first_polyline,
+                .piece_count = features->polyline_count - first_polyline,
+                .slot_count = 16};
+    if (m.piece_count < 2)
+        return CAMBER_OK;
+    if (m.piece_count >= (size_t)1 << 30)
+        return camber_fail(context, CAMBER_ERROR_LIMIT, "%zu lines at once are more than 2^30; read fewer",
+                           m.piece_count);
+    while (m.slot_count < 4 * m.piece_count)
+        m.slot_count *= 2;
+    camber_status status = CAMBER_ERROR_MEMORY;
+    if (!(m.partner = camber_alloc(context, 2 * m.piece_count, sizeof *m.partner)) ||
+        !(m.met = camber_alloc_zero(context, 2 * m.piece_count, sizeof *m.met)) ||
+        !(m.slots = camber_alloc_zero(context, m.slot_count, sizeof *m.slots)) ||
+        !(m.visited = camber_alloc_zero(context, m.piece_count, sizeof *m.visited)))
+        goto done;
+    memset(m.partner, 0xff, 2 * m.piece_count * sizeof *m.partner);
+    find_partners(&m, directed);
+    const camber_chains_desc chains = {
+        .partner = m.partner, .piece_count = m.piece_count, .key_count = m.piece_count, .visited = m.visited};
+    status = camber_chains_find(context, &chains, &m.chains, &m.chain_count);
+    if (status == CAMBER_OK && m.chain_count < m.piece_count)
+        status = write_chains(&m);
+done:
+    camber_free(context, m.chains);
+    camber_free(context, m.visited);
+    camber_free(context, m.slots);
+    camber_free(context, m.met);
+    camber_free(context, m.partner);
+    return status;
+}

@@ -70,19 +70,28 @@ CAMBER_FN camber_u32 camber_join_end(camber_u32 join) {
     return join >> CAMBER_JOIN_END_SHIFT & 7u;
 }
 
-/* Whether the line begins with the segment before A, or ends with that behind B, as bits 7 and 8 of a vertex's flags:
- * from the join words of a point before A, of A and B, and of a point behind B. Before a ring A is a ghost, and the
- * point before it is another polyline's. */
-CAMBER_FN camber_u32 camber_line_ends(camber_u32 before, camber_u32 a, camber_u32 b, camber_u32 behind) {
-    const camber_u32 begins =
-        camber_join_kind(before) == CAMBER_KIND_CAP && camber_join_kind(a) > CAMBER_KIND_CAP ? 128u : 0u;
-    const camber_u32 ends =
-        camber_join_kind(behind) == CAMBER_KIND_CAP && camber_join_kind(b) != CAMBER_KIND_CAP ? 256u : 0u;
-    return begins | ends;
+/* What a record tells of its line beyond the next point, from the join words of three points in a row. A ring has no
+ * first point: next to its seam lie ghosts. */
+CAMBER_FN camber_u32 camber_line_ends(camber_u32 before, camber_u32 join, camber_u32 after) {
+    const camber_u32 is_join = camber_join_kind(join) > CAMBER_KIND_CAP ? 1u : 0u;
+    const camber_u32 first = camber_join_kind(before) == CAMBER_KIND_CAP ? CAMBER_RECORD_AFTER_FIRST : 0u;
+    const camber_u32 last = camber_join_kind(after) == CAMBER_KIND_CAP ? CAMBER_RECORD_BEFORE_LAST : 0u;
+    return is_join ? first | last : 0u;
 }
 
 CAMBER_FN camber_u32 camber_join_triangles(camber_u32 join) {
     return join >> CAMBER_JOIN_TRIANGLES_SHIFT & 127u;
+}
+
+/* On the inner side of a tight join an edge goes no farther along its segment than half the shorter one, and than the
+ * pad, since what it gives up the other segment may be too short to cover. */
+CAMBER_FN camber_u32 camber_limit_pack(float half_shorter) {
+    const float limit = half_shorter < CAMBER_PAD_PX ? half_shorter : CAMBER_PAD_PX;
+    return (camber_u32)(limit * (127.0f / CAMBER_PAD_PX)) << CAMBER_JOIN_LIMIT_SHIFT;
+}
+
+CAMBER_FN float camber_limit_unpack(camber_u32 join) {
+    return (float)(join >> CAMBER_JOIN_LIMIT_SHIFT & 127u) * (CAMBER_PAD_PX / 127.0f);
 }
 
 /* camber_end past a cap: round 0, butt 1, square 2. */
@@ -137,8 +146,9 @@ CAMBER_FN camber_u32 camber_join_word(camber_turn turn, CAMBER_GLOBAL const camb
                                                             : kites;
     }
     const camber_u32 kind = split ? CAMBER_KIND_SPLIT : tight ? CAMBER_KIND_TIGHT : CAMBER_KIND_CUT;
+    const camber_u32 limit = kind == CAMBER_KIND_TIGHT ? camber_limit_pack(turn.half_shorter) : 0u;
     return camber_turn_pack(turn) | kind << CAMBER_JOIN_KIND_SHIFT | end << CAMBER_JOIN_END_SHIFT |
-           triangles << CAMBER_JOIN_TRIANGLES_SHIFT;
+           (method == CAMBER_STRIP ? limit : triangles << CAMBER_JOIN_TRIANGLES_SHIFT);
 }
 
 /* The join word of an end of an open polyline, or of a dot. */
@@ -162,50 +172,73 @@ CAMBER_FN float camber_edge_along(camber_u32 join, float end, float side, camber
     return kind < CAMBER_KIND_CUT ? end : 0.0f;
 }
 
-/* The bound on that, px: past a butt end the pad, however wide the line; on the inner side of a tight join half the
- * shorter segment, and the pad at most, since what it gives up the other segment may be too short to cover. */
-CAMBER_FN float camber_edge_limit(camber_u32 join, float half_shorter, float side) {
+/* The bound on that, px: past a butt end the pad, however wide the line; on the inner side of a tight join its limit. */
+CAMBER_FN float camber_edge_limit(camber_u32 join, float side) {
     const camber_u32 kind = camber_join_kind(join);
     const camber_u32 is_butt = kind < CAMBER_KIND_CUT && camber_join_end(join) == 1u;
     const camber_u32 is_inner = kind == CAMBER_KIND_TIGHT && side * camber_turn_unpack(join) > 0.0f;
-    const float inner = half_shorter < CAMBER_PAD_PX ? half_shorter : CAMBER_PAD_PX;
-    return is_butt ? CAMBER_PAD_PX : is_inner ? inner : CAMBER_NO_LIMIT_PX;
+    return is_butt ? CAMBER_PAD_PX : is_inner ? camber_limit_unpack(join) : CAMBER_NO_LIMIT_PX;
 }
 
-/* Whether a strip breaks at a point, which then has two pairs of vertices: inside a polyline at any join but a plain
- * cut. A dot breaks too: it has two pairs. */
-CAMBER_FN camber_u32 camber_strip_breaks(camber_u32 kind, camber_u32 info) {
-    const camber_u32 inner = info & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST) ? 0u : 1u;
-    const camber_u32 uncut = kind == CAMBER_KIND_TIGHT || kind == CAMBER_KIND_SPLIT ? inner : 0u;
-    return kind == CAMBER_KIND_DOT ? 1u : uncut;
+/* How many records a point of a strip has:
+ *   break, start        a polyline's first
+ *   break, start, end   a dot
+ *   end                 the last, and where the strip goes on: a plain cut
+ *   end, break, start   where it breaks: at any other join inside a polyline */
+CAMBER_FN camber_u32 camber_strip_records(camber_u32 kind, camber_u32 info) {
+    const camber_u32 first = info & CAMBER_POINT_FIRST ? 1u : 0u;
+    const camber_u32 inner = info & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST) ? 0u : 2u;
+    const camber_u32 live = kind == CAMBER_KIND_GHOST ? 0u : kind == CAMBER_KIND_DOT ? 3u : 1u + first;
+    return live + (kind > CAMBER_KIND_CUT ? inner : 0u);
 }
 
-/* How many vertices and indices a point emits, vertices | indices << 16. Lists of a point, in order:
- *   strip       in L, R | restart before a polyline and where the strip breaks | out L, R; at a tight
- *               join out's inner one only, as both segments have the outer one in common
- *   kite, fan   in L, R | join | P | out L, R       P only where there is a join
- */
+/* The edges that a start has in common with the end before it: at a ring's cut seam both, so that no pixel falls between;
+ * at a tight join the outer one. */
+CAMBER_FN camber_u32 camber_shared_edges(camber_u32 join, camber_u32 info) {
+    const camber_u32 kind = camber_join_kind(join);
+    const camber_u32 outer = camber_turn_unpack(join) > 0.0f ? CAMBER_RECORD_IN_RIGHT : CAMBER_RECORD_IN_LEFT;
+    const camber_u32 seam = kind == CAMBER_KIND_CUT ? CAMBER_RECORD_IN_LEFT | CAMBER_RECORD_IN_RIGHT : 0u;
+    return info & CAMBER_POINT_FIRST ? seam : kind == CAMBER_KIND_TIGHT ? outer : 0u;
+}
+
+/* The join word of kite's and fan's records. */
+CAMBER_FN camber_u32 camber_record_join(camber_u32 join, float half_shorter) {
+    const camber_u32 bare = join & ~(127u << CAMBER_JOIN_TRIANGLES_SHIFT);
+    return camber_join_kind(join) == CAMBER_KIND_TIGHT ? bare | camber_limit_pack(half_shorter) : bare;
+}
+
+/* The corner that a body begins with on a side. Cut bodies of kites have the inner one in common with the end before. */
+CAMBER_FN camber_u32 camber_start_corner(camber_u32 join, float side, camber_u32 method) {
+    const camber_u32 shared = method == CAMBER_KITE && camber_join_kind(join) == CAMBER_KIND_CUT &&
+                              side * camber_turn_unpack(join) > 0.0f;
+    return (shared ? CAMBER_CORNER_IN_LEFT : CAMBER_CORNER_OUT_LEFT) + (side > 0.0f ? 0u : 1u);
+}
+
+/* The i-th of a join's own vertices, of which it has triangles - 1. */
+CAMBER_FN camber_u32 camber_join_corner(camber_u32 i, camber_u32 triangles, camber_u32 is_fan) {
+    return is_fan ? CAMBER_CORNER_FAN + i + 1u : triangles == 2u ? CAMBER_CORNER_TIP : CAMBER_CORNER_IN_TIP + i;
+}
+
+/* How many vertices and indices a point emits, vertices | indices << 16. A strip has two vertices a record and no
+ * indices but the vertices' numbers. Lists of a point of kite and fan, whose vertices are distinct corners:
+ *   in L, R | join's own | P where there is a join | out L, R, unless the polyline ends; a kite's cut bodies have their
+ *   inner corner in common */
 CAMBER_FN camber_u32 camber_join_counts(camber_u32 join, camber_u32 before, camber_u32 info, camber_u32 method) {
     const camber_u32 kind = camber_join_kind(join);
-    const camber_u32 first = info & CAMBER_POINT_FIRST;
-    const camber_u32 live = kind != CAMBER_KIND_GHOST ? 1u : 0u;
-    if (method == CAMBER_STRIP) {
-        const camber_u32 breaks = camber_strip_breaks(kind, info);
-        const camber_u32 restart = first && !breaks ? 1u : 0u;
-        const camber_u32 more = breaks ? (kind == CAMBER_KIND_TIGHT ? 1u : 2u) : 0u;
-        return live * ((2u + more) | (2u + 3u * breaks + restart) << 16);
-    }
-    if (!live)
+    if (method == CAMBER_STRIP)
+        return camber_strip_records(kind, info) * (2u | 2u << 16);
+    if (kind == CAMBER_KIND_GHOST)
         return 0;
     if (kind == CAMBER_KIND_DOT)
         return 4u | 6u << 16;
-    if (first)
+    if (info & CAMBER_POINT_FIRST)
         return kind == CAMBER_KIND_CAP ? 2u : 3u;
     const camber_u32 triangles = camber_join_triangles(join);
-    const camber_u32 centred =
-        (kind != CAMBER_KIND_CAP ? 1u : 0u) + (camber_join_kind(before) != CAMBER_KIND_CAP ? 1u : 0u);
-    const camber_u32 join_vertices = triangles ? triangles - 1u : 0u;
-    const camber_u32 vertices = kind == CAMBER_KIND_CAP ? 2u : 5u + join_vertices;
+    const camber_u32 joined = kind != CAMBER_KIND_CAP ? 1u : 0u;
+    const camber_u32 centred = joined + (camber_join_kind(before) != CAMBER_KIND_CAP ? 1u : 0u);
+    const camber_u32 shared = method == CAMBER_KITE && kind == CAMBER_KIND_CUT ? 1u : 0u;
+    const camber_u32 out = info & CAMBER_POINT_LAST ? (triangles ? 1u : 0u) : 2u - shared;
+    const camber_u32 vertices = 2u + joined * (1u + (triangles ? triangles - 1u : 0u) + out);
     return vertices | (3u * (2u + centred) + 3u * triangles) << 16;
 }
 

@@ -51,17 +51,45 @@ typedef struct camber_row {
     float fan_scale; /* 1 / cos(step / 2): chords touch the padded arc instead of cutting it */
     camber_u32 join; /* camber_join */
     camber_u32 cap;  /* camber_cap */
-    camber_u32 unused;
+    float fan_step;  /* the angle */
 } camber_row;
 
-/* Words of a vertex: see camber_vertex in camber.h. */
-#define CAMBER_VERTEX_WORDS 9
+/* Words of a record: see camber_record in camber.h. */
+#define CAMBER_RECORD_WORDS 4
+
+/* A record's last word: row << CAMBER_RECORD_ROW_SHIFT | flags. The vertices of a start are placed by the segment
+ * that goes out of it, but for the edges that it has in common with the end before, which lie where the segment that
+ * comes in puts them, to the last bit. That segment begins where the break before the start says. */
+#define CAMBER_RECORD_START 1u       /* of a strip */
+#define CAMBER_RECORD_BREAK 2u       /* between two strips: both its vertices are the neighbours' */
+#define CAMBER_RECORD_AFTER_FIRST 4u /* the point before is its line's first */
+#define CAMBER_RECORD_BEFORE_LAST 8u /* the point behind is its line's last */
+#define CAMBER_RECORD_IN_LEFT 16u    /* of a start: the left edge is that of the segment that comes in */
+#define CAMBER_RECORD_IN_RIGHT 32u
+#define CAMBER_RECORD_ROW_SHIFT 8
+
+/* kite and fan: an index is record << CAMBER_CORNER_BITS | corner. In and out: of the segments into and out of the
+ * point. Past CAMBER_CORNER_FAN come a fan's own vertices, by the number of steps from the edge of the segment in. */
+#define CAMBER_CORNER_BITS 7
+#define CAMBER_CORNER_CENTRE 0u
+#define CAMBER_CORNER_IN_LEFT 1u
+#define CAMBER_CORNER_IN_RIGHT 2u
+#define CAMBER_CORNER_OUT_LEFT 3u
+#define CAMBER_CORNER_OUT_RIGHT 4u
+#define CAMBER_CORNER_TIP 5u      /* a kite's, where the outer edges meet */
+#define CAMBER_CORNER_IN_TIP 6u   /* of the first of two kites */
+#define CAMBER_CORNER_BISECTOR 7u /* between two kites */
+#define CAMBER_CORNER_OUT_TIP 8u  /* of the second */
+#define CAMBER_CORNER_FAN 63u
 
 /* A point's join word, what classify writes and scan and emit read:
- *   bits 0-15 tan(turn / 4) * 32767, two's complement; 16-18 camber_end; 19-25 join triangles; 28-31 kind.
+ *   bits 0-15 tan(turn / 4) * 32767, two's complement; 16-18 camber_end; 19-25 join triangles (in the words of
+ *   strips, and in records: the limit); 28-31 kind.
+ * The limit of a tight join, in units of CAMBER_PAD_PX / 127: half the shorter segment, and the pad at most.
  * The kind comes last, so that no mask narrows it to three bits: oclgrind 21.10 gets such integers wrong. */
 #define CAMBER_JOIN_END_SHIFT 16
 #define CAMBER_JOIN_TRIANGLES_SHIFT 19
+#define CAMBER_JOIN_LIMIT_SHIFT 19
 #define CAMBER_JOIN_KIND_SHIFT 28
 #define CAMBER_JOIN_TRIANGLES_MAX 64 /* so that a block's index count fits 16 bits */
 
@@ -83,7 +111,7 @@ typedef struct camber_row {
 typedef char camber_row_is_32_bytes[sizeof(camber_row) == 32 ? 1 : -1];
 #else
 _Static_assert(sizeof(camber_row) == 32, "the device reads rows of 32 bytes");
-_Static_assert(sizeof(camber_vertex) == 4 * CAMBER_VERTEX_WORDS, "the device writes vertices of 36 bytes");
+_Static_assert(sizeof(camber_record) == 4 * CAMBER_RECORD_WORDS, "the device writes records of 16 bytes");
 _Static_assert(CAMBER_METHOD_STRIP == CAMBER_STRIP && CAMBER_METHOD_KITE == CAMBER_KITE &&
                    CAMBER_METHOD_FAN == CAMBER_FAN,
                "the build passes the method to the device as a number");

@@ -1,40 +1,134 @@
-// Places a vertex of the mesh (camber_vertex in camber.h) and hands its segment to the fragments.
-layout(location = 0) in vec2 a_point;
-layout(location = 1) in vec2 a_segment;
-layout(location = 2) in vec2 a_extrude; // along in units of the reach, its bound in px
-layout(location = 3) in float a_across; // in units of the reach / 16384
-layout(location = 4) in uint a_flags;
-layout(location = 5) in vec2 a_turns; // tan(turn / 4) at A and at B
-layout(location = 6) in uint a_row;
+// Makes a vertex from the mesh's records (camber_record in camber.h; expand.c says the same in C) and hands its segment
+// to the fragments. METHOD is camber_method. Of strips gl_VertexID is 2 * record, + 1 for the right edge; of kite and fan
+// record << 7 | corner.
+precision highp float;
+precision highp int;
 
-uniform highp sampler2D u_rows; // two texels a row: half width px, -1 where not drawn; premultiplied colour
-uniform vec2 u_corner;          // of the viewport in the picture, px
+uniform highp usamplerBuffer u_records;
+uniform highp sampler2D u_rows; // two texels a row: half width px, -1 where not drawn, fan's step; premultiplied colour
+uniform vec2 u_corner;          // of the viewport in the picture, px: it reaches past the piece
 uniform vec2 u_scale;           // 2 / size of the viewport
 
 flat out highp vec4 v_segment; // A, direction
 flat out highp vec4 v_shape;   // length px, half width px, turns
 flat out mediump vec4 v_color;
-flat out highp uint v_ends; // the vertex's flags
+flat out highp uint v_ends; // of a camber_vertex: flags
 
-const float PAD_PX = 0.75;
-const uint AT_END = 64u;
+const float PAD_PX = 0.75, NO_LIMIT_PX = 3.0e38;
+const uint START = 1u, BREAK = 2u, AFTER_FIRST = 4u, BEFORE_LAST = 8u, IN_LEFT = 16u, IN_RIGHT = 32u;
+const uint DOT = 1u, CUT = 3u, TIGHT = 4u; // kinds of joins
+const uint BUTT = 1u;
+
+struct Record {
+    vec2 p;
+    uint join, last;
+};
+
+Record record_at(int i) {
+    uvec4 words = texelFetch(u_records, i);
+    return Record(uintBitsToFloat(words.xy), words.z, words.w);
+}
+
+float turn_of(uint join) {
+    return float(int(join << 16u) >> 16) * (1.0 / 32767.0);
+}
+
+uint kind_of(uint join) {
+    return join >> 28u;
+}
+
+uint end_of(uint join) {
+    return join >> 16u & 7u;
+}
+
+float tan_half(float q) {
+    return 2.0 * q / max(1.0 - q * q, 1e-6);
+}
+
+// Where a vertex lies: along its segment from its point, bounded by limit px, and across, both in units of the reach.
+struct Extrusion {
+    float along, limit, across;
+};
+
+// Of an edge; end: 1 at the segment's end, -1 at its start; side: 1 left, -1 right.
+Extrusion edge_at(uint join, float end, float side) {
+    uint kind = kind_of(join);
+    float q = turn_of(join), cut = -end * side * tan_half(q);
+    bool is_cut = kind == CUT || kind == TIGHT, inner = side * q > 0.0;
+#if METHOD == 0
+    float along = is_cut ? cut : end;
+#else
+    float along = METHOD == 1 && is_cut && inner ? cut : kind < CUT ? end : 0.0;
+#endif
+    float limit = kind == TIGHT && inner ? float(join >> 19u & 127u) * (PAD_PX / 127.0) : NO_LIMIT_PX;
+    return Extrusion(along, kind < CUT && end_of(join) == BUTT ? PAD_PX : limit, side);
+}
+
+#if METHOD != 0
+const uint CENTRE = 0u, IN_LEFT_CORNER = 1u, OUT_LEFT_CORNER = 3u, OUT_RIGHT_CORNER = 4u, TIP = 5u, IN_TIP = 6u,
+           BISECTOR = 7u, OUT_TIP = 8u, FAN = 63u;
+
+Extrusion corner_at(uint corner, float q, float step) {
+    float outer = q > 0.0 ? -1.0 : 1.0, a = abs(q), scale = 1.0 / (1.0 + a * a);
+    float angle = step * float(int(corner) - int(FAN)), reach = 1.0 / cos(0.5 * step);
+    vec2 place = corner == CENTRE     ? vec2(0.0)
+                 : corner == TIP      ? vec2(tan_half(a), outer)
+                 : corner == IN_TIP   ? vec2(a, outer)
+                 : corner == BISECTOR ? vec2(2.0 * a, outer * (1.0 - a * a)) * scale
+                 : corner == OUT_TIP  ? vec2(-a, outer)
+                                      : vec2(sin(angle), outer * cos(angle)) * reach;
+    return Extrusion(place.x, NO_LIMIT_PX, place.y);
+}
+#endif
 
 void main() {
-    int texel = 2 * int(a_row);
-    int across = textureSize(u_rows, 0).x;
+#if METHOD == 0
+    int i = gl_VertexID >> 1;
+    bool right = (gl_VertexID & 1) != 0;
+    Record here = record_at(i);
+    if ((here.last & BREAK) != 0u) { // the last vertex of the strip before, the first of that behind: no area between
+        i += right || i == 0 ? 1 : -1;
+        right = !right;
+        here = record_at(i);
+    }
+    bool goes_out = (here.last & START) != 0u && (here.last & (right ? IN_RIGHT : IN_LEFT)) == 0u;
+    Record other = record_at(goes_out ? i + 1 : i - 1);
+#else
+    int i = gl_VertexID >> 7;
+    uint corner = uint(gl_VertexID) & 127u;
+    Record here = record_at(i);
+    bool goes_out = corner == CENTRE || corner == OUT_LEFT_CORNER || corner == OUT_RIGHT_CORNER || corner == OUT_TIP;
+    Record other = record_at(kind_of(here.join) == DOT ? i : goes_out ? i + 1 : i - 1);
+#endif
+
+    int texel = 2 * int(here.last >> 8u), across = textureSize(u_rows, 0).x;
     ivec2 at = ivec2(texel % across, texel / across);
-    float half_width = texelFetch(u_rows, at, 0).x;
+    vec2 row = texelFetch(u_rows, at, 0).xy;
+    float half_width = row.x;
     v_color = texelFetch(u_rows, at + ivec2(1, 0), 0);
 
-    float len = length(a_segment);
-    vec2 u = len > 0.0 ? a_segment / len : vec2(1.0, 0.0);
-    float reach = half_width + PAD_PX;
-    float along = clamp(a_extrude.x * reach, -a_extrude.y, a_extrude.y);
-    vec2 place = a_point + u * along + vec2(-u.y, u.x) * (a_across * (1.0 / 16384.0) * reach);
+#if METHOD == 0
+    Extrusion e = edge_at(here.join, goes_out ? -1.0 : 1.0, right ? -1.0 : 1.0);
+#else
+    bool is_edge = corner >= IN_LEFT_CORNER && corner <= OUT_RIGHT_CORNER;
+    Extrusion edge = edge_at(here.join, goes_out ? -1.0 : 1.0, (corner & 1u) != 0u ? 1.0 : -1.0);
+    Extrusion own = corner_at(corner, turn_of(here.join), row.y);
+    Extrusion e = Extrusion(is_edge ? edge.along : own.along, is_edge ? edge.limit : own.limit,
+                            is_edge ? edge.across : own.across);
+#endif
 
-    v_segment = vec4((a_flags & AT_END) != 0u ? a_point - a_segment : a_point, u);
-    v_shape = vec4(len, half_width, a_turns);
-    v_ends = a_flags;
-    // A row that is not drawn leaves no area.
-    gl_Position = half_width < 0.0 ? vec4(2.0, 2.0, 0.0, 1.0) : vec4((place - u_corner) * u_scale - 1.0, 0.0, 1.0);
+    vec2 a = goes_out ? here.p : other.p, segment = goes_out ? other.p - here.p : here.p - other.p;
+    uint join_a = goes_out ? here.join : other.join, join_b = goes_out ? other.join : here.join;
+    uint last_a = goes_out ? here.last : other.last, last_b = goes_out ? other.last : here.last;
+    float len = length(segment);
+    vec2 u = len > 0.0 ? segment / len : vec2(1.0, 0.0);
+    float reach = half_width + PAD_PX;
+    vec2 place = here.p + u * clamp(e.along * reach, -e.limit, e.limit) + vec2(-u.y, u.x) * (e.across * reach);
+
+    v_segment = vec4(a, u);
+    v_shape = vec4(len, half_width, turn_of(join_a), turn_of(join_b));
+    v_ends = end_of(join_a) | end_of(join_b) << 3u | ((last_a & AFTER_FIRST) != 0u ? 128u : 0u) |
+             ((last_b & BEFORE_LAST) != 0u ? 256u : 0u);
+    // A row that is not drawn leaves no area; what lies outside the viewport would be clipped at some cost.
+    gl_Position = vec4(half_width < 0.0 ? vec2(0.0) : (place - u_corner) * u_scale - 1.0, 0.0, 1.0);
 }

@@ -323,7 +323,16 @@ typedef struct camber_tessellation_desc {
  * coverage reaches sqrt(1/2) px from the edge. */
 #define CAMBER_PAD_PX 0.75f
 
-/* A vertex, 36 bytes. A segment runs from A to B, u is its direction, L its length. The vertex lies at
+/* What the device keeps of a point: 16 bytes, which the vertex shader reads. A strip has two vertices a record, the left
+ * one and the right one, and no indices; kernels/join.h says which records a point has. kite and fan have a record a
+ * point and indices of 4 bytes. */
+typedef struct camber_record {
+    float x, y;    /* px */
+    uint32_t join; /* CAMBER_JOIN_* in kernels/layout.h */
+    uint32_t last; /* row << 8 | flags: CAMBER_RECORD_* there */
+} camber_record;
+
+/* A vertex as the vertex shader makes it from records. A segment runs from A to B, u is its direction, L its length. The vertex lies at
  *     P + u * clamp(along * g, -limit_px, +limit_px) + (-u.y, u.x) * across * g
  * with g = half the width that is drawn + CAMBER_PAD_PX, and P = B where at_end, else A. All vertices but
  * those that no triangle ends with (is provoked by) carry the segment that the triangle draws. */
@@ -333,8 +342,8 @@ typedef struct camber_vertex {
     float along;    /* in units of g */
     float limit_px; /* bound on the offset along the segment; 3e38: none */
     int16_t across; /* in units of g / 16384 */
-    /* Bits 0-2: camber_end at A; 3-5: camber_end at B; 6: at_end, and with it 7: the segment before A is its line's
-     * first, 8: that behind B is its line's last. */
+    /* Bits 0-2: camber_end at A; 3-5: camber_end at B; 6: at_end; 7: the segment before A is its line's first, 8: that
+     * behind B is its line's last. */
     uint16_t flags;
     int16_t turn_a; /* tan(turn angle / 4) * 32767 at A, positive from x to y (clockwise as drawn); 0: a cap */
     int16_t turn_b; /* the same at B */
@@ -359,9 +368,11 @@ typedef enum camber_end {
 
 typedef struct camber_mesh_info {
     camber_method method;
-    bool strips; /* indices are triangle strips, CAMBER_RESTART_INDEX before each; else triangles */
-    size_t vertex_count;
-    size_t index_count;
+    bool strips;         /* triangle strips; else triangles */
+    size_t record_count; /* camber_record */
+    size_t vertex_count; /* of strips two a record, those between strips too */
+    size_t index_count;  /* of strips one a vertex, though none is kept */
+    size_t bytes;        /* all that is kept to draw from: records, and indices of kite and fan */
     size_t triangle_count; /* not degenerate */
     size_t joins;          /* points with a join, by kind: */
     size_t tight_joins;    /* the inner side has no room: (h + pad) tan(turn / 2) > half the shorter neighbour */
@@ -380,9 +391,9 @@ CAMBER_API void camber_mesh_destroy(camber_mesh *mesh);
  * run to run. The mesh keeps the uploaded polylines, so that another call with the same object and other
  * strokes uploads nothing.
  * Returns CAMBER_ERROR_ARGUMENT (a width or a limit that is not a number or out of range, a row without a
- * stroke), CAMBER_ERROR_LIMIT (2^32 - 1 vertices or more, or a polyline that needs more than the largest buffer),
- * CAMBER_ERROR_MEMORY, CAMBER_ERROR_DEVICE (a kernel
- * that does not build: the log has the build log). Cost: 1 s the first time a method is used, 3 ms from the cache; then
+ * stroke), CAMBER_ERROR_LIMIT (more than 2^30 records of strips or 2^25 of kite and fan, or a polyline that needs
+ * more than the largest buffer), CAMBER_ERROR_MEMORY, CAMBER_ERROR_DEVICE (a kernel that does not build: the log has the
+ * build log). Cost: 1 s the first time a method is used, 3 ms from the cache; then
  * about 10 ns a point on two cores. */
 CAMBER_API camber_status camber_tessellate(camber_mesh *mesh, const camber_polylines *polylines,
                                            const camber_tessellation_desc *desc);
@@ -392,8 +403,14 @@ CAMBER_API camber_mesh_info camber_mesh_get_info(camber_mesh *mesh);
 /* A mesh in host memory; free with camber_mesh_data_free. */
 typedef struct camber_mesh_data {
     camber_mesh_info info;
-    camber_vertex *vertices; /* info.vertex_count */
-    uint32_t *indices;       /* info.index_count */
+    /* What the device has: info.record_count, and of kite and fan info.index_count, record << 7 | corner
+     * (CAMBER_CORNER_* in kernels/layout.h); NULL of strips. */
+    camber_record *records;
+    uint32_t *corners;
+    /* What is drawn by it: info.vertex_count, and info.index_count. Of strips both lie in the same order, and indices
+     * are CAMBER_RESTART_INDEX twice between two strips. */
+    camber_vertex *vertices;
+    uint32_t *indices;
 } camber_mesh_data;
 
 CAMBER_API camber_status camber_mesh_read(camber_mesh *mesh, camber_mesh_data *data);

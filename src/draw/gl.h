@@ -47,9 +47,6 @@
     X(void, GenVertexArrays, (GLsizei, GLuint *))                                                                      \
     X(void, DeleteVertexArrays, (GLsizei, const GLuint *))                                                             \
     X(void, BindVertexArray, (GLuint))                                                                                 \
-    X(void, EnableVertexAttribArray, (GLuint))                                                                         \
-    X(void, VertexAttribPointer, (GLuint, GLint, GLenum, GLboolean, GLsizei, const void *))                            \
-    X(void, VertexAttribIPointer, (GLuint, GLint, GLenum, GLsizei, const void *))                                      \
     X(void, GenBuffers, (GLsizei, GLuint *))                                                                           \
     X(void, DeleteBuffers, (GLsizei, const GLuint *))                                                                  \
     X(void, BindBuffer, (GLenum, GLuint))                                                                              \
@@ -81,6 +78,7 @@
 /* In the driver's extensions, not in every one. */
 typedef void camber_gl_buffer_storage_fn(GLenum target, GLsizeiptr size, const void *data, GLbitfield flags);
 typedef GLenum camber_gl_reset_status_fn(void);
+typedef void camber_gl_tex_buffer_fn(GLenum target, GLenum format, GLuint buffer);
 
 typedef struct camber_gl {
 #define CAMBER_GL_MEMBER(result, name, parameters) result(*name) parameters;
@@ -88,6 +86,7 @@ typedef struct camber_gl {
 #undef CAMBER_GL_MEMBER
     camber_gl_buffer_storage_fn *BufferStorage;        /* NULL: absent */
     camber_gl_reset_status_fn *GetGraphicsResetStatus; /* NULL: absent */
+    camber_gl_tex_buffer_fn *TexBuffer;                /* required: core or an extension */
 } camber_gl;
 
 /* Any function, before it is cast to its type. */

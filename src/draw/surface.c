@@ -31,6 +31,19 @@ static camber_function *load_optional(camber_surface *surface, const optional_na
     return NULL;
 }
 
+/* GLES has them since 3.2, desktop GL, which OSMesa gives, since 3.1. */
+static camber_function *load_texture_buffers(camber_surface *surface) {
+    static const optional_name extensions[] = {{"GL_EXT_texture_buffer", "glTexBufferEXT"},
+                                               {"GL_OES_texture_buffer", "glTexBufferOES"}};
+    GLint major = 0, minor = 0;
+    surface->gl.GetIntegerv(GL_MAJOR_VERSION, &major);
+    surface->gl.GetIntegerv(GL_MINOR_VERSION, &minor);
+    surface->es_3_2 = 10 * major + minor >= 32;
+    if (surface->es_3_2)
+        return surface->ops->load(surface, "glTexBuffer");
+    return load_optional(surface, extensions, sizeof extensions / sizeof *extensions);
+}
+
 static camber_status load_gl(camber_surface *surface) {
     static const optional_name storage[] = {{"GL_EXT_buffer_storage", "glBufferStorageEXT"},
                                             {"GL_ARB_buffer_storage", "glBufferStorage"}};
@@ -50,7 +63,15 @@ static camber_status load_gl(camber_surface *surface) {
     memcpy(&gl->BufferStorage, &function, sizeof function);
     function = load_optional(surface, reset, sizeof reset / sizeof *reset);
     memcpy(&gl->GetGraphicsResetStatus, &function, sizeof function);
-    return CAMBER_OK;
+    function = load_texture_buffers(surface);
+    memcpy(&gl->TexBuffer, &function, sizeof function);
+    if (function)
+        return CAMBER_OK;
+    const char *version = (const char *)gl->GetString(GL_VERSION);
+    return camber_fail(surface->context, CAMBER_ERROR_DEVICE,
+                       "%s: %s has no texture buffers; update the GL driver to GLES 3.2 or one with "
+                       "GL_EXT_texture_buffer",
+                       surface->name, version ? version : "its GL");
 }
 
 /* ES of 3.2 has them, and desktop GL, which OSMesa gives, since 3.0. */
@@ -79,6 +100,9 @@ static void describe(camber_surface *surface) {
     surface->largest_viewport[0] = viewport[0];
     surface->largest_viewport[1] = viewport[1];
     surface->half_float_targets = has_half_float_targets(gl);
+    GLint texels = 0;
+    gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
+    surface->records_max = texels > 0 ? (uint32_t)texels : 65536; /* what the specification promises */
 }
 
 static camber_status open_backend(camber_context *context, const camber_surface_ops *ops, camber_surface **surface) {

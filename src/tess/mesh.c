@@ -65,6 +65,7 @@ void camber_mesh_destroy(camber_mesh *mesh) {
     camber_mesh_release_parts(mesh);
     if (mesh->rows)
         clReleaseMemObject(mesh->rows);
+    camber_free(context, mesh->host_rows);
     camber_free(context, mesh->polyline_rows);
     camber_free(context, mesh->first_slots);
     camber_free(context, mesh);
@@ -150,33 +151,35 @@ camber_status camber_mesh_first_index(const camber_mesh *mesh, size_t polyline, 
 camber_status camber_part_finish(const camber_mesh *mesh, camber_mesh_part *part, bool written, camber_status status) {
     camber_soft_log kept;
     if (status == CAMBER_OK)
-        return mesh->ops->finish(mesh->ops_user, part->buffers, 2, written);
+        return mesh->ops->finish(mesh->ops_user, part->buffers, camber_buffer_count(mesh), written);
     camber_log_soften(mesh->device->context, &kept);
-    (void)mesh->ops->finish(mesh->ops_user, part->buffers, 2, written);
+    (void)mesh->ops->finish(mesh->ops_user, part->buffers, camber_buffer_count(mesh), written);
     camber_log_restore(mesh->device->context, &kept);
     return status;
 }
 
-static camber_status read_buffer(const camber_mesh *mesh, const camber_buffer *buffer, void *bytes) {
+static camber_status read_buffer(const camber_mesh *mesh, const camber_buffer *buffer, size_t size_bytes, void *bytes) {
+    if (size_bytes == 0)
+        return CAMBER_OK;
     const cl_int code =
-        clEnqueueReadBuffer(mesh->device->queue, buffer->mem, CL_TRUE, 0, buffer->used_bytes, bytes, 0, NULL, NULL);
+        clEnqueueReadBuffer(mesh->device->queue, buffer->mem, CL_TRUE, 0, size_bytes, bytes, 0, NULL, NULL);
     return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(mesh->device->context, "clEnqueueReadBuffer", code);
 }
 
 static camber_status read_part(const camber_mesh *mesh, camber_mesh_part *part, camber_mesh_data *data) {
-    camber_vertex *vertices = data->vertices + part->first_vertex;
-    uint32_t *indices = data->indices + part->first_index;
-    camber_status status = mesh->ops->begin(mesh->ops_user, part->buffers, 2);
+    const size_t buffer_count = camber_buffer_count(mesh);
+    camber_status status = mesh->ops->begin(mesh->ops_user, part->buffers, buffer_count);
     if (status != CAMBER_OK)
         return status;
-    status = read_buffer(mesh, part->buffers + CAMBER_BUFFER_VERTICES, vertices);
-    if (status == CAMBER_OK)
-        status = read_buffer(mesh, part->buffers + CAMBER_BUFFER_INDICES, indices);
+    status = read_buffer(mesh, part->buffers + CAMBER_BUFFER_RECORDS, part->record_count * sizeof *data->records,
+                         data->records + part->first_record);
+    if (status == CAMBER_OK && data->corners)
+        status = read_buffer(mesh, part->buffers + CAMBER_BUFFER_INDICES, 4 * part->index_count,
+                             data->corners + part->first_index);
     status = camber_part_finish(mesh, part, false, status);
-    const uint32_t base = (uint32_t)part->first_vertex;
-    for (size_t i = 0; base != 0 && status == CAMBER_OK && i < part->index_count; i++)
-        if (indices[i] != CAMBER_RESTART_INDEX)
-            indices[i] += base;
+    const uint32_t base = (uint32_t)part->first_record << CAMBER_CORNER_BITS;
+    for (size_t i = 0; data->corners && status == CAMBER_OK && i < part->index_count; i++)
+        data->corners[part->first_index + i] += base;
     return status;
 }
 
@@ -186,14 +189,16 @@ camber_status camber_mesh_read(camber_mesh *mesh, camber_mesh_data *data) {
     camber_mesh_data made = {.info = mesh->mesh_info};
     if (status != CAMBER_OK)
         return status;
-    made.vertices = camber_alloc(context, made.info.vertex_count, sizeof *made.vertices);
-    if (made.vertices)
-        made.indices = camber_alloc(context, made.info.index_count, sizeof *made.indices);
-    if (!made.indices)
+    made.records = camber_alloc(context, made.info.record_count, sizeof *made.records);
+    if (made.records && !made.info.strips)
+        made.corners = camber_alloc(context, made.info.index_count, sizeof *made.corners);
+    if (!made.records || (!made.info.strips && !made.corners))
         status = CAMBER_ERROR_MEMORY;
-    for (size_t i = 0; i < mesh->part_count && !mesh->empty && status == CAMBER_OK; i++)
-        if (mesh->parts[i].vertex_count > 0)
+    for (size_t i = 0; i < mesh->part_count && mesh->done && status == CAMBER_OK; i++)
+        if (mesh->parts[i].record_count > 0)
             status = read_part(mesh, mesh->parts + i, &made);
+    if (status == CAMBER_OK)
+        status = camber_mesh_expand(context, mesh->host_rows, &made);
     if (status != CAMBER_OK) {
         camber_mesh_data_free(context, &made);
         return status;

@@ -88,7 +88,7 @@ static void set_polylines(const camber_mesh *mesh, camber_mesh_part *part, size_
     part->polyline_count = end - first;
     part->first_slot = mesh->first_slots[first];
     part->slot_count = (slots + block - 1) / block * block;
-    part->vertex_count = part->index_count = 0;
+    part->record_count = part->vertex_count = part->index_count = 0;
     part->uploaded = false;
 }
 
@@ -195,17 +195,25 @@ camber_status camber_part_upload(const camber_mesh *mesh, camber_mesh_part *part
 /* ---- Splitting ---- */
 
 typedef struct output_size {
-    uint64_t vertices, indices;
+    uint64_t records, indices;
 } output_size;
 
-static uint64_t larger_bytes(output_size size) {
-    const uint64_t vertex_bytes = size.vertices * sizeof(camber_vertex), index_bytes = 4 * size.indices;
-    return vertex_bytes > index_bytes ? vertex_bytes : index_bytes;
+/* Of the buffers of a part's output. Where a record is a slot, the kernel writes whole blocks of them. */
+static uint64_t larger_bytes(const camber_mesh *mesh, output_size size) {
+    const uint64_t block = mesh->device->block, whole = (size.records + block - 1) / block * block;
+    const uint64_t record_bytes = (mesh->mesh_info.strips ? size.records : whole) * sizeof(camber_record);
+    const uint64_t index_bytes = mesh->mesh_info.strips ? 0 : 4 * size.indices;
+    return record_bytes > index_bytes ? record_bytes : index_bytes;
+}
+
+size_t camber_part_records(const camber_mesh *mesh, const camber_mesh_part *part) {
+    const uint32_t *slots = mesh->first_slots + part->first_polyline;
+    return mesh->mesh_info.strips ? part->vertex_count / 2 : slots[part->polyline_count] - slots[0];
 }
 
 bool camber_part_fits(const camber_mesh *mesh, const camber_mesh_part *part) {
-    const output_size size = {part->vertex_count, part->index_count};
-    return larger_bytes(size) <= mesh->device->info.largest_buffer_bytes;
+    const output_size size = {part->record_count, part->index_count};
+    return larger_bytes(mesh, size) <= mesh->device->info.largest_buffer_bytes;
 }
 
 /* What the part has before a polyline. */
@@ -213,7 +221,8 @@ static output_size size_before(const camber_mesh *mesh, const camber_mesh_part *
                                size_t polyline) {
     const size_t slot = mesh->first_slots[polyline] - part->first_slot, block = slot / mesh->device->block;
     const cl_uint packed = slot < part->slot_count ? offsets[slot] : 0;
-    return (output_size){part->host_bases[2 * block] + (packed & 0xffffu),
+    const uint64_t vertices = part->host_bases[2 * block] + (packed & 0xffffu);
+    return (output_size){mesh->mesh_info.strips ? vertices / 2 : slot,
                          part->host_bases[2 * block + 1] + (packed >> 16)};
 }
 
@@ -226,10 +235,11 @@ static camber_status find_cuts(const camber_mesh *mesh, const camber_mesh_part *
     output_size start = {0, 0}, before = {0, 0};
     for (size_t i = part->first_polyline; i < end; i++) {
         const output_size after = size_before(mesh, part, offsets, i + 1);
-        if (larger_bytes((output_size){after.vertices - start.vertices, after.indices - start.indices}) > limit) {
-            const output_size alone = {after.vertices - before.vertices, after.indices - before.indices};
-            if (larger_bytes(alone) > limit)
-                return fail_polyline(mesh, i, larger_bytes(alone));
+        const output_size together = {after.records - start.records, after.indices - start.indices};
+        if (larger_bytes(mesh, together) > limit) {
+            const output_size alone = {after.records - before.records, after.indices - before.indices};
+            if (larger_bytes(mesh, alone) > limit)
+                return fail_polyline(mesh, i, larger_bytes(mesh, alone));
             if (!camber_grow(mesh->device->context, cuts, &capacity, *cut_count + 1, sizeof **cuts))
                 return CAMBER_ERROR_MEMORY;
             (*cuts)[(*cut_count)++] = i;

@@ -36,6 +36,7 @@ static camber_row make_row(const camber_stroke *stroke, float tolerance_px) {
         .fan_scale = (float)(1 / cos(step / 2)),
         .join = (camber_u32)stroke->join,
         .cap = (camber_u32)stroke->cap,
+        .fan_step = (float)step,
     };
 }
 

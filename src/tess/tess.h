@@ -72,7 +72,7 @@ typedef struct camber_buffer_ops {
 /* A run of polylines that is tessellated by itself, its vertices numbered from 0. Most meshes are one part; where
  * the device makes no buffer that is large enough, several in the order of their polylines. */
 typedef struct camber_mesh_part {
-    camber_buffer buffers[2]; /* vertices, indices */
+    camber_buffer buffers[2]; /* records, indices: of strips none */
     size_t first_polyline, polyline_count;
     size_t first_slot, slot_count; /* of the polylines; slot_count is padded to whole blocks */
     bool uploaded;
@@ -80,8 +80,8 @@ typedef struct camber_mesh_part {
     size_t slot_capacity;
     uint64_t *host_bases; /* first vertex and first index of each block, and the totals behind the last */
     size_t base_capacity;
-    size_t vertex_count, index_count;
-    size_t first_vertex, first_index; /* of the mesh: what the parts before have */
+    size_t record_count, vertex_count, index_count;
+    size_t first_record, first_vertex, first_index; /* of the mesh: what the parts before have */
 } camber_mesh_part;
 
 struct camber_mesh {
@@ -99,7 +99,8 @@ struct camber_mesh {
     size_t part_count, part_capacity;
 
     cl_mem rows;
-    size_t row_capacity;
+    camber_row *host_rows; /* the same */
+    size_t row_capacity, host_row_capacity;
     camber_mesh_info mesh_info;
     bool joins_counted; /* mesh_info's counts of joins and triangles are there */
     bool sharp_joins;   /* a row has miter or bevel joins */
@@ -108,12 +109,16 @@ struct camber_mesh {
     bool empty;         /* nothing to draw: nothing tessellated yet, it failed, or nothing came of it */
 };
 
-enum { CAMBER_BUFFER_VERTICES, CAMBER_BUFFER_INDICES };
+enum { CAMBER_BUFFER_RECORDS, CAMBER_BUFFER_INDICES };
 
 camber_status camber_mesh_create_on(camber_device *device, const camber_buffer_ops *ops, void *ops_user,
                                     camber_mesh **mesh);
-/* First index of a polyline in the index buffer of its part; the part's first polyline + polyline_count gives the
- * end. */
+/* How many of a part's output buffers there are. */
+static inline size_t camber_buffer_count(const camber_mesh *mesh) {
+    return mesh->mesh_info.strips ? 1 : 2;
+}
+/* First index of a polyline in its part, of strips its first vertex; the part's first polyline + polyline_count gives
+ * the end. */
 camber_status camber_part_first_index(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline,
                                       uint64_t *first_index);
 /* The same in the indices of the mesh, as camber_mesh_read gives them. */
@@ -125,6 +130,7 @@ camber_status camber_mesh_plan(camber_mesh *mesh, const camber_polylines *polyli
 /* Cuts a part that has been scanned, and whose output is too large, into parts whose output fits. The part's place is
  * taken by the first of them. */
 camber_status camber_mesh_split(camber_mesh *mesh, size_t which);
+size_t camber_part_records(const camber_mesh *mesh, const camber_mesh_part *part);
 bool camber_part_fits(const camber_mesh *mesh, const camber_mesh_part *part);
 camber_status camber_part_upload(const camber_mesh *mesh, camber_mesh_part *part, const camber_polylines *polylines);
 void camber_mesh_release_parts(camber_mesh *mesh);
@@ -144,10 +150,16 @@ camber_status camber_rows_create(camber_context *context, const camber_polylines
                                  const camber_tessellation_desc *desc, camber_row **rows);
 
 /* The host's part of the scan: adds up the blocks' sums, vertices | indices << 16, in 64 bits. bases takes
- * 2 * (block_count + 1): each block's first vertex and first index, and the totals behind the last. CAMBER_ERROR_LIMIT
- * where 32-bit indices do not reach all vertices. */
-camber_status camber_scan_blocks(camber_context *context, const uint32_t *sums, size_t block_count, uint64_t *bases);
-camber_status camber_check_vertices(camber_context *context, uint64_t vertex_count);
+ * 2 * (block_count + 1): each block's first vertex and first index, and the totals behind the last. */
+void camber_scan_blocks(const uint32_t *sums, size_t block_count, uint64_t *bases);
+/* Vertices of a strip are numbered by 32 bits; a corner's record by what its index leaves. */
+size_t camber_records_max(camber_method method);
+camber_status camber_fail_records(camber_context *context, camber_method method);
+
+/* expand.c: makes vertices and indices of a mesh's records and corners. */
+camber_status camber_mesh_expand(camber_context *context, const camber_row *rows, camber_mesh_data *data);
+/* How many vertices the records before each have, of kite and fan: record_count + 1, freed with camber_free. */
+camber_status camber_corners_count(camber_context *context, const camber_mesh_data *data, uint32_t **first_vertices);
 
 /* Adds a point's join word to the counts of a mesh's info. */
 void camber_mesh_info_count(camber_mesh_info *info, uint32_t join, uint32_t point);

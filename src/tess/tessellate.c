@@ -4,6 +4,7 @@
 #include "kernels/layout.h"
 
 #include <stdio.h>
+#include <string.h>
 
 /* ---- Stages ---- */
 
@@ -34,15 +35,17 @@ static camber_status run_stage(const camber_device *device, const camber_mesh_pa
     return code == CL_SUCCESS ? CAMBER_OK : fail_stage(device, "clEnqueueNDRangeKernel", s.name, code);
 }
 
-camber_status camber_check_vertices(camber_context *context, uint64_t vertex_count) {
-    if (vertex_count < UINT32_MAX)
-        return CAMBER_OK;
-    return camber_fail(context, CAMBER_ERROR_LIMIT,
-                       "%llu vertices are more than 32-bit indices reach; tessellate in parts",
-                       (unsigned long long)vertex_count);
+size_t camber_records_max(camber_method method) {
+    return method == CAMBER_METHOD_STRIP ? (size_t)1 << 30 : (size_t)1 << (32 - CAMBER_CORNER_BITS);
 }
 
-camber_status camber_scan_blocks(camber_context *context, const uint32_t *sums, size_t block_count, uint64_t *bases) {
+camber_status camber_fail_records(camber_context *context, camber_method method) {
+    return camber_fail(context, CAMBER_ERROR_LIMIT,
+                       "more than the %zu records that 32 bits number for method %s; tessellate in parts",
+                       camber_records_max(method), camber_method_name(method));
+}
+
+void camber_scan_blocks(const uint32_t *sums, size_t block_count, uint64_t *bases) {
     uint64_t vertices = 0, indices = 0;
     for (size_t i = 0; i <= block_count; i++) {
         bases[2 * i] = vertices;
@@ -52,22 +55,21 @@ camber_status camber_scan_blocks(camber_context *context, const uint32_t *sums, 
             indices += sums[i] >> 16;
         }
     }
-    return camber_check_vertices(context, vertices);
 }
 
-static camber_status scan_blocks(const camber_device *device, camber_mesh_part *part) {
+static camber_status scan_blocks(const camber_mesh *mesh, camber_mesh_part *part) {
+    const camber_device *device = mesh->device;
     const size_t blocks = part->slot_count / device->block;
     cl_int code;
     cl_uint *sums =
         clEnqueueMapBuffer(device->queue, part->sums, CL_TRUE, CL_MAP_READ, 0, 4 * blocks, 0, NULL, NULL, &code);
     if (code != CL_SUCCESS)
         return camber_fail_cl(device->context, "clEnqueueMapBuffer", code);
-    const camber_status status = camber_scan_blocks(device->context, sums, blocks, part->host_bases);
+    camber_scan_blocks(sums, blocks, part->host_bases);
     clEnqueueUnmapMemObject(device->queue, part->sums, sums, 0, NULL, NULL);
-    if (status != CAMBER_OK)
-        return status;
     part->vertex_count = (size_t)part->host_bases[2 * blocks];
     part->index_count = (size_t)part->host_bases[2 * blocks + 1];
+    part->record_count = camber_part_records(mesh, part);
     return CAMBER_OK;
 }
 
@@ -92,21 +94,23 @@ static camber_status measure(camber_mesh *mesh, camber_mesh_part *part, const ca
     if (status == CAMBER_OK)
         status = run_stage(device, part, (stage){"scan", program->scan, scan, 4, CAMBER_SCAN_POINTS}, events + 1);
     if (status == CAMBER_OK)
-        status = scan_blocks(device, part);
+        status = scan_blocks(mesh, part);
     add_ms(events[0], &mesh->mesh_info.classify_ms);
     add_ms(events[1], &mesh->mesh_info.scan_ms);
     return status;
 }
 
 static camber_status reserve_output(camber_mesh *mesh, camber_mesh_part *part) {
-    const size_t sizes[2] = {part->vertex_count * sizeof(camber_vertex), part->index_count * 4};
-    for (int i = 0; i < 2; i++) {
+    const size_t records = mesh->mesh_info.strips ? part->record_count : part->slot_count;
+    const size_t indices = part->index_count ? part->index_count : 1; /* no buffer is empty */
+    const size_t sizes[2] = {records * sizeof(camber_record), indices * 4};
+    for (size_t i = 0; i < camber_buffer_count(mesh); i++) {
         const camber_status status = mesh->ops->reserve(mesh->ops_user, part->buffers + i, sizes[i]);
         if (status != CAMBER_OK)
             return status;
         part->buffers[i].used_bytes = sizes[i];
     }
-    return mesh->ops->begin(mesh->ops_user, part->buffers, 2);
+    return mesh->ops->begin(mesh->ops_user, part->buffers, camber_buffer_count(mesh));
 }
 
 static camber_status emit(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program) {
@@ -125,8 +129,8 @@ static camber_status emit(camber_mesh *mesh, camber_mesh_part *part, const cambe
                            part->joins,
                            part->offsets,
                            part->bases,
-                           part->buffers[CAMBER_BUFFER_VERTICES].mem,
-                           part->buffers[CAMBER_BUFFER_INDICES].mem};
+                           part->buffers[CAMBER_BUFFER_RECORDS].mem,
+                           part->buffers[mesh->mesh_info.strips ? CAMBER_BUFFER_RECORDS : CAMBER_BUFFER_INDICES].mem};
     status = run_stage(device, part, (stage){"emit", program->emit, mems, 9, 1}, &event);
     const cl_int code = clFinish(device->queue);
     if (status == CAMBER_OK && code != CL_SUCCESS)
@@ -141,6 +145,9 @@ static camber_status emit(camber_mesh *mesh, camber_mesh_part *part, const cambe
 static camber_status upload_rows(camber_mesh *mesh, const camber_row *rows, size_t row_count) {
     const camber_device *device = mesh->device;
     const size_t count = row_count + 1; /* never empty */
+    if (!camber_grow(device->context, &mesh->host_rows, &mesh->host_row_capacity, count, sizeof *rows))
+        return CAMBER_ERROR_MEMORY;
+    memcpy(mesh->host_rows, rows, count * sizeof *rows);
     if (count * sizeof *rows > device->info.largest_buffer_bytes)
         return camber_fail(device->context, CAMBER_ERROR_LIMIT,
                            "%zu strokes take a buffer of %zu bytes, and %s makes none above %llu; merge equal ones",
@@ -172,13 +179,15 @@ static camber_status run_parts(camber_mesh *mesh, const camber_polylines *polyli
             status = camber_mesh_split(mesh, i);
             continue;
         }
+        part->first_record = info->record_count;
         part->first_vertex = info->vertex_count;
         part->first_index = info->index_count;
+        info->record_count += part->record_count;
         info->vertex_count += part->vertex_count;
         info->index_count += part->index_count;
-        if (status == CAMBER_OK)
-            status = camber_check_vertices(mesh->device->context, info->vertex_count);
-        if (status == CAMBER_OK && part->vertex_count > 0)
+        if (status == CAMBER_OK && info->record_count > camber_records_max(info->method))
+            status = camber_fail_records(mesh->device->context, info->method);
+        if (status == CAMBER_OK && part->record_count > 0)
             status = emit(mesh, part, program);
         i++;
     }
@@ -207,8 +216,10 @@ camber_status camber_tessellate(camber_mesh *mesh, const camber_polylines *polyl
             status = upload_rows(mesh, rows, desc->stroke_count);
         if (status == CAMBER_OK)
             status = run_parts(mesh, polylines, program);
-        if (status == CAMBER_OK && mesh->mesh_info.vertex_count > 0)
+        if (status == CAMBER_OK && mesh->mesh_info.record_count > 0)
             camber_program_save(mesh->device, program);
+        camber_mesh_info *info = &mesh->mesh_info;
+        info->bytes = info->record_count * sizeof(camber_record) + (info->strips ? 0 : 4 * info->index_count);
         mesh->joins_counted = status != CAMBER_OK;
     }
     if (status != CAMBER_OK)

@@ -1,0 +1,186 @@
+/* What the vertex shader makes of records, on the host: each vertex by itself, and indices that number them.
+ * stroke.vert says the same in GLSL. */
+#include "tess/tess.h"
+
+#include "kernels/join.h"
+
+#include <math.h>
+
+#define CORNER_MASK ((1u << CAMBER_CORNER_BITS) - 1u)
+
+
+/* A vertex of the segment into or out of a point, whose other end is the record other. */
+static camber_vertex make_vertex(const camber_record *records, size_t at, size_t other, bool out) {
+    const camber_record *p = records + at, *a = records + (out ? at : other), *b = records + (out ? other : at);
+    const uint32_t first = a->last & CAMBER_RECORD_AFTER_FIRST ? 128u : 0u;
+    const uint32_t last = b->last & CAMBER_RECORD_BEFORE_LAST ? 256u : 0u;
+    return (camber_vertex){
+        .x = p->x,
+        .y = p->y,
+        .dx = b->x - a->x,
+        .dy = b->y - a->y,
+        .limit_px = CAMBER_NO_LIMIT_PX,
+        .flags = (uint16_t)(camber_join_end(a->join) | camber_join_end(b->join) << 3 | (out ? 0u : 64u) | first | last),
+        .turn_a = (int16_t)(uint16_t)(a->join & 0xffffu),
+        .turn_b = (int16_t)(uint16_t)(b->join & 0xffffu),
+        .row = p->last >> CAMBER_RECORD_ROW_SHIFT,
+    };
+}
+
+static void set_extrusion(camber_vertex *vertex, float along, float across) {
+    vertex->along = along;
+    vertex->across = (int16_t)(across * 16384.0f);
+}
+
+static camber_vertex make_edge(const camber_record *records, size_t at, size_t other, bool out, float side,
+                               camber_u32 method) {
+    camber_vertex vertex = make_vertex(records, at, other, out);
+    set_extrusion(&vertex, camber_edge_along(records[at].join, out ? -1.0f : 1.0f, side, method), side);
+    vertex.limit_px = camber_edge_limit(records[at].join, side);
+    return vertex;
+}
+
+/* ---- Strips ---- */
+
+static camber_vertex strip_vertex(const camber_record *records, size_t record, bool right) {
+    const uint32_t flags = records[record].last;
+    const bool in = flags & (right ? CAMBER_RECORD_IN_RIGHT : CAMBER_RECORD_IN_LEFT);
+    const bool out = flags & CAMBER_RECORD_START && !in;
+    return make_edge(records, record, out ? record + 1 : record - 1, out, right ? -1.0f : 1.0f, CAMBER_STRIP);
+}
+
+/* A break's vertices are the last of the strip before and the first of that behind. */
+static size_t seen_record(const camber_record *records, size_t record, bool *right) {
+    if (!(records[record].last & CAMBER_RECORD_BREAK))
+        return record;
+    const size_t seen = *right || record == 0 ? record + 1 : record - 1;
+    *right = !*right;
+    return seen;
+}
+
+/* A start's vertex at a tight join's outer edge is the end's. */
+static uint32_t strip_index(const camber_record *records, size_t record, bool right) {
+    const uint32_t flags = records[record].last, in = right ? CAMBER_RECORD_IN_RIGHT : CAMBER_RECORD_IN_LEFT;
+    if (flags & CAMBER_RECORD_BREAK)
+        return CAMBER_RESTART_INDEX;
+    const bool tight = camber_join_kind(records[record].join) == CAMBER_KIND_TIGHT;
+    const size_t owner = tight && flags & in ? record - 2 : record;
+    return (uint32_t)(2 * owner + right);
+}
+
+static void expand_strip(camber_mesh_data *data) {
+    for (size_t i = 0; i < data->info.vertex_count; i++) {
+        const size_t record = i / 2;
+        bool right = i % 2;
+        data->indices[i] = strip_index(data->records, record, right);
+        const size_t seen = seen_record(data->records, record, &right);
+        data->vertices[i] = strip_vertex(data->records, seen, right);
+    }
+}
+
+/* ---- Corners ---- */
+
+/* Along and across of a join's own vertices, in units of the reach; outer: the side. */
+static void set_join_corner(camber_vertex *vertex, camber_u32 corner, float q, const camber_row *row) {
+    const float outer = q > 0.0f ? -1.0f : 1.0f, a = fabsf(q), scale = 1.0f / (1.0f + a * a);
+    const float angle = row->fan_step * (float)((int)corner - (int)CAMBER_CORNER_FAN);
+    switch (corner) {
+    case CAMBER_CORNER_CENTRE: break;
+    case CAMBER_CORNER_TIP: set_extrusion(vertex, camber_turn_tan_half(a), outer); break;
+    case CAMBER_CORNER_IN_TIP: set_extrusion(vertex, a, outer); break;
+    case CAMBER_CORNER_BISECTOR: set_extrusion(vertex, 2.0f * a * scale, outer * (1.0f - a * a) * scale); break;
+    case CAMBER_CORNER_OUT_TIP: set_extrusion(vertex, -a, outer); break;
+    default: set_extrusion(vertex, sinf(angle) * row->fan_scale, outer * cosf(angle) * row->fan_scale); break;
+    }
+}
+
+static camber_vertex corner_vertex(const camber_record *records, uint32_t index, camber_u32 method,
+                                   const camber_row *rows) {
+    const size_t at = index >> CAMBER_CORNER_BITS;
+    const camber_u32 corner = index & CORNER_MASK, join = records[at].join;
+    const bool out = corner == CAMBER_CORNER_CENTRE || corner == CAMBER_CORNER_OUT_LEFT ||
+                     corner == CAMBER_CORNER_OUT_RIGHT || corner == CAMBER_CORNER_OUT_TIP;
+    const size_t other = camber_join_kind(join) == CAMBER_KIND_DOT ? at : out ? at + 1 : at - 1;
+    if (corner >= CAMBER_CORNER_IN_LEFT && corner <= CAMBER_CORNER_OUT_RIGHT)
+        return make_edge(records, at, other, out, (corner & 1u) ? 1.0f : -1.0f, method);
+    camber_vertex vertex = make_vertex(records, at, other, out);
+    set_join_corner(&vertex, corner, camber_turn_unpack(join), rows + vertex.row);
+    return vertex;
+}
+
+/* The corners of a record that indices name, as bits. */
+typedef struct corner_set {
+    uint64_t bits[2];
+} corner_set;
+
+static unsigned count_below(const corner_set *set, camber_u32 corner) {
+    const uint64_t below = (1ull << (corner & 63u)) - 1u;
+    const unsigned low = (unsigned)__builtin_popcountll(set->bits[0] & (corner < 64 ? below : ~0ull));
+    return corner < 64 ? low : low + (unsigned)__builtin_popcountll(set->bits[1] & below);
+}
+
+/* Which corners each record has, and how many vertices the records before have. */
+static camber_status find_corners(camber_context *context, const camber_mesh_data *data, corner_set **sets,
+                                  uint32_t **first_vertices) {
+    const size_t records = data->info.record_count;
+    corner_set *found = camber_alloc_zero(context, records + 1, sizeof *found);
+    uint32_t *first = found ? camber_alloc(context, records + 1, sizeof *first) : NULL;
+    if (!first) {
+        camber_free(context, found);
+        return CAMBER_ERROR_MEMORY;
+    }
+    for (size_t i = 0; i < data->info.index_count; i++) {
+        const camber_u32 corner = data->corners[i] & CORNER_MASK;
+        found[data->corners[i] >> CAMBER_CORNER_BITS].bits[corner / 64] |= 1ull << (corner & 63u);
+    }
+    first[0] = 0;
+    for (size_t r = 0; r < records; r++)
+        first[r + 1] = first[r] + (unsigned)__builtin_popcountll(found[r].bits[0]) +
+                       (unsigned)__builtin_popcountll(found[r].bits[1]);
+    *sets = found;
+    *first_vertices = first;
+    return CAMBER_OK;
+}
+
+camber_status camber_corners_count(camber_context *context, const camber_mesh_data *data, uint32_t **first_vertices) {
+    corner_set *sets;
+    const camber_status status = find_corners(context, data, &sets, first_vertices);
+    if (status == CAMBER_OK)
+        camber_free(context, sets);
+    return status;
+}
+
+/* Vertices in the order of records, and of corners within a record. */
+static camber_status expand_corners(camber_context *context, const camber_row *rows, camber_mesh_data *data) {
+    const camber_u32 method = (camber_u32)data->info.method;
+    corner_set *sets;
+    uint32_t *first;
+    camber_status status = find_corners(context, data, &sets, &first);
+    if (status != CAMBER_OK)
+        return status;
+    data->info.vertex_count = first[data->info.record_count];
+    data->vertices = camber_alloc(context, data->info.vertex_count, sizeof *data->vertices);
+    status = data->vertices ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; status == CAMBER_OK && i < data->info.index_count; i++) {
+        const uint32_t index = data->corners[i];
+        const size_t r = index >> CAMBER_CORNER_BITS;
+        data->indices[i] = first[r] + count_below(sets + r, index & CORNER_MASK);
+        data->vertices[data->indices[i]] = corner_vertex(data->records, index, method, rows);
+    }
+    camber_free(context, first);
+    camber_free(context, sets);
+    return status;
+}
+
+camber_status camber_mesh_expand(camber_context *context, const camber_row *rows, camber_mesh_data *data) {
+    data->indices = camber_alloc(context, data->info.index_count, sizeof *data->indices);
+    if (!data->indices)
+        return CAMBER_ERROR_MEMORY;
+    if (data->info.method != CAMBER_METHOD_STRIP)
+        return expand_corners(context, rows, data);
+    data->vertices = camber_alloc(context, data->info.vertex_count, sizeof *data->vertices);
+    if (!data->vertices)
+        return CAMBER_ERROR_MEMORY;
+    expand_strip(data);
+    return CAMBER_OK;
+}

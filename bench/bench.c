@@ -127,7 +127,7 @@ static void print_row(bench *b, const bench_scene *scene, times *t) {
         const uint32_t count = scene->lines.offsets[i + 1] - scene->lines.offsets[i];
         segments += count > 1 ? count - 1 : 0;
     }
-    const double bytes = (double)(info.vertex_count * sizeof(camber_vertex) + 4 * info.index_count);
+    const double bytes = (double)info.bytes;
     const double tessellate = median(t->tessellate), frame = median(t->frame), cairo = median(t->cairo),
                  draw_ms = median(t->draw), united = median(t->united);
     const double classify = median(t->classify), scan = median(t->scan), emit = median(t->emit), copy = median(t->copy);

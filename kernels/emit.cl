@@ -23,8 +23,7 @@ kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK, 1, 1))) void emit(
     const camber_u32 join = joins[i], kind = camber_join_kind(join), point = info[i];
     if (kind == CAMBER_KIND_GHOST)
         return;
-    const size_t first_vertex = (size_t)bases[2 * get_group_id(0)] + (offsets[i - 1] & 0xffffu);
-    const size_t k = first_vertex / 2;
+    const size_t k = ((size_t)bases[2 * get_group_id(0) + 1] + (offsets[i - 1] >> 16)) / 2; /* two indices a record */
     const camber_u32 row = point & ~255u;
     const camber_u32 last = row | camber_line_ends(joins[i - 1], join, joins[i + 1]);
     const camber_u32 begins = point & CAMBER_POINT_FIRST;
@@ -116,8 +115,8 @@ kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK, 1, 1))) void emit(
     const camber_u32 before = joins[i - 1];
     /* A record a slot, ghosts too: a ring's are where its seam's neighbours lie. */
     put_record(records, i - 1, x[i], y[i],
-               camber_record_join(join, camber_half_shorter(x[i] - x[i - 1], y[i] - y[i - 1], x[i + 1] - x[i],
-                                                            y[i + 1] - y[i])),
+               camber_record_join(
+                   join, camber_half_shorter(x[i] - x[i - 1], y[i] - y[i - 1], x[i + 1] - x[i], y[i + 1] - y[i])),
                (point & ~255u) | camber_line_ends(before, join, joins[i + 1]));
     if (kind == CAMBER_KIND_GHOST || (point & CAMBER_POINT_FIRST && kind != CAMBER_KIND_DOT))
         return;

@@ -172,7 +172,8 @@ CAMBER_FN float camber_edge_along(camber_u32 join, float end, float side, camber
     return kind < CAMBER_KIND_CUT ? end : 0.0f;
 }
 
-/* The bound on that, px: past a butt end the pad, however wide the line; on the inner side of a tight join its limit. */
+/* The bound on that, px: past a butt end the pad, however wide the line; on the inner side of a tight join its limit.
+ */
 CAMBER_FN float camber_edge_limit(camber_u32 join, float side) {
     const camber_u32 kind = camber_join_kind(join);
     const camber_u32 is_butt = kind < CAMBER_KIND_CUT && camber_join_end(join) == 1u;
@@ -192,8 +193,8 @@ CAMBER_FN camber_u32 camber_strip_records(camber_u32 kind, camber_u32 info) {
     return live + (kind > CAMBER_KIND_CUT ? inner : 0u);
 }
 
-/* The edges that a start has in common with the end before it: at a ring's cut seam both, so that no pixel falls between;
- * at a tight join the outer one. */
+/* The edges that a start has in common with the end before it: at a ring's cut seam both, so that no pixel falls
+ * between; at a tight join the outer one. */
 CAMBER_FN camber_u32 camber_shared_edges(camber_u32 join, camber_u32 info) {
     const camber_u32 kind = camber_join_kind(join);
     const camber_u32 outer = camber_turn_unpack(join) > 0.0f ? CAMBER_RECORD_IN_RIGHT : CAMBER_RECORD_IN_LEFT;
@@ -207,10 +208,11 @@ CAMBER_FN camber_u32 camber_record_join(camber_u32 join, float half_shorter) {
     return camber_join_kind(join) == CAMBER_KIND_TIGHT ? bare | camber_limit_pack(half_shorter) : bare;
 }
 
-/* The corner that a body begins with on a side. Cut bodies of kites have the inner one in common with the end before. */
+/* The corner that a body begins with on a side. Cut bodies of kites have the inner one in common with the end before.
+ */
 CAMBER_FN camber_u32 camber_start_corner(camber_u32 join, float side, camber_u32 method) {
-    const camber_u32 shared = method == CAMBER_KITE && camber_join_kind(join) == CAMBER_KIND_CUT &&
-                              side * camber_turn_unpack(join) > 0.0f;
+    const camber_u32 shared =
+        method == CAMBER_KITE && camber_join_kind(join) == CAMBER_KIND_CUT && side * camber_turn_unpack(join) > 0.0f;
     return (shared ? CAMBER_CORNER_IN_LEFT : CAMBER_CORNER_OUT_LEFT) + (side > 0.0f ? 0u : 1u);
 }
 
@@ -219,14 +221,20 @@ CAMBER_FN camber_u32 camber_join_corner(camber_u32 i, camber_u32 triangles, camb
     return is_fan ? CAMBER_CORNER_FAN + i + 1u : triangles == 2u ? CAMBER_CORNER_TIP : CAMBER_CORNER_IN_TIP + i;
 }
 
-/* How many vertices and indices a point emits, vertices | indices << 16. A strip has two vertices a record and no
- * indices but the vertices' numbers. Lists of a point of kite and fan, whose vertices are distinct corners:
- *   in L, R | join's own | P where there is a join | out L, R, unless the polyline ends; a kite's cut bodies have their
- *   inner corner in common */
+/* How many vertices and indices a point emits, vertices | indices << 16. Vertices are distinct ones:
+ *   strip       L, R of each start and end, but for the outer one that they have in common at a tight join
+ *   kite, fan   in L, R | join's own | P where there is a join | out L, R, unless the polyline ends; a kite's cut
+ * bodies have their inner one in common Indices of a strip are two a record, kept or not. */
 CAMBER_FN camber_u32 camber_join_counts(camber_u32 join, camber_u32 before, camber_u32 info, camber_u32 method) {
     const camber_u32 kind = camber_join_kind(join);
-    if (method == CAMBER_STRIP)
-        return camber_strip_records(kind, info) * (2u | 2u << 16);
+    if (method == CAMBER_STRIP) {
+        const camber_u32 records = camber_strip_records(kind, info);
+        const camber_u32 vertices = kind == CAMBER_KIND_DOT     ? 4u
+                                    : records != 3u             ? 2u
+                                    : kind == CAMBER_KIND_TIGHT ? 3u
+                                                                : 4u;
+        return records == 0u ? 0u : vertices | records << 17;
+    }
     if (kind == CAMBER_KIND_GHOST)
         return 0;
     if (kind == CAMBER_KIND_DOT)

@@ -4,7 +4,7 @@
 precision highp float;
 precision highp int;
 
-uniform highp usamplerBuffer u_records;
+layout(binding = 1) uniform highp usamplerBuffer u_records; // all other samplers are at unit 0
 uniform highp sampler2D u_rows; // two texels a row: half width px, -1 where not drawn, fan's step; premultiplied colour
 uniform vec2 u_corner;          // of the viewport in the picture, px: it reaches past the piece
 uniform vec2 u_scale;           // 2 / size of the viewport

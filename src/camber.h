@@ -323,19 +323,19 @@ typedef struct camber_tessellation_desc {
  * coverage reaches sqrt(1/2) px from the edge. */
 #define CAMBER_PAD_PX 0.75f
 
-/* What the device keeps of a point: 16 bytes, which the vertex shader reads. A strip has two vertices a record, the left
- * one and the right one, and no indices; kernels/join.h says which records a point has. kite and fan have a record a
- * point and indices of 4 bytes. */
+/* What the device keeps of a point: 16 bytes, which the vertex shader reads. A strip has two vertices a record, the
+ * left one and the right one, and no indices; kernels/join.h says which records a point has. kite and fan have a record
+ * a point and indices of 4 bytes. */
 typedef struct camber_record {
     float x, y;    /* px */
     uint32_t join; /* CAMBER_JOIN_* in kernels/layout.h */
     uint32_t last; /* row << 8 | flags: CAMBER_RECORD_* there */
 } camber_record;
 
-/* A vertex as the vertex shader makes it from records. A segment runs from A to B, u is its direction, L its length. The vertex lies at
- *     P + u * clamp(along * g, -limit_px, +limit_px) + (-u.y, u.x) * across * g
- * with g = half the width that is drawn + CAMBER_PAD_PX, and P = B where at_end, else A. All vertices but
- * those that no triangle ends with (is provoked by) carry the segment that the triangle draws. */
+/* A vertex as the vertex shader makes it from records. A segment runs from A to B, u is its direction, L its length.
+ * The vertex lies at P + u * clamp(along * g, -limit_px, +limit_px) + (-u.y, u.x) * across * g with g = half the width
+ * that is drawn + CAMBER_PAD_PX, and P = B where at_end, else A. All vertices but those that no triangle ends with (is
+ * provoked by) carry the segment that the triangle draws. */
 typedef struct camber_vertex {
     float x, y;     /* P, px */
     float dx, dy;   /* B - A, px; 0, 0 for a dot, whose u is 1, 0 */
@@ -368,11 +368,11 @@ typedef enum camber_end {
 
 typedef struct camber_mesh_info {
     camber_method method;
-    bool strips;         /* triangle strips; else triangles */
-    size_t record_count; /* camber_record */
-    size_t vertex_count; /* of strips two a record, those between strips too */
-    size_t index_count;  /* of strips one a vertex, though none is kept */
-    size_t bytes;        /* all that is kept to draw from: records, and indices of kite and fan */
+    bool strips;           /* triangle strips; else triangles */
+    size_t record_count;   /* camber_record */
+    size_t vertex_count;   /* of strips two a record, those between strips too */
+    size_t index_count;    /* of strips one a vertex, though none is kept */
+    size_t bytes;          /* all that is kept to draw from: records, and indices of kite and fan */
     size_t triangle_count; /* not degenerate */
     size_t joins;          /* points with a join, by kind: */
     size_t tight_joins;    /* the inner side has no room: (h + pad) tan(turn / 2) > half the shorter neighbour */
@@ -392,9 +392,9 @@ CAMBER_API void camber_mesh_destroy(camber_mesh *mesh);
  * strokes uploads nothing.
  * Returns CAMBER_ERROR_ARGUMENT (a width or a limit that is not a number or out of range, a row without a
  * stroke), CAMBER_ERROR_LIMIT (more than 2^30 records of strips or 2^25 of kite and fan, or a polyline that needs
- * more than the largest buffer), CAMBER_ERROR_MEMORY, CAMBER_ERROR_DEVICE (a kernel that does not build: the log has the
- * build log). Cost: 1 s the first time a method is used, 3 ms from the cache; then
- * about 10 ns a point on two cores. */
+ * more than the largest buffer), CAMBER_ERROR_MEMORY, CAMBER_ERROR_DEVICE (a kernel that does not build: the log has
+ * the build log). Cost: 1 s the first time a method is used, 3 ms from the cache; then about 10 ns a point on two
+ * cores. */
 CAMBER_API camber_status camber_tessellate(camber_mesh *mesh, const camber_polylines *polylines,
                                            const camber_tessellation_desc *desc);
 /* The counts of joins and triangles are made at the first call after a tessellation: about 1 ns a point. */
@@ -407,8 +407,8 @@ typedef struct camber_mesh_data {
      * (CAMBER_CORNER_* in kernels/layout.h); NULL of strips. */
     camber_record *records;
     uint32_t *corners;
-    /* What is drawn by it: info.vertex_count, and info.index_count. Of strips both lie in the same order, and indices
-     * are CAMBER_RESTART_INDEX twice between two strips. */
+    /* What is drawn by it: info.vertex_count, and info.index_count. Of strips these are two indices a record, both
+     * CAMBER_RESTART_INDEX where it lies between two strips. */
     camber_vertex *vertices;
     uint32_t *indices;
 } camber_mesh_data;

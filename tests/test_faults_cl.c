@@ -55,7 +55,7 @@ static camber_polylines *make_lines(camber_context *context, uint64_t seed, size
 static void open_set(stage_set *s, bool parts, camber_method method) {
     *s = (stage_set){.before = cl_fault.live};
     s->context = host_context(&s->h);
-    const camber_device_desc device_desc = {.largest_buffer_bytes = parts && !cl_fault.largest_bytes ? 24000 : 0};
+    const camber_device_desc device_desc = {.largest_buffer_bytes = parts && !cl_fault.largest_bytes ? 6000 : 0};
     assert_int_equal(camber_device_create(s->context, &device_desc, NULL, &s->device), CAMBER_OK);
     s->polylines = make_lines(s->context, 3, 60);
     s->others = make_lines(s->context, 4, 30);
@@ -388,9 +388,9 @@ static void test_small_device(void **state) {
     (void)state;
     stage_set whole, small;
     open_set(&whole, false, CAMBER_METHOD_KITE);
-    cl_fault.largest_bytes = 30000;
+    cl_fault.largest_bytes = 6000;
     open_set(&small, true, CAMBER_METHOD_KITE);
-    assert_int_equal(camber_device_get_info(small.device).largest_buffer_bytes, 30000);
+    assert_int_equal(camber_device_get_info(small.device).largest_buffer_bytes, 6000);
     assert_wanted(&whole, &small.wanted);
     assert_int_equal(whole.stages.point_count, small.stages.point_count);
     assert_memory_equal(whole.stages.points, small.stages.points,

@@ -113,13 +113,15 @@ mutant strip kernels/classify.cl "only first points are ends" 'point & (CAMBER_P
 mutant strip kernels/scan.cl "a lane's points all at one offset" 'base + before[i]' 'base + before[0]'
 mutant kite kernels/scan.cl "a point in its neighbour's place" 'joins[first + i - 1]' 'joins[first + i]'
 evidence=(--pictures "$tmp/pictures" --junit "$tmp/junit.xml")
-mutant strip kernels/emit.cl "a missing restart" 'index[0] = 0xffffffffu;' 'index[0] = v;'
+mutant strip kernels/emit.cl "a missing break" 'row | CAMBER_RECORD_BREAK' 'row'
 evidence=()
-mutant strip kernels/emit.cl "the ends of a segment swapped" 'half_shorter, -1.0f, join' 'half_shorter, 1.0f, join'
-mutant strip kernels/emit.cl "a vertex at B that says A" 'camber_join_end(join) << 3 | 64u' 'camber_join_end(join) << 3'
-mutant kite kernels/emit.cl "a triangle that winds the other way" 'put_triangle(indices + 3, s + 1, e + 1, e)' \
-    'put_triangle(indices + 3, s + 1, e, e + 1)'
-mutant fan kernels/emit.cl "a fan that turns back" 'c * row.fan_cos - s * row.fan_sin' 'c * row.fan_cos + s * row.fan_sin'
+mutant strip kernels/emit.cl "a start that is placed like an end" 'begins ? last | CAMBER_RECORD_START' 'begins ? last'
+mutant strip kernels/emit.cl "a line that forgets its ends" 'camber_line_ends(joins[i - 1], join, joins[i + 1])' \
+    'camber_line_ends(join, join, join)'
+mutant kite kernels/emit.cl "a triangle that winds the other way" 'put_triangle(indices + 3, sr, e + 1, e)' \
+    'put_triangle(indices + 3, sr, e, e + 1)'
+mutant fan kernels/emit.cl "a fan from the inner edge" 'outer > 0.0f ? CAMBER_CORNER_IN_LEFT : CAMBER_CORNER_IN_RIGHT' \
+    'outer < 0.0f ? CAMBER_CORNER_IN_LEFT : CAMBER_CORNER_IN_RIGHT'
 mutant strip kernels/layout.h "a pad of another width on the device" '#define CAMBER_PAD_PX 0.75f' \
     '#define CAMBER_PAD_PX 0.7f'
 
@@ -127,20 +129,22 @@ mutant strip kernels/layout.h "a pad of another width on the device" '#define CA
 
 mutant strip kernels/join.h "turns to the other side" 'aside = dx * ey - dy * ex' 'aside = dy * ex - dx * ey'
 mutant strip kernels/join.h "turns of half the angle" 'turn.c) * 32767.0f' 'turn.c) * 16383.0f'
-mutant strip kernels/join.h "cuts at the tangent of another angle" 'return 2.0f * q / (' 'return q / ('
-mutant strip kernels/join.h "cuts on the wrong side" 'cut = -end * side' 'cut = end * side'
 mutant strip kernels/join.h "no join is tight" 'tight = row->reach_px * sine > ' 'tight = -row->reach_px * sine > '
 mutant strip kernels/join.h "split miters cut like bevels" 'miter ? 7u : bevel ? 6u' 'miter ? 6u : bevel ? 7u'
 mutant strip kernels/join.h "tight joins that forget the bisector" 'end = split || tight ?' 'end = split ?'
 mutant strip kernels/join.h "a miter past its limit" 'turn.c * row->miter_limit >= 1.0f' 'turn.c * row->miter_limit <= 1.0f'
 mutant strip kernels/join.h "round and square caps swapped" 'cap == 1u ? 0u : cap == 2u ? 2u' 'cap == 1u ? 2u : cap == 2u ? 0u'
-mutant strip kernels/join.h "butt ends without a pad" 'is_butt ? CAMBER_PAD_PX' 'is_butt ? 0.0f'
-mutant kite kernels/join.h "kites cut on the outer side" 'is_cut && side * q > 0.0f' 'is_cut && side * q < 0.0f'
 mutant fan kernels/join.h "fans of one triangle" 'x > turn_cos && y > 0.0f' 'x < turn_cos && y > 0.0f'
 
 # ---- Shaders ----
 
-mutant strip shaders/stroke.vert "left and right swapped at A" 'a_point - a_segment' 'a_point + a_segment'
+mutant strip shaders/stroke.vert "cuts at the tangent of another angle" 'return 2.0 * q / ' 'return q / '
+mutant strip shaders/stroke.vert "cuts on the wrong side" 'cut = -end * side' 'cut = end * side'
+mutant strip shaders/stroke.vert "butt ends without a pad" '== BUTT ? PAD_PX' '== BUTT ? 0.0'
+mutant kite shaders/stroke.vert "kites cut on the outer side" 'is_cut && inner ? cut' 'is_cut && !inner ? cut'
+mutant fan shaders/stroke.vert "a fan that turns back" 'vec2(sin(angle), outer * cos(angle))' 'vec2(-sin(angle), outer * cos(angle))'
+mutant strip shaders/stroke.vert "a segment from its end to its start" 'goes_out ? other.p - here.p' 'goes_out ? here.p - other.p'
+mutant strip shaders/stroke.vert "breaks that are drawn" 'right = !right;' ''
 mutant strip shaders/stroke.vert "no pad" 'PAD_PX = 0.75' 'PAD_PX = 0.0'
 mutant strip shaders/stroke.frag "the slope of an edge" '0.5 + s * e.slope' '0.5 + s * 0.8 * e.slope'
 mutant strip shaders/stroke.frag "the corner of a pixel" 'rest * rest * e.curve' 'rest * e.curve'

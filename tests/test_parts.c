@@ -87,6 +87,9 @@ static void assert_same(const result *a, const result *b) {
     camber_mesh_info x = a->mesh.info, y = b->mesh.info;
     x.classify_ms = x.scan_ms = x.emit_ms = y.classify_ms = y.scan_ms = y.emit_ms = 0;
     assert_memory_equal(&x, &y, sizeof x);
+    assert_memory_equal(a->mesh.records, b->mesh.records, x.record_count * sizeof *a->mesh.records);
+    if (a->mesh.corners)
+        assert_memory_equal(a->mesh.corners, b->mesh.corners, x.index_count * sizeof *a->mesh.corners);
     for (size_t i = 0; i < x.vertex_count; i++)
         if (memcmp(a->mesh.vertices + i, b->mesh.vertices + i, sizeof *a->mesh.vertices) != 0)
             fail_msg("%zu and %zu parts: vertex %zu of %zu differs", a->parts, b->parts, i, x.vertex_count);
@@ -100,7 +103,7 @@ static void assert_same(const result *a, const result *b) {
             fail_msg("%zu and %zu parts: point %zu of %zu differs", a->parts, b->parts, i, a->stages.point_count);
 }
 
-/* Lines, rings, dots, empty polylines, split ones: 1.7 MB of vertices and more. */
+/* Lines, rings, dots, empty polylines, split ones. */
 static scene make_scene(int repeats) {
     scene s = {0};
     uint64_t seed = 21;
@@ -114,9 +117,14 @@ static scene make_scene(int repeats) {
 
 /* ---- Bytes ---- */
 
+static uint64_t larger_buffer(const camber_mesh_info *info) {
+    const uint64_t records = info->record_count * sizeof(camber_record), indices = info->bytes - records;
+    return records > indices ? records : indices;
+}
+
 static void test_same_bytes(void **state) {
     (void)state;
-    static const uint64_t limits[] = {UINT64_MAX, 1 << 20, 200000, 1 << 16, 20000};
+    static const uint64_t limits[] = {UINT64_MAX, 1 << 18, 100000, 1 << 15, 10000};
     camber_stroke strokes[SCENE_ROWS];
     scene_strokes(strokes);
     scene s = make_scene(3);
@@ -133,7 +141,7 @@ static void test_same_bytes(void **state) {
             assert_int_equal(wanted.parts, 1);
             parts[method] = r.parts;
             /* Not more parts than twice what the bytes take: each but the last is as full as whole polylines allow. */
-            const uint64_t bytes = r.mesh.info.vertex_count * sizeof(camber_vertex);
+            const uint64_t bytes = larger_buffer(&r.mesh.info);
             assert_true(r.parts >= bytes / limits[i] + 1 && r.parts <= 2 * (bytes / limits[i] + 1));
             free_result(&b, &r);
             free_result(&whole, &wanted);
@@ -156,7 +164,7 @@ static void test_work_groups(void **state) {
     size_t parts = 0;
     for (size_t i = 0; i < 6; i++) { /* the second three in parts */
         bench b;
-        bench_open(&b, i < 3 ? 0 : 1 << 20, sizes[i % 3]);
+        bench_open(&b, i < 3 ? 0 : 1 << 18, sizes[i % 3]);
         for (size_t which = 0; which < SCENE_COUNT; which++) {
             if (i >= 3 && which == 1)
                 continue; /* a line that fits no part */
@@ -346,9 +354,9 @@ static void test_again(void **state) {
 static void test_too_long(void **state) {
     (void)state;
     const camber_stroke stroke = {2, CAMBER_JOIN_ROUND, CAMBER_CAP_ROUND, 0};
-    /* 20,000 points take 80 kB of input; 3000 take 12 kB, and 216 kB of vertices; 800 take
-     * 58 kB as a strip, and more than 64 KiB otherwise. */
-    static const size_t lengths[] = {20000, 3000, 800};
+    /* 20,000 points take 80 kB of input; 4200 take 17 kB, and 67 kB of records; 1400 take 22 kB as a strip, and more
+     * than 64 KiB of indices otherwise. */
+    static const size_t lengths[] = {20000, 4200, 1400};
     for (size_t k = 0; k < 3; k++) {
         bench b;
         scene s = {0}, lines = make_scene(1);

@@ -31,7 +31,7 @@ static bool is_bad(char story[PROPERTY_STORY], const char *what, size_t at, doub
     return true;
 }
 
-static bool has_bad_indices(const camber_mesh_data *data, bool ring, char story[PROPERTY_STORY]) {
+static bool has_bad_indices(const camber_mesh_data *data, char story[PROPERTY_STORY]) {
     const camber_mesh_info *info = &data->info;
     bool *used = calloc(info->vertex_count + 1, sizeof *used);
     assert_non_null(used);
@@ -46,7 +46,7 @@ static bool has_bad_indices(const camber_mesh_data *data, bool ring, char story[
             bad = is_bad(story, "an index past the vertices", i, index);
         else if (info->strips && i == 0 && !restart)
             bad = is_bad(story, "no restart before the first strip", i, index);
-        else if (restart && i > 0 && run < 4)
+        else if (restart && i > 1 && run > 0 && run < 4)
             bad = is_bad(story, "a strip of less than four vertices before", i, (double)run);
         else if (!restart)
             used[index] = true;
@@ -54,9 +54,7 @@ static bool has_bad_indices(const camber_mesh_data *data, bool ring, char story[
     }
     if (info->strips && info->index_count > 0 && run < 4)
         bad = bad || is_bad(story, "a last strip of less than four vertices", info->index_count, (double)run);
-    /* Where a ring closes, kite and fan leave a centre and two edges that no segment goes on from. */
-    const size_t spare = info->strips || !ring ? 0 : 3;
-    for (size_t i = 0; i + spare < info->vertex_count && !bad; i++)
+    for (size_t i = 0; i < info->vertex_count && !bad; i++)
         bad = !used[i] && is_bad(story, "a vertex of no triangle", i, 0);
     free(used);
     return bad;
@@ -110,7 +108,7 @@ static bool is_segment(const property_case *c, const camber_vertex *v) {
         return false;
     for (size_t i = 0; i + 1 < c->count; i++) {
         const float *p = c->points + 2 * i, *end = at_end ? p + 2 : p;
-        const bool open = at_end && !property_is_ring(c);
+        const bool open = !property_is_ring(c);
         const unsigned line_ends = (open && i == 1 ? 1u : 0u) | (open && i + 3 == c->count ? 2u : 0u);
         if (v->x == end[0] && v->y == end[1] && v->dx == p[2] - p[0] && v->dy == p[3] - p[1] &&
             v->flags >> 7 == line_ends)
@@ -132,7 +130,7 @@ static property_case without_repeats(const property_case *c) {
 static property_outcome check_well_formed(void *user, const property_case *c, char story[PROPERTY_STORY]) {
     const bench *b = user;
     camber_mesh_data data = property_mesh(b->context, c);
-    bool bad = has_bad_indices(&data, property_is_ring(c), story);
+    bool bad = has_bad_indices(&data, story);
     for (size_t i = 0; i < data.info.vertex_count && !bad; i++)
         bad = has_bad_vertex(c, &data.vertices[i], i, story);
     uint32_t(*triangles)[3];
@@ -289,7 +287,7 @@ static bool differ(const property_case *c, const camber_stages *a, const camber_
         if (abs(apart) > bits && abs(apart) < 65530) /* a reversal turns to either side */
             return is_bad(story, "another turn, by bits,", i, apart);
         /* How many chords a fan has hangs by a hair at every step. */
-        const uint32_t mask = c->method == CAMBER_METHOD_FAN ? ~(127u << CAMBER_JOIN_TRIANGLES_SHIFT) : ~0u;
+        const uint32_t mask = c->method == CAMBER_METHOD_KITE ? ~0u : ~(127u << CAMBER_JOIN_TRIANGLES_SHIFT);
         if (((p->join ^ q->join) & mask) >> 16 && (inner ? !is_near_threshold(c, p) : !ring))
             return is_bad(story, "another join", i, (double)(p->join >> 16));
     }
@@ -346,7 +344,8 @@ static property_outcome check_scaled(void *user, const property_case *c, char st
         else if (v->along != w->along || v->across != w->across || v->flags != w->flags || v->turn_a != w->turn_a ||
                  v->turn_b != w->turn_b)
             bad = is_bad(story, "another extrusion, flag or turn", i, (double)w->along);
-        else if (w->limit_px < v->limit_px || (w->limit_px > 2 * v->limit_px && w->limit_px != v->limit_px))
+        else if (w->limit_px < v->limit_px || /* steps of the pad / 127 */
+                 (w->limit_px > 2 * v->limit_px + CAMBER_PAD_PX / 126 && w->limit_px != v->limit_px))
             bad = is_bad(story, "a limit that does not grow with the line", i, (double)w->limit_px);
     }
     camber_mesh_data_free(b->context, &one);

@@ -165,8 +165,8 @@ static void test_ring_by_hand(void **state) {
     assert_int_equal(camber_tessellate(b->mesh, polylines, &desc), CAMBER_OK);
     camber_stages stages = on_device(b);
     assert_int_equal(stages.point_count, 4);
-    /* A restart and two vertices; a turn past 127 degrees, where the strip breaks: four, and a restart; two. */
-    const uint32_t vertices[] = {0, 2, 6, 8}, indices[] = {0, 3, 8, 10};
+    /* A break and a start; a turn past 127 degrees: an end, a break and a start; an end. Two indices each. */
+    const uint32_t vertices[] = {0, 2, 6, 8}, indices[] = {0, 4, 10, 12};
     for (size_t i = 0; i < 4; i++) {
         const camber_point_stages p = stages.points[i];
         assert_int_equal(p.polyline, 1);

@@ -60,6 +60,14 @@ static void assert_same(const camber_mesh_data *a, const camber_mesh_data *b) {
     assert_int_equal(a->info.tight_joins, b->info.tight_joins);
     assert_int_equal(a->info.split_joins, b->info.split_joins);
     assert_int_equal(a->info.undrawn_dots, b->info.undrawn_dots);
+    assert_int_equal(a->info.record_count, b->info.record_count);
+    assert_int_equal(a->info.bytes, b->info.bytes);
+    for (size_t i = 0; i < a->info.record_count; i++)
+        if (memcmp(a->records + i, b->records + i, sizeof *a->records) != 0)
+            fail_msg("record %zu of %zu differs", i, a->info.record_count);
+    for (size_t i = 0; a->corners && i < a->info.index_count; i++)
+        if (a->corners[i] != b->corners[i])
+            fail_msg("corner %zu of %zu: %#x, %#x", i, a->info.index_count, a->corners[i], b->corners[i]);
     for (size_t i = 0; i < a->info.vertex_count; i++)
         if (memcmp(a->vertices + i, b->vertices + i, sizeof *a->vertices) != 0)
             fail_msg("vertex %zu of %zu differs", i, a->info.vertex_count);
@@ -72,6 +80,7 @@ static void assert_same(const camber_mesh_data *a, const camber_mesh_data *b) {
 static void compare(bench *b, const camber_polylines *polylines, const camber_tessellation_desc *desc) {
     camber_mesh_data device = on_device(b, polylines, desc), twin = on_host(b, polylines, desc);
     assert_same(&device, &twin);
+    assert_int_equal(camber_mesh_get_info(b->mesh).vertex_count, twin.info.vertex_count); /* as scan counts them */
     camber_mesh_data_free(b->context, &device);
     camber_mesh_data_free(b->context, &twin);
 }
@@ -318,32 +327,32 @@ static void test_first_index(void **state) {
 
 /* The host's part of the scan for 2^31 points: 2^23 blocks, far past what 32 bits add up to. */
 static void test_scan_of_many_blocks(void **state) {
-    bench *b = *state;
+    (void)state;
     const size_t blocks = (size_t)1 << 23;
     uint32_t *sums = malloc(blocks * sizeof *sums);
     uint64_t *bases = malloc(2 * (blocks + 1) * sizeof *bases);
     assert_true(sums && bases);
     for (size_t i = 0; i < blocks; i++)
         sums[i] = 511u | 65535u << 16;
-    b->h.errors = 0;
-    assert_int_equal(camber_scan_blocks(b->context, sums, blocks, bases), CAMBER_OK); /* 2 vertices a point: it fits */
+    camber_scan_blocks(sums, blocks, bases);
     for (size_t i = 0; i <= blocks; i += 4099)
         assert_true(bases[2 * i] == 511ull * i && bases[2 * i + 1] == 65535ull * i);
     assert_true(bases[2 * blocks] == 511ull * blocks && bases[2 * blocks + 1] == 65535ull * blocks);
-    sums[0] += 0xffffu - 511u; /* the sum's last step: 2^32 - 2^23 + ... is what indices still reach */
-    assert_int_equal(camber_scan_blocks(b->context, sums, blocks, bases), CAMBER_OK);
-    for (size_t i = 0; i < blocks; i++)
-        sums[i] = 65535u;
-    assert_int_equal(camber_scan_blocks(b->context, sums, blocks, bases), CAMBER_ERROR_LIMIT);
-    assert_story(&b->h, "; ");
-    /* 65537 blocks of 65535 vertices are 2^32 - 1, one too many: CAMBER_RESTART_INDEX is taken. */
-    assert_int_equal(camber_scan_blocks(b->context, sums, 65537, bases), CAMBER_ERROR_LIMIT);
-    assert_story(&b->h, "4294967295 vertices");
-    sums[65536]--;
-    assert_int_equal(camber_scan_blocks(b->context, sums, 65537, bases), CAMBER_OK);
-    assert_true(bases[2 * 65537] == 0xfffffffeull);
     free(bases);
     free(sums);
+}
+
+/* The last vertex of a strip, and the last corner of a record, that signed and unsigned 32 bits number. */
+static void test_most_records(void **state) {
+    bench *b = *state;
+    assert_true(2 * (uint64_t)camber_records_max(CAMBER_METHOD_STRIP) - 1 == INT32_MAX);
+    for (int method = CAMBER_METHOD_KITE; method <= CAMBER_METHOD_FAN; method++) {
+        const uint64_t last = (uint64_t)camber_records_max((camber_method)method) - 1;
+        assert_true((last << CAMBER_CORNER_BITS | ((1u << CAMBER_CORNER_BITS) - 1u)) == UINT32_MAX);
+        b->h.errors = 0;
+        assert_int_equal(camber_fail_records(b->context, (camber_method)method), CAMBER_ERROR_LIMIT);
+        assert_story(&b->h, "33554432 records");
+    }
 }
 
 /* ---- Memory ---- */
@@ -481,6 +490,7 @@ int main(void) {
         cmocka_unit_test(test_arguments),
         cmocka_unit_test(test_first_index),
         cmocka_unit_test(test_scan_of_many_blocks),
+        cmocka_unit_test(test_most_records),
         cmocka_unit_test(test_memory),
         cmocka_unit_test(test_after_failure),
         cmocka_unit_test(test_real_lines),

@@ -105,16 +105,19 @@ static void mixed(camber_stroke *stroke, size_t row, size_t number) {
 static uint64_t part_bytes(const camber_sight *whole, size_t stroke_count) {
     const camber_point_stages *points = whole->stages.points;
     const camber_mesh_info *info = &whole->mesh.info;
-    const uint64_t mesh_bytes = info->vertex_count * sizeof(camber_vertex);
+    const uint64_t record_bytes = info->record_count * sizeof(camber_record), index_bytes = info->bytes - record_bytes;
+    const uint64_t mesh_bytes = record_bytes > index_bytes ? record_bytes : index_bytes;
     uint64_t largest = 32 * (stroke_count + 1), from = 0;
     for (size_t i = 0; i < whole->stages.point_count; i++) {
         const bool last = i + 1 == whole->stages.point_count;
         if (!last && points[i + 1].polyline == points[i].polyline)
             continue;
-        const uint64_t vertices = (last ? info->vertex_count : points[i + 1].first_vertex) - points[from].first_vertex;
+        /* Of strips two indices a record, of kite and fan a record a point, in whole work-groups. */
         const uint64_t indices = (last ? info->index_count : points[i + 1].first_index) - points[from].first_index;
-        const uint64_t bytes[] = {vertices * sizeof(camber_vertex), indices * sizeof(uint32_t), 4 * (i - from + 512)};
-        for (size_t k = 0; k < 3; k++)
+        const uint64_t records = info->strips ? indices / 2 : i - from + 512;
+        const uint64_t bytes[] = {records * sizeof(camber_record), info->strips ? 0 : indices * sizeof(uint32_t),
+                                  4 * (i - from + 512)};
+        for (size_t k = 0; k < sizeof bytes / sizeof *bytes; k++)
             largest = bytes[k] > largest ? bytes[k] : largest;
         from = i + 1;
     }

@@ -150,8 +150,7 @@ static void count_mesh(const trial *t, const camber_mesh_data *mesh) {
     const camber_mesh_info *info = &mesh->info;
     measures[CAMBER_MEASURE_VERTICES] = (double)info->vertex_count;
     measures[CAMBER_MEASURE_TRIANGLES] = (double)info->triangle_count;
-    measures[CAMBER_MEASURE_BYTES] =
-        (double)(info->vertex_count * sizeof(camber_vertex) + info->index_count * sizeof(uint32_t));
+    measures[CAMBER_MEASURE_BYTES] = (double)info->bytes;
     measures[CAMBER_MEASURE_DRAW_CALLS_16_BIT] = (double)camber_batches_count(mesh, CAMBER_BATCH_VERTICES);
     figures[CAMBER_FIGURE_TIGHT_JOINS] = (double)info->tight_joins;
     figures[CAMBER_FIGURE_SPLIT_JOINS] = (double)info->split_joins;

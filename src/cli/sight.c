@@ -160,18 +160,36 @@ static bool indices_differ(const camber_sight *g, const camber_sight *e, camber_
     return false;
 }
 
+/* What the mesh is kept as; the vertices and indices that it makes are told first, by their points. */
+static bool records_differ(const camber_mesh_data *g, const camber_mesh_data *e, camber_finding *finding) {
+    for (size_t i = 0; i < g->info.record_count && i < e->info.record_count; i++) {
+        const camber_record *got = g->records + i, *expected = e->records + i;
+        const field_pair fields[] = {FIELD(x), FIELD(y), FIELD(join), FIELD(last)};
+        if (take_first(fields, sizeof fields / sizeof *fields, finding)) {
+            tell_emit(finding, &(camber_stages){0}, "record", i);
+            return true;
+        }
+    }
+    return false;
+}
+
 bool camber_sights_differ(const camber_sight *got, const camber_sight *expected, camber_finding *finding) {
     const camber_mesh_info *a = &got->mesh.info, *b = &expected->mesh.info;
     const struct {
         const char *name;
         size_t got, expected;
-    } counts[] = {{"vertices", a->vertex_count, b->vertex_count},      {"indices", a->index_count, b->index_count},
-                  {"triangles", a->triangle_count, b->triangle_count}, {"joins", a->joins, b->joins},
-                  {"tight joins", a->tight_joins, b->tight_joins},     {"split joins", a->split_joins, b->split_joins},
+    } counts[] = {{"records", a->record_count, b->record_count},
+                  {"vertices", a->vertex_count, b->vertex_count},
+                  {"indices", a->index_count, b->index_count},
+                  {"triangles", a->triangle_count, b->triangle_count},
+                  {"joins", a->joins, b->joins},
+                  {"tight joins", a->tight_joins, b->tight_joins},
+                  {"split joins", a->split_joins, b->split_joins},
                   {"undrawn dots", a->undrawn_dots, b->undrawn_dots}};
     *finding = (camber_finding){0};
     if ((got->has_stages && stages_differ(&got->stages, &expected->stages, finding)) ||
-        vertices_differ(got, expected, finding) || indices_differ(got, expected, finding))
+        vertices_differ(got, expected, finding) || indices_differ(got, expected, finding) ||
+        records_differ(&got->mesh, &expected->mesh, finding))
         return true;
     for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
         if (counts_differ("emit", counts[i].name, counts[i].got, counts[i].expected, finding))

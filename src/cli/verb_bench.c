@@ -151,10 +151,6 @@ static json_t *summary_json(const summary *s) {
                      camber_json_ms(s->max));
 }
 
-static size_t mesh_bytes(const camber_mesh_info *mesh) {
-    return mesh->vertex_count * sizeof(camber_vertex) + mesh->index_count * sizeof(uint32_t);
-}
-
 static int print_json(const job *j) {
     const camber_session *session = j->session;
     const camber_polylines_stats lines = camber_polylines_get_stats(camber_input_polylines(&j->input));
@@ -177,7 +173,7 @@ static int print_json(const job *j) {
         {"joins", mesh.joins},
         {"vertices", mesh.vertex_count},
         {"triangles", mesh.triangle_count},
-        {"bytes", mesh_bytes(&mesh)},
+        {"bytes", mesh.bytes},
         {"draw_calls", j->stats.draw_calls},
         {"peak_rss_bytes", camber_peak_rss_bytes()},
     };
@@ -210,8 +206,7 @@ static int print_text(const job *j) {
             j->height, camber_method_name(mesh.method), lines.polylines, lines.kept_points, j->input.points_in,
             lines.kept_segments, j->input.segments_in);
     fprintf(file, "%zu vertices, %zu triangles, %.1f MB, %zu draw calls, peak memory %.0f MB\n", mesh.vertex_count,
-            mesh.triangle_count, (double)mesh_bytes(&mesh) / 1e6, j->stats.draw_calls,
-            (double)camber_peak_rss_bytes() / 1e6);
+            mesh.triangle_count, (double)mesh.bytes / 1e6, j->stats.draw_calls, (double)camber_peak_rss_bytes() / 1e6);
     static const char *const names[TIMES] = {"tessellate", "draw", "frame", "classify", "scan", "emit"};
     fprintf(file, "\n%-12s %10s %10s %10s   ms, %u runs\n", "", "min", "median", "max", options->runs);
     for (size_t i = 0; i < TIMES; i++)

@@ -5,7 +5,7 @@
 
 #include "base/base.h"
 
-#include <GLES3/gl3.h>
+#include <GLES3/gl32.h>
 /* Needs it first. */
 #include <GLES2/gl2ext.h>
 

@@ -62,7 +62,6 @@ static const camber_mesh_part *part_of(const camber_mesh *mesh, uint64_t index) 
 /* A draw call for as much of a range as lies in one part and is not too long. */
 static void draw_range(counting *c, camber_index_range range) {
     const camber_mesh *mesh = c->desc->mesh;
-    const GLenum kind = mesh->mesh_info.strips ? GL_TRIANGLE_STRIP : GL_TRIANGLES;
     const uint64_t shared = shared_indices(mesh);
     while (range.index_count > shared) {
         const camber_mesh_part *part = part_of(mesh, range.first_index);
@@ -72,7 +71,7 @@ static void draw_range(counting *c, camber_index_range range) {
         if (part != c->bound)
             camber_renderer_bind_part(c->renderer, part);
         c->bound = part;
-        gl_of(c)->DrawElements(kind, (GLsizei)count, GL_UNSIGNED_INT, (const void *)(uintptr_t)(4 * first));
+        camber_renderer_draw_indices(c->renderer, mesh, first, count);
         const uint64_t done = count < left ? count - shared : count; /* no triangle lies in two parts */
         range.first_index += done;
         range.index_count -= done;
@@ -295,12 +294,11 @@ static camber_status prepare(counting *c, camber_index_range **list) {
     if (status == CAMBER_OK)
         status = camber_renderer_mesh_shader(c->renderer, desc->mesh, CAMBER_VARIANT_COUNT, &c->cover);
     if (status == CAMBER_OK)
-        status = camber_renderer_count_shader(c->renderer, &c->every);
+        status = camber_renderer_count_shader(c->renderer, desc->mesh->mesh_info.method, &c->every);
     if (status != CAMBER_OK)
         return status;
     gl->Enable(GL_BLEND);
     gl->BlendFunc(GL_ONE, GL_ONE);
-    gl->Enable(GL_PRIMITIVE_RESTART_FIXED_INDEX);
     gl->Disable(GL_DITHER);
     gl->ClearColor(0, 0, 0, 0);
     return CAMBER_OK;

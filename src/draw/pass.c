@@ -32,6 +32,7 @@ static void fill_rows(camber_renderer *renderer, const camber_pass *pass, const 
         const float alpha = run->layered ? 1.0f : paint->color.a;
         const float color[4] = {paint->color.r * alpha, paint->color.g * alpha, paint->color.b * alpha, alpha};
         texel[0] = 0.5f * paint->width_px;
+        texel[1] = pass->mesh->host_rows[i].fan_step;
         for (int c = 0; c < 4; c++)
             texel[4 + c] = run->layered && run->one_color ? 1.0f : color[c];
     }
@@ -85,6 +86,7 @@ camber_status camber_renderer_set_widths(camber_renderer *renderer, const camber
     for (size_t i = 0; i < mesh->row_count; i++) {
         const float width_px = i < paint_count ? paints[i].width_px : 0.0f;
         renderer->row_texels[4 * TEXELS_A_ROW * i] = width_px > 0.0f ? 0.5f * width_px : -1.0f;
+        renderer->row_texels[4 * TEXELS_A_ROW * i + 1] = mesh->host_rows[i].fan_step;
     }
     upload_rows(renderer, mesh->row_count);
     return CAMBER_OK;
@@ -93,7 +95,8 @@ camber_status camber_renderer_set_widths(camber_renderer *renderer, const camber
 camber_status camber_renderer_mesh_shader(camber_renderer *renderer, const camber_mesh *mesh, unsigned variant,
                                           const camber_shader **shader) {
     return camber_renderer_stroke_shader(renderer,
-                                         variant | (mesh->sharp_joins ? CAMBER_VARIANT_SHARP_JOINS : 0u) |
+                                         variant | (unsigned)mesh->mesh_info.method * CAMBER_VARIANT_METHOD |
+                                             (mesh->sharp_joins ? CAMBER_VARIANT_SHARP_JOINS : 0u) |
                                              (mesh->flat_caps ? CAMBER_VARIANT_FLAT_CAPS : 0u),
                                          shader);
 }
@@ -111,30 +114,28 @@ void camber_renderer_use_shader(camber_renderer *renderer, const camber_shader *
 
 void camber_renderer_bind_part(camber_renderer *renderer, const camber_mesh_part *part) {
     const camber_gl *gl = &renderer->share.surface->gl;
-    const GLsizei stride = sizeof(camber_vertex);
     gl->BindTexture(GL_TEXTURE_2D, renderer->row_texture);
+    gl->ActiveTexture(GL_TEXTURE0 + CAMBER_RECORDS_UNIT);
+    gl->BindTexture(GL_TEXTURE_BUFFER, renderer->record_texture);
+    gl->TexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32UI, part->buffers[CAMBER_BUFFER_RECORDS].gl_name);
+    gl->ActiveTexture(GL_TEXTURE0);
     gl->BindVertexArray(renderer->vertex_array);
-    gl->BindBuffer(GL_ARRAY_BUFFER, part->buffers[CAMBER_BUFFER_VERTICES].gl_name);
     gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, part->buffers[CAMBER_BUFFER_INDICES].gl_name);
-    for (GLuint i = 0; i < 7; i++)
-        gl->EnableVertexAttribArray(i);
-#define AT(member) ((const void *)offsetof(camber_vertex, member))
-    gl->VertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, stride, AT(x));
-    gl->VertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, stride, AT(dx));
-    gl->VertexAttribPointer(2, 2, GL_FLOAT, GL_FALSE, stride, AT(along));
-    gl->VertexAttribPointer(3, 1, GL_SHORT, GL_FALSE, stride, AT(across));
-    gl->VertexAttribIPointer(4, 1, GL_UNSIGNED_SHORT, stride, AT(flags));
-    gl->VertexAttribPointer(5, 2, GL_SHORT, GL_TRUE, stride, AT(turn_a));
-    gl->VertexAttribIPointer(6, 1, GL_UNSIGNED_INT, stride, AT(row));
-#undef AT
+}
+
+void camber_renderer_draw_indices(camber_renderer *renderer, const camber_mesh *mesh, uint64_t first, uint64_t count) {
+    const camber_gl *gl = &renderer->share.surface->gl;
+    if (mesh->mesh_info.strips)
+        gl->DrawArrays(GL_TRIANGLE_STRIP, (GLint)first, (GLsizei)count);
+    else
+        gl->DrawElements(GL_TRIANGLES, (GLsizei)count, GL_UNSIGNED_INT, (const void *)(uintptr_t)(4 * first));
 }
 
 /* Draws polylines [first, end) of a part, which is bound. */
 static camber_status draw_part(camber_renderer *renderer, const camber_mesh *mesh, const camber_mesh_part *part,
                                size_t first, size_t end, size_t *draw_calls) {
-    /* A count is a signed 32-bit number, and restarts lie wherever a strip ends: cut at a polyline's. */
+    /* A count is a signed 32-bit number, and strips may be cut between polylines. */
     enum { INDICES_MAX = 1 << 30 };
-    const camber_gl *gl = &renderer->share.surface->gl;
     while (first < end) {
         size_t until = end;
         uint64_t from, to;
@@ -148,8 +149,7 @@ static camber_status draw_part(camber_renderer *renderer, const camber_mesh *mes
         if (status != CAMBER_OK)
             return status;
         if (to > from) {
-            gl->DrawElements(mesh->mesh_info.strips ? GL_TRIANGLE_STRIP : GL_TRIANGLES, (GLsizei)(to - from),
-                             GL_UNSIGNED_INT, (const void *)(uintptr_t)(4 * from));
+            camber_renderer_draw_indices(renderer, mesh, from, to - from);
             ++*draw_calls;
         }
         first = until;

@@ -19,6 +19,7 @@ camber_status camber_renderer_create(camber_device *device, camber_surface *surf
         return status;
     }
     surface->gl.GenVertexArrays(1, &made->vertex_array);
+    surface->gl.GenTextures(1, &made->record_texture);
     status = camber_surface_check(surface, "opening");
     if (status != CAMBER_OK) {
         camber_renderer_destroy(made);
@@ -38,9 +39,11 @@ void camber_renderer_destroy(camber_renderer *renderer) {
             gl->DeleteProgram(renderer->strokes[i].program);
         for (int i = 0; i < CAMBER_FLATTEN_KINDS; i++)
             gl->DeleteProgram(renderer->flatten[i].program);
-        gl->DeleteProgram(renderer->count.program);
+        for (int i = 0; i < CAMBER_METHODS; i++)
+            gl->DeleteProgram(renderer->counts[i].program);
         camber_renderer_release_targets(renderer);
         gl->DeleteTextures(1, &renderer->row_texture);
+        gl->DeleteTextures(1, &renderer->record_texture);
         gl->DeleteVertexArrays(1, &renderer->vertex_array);
     }
     camber_free(context, renderer->row_texels);
@@ -127,7 +130,6 @@ static camber_status draw_piece(camber_renderer *renderer, const camber_frame *f
     if (status != CAMBER_OK)
         return status;
     gl->Enable(GL_BLEND);
-    gl->Enable(GL_PRIMITIVE_RESTART_FIXED_INDEX);
     gl->Disable(GL_DITHER);
     gl->ClearColor(back.r * back.a, back.g * back.a, back.b * back.a, back.a);
     gl->Clear(GL_COLOR_BUFFER_BIT);

@@ -9,9 +9,11 @@ enum {
     CAMBER_VARIANT_LINEAR = 1,
     CAMBER_VARIANT_SHARP_JOINS = 2,
     CAMBER_VARIANT_FLAT_CAPS = 4,
-    CAMBER_VARIANT_COUNT = 8,  /* counts the fragments with coverage instead of drawing them */
-    CAMBER_VARIANT_UNION = 16, /* leaves what the union of a layer's strokes is made from */
-    CAMBER_VARIANTS = 32
+    CAMBER_VARIANT_COUNT = 8,   /* counts the fragments with coverage instead of drawing them */
+    CAMBER_VARIANT_UNION = 16,  /* leaves what the union of a layer's strokes is made from */
+    CAMBER_VARIANT_METHOD = 32, /* times camber_method */
+    CAMBER_METHODS = 3,
+    CAMBER_VARIANTS = CAMBER_METHODS * CAMBER_VARIANT_METHOD
 };
 
 /* What a flattened layer holds. */
@@ -36,14 +38,18 @@ typedef struct camber_target {
 
 enum { CAMBER_TARGET_PICTURE, CAMBER_TARGET_COVERAGE, CAMBER_TARGET_LAYER, CAMBER_TARGET_COUNTS, CAMBER_TARGETS };
 
+/* The texture unit of the records, as stroke.vert has it; all else is at 0. */
+enum { CAMBER_RECORDS_UNIT = 1 };
+
 struct camber_renderer {
     camber_share share;
     const camber_share_path *path;
     camber_shader strokes[CAMBER_VARIANTS];
     camber_shader flatten[CAMBER_FLATTEN_KINDS];
-    camber_shader count; /* every fragment */
+    camber_shader counts[CAMBER_METHODS]; /* every fragment */
     camber_target targets[CAMBER_TARGETS];
     GLuint vertex_array;
+    GLuint record_texture; /* of the records of the part that is bound */
     GLuint row_texture;
     GLsizei row_height; /* texels */
     float *row_texels;  /* 4 floats a texel */
@@ -54,7 +60,8 @@ struct camber_renderer {
 camber_status camber_renderer_stroke_shader(camber_renderer *renderer, unsigned variant, const camber_shader **shader);
 camber_status camber_renderer_flatten_shader(camber_renderer *renderer, camber_flatten_kind kind,
                                              const camber_shader **shader);
-camber_status camber_renderer_count_shader(camber_renderer *renderer, const camber_shader **shader);
+camber_status camber_renderer_count_shader(camber_renderer *renderer, camber_method method,
+                                           const camber_shader **shader);
 
 /* targets.c: binds a target of this size; what it holds is not defined. The viewport reaches past each of its sides by
  * camber_renderer_guard, the scissor does not: a software driver clips a batch of triangles one by one where a single
@@ -78,8 +85,10 @@ camber_status camber_renderer_mesh_shader(camber_renderer *renderer, const cambe
                                           const camber_shader **shader);
 /* Uses a shader, with its uniforms set for a piece. */
 void camber_renderer_use_shader(camber_renderer *renderer, const camber_shader *shader, const camber_piece *piece);
-/* Binds a part's vertices and indices, and the row texture. */
+/* Binds a part's records and indices, and the row texture. */
 void camber_renderer_bind_part(camber_renderer *renderer, const camber_mesh_part *part);
+/* Draws indices of the part that is bound. */
+void camber_renderer_draw_indices(camber_renderer *renderer, const camber_mesh *mesh, uint64_t first, uint64_t count);
 
 /* Logs what GL reports; CAMBER_OK where it reports nothing. */
 camber_status camber_renderer_check(camber_renderer *renderer, const char *what);

@@ -19,7 +19,10 @@ static camber_status fail_step(camber_renderer *renderer, const char *step, cons
 static camber_status compile(camber_renderer *renderer, GLenum kind, const char *head, const char *source,
                              GLuint *made) {
     const camber_gl *gl = &renderer->share.surface->gl;
-    const GLchar *parts[] = {"#version 300 es\n", head, "#line 1\n", source};
+    const GLchar *version = renderer->share.surface->es_3_2
+                                ? "#version 320 es\n"
+                                : "#version 310 es\n#extension GL_EXT_texture_buffer : require\n";
+    const GLchar *parts[] = {version, head, "#line 1\n", source};
     const GLuint shader = gl->CreateShader(kind);
     GLint built = 0;
     gl->ShaderSource(shader, 4, parts, NULL);
@@ -63,7 +66,6 @@ static camber_status build(camber_renderer *renderer, const char *head, const ch
         gl->DeleteProgram(program);
         return status;
     }
-    /* Samplers stay at unit 0, where GL starts them. */
     *shader = (camber_shader){program, gl->GetUniformLocation(program, "u_origin"),
                               gl->GetUniformLocation(program, "u_corner"), gl->GetUniformLocation(program, "u_scale"),
                               gl->GetUniformLocation(program, "u_color")};
@@ -73,13 +75,13 @@ static camber_status build(camber_renderer *renderer, const char *head, const ch
 camber_status camber_renderer_stroke_shader(camber_renderer *renderer, unsigned variant, const camber_shader **shader) {
     camber_shader *wanted = renderer->strokes + variant;
     if (!wanted->program) {
-        char head[192];
+        char head[224];
         snprintf(head, sizeof head,
                  "#define LINEAR %d\n#define SHARP_JOINS %d\n#define FLAT_CAPS %d\n#define COUNT %d\n"
-                 "#define UNION %d\n",
+                 "#define UNION %d\n#define METHOD %u\n",
                  (variant & CAMBER_VARIANT_LINEAR) != 0, (variant & CAMBER_VARIANT_SHARP_JOINS) != 0,
                  (variant & CAMBER_VARIANT_FLAT_CAPS) != 0, (variant & CAMBER_VARIANT_COUNT) != 0,
-                 (variant & CAMBER_VARIANT_UNION) != 0);
+                 (variant & CAMBER_VARIANT_UNION) != 0, variant / CAMBER_VARIANT_METHOD);
         const camber_status status = build(renderer, head, camber_stroke_vert, camber_stroke_frag, wanted);
         if (status != CAMBER_OK)
             return status;
@@ -103,12 +105,16 @@ camber_status camber_renderer_flatten_shader(camber_renderer *renderer, camber_f
     return CAMBER_OK;
 }
 
-camber_status camber_renderer_count_shader(camber_renderer *renderer, const camber_shader **shader) {
-    if (!renderer->count.program) {
-        const camber_status status = build(renderer, "", camber_stroke_vert, camber_count_frag, &renderer->count);
+camber_status camber_renderer_count_shader(camber_renderer *renderer, camber_method method,
+                                           const camber_shader **shader) {
+    camber_shader *wanted = renderer->counts + method;
+    if (!wanted->program) {
+        char head[32];
+        snprintf(head, sizeof head, "#define METHOD %d\n", (int)method);
+        const camber_status status = build(renderer, head, camber_stroke_vert, camber_count_frag, wanted);
         if (status != CAMBER_OK)
             return status;
     }
-    *shader = &renderer->count;
+    *shader = wanted;
     return CAMBER_OK;
 }

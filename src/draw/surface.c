@@ -228,6 +228,10 @@ void camber_surface_release(camber_surface *surface) {
     surface->ops->release(surface);
 }
 
+uint64_t camber_surface_largest_buffer_bytes(const camber_surface *surface) {
+    return (uint64_t)surface->records_max * sizeof(camber_record);
+}
+
 camber_gl_handles camber_surface_handles(const camber_surface *surface) {
     return surface->ops->handles ? surface->ops->handles(surface) : (camber_gl_handles){0};
 }

@@ -27,6 +27,8 @@ struct camber_surface {
     camber_gl gl;
     camber_surface_info info;
     bool half_float_targets; /* can be drawn into, with blending */
+    bool es_3_2;             /* or desktop GL that has as much */
+    uint32_t records_max;    /* of a texture buffer */
     GLint largest_viewport[2];
     bool lost; /* the GL context: nothing that is in it comes back */
 };

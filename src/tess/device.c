@@ -211,7 +211,7 @@ enum { LEAST_BUFFER_BYTES = 4096 };
 static const uint64_t LARGEST_BUFFER_BYTES = INT32_MAX;
 
 /* The desc's bounds on what the kernels are given. */
-static camber_status bound(camber_device *device, const camber_device_desc *desc) {
+static camber_status bound(camber_device *device, const camber_device_desc *desc, const camber_surface *surface) {
     const uint32_t size = desc->work_group_size;
     if (size != 0 && size != 64 && size != 128 && size != 256)
         return camber_fail(device->context, CAMBER_ERROR_ARGUMENT,
@@ -224,6 +224,8 @@ static camber_status bound(camber_device *device, const camber_device_desc *desc
     uint64_t *largest = &device->info.largest_buffer_bytes;
     if (*largest > LARGEST_BUFFER_BYTES)
         *largest = LARGEST_BUFFER_BYTES;
+    if (surface && *largest > camber_surface_largest_buffer_bytes(surface))
+        *largest = camber_surface_largest_buffer_bytes(surface);
     if (desc->largest_buffer_bytes && desc->largest_buffer_bytes < *largest)
         *largest = desc->largest_buffer_bytes;
     return CAMBER_OK;
@@ -273,7 +275,7 @@ camber_status camber_device_create(camber_context *context, const camber_device_
     const camber_device_desc full = desc ? *desc : (camber_device_desc){0};
     camber_status status = choose(made, full.match, full.number);
     if (status == CAMBER_OK)
-        status = bound(made, &full);
+        status = bound(made, &full, surface);
     if (status == CAMBER_OK)
         status = open_cl(made, surface);
     if (status != CAMBER_OK) {

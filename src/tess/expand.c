@@ -8,7 +8,6 @@
 
 #define CORNER_MASK ((1u << CAMBER_CORNER_BITS) - 1u)
 
-
 /* A vertex of the segment into or out of a point, whose other end is the record other. */
 static camber_vertex make_vertex(const camber_record *records, size_t at, size_t other, bool out) {
     const camber_record *p = records + at, *a = records + (out ? at : other), *b = records + (out ? other : at);
@@ -49,32 +48,21 @@ static camber_vertex strip_vertex(const camber_record *records, size_t record, b
     return make_edge(records, record, out ? record + 1 : record - 1, out, right ? -1.0f : 1.0f, CAMBER_STRIP);
 }
 
-/* A break's vertices are the last of the strip before and the first of that behind. */
-static size_t seen_record(const camber_record *records, size_t record, bool *right) {
-    if (!(records[record].last & CAMBER_RECORD_BREAK))
-        return record;
-    const size_t seen = *right || record == 0 ? record + 1 : record - 1;
-    *right = !*right;
-    return seen;
-}
-
-/* A start's vertex at a tight join's outer edge is the end's. */
-static uint32_t strip_index(const camber_record *records, size_t record, bool right) {
-    const uint32_t flags = records[record].last, in = right ? CAMBER_RECORD_IN_RIGHT : CAMBER_RECORD_IN_LEFT;
-    if (flags & CAMBER_RECORD_BREAK)
-        return CAMBER_RESTART_INDEX;
-    const bool tight = camber_join_kind(records[record].join) == CAMBER_KIND_TIGHT;
-    const size_t owner = tight && flags & in ? record - 2 : record;
-    return (uint32_t)(2 * owner + right);
-}
-
+/* Two indices a record: of breaks restarts, of others its vertices in the order of records. A start at a tight join has
+ * one vertex of its own: the outer one is the end's, two records before. */
 static void expand_strip(camber_mesh_data *data) {
-    for (size_t i = 0; i < data->info.vertex_count; i++) {
-        const size_t record = i / 2;
-        bool right = i % 2;
-        data->indices[i] = strip_index(data->records, record, right);
-        const size_t seen = seen_record(data->records, record, &right);
-        data->vertices[i] = strip_vertex(data->records, seen, right);
+    uint32_t count = 0;
+    for (size_t i = 0; i < data->info.index_count; i++) {
+        const camber_record *record = data->records + i / 2;
+        const bool right = i % 2, tight = camber_join_kind(record->join) == CAMBER_KIND_TIGHT;
+        if (record->last & CAMBER_RECORD_BREAK) {
+            data->indices[i] = CAMBER_RESTART_INDEX;
+        } else if (tight && record->last & (right ? CAMBER_RECORD_IN_RIGHT : CAMBER_RECORD_IN_LEFT)) {
+            data->indices[i] = data->indices[i - 4];
+        } else {
+            data->vertices[count] = strip_vertex(data->records, i / 2, right);
+            data->indices[i] = count++;
+        }
     }
 }
 

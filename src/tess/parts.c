@@ -208,7 +208,7 @@ static uint64_t larger_bytes(const camber_mesh *mesh, output_size size) {
 
 size_t camber_part_records(const camber_mesh *mesh, const camber_mesh_part *part) {
     const uint32_t *slots = mesh->first_slots + part->first_polyline;
-    return mesh->mesh_info.strips ? part->vertex_count / 2 : slots[part->polyline_count] - slots[0];
+    return mesh->mesh_info.strips ? part->index_count / 2 : slots[part->polyline_count] - slots[0];
 }
 
 bool camber_part_fits(const camber_mesh *mesh, const camber_mesh_part *part) {
@@ -221,9 +221,8 @@ static output_size size_before(const camber_mesh *mesh, const camber_mesh_part *
                                size_t polyline) {
     const size_t slot = mesh->first_slots[polyline] - part->first_slot, block = slot / mesh->device->block;
     const cl_uint packed = slot < part->slot_count ? offsets[slot] : 0;
-    const uint64_t vertices = part->host_bases[2 * block] + (packed & 0xffffu);
-    return (output_size){mesh->mesh_info.strips ? vertices / 2 : slot,
-                         part->host_bases[2 * block + 1] + (packed >> 16)};
+    const uint64_t indices = part->host_bases[2 * block + 1] + (packed >> 16);
+    return (output_size){mesh->mesh_info.strips ? indices / 2 : slot, indices};
 }
 
 /* The polylines that parts after the first begin with: as many in each part as its output buffers take. */

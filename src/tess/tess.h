@@ -28,6 +28,8 @@ typedef struct camber_gl_handles {
     cl_context_properties context, display, display_kind; /* kind: CL_EGL_DISPLAY_KHR */
 } camber_gl_handles;
 camber_gl_handles camber_surface_handles(const camber_surface *surface); /* src/draw/surface.c */
+/* As much as its shaders can read. */
+uint64_t camber_surface_largest_buffer_bytes(const camber_surface *surface);
 
 /* Logs "CALL: OpenCL error NAME (code); cure" and gives the status it stands for. */
 camber_status camber_fail_cl(camber_context *context, const char *call, cl_int code);

@@ -82,6 +82,8 @@ static camber_u32 join_word(const twin *t, size_t slot, float *half_shorter) {
 static void push_start(twin *t, const place *p, size_t from) {
     push_record(t, t->polylines->x[from], t->polylines->y[from], 0, row_of(p) | CAMBER_RECORD_BREAK);
     push_point(t, p, p->join, CAMBER_RECORD_START | camber_shared_edges(p->join, p->info));
+    t->data->info.vertex_count +=
+        p->info & CAMBER_POINT_FIRST || camber_join_kind(p->join) != CAMBER_KIND_TIGHT ? 2 : 1;
 }
 
 static void walk_strip_point(twin *t, const place *p) {
@@ -91,6 +93,7 @@ static void walk_strip_point(twin *t, const place *p) {
     if (first && !last)
         return;
     push_point(t, p, p->join, 0);
+    t->data->info.vertex_count += 2;
     t->data->info.triangle_count += 2;
     if (!last && camber_join_kind(p->join) != CAMBER_KIND_CUT)
         push_start(t, p, p->slot - 1);
@@ -133,8 +136,7 @@ static void push_body(twin *t, const place *p) {
 static void push_join(twin *t, const place *p) {
     const uint32_t triangles = camber_join_triangles(p->join), centre = corner_at(p->slot, CAMBER_CORNER_CENTRE);
     const bool left_is_outer = !(camber_turn_unpack(p->join) > 0.0f);
-    const bool is_fan =
-        t->method == CAMBER_FAN && t->rows[p->info >> CAMBER_POINT_ROW_SHIFT].join == CAMBER_JOIN_ROUND;
+    const bool is_fan = t->method == CAMBER_FAN && t->rows[p->info >> CAMBER_POINT_ROW_SHIFT].join == CAMBER_JOIN_ROUND;
     uint32_t from = corner_at(p->slot, left_is_outer ? CAMBER_CORNER_IN_LEFT : CAMBER_CORNER_IN_RIGHT);
     const uint32_t last = corner_at(p->slot, left_is_outer ? CAMBER_CORNER_OUT_LEFT : CAMBER_CORNER_OUT_RIGHT);
     for (uint32_t i = 0; i < triangles; i++) {
@@ -186,7 +188,7 @@ static void note_stages(twin *t, size_t slot, camber_u32 join) {
         .x = p->x[slot],
         .y = p->y[slot],
         .join = join,
-        .first_vertex = (uint32_t)(t->method == CAMBER_STRIP ? 2 * t->data->info.record_count : slot - 1),
+        .first_vertex = (uint32_t)(t->method == CAMBER_STRIP ? t->data->info.vertex_count : slot - 1),
         .first_index = t->method == CAMBER_STRIP ? 2 * t->data->info.record_count : t->data->info.index_count,
     };
 }
@@ -247,7 +249,7 @@ static camber_status run(camber_context *context, const camber_polylines *polyli
         status = info->record_count >= camber_records_max(desc->method) ? camber_fail_records(context, desc->method)
                                                                         : CAMBER_ERROR_MEMORY;
     if (info->strips)
-        info->index_count = info->vertex_count = 2 * info->record_count;
+        info->index_count = 2 * info->record_count;
     info->bytes = info->record_count * sizeof *data->records + (info->strips ? 0 : 4 * info->index_count);
     if (status == CAMBER_OK)
         status = camber_mesh_expand(context, rows, data);

@@ -121,6 +121,8 @@ static void check_again(fuzz_run *run, const camber_polylines *polylines, const 
     REQUIRE(mesh->info.vertex_count == again.info.vertex_count && mesh->info.index_count == again.info.index_count);
     if (mesh->info.index_count) {
         REQUIRE(memcmp(mesh->vertices, again.vertices, mesh->info.vertex_count * sizeof *mesh->vertices) == 0);
+        REQUIRE(mesh->info.record_count == again.info.record_count &&
+                memcmp(mesh->records, again.records, mesh->info.record_count * sizeof *mesh->records) == 0);
         REQUIRE(memcmp(mesh->indices, again.indices, mesh->info.index_count * sizeof *mesh->indices) == 0);
     }
     camber_mesh_data_free(run->context, &again);

@@ -64,17 +64,22 @@ CAMBER_API camber_status camber_features_create(camber_context *context, const c
                                                 camber_features **features);
 /* Reads one more file into the set. Warnings are logged once a cause.
  * Returns CAMBER_ERROR_NOT_FOUND, CAMBER_ERROR_INPUT (unreadable, cut off, no line layer, no such layer),
- * CAMBER_ERROR_ARGUMENT (where does not parse), CAMBER_ERROR_IO, CAMBER_ERROR_MEMORY. */
+ * CAMBER_ERROR_ARGUMENT (where does not parse), CAMBER_ERROR_IO (also where GDAL cannot be loaded), CAMBER_ERROR_MEMORY.
+ * Cost: the first call of a process does what camber_gdal_load does, and registers GDAL's drivers (3 ms). */
 CAMBER_API camber_status camber_features_read(camber_features *features, const camber_source_desc *desc);
 CAMBER_API void camber_features_destroy(camber_features *features);
 CAMBER_API camber_features_stats camber_features_get_stats(const camber_features *features);
 /* Whether any of the data is OpenStreetMap's, whose licence asks for attribution. */
 CAMBER_API bool camber_features_is_osm(const camber_features *features);
 
-/* "GPKG", ... the short name of OGR's n-th vector driver that reads, NULL past the last. The string is
- * OGR's. */
+/* Loads GDAL, which the first file that is read does else. It is half as long again once drivers have threads, so a
+ * program that opens a device or a surface first may want it before. Returns CAMBER_ERROR_IO where GDAL or camber's
+ * module for it is missing. Cost: 35 ms once a process; nothing in the static library, where GDAL is linked. */
+CAMBER_API camber_status camber_gdal_load(camber_context *context);
+/* "GPKG", ... the short name of OGR's n-th vector driver that reads, NULL past the last or where GDAL cannot be
+ * loaded. The string is OGR's. */
 CAMBER_API const char *camber_format_name(size_t n);
-/* "GDAL 3.6.2, ..." */
+/* "GDAL 3.6.2, ...", NULL where GDAL cannot be loaded. */
 CAMBER_API const char *camber_gdal_version(void);
 
 /* ---- View ----------------------------------------------------------------------------------------- */

@@ -76,7 +76,8 @@ for program in $programs; do
 done
 
 # Nothing but the public names leaves the libraries.
-for library in "$libdir"/libcamber*.so; do
+for library in "$libdir"/libcamber*.so "$libdir"/camber/*.so; do
+    [ -e "$library" ] || continue # no module in a build without maps
     if nm -D --defined-only "$library" | awk '{print $3}' | grep -vE '^(camber_|__bss_start|_edata|_end)'; then
         echo "$library exports more than camber_*"
         exit 1
@@ -86,3 +87,13 @@ exported=$(nm -D --defined-only "$libdir/libcamber.so" | awk '{print $3}' | grep
 declared=$(grep -oE '^CAMBER_API [^(]*\(' "$folder"/usr/include/camber.h | grep -oE 'camber_[a-z_]+\($' | tr -d '(' | sort)
 [ "$exported" = "$declared" ] || { diff <(echo "$exported") <(echo "$declared"); echo "exports and camber.h differ"; exit 1; }
 "$folder/usr/bin/camber" --version
+[ "$map" = ON ] || exit 0
+# GDAL comes with the first file, and what is wrong where it cannot come is one line.
+if ldd "$folder/usr/bin/camber" | grep libgdal; then echo "the tool links GDAL from the start"; exit 1; fi
+echo '{"type":"LineString","coordinates":[[0,0],[1,1]]}' >"$folder/line.geojson"
+"$folder/usr/bin/camber" tessellate -q "$folder/line.geojson" -o "$folder/line.glb"
+rm "$libdir"/camber/camber-gdal.so
+status=0
+"$folder/usr/bin/camber" tessellate -q "$folder/line.geojson" -o "$folder/none.glb" 2>"$folder/log" || status=$?
+[ "$status" = 74 ] && [ "$(wc -l <"$folder/log")" = 1 ] && grep -q 'GDAL cannot be loaded' "$folder/log" ||
+    { cat "$folder/log"; echo "without its module: status $status"; exit 1; }

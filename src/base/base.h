@@ -16,6 +16,7 @@
 struct camber_context {
     camber_context_desc desc;
     uint64_t next_serial; /* identifies polylines to meshes that keep them uploaded */
+    const void *gdal;     /* source/load.c: what it found, NULL before */
 };
 
 /* Memory is not cleared by camber_alloc; camber_alloc_zero clears it. NULL and a logged error on failure, also

@@ -1,5 +1,9 @@
 #include "cli/session.h"
 
+#ifdef CAMBER_MAP
+#include "camber_map.h"
+#endif
+
 #include <pthread.h>
 #include <stdlib.h>
 
@@ -102,6 +106,11 @@ static void *open_beside(void *user) {
 void camber_session_start(camber_session *session) {
     if (prepare(session) != CAMBER_OK)
         return;
+#ifdef CAMBER_MAP
+    /* Before there are threads, which the loader would wait for. */
+    if (session->options->polylines == NULL && camber_gdal_load(session->context) != CAMBER_OK)
+        return;
+#endif
     camber_opener *opener = calloc(1, sizeof *opener);
     if (!opener)
         return;

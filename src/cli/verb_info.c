@@ -87,7 +87,8 @@ static void add_formats(json_t *object) {
     json_t *list = json_array();
     json_object_set_new(object, "formats", list);
 #ifdef CAMBER_MAP
-    json_object_set_new(object, "gdal", camber_json_text(camber_gdal_version()));
+    const char *version = camber_gdal_version();
+    json_object_set_new(object, "gdal", version ? camber_json_text(version) : json_null());
     const char *name;
     for (size_t i = 0; (name = camber_format_name(i)) != NULL; i++)
         json_array_append_new(list, camber_json_text(name));
@@ -102,7 +103,9 @@ static const char *text_of(const json_t *object, const char *key) {
 static void print_formats(const json_t *object) {
     const json_t *list = json_object_get(object, "formats");
     if (json_array_size(list) == 0) {
-        puts("formats   polylines in pixels (this build reads no maps)");
+        printf("formats   polylines in pixels (%s)\n", json_object_get(object, "gdal")
+                                                           ? "GDAL cannot be loaded; install camber and GDAL again"
+                                                           : "this build reads no maps");
         return;
     }
     size_t column = 100;
@@ -163,10 +166,10 @@ int camber_verb_info(camber_session *session) {
     json_t *object = json_pack("{s:s}", "camber", camber_version());
     if (!object)
         return camber_report_json(session->report, NULL);
+    add_formats(object); /* first: libraries load faster before drivers have threads */
     add_devices(session, object);
     add_backends(session, object);
     add_choice(session, object);
-    add_formats(object);
     if (session->options->json)
         return camber_report_json(session->report, object);
     print_text(object);

@@ -1,4 +1,5 @@
 /* Streams the features of a file into a set. */
+#include "source/load.h"
 #include "source/source.h"
 
 #include <cpl_conv.h>
@@ -353,7 +354,7 @@ static camber_status read_once(camber_features *features, const camber_source_de
     return status;
 }
 
-camber_status camber_features_read(camber_features *features, const camber_source_desc *desc) {
+static camber_status read_file(camber_features *features, const camber_source_desc *desc) {
     static const char option[] = "CPL_VSIL_GZIP_WRITE_PROPERTIES";
     GDALAllRegister();
     /* Or GDAL writes a .properties file beside a .gz. */
@@ -373,8 +374,9 @@ camber_status camber_features_read(camber_features *features, const camber_sourc
 
 /* ---- What GDAL can do ---- */
 
-const char *camber_format_name(size_t n) {
-    GDALAllRegister();
+static const char *format_name(size_t n) {
+    if (GDALGetDriverCount() == 0)
+        GDALAllRegister();
     const int count = GDALGetDriverCount();
     for (int i = 0; i < count; i++) {
         GDALDriverH driver = GDALGetDriver(i);
@@ -385,6 +387,8 @@ const char *camber_format_name(size_t n) {
     return NULL;
 }
 
-const char *camber_gdal_version(void) {
+static const char *version(void) {
     return GDALVersionInfo("--version");
 }
+
+const camber_gdal_calls camber_gdal = {read_file, format_name, version};

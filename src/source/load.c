@@ -1,0 +1,51 @@
+/* GDAL on demand. It comes with a hundred libraries: linking them takes longer than drawing a small map, and every
+ * driver that is loaded after them looks through their names for its own. So the shared libcamber-map keeps the files
+ * that need GDAL in a module, and loads it with the first file that is read. The static library has them in itself. */
+#include "source/load.h"
+#include "source/features.h"
+
+#ifdef CAMBER_GDAL_MODULE
+#include <dlfcn.h>
+
+/* It stays loaded: GDAL's own threads and caches live as long as the process. */
+static const camber_gdal_calls *load(const char **why) {
+    void *module = dlopen(CAMBER_GDAL_MODULE, RTLD_LAZY | RTLD_LOCAL);
+    const camber_gdal_calls *calls = module ? dlsym(module, "camber_gdal") : NULL;
+    *why = calls ? NULL : dlerror();
+    return calls;
+}
+#else
+static const camber_gdal_calls *load(const char **why) {
+    *why = NULL;
+    return &camber_gdal;
+}
+#endif
+
+/* Kept, since asking the loader again waits while another thread loads a driver. */
+camber_status camber_gdal_load(camber_context *context) {
+    const char *why = NULL;
+    if (!context->gdal)
+        context->gdal = load(&why);
+    if (context->gdal)
+        return CAMBER_OK;
+    return camber_fail(context, CAMBER_ERROR_IO, "GDAL cannot be loaded: %s; install camber and GDAL again",
+                       why ? why : "no reason given");
+}
+
+camber_status camber_features_read(camber_features *features, const camber_source_desc *desc) {
+    const camber_status status = camber_gdal_load(features->context);
+    const camber_gdal_calls *calls = features->context->gdal;
+    return status == CAMBER_OK ? calls->read(features, desc) : status;
+}
+
+const char *camber_format_name(size_t n) {
+    const char *why;
+    const camber_gdal_calls *calls = load(&why);
+    return calls ? calls->format_name(n) : NULL;
+}
+
+const char *camber_gdal_version(void) {
+    const char *why;
+    const camber_gdal_calls *calls = load(&why);
+    return calls ? calls->version() : NULL;
+}

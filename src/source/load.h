@@ -1,0 +1,18 @@
+/* What is called of the files that need GDAL. */
+#ifndef CAMBER_LOAD_H
+#define CAMBER_LOAD_H
+
+#include "camber_map.h"
+
+typedef struct camber_gdal_calls {
+    camber_status (*read)(camber_features *features, const camber_source_desc *desc);
+    const char *(*format_name)(size_t n);
+    const char *(*version)(void);
+} camber_gdal_calls;
+
+#ifdef __GNUC__
+__attribute__((visibility("default"))) /* of the module */
+#endif
+extern const camber_gdal_calls camber_gdal;
+
+#endif

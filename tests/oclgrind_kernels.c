@@ -137,6 +137,48 @@ static int check_methods(camber_context *context, camber_mesh *mesh, const scene
     return failures;
 }
 
+/* Cameras over the lines as a network: all of it, a cut and simplified part, and none. */
+static int check_networks(camber_context *context, camber_mesh *mesh, const scene *s, const camber_stroke *strokes) {
+    static double points[2 * POINTS_MAX];
+    static float importance[POINTS_MAX];
+    static size_t offsets[LINES_MAX + 1];
+    static camber_network_entry entries[LINES_MAX];
+    static const camber_camera cameras[] = {
+        {.x = 400, .y = 400, .scale_px = 1, .width = 2000, .height = 1500},
+        {.x = 150, .y = 120, .scale_px = 3, .bearing_deg = 30, .width = 100, .height = 60, .simplify_px = 2},
+        {.x = 1e6, .scale_px = 1, .width = 100, .height = 100}};
+    for (size_t i = 0; i < s->point_count; i++) {
+        points[2 * i] = (double)s->points[2 * i];
+        points[2 * i + 1] = (double)s->points[2 * i + 1];
+        importance[i] = (float)(i % 5) * 0.3f;
+    }
+    for (size_t i = 0; i <= s->line_count; i++)
+        offsets[i] = s->offsets[i];
+    for (size_t i = 0; i < s->line_count; i++)
+        entries[i] = (camber_network_entry){.polyline = (uint32_t)i, .row = s->rows[i]};
+    const camber_network_desc desc = {points, offsets, s->line_count, importance, entries, s->line_count, false};
+    const camber_tessellation_desc strips = {.strokes = strokes, .stroke_count = ROWS};
+    camber_network *network = NULL;
+    int failures = camber_network_create(context, &desc, &network) != CAMBER_OK;
+    for (size_t i = 0; i < sizeof cameras / sizeof *cameras && network; i++) {
+        camber_stages device = {0}, twin = {0};
+        camber_polylines *seen = NULL;
+        const bool good = camber_network_project(network, cameras + i, &strips, &seen) == CAMBER_OK &&
+                          camber_tessellate_network(mesh, network, cameras + i, &strips) == CAMBER_OK &&
+                          camber_mesh_read_stages(mesh, &device) == CAMBER_OK &&
+                          camber_stages_on_host(context, seen, &strips, &twin) == CAMBER_OK &&
+                          same_stages(&device, &twin);
+        if (!good)
+            printf("not ok - camera %zu\n", i);
+        failures += !good;
+        camber_stages_free(context, &device);
+        camber_stages_free(context, &twin);
+        camber_polylines_destroy(seen);
+    }
+    camber_network_destroy(network);
+    return failures;
+}
+
 static int check_device(camber_context *context, scene *s, const camber_device_desc *desc, size_t rotations) {
     camber_device *device = NULL;
     camber_mesh *mesh = NULL;
@@ -152,6 +194,8 @@ static int check_device(camber_context *context, scene *s, const camber_device_d
             snprintf(what, sizeof what, "work-groups of %u, rotation %zu", desc->work_group_size, rotation);
             rotate(s, strokes, rotation);
             failures += check_methods(context, mesh, s, strokes, what);
+            if (rotation == 0)
+                failures += check_networks(context, mesh, s, strokes);
         }
     }
     camber_mesh_destroy(mesh);

@@ -63,6 +63,7 @@ void camber_mesh_destroy(camber_mesh *mesh) {
         return;
     camber_context *context = mesh->device->context;
     camber_mesh_release_parts(mesh);
+    camber_mesh_let_go(mesh);
     if (mesh->rows)
         clReleaseMemObject(mesh->rows);
     camber_free(context, mesh->host_rows);
@@ -87,6 +88,8 @@ static camber_status count_part(const camber_mesh *mesh, const camber_mesh_part 
     cl_command_queue queue = mesh->device->queue;
     const size_t size_bytes = 4 * (part->slot_count + 2);
     cl_int code;
+    if (part->slot_count == 0)
+        return CAMBER_OK;
     cl_uint *joins = clEnqueueMapBuffer(queue, part->joins, CL_TRUE, CL_MAP_READ, 0, size_bytes, 0, NULL, NULL, &code);
     if (code == CL_SUCCESS) {
         cl_uint *info =
@@ -122,7 +125,7 @@ camber_mesh_info camber_mesh_get_info(camber_mesh *mesh) {
 
 camber_status camber_part_first_index(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline,
                                       uint64_t *first_index) {
-    const size_t slot = mesh->first_slots[polyline] - part->first_slot, block = slot / mesh->device->block;
+    const size_t slot = camber_part_slot(mesh, part, polyline), block = slot / mesh->device->block;
     cl_uint packed = 0;
     if (slot < part->slot_count && slot % mesh->device->block != 0) {
         const cl_int code =
@@ -130,7 +133,7 @@ camber_status camber_part_first_index(const camber_mesh *mesh, const camber_mesh
         if (code != CL_SUCCESS)
             return camber_fail_cl(mesh->device->context, "clEnqueueReadBuffer", code);
     }
-    *first_index = part->host_bases[2 * block + 1] + (packed >> 16);
+    *first_index = part->slot_count ? part->host_bases[2 * block + 1] + (packed >> 16) : 0;
     return CAMBER_OK;
 }
 

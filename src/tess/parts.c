@@ -32,11 +32,11 @@ static void release_input(camber_mesh_part *part) {
     part->uploaded = false;
 }
 
-static camber_status reserve_input(const camber_device *device, camber_mesh_part *part) {
-    if (part->slot_count <= part->slot_capacity)
+static camber_status reserve_input(const camber_device *device, camber_mesh_part *part, size_t slots) {
+    if (slots <= part->slot_capacity)
         return CAMBER_OK;
     release_input(part);
-    const size_t slots = part->slot_count, blocks = slots / device->block, words = slots + 2;
+    const size_t blocks = slots / device->block, words = slots + 2;
     camber_status status = CAMBER_OK;
     const struct {
         cl_mem *mem;
@@ -55,11 +55,20 @@ static camber_status reserve_input(const camber_device *device, camber_mesh_part
     return CAMBER_OK;
 }
 
+camber_status camber_part_reserve(const camber_device *device, camber_mesh_part *part, size_t slots) {
+    const camber_status status = reserve_input(device, part, slots);
+    if (status == CAMBER_OK && !camber_grow(device->context, &part->host_bases, &part->base_capacity,
+                                            2 * (part->slot_capacity / device->block + 1), sizeof *part->host_bases))
+        return CAMBER_ERROR_MEMORY;
+    return status;
+}
+
 static void release_part(camber_mesh *mesh, camber_mesh_part *part) {
     for (int i = 0; i < 2; i++)
         mesh->ops->release(mesh->ops_user, part->buffers + i);
     release_input(part);
     camber_free(mesh->device->context, part->host_bases);
+    camber_free(mesh->device->context, part->chunk_bases);
     *part = (camber_mesh_part){0};
 }
 
@@ -83,16 +92,23 @@ static bool hold_parts(camber_mesh *mesh, size_t count) {
 }
 
 static void set_polylines(const camber_mesh *mesh, camber_mesh_part *part, size_t first, size_t end) {
-    const size_t block = mesh->device->block, slots = mesh->first_slots[end] - mesh->first_slots[first];
+    const size_t block = mesh->device->block;
+    const size_t slots = mesh->held ? 0 : mesh->first_slots[end] - mesh->first_slots[first];
     part->first_polyline = first;
     part->polyline_count = end - first;
-    part->first_slot = mesh->first_slots[first];
+    part->first_slot = mesh->held ? 0 : mesh->first_slots[first];
     part->slot_count = (slots + block - 1) / block * block;
     part->record_count = part->vertex_count = part->index_count = 0;
     part->uploaded = false;
+    if (mesh->held)
+        camber_part_set_points(mesh, part);
 }
 
-static camber_status fail_polyline(const camber_mesh *mesh, size_t polyline, uint64_t size_bytes) {
+size_t camber_part_slot(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline) {
+    return mesh->held ? camber_part_network_slot(mesh, part, polyline) : mesh->first_slots[polyline] - part->first_slot;
+}
+
+camber_status camber_fail_polyline(const camber_mesh *mesh, size_t polyline, uint64_t size_bytes) {
     const camber_device *device = mesh->device;
     return camber_fail(device->context, CAMBER_ERROR_LIMIT,
                        "polyline %zu takes a buffer of %llu bytes, and %s makes none above %llu; cut it in two, or "
@@ -117,6 +133,11 @@ static size_t find_end(const camber_mesh *mesh, size_t first, size_t slots_max) 
     return low;
 }
 
+void camber_mesh_trim_parts(camber_mesh *mesh) {
+    for (size_t i = mesh->part_count ? mesh->part_count : 1; i < mesh->part_capacity; i++)
+        release_part(mesh, mesh->parts + i);
+}
+
 static camber_status lay_out(camber_mesh *mesh) {
     const size_t block = mesh->device->block, ghosts = 2;
     const uint64_t words = mesh->device->info.largest_buffer_bytes / 4;
@@ -126,15 +147,14 @@ static camber_status lay_out(camber_mesh *mesh) {
     for (size_t first = 0; first < polyline_count; mesh->part_count++) {
         const size_t end = find_end(mesh, first, slots_max);
         if (end == first)
-            return fail_polyline(mesh, first,
-                                 4 * ((uint64_t)mesh->first_slots[first + 1] - mesh->first_slots[first] + ghosts));
+            return camber_fail_polyline(
+                mesh, first, 4 * ((uint64_t)mesh->first_slots[first + 1] - mesh->first_slots[first] + ghosts));
         if (!hold_parts(mesh, mesh->part_count + 1))
             return CAMBER_ERROR_MEMORY;
         set_polylines(mesh, mesh->parts + mesh->part_count, first, end);
         first = end;
     }
-    for (size_t i = mesh->part_count ? mesh->part_count : 1; i < mesh->part_capacity; i++)
-        release_part(mesh, mesh->parts + i);
+    camber_mesh_trim_parts(mesh);
     return CAMBER_OK;
 }
 
@@ -143,6 +163,7 @@ camber_status camber_mesh_plan(camber_mesh *mesh, const camber_polylines *polyli
     const size_t count = polylines->polyline_count;
     if (mesh->serial == polylines->serial)
         return CAMBER_OK;
+    camber_mesh_let_go(mesh);
     mesh->serial = mesh->part_count = mesh->polyline_count = 0;
     if (!camber_grow(context, &mesh->first_slots, &mesh->polyline_capacity, count + 1, sizeof *mesh->first_slots) ||
         !camber_grow(context, &mesh->polyline_rows, &mesh->row_list_capacity, count, sizeof *mesh->polyline_rows))
@@ -163,7 +184,7 @@ camber_status camber_part_upload(const camber_mesh *mesh, camber_mesh_part *part
     const camber_device *device = mesh->device;
     if (part->uploaded)
         return CAMBER_OK;
-    camber_status status = reserve_input(device, part);
+    camber_status status = camber_part_reserve(device, part, part->slot_count);
     const size_t words = part->slot_count + 2, first = part->first_slot;
     const size_t end = part->first_polyline + part->polyline_count;
     /* The neighbour before, the part's slots, and ghosts: the polylines' own padding, or zeros. */
@@ -185,9 +206,6 @@ camber_status camber_part_upload(const camber_mesh *mesh, camber_mesh_part *part
         status = camber_write_buffer(device, part->joins, 0, 4, zeros);
     if (status == CAMBER_OK)
         status = camber_write_buffer(device, part->joins, 4 * (words - 1), 4, zeros);
-    if (status == CAMBER_OK && !camber_grow(device->context, &part->host_bases, &part->base_capacity,
-                                            2 * (part->slot_count / device->block + 1), sizeof *part->host_bases))
-        status = CAMBER_ERROR_MEMORY;
     part->uploaded = status == CAMBER_OK;
     return status;
 }
@@ -207,8 +225,8 @@ static uint64_t larger_bytes(const camber_mesh *mesh, output_size size) {
 }
 
 size_t camber_part_records(const camber_mesh *mesh, const camber_mesh_part *part) {
-    const uint32_t *slots = mesh->first_slots + part->first_polyline;
-    return mesh->mesh_info.strips ? part->index_count / 2 : slots[part->polyline_count] - slots[0];
+    return mesh->mesh_info.strips ? part->index_count / 2
+                                  : camber_part_slot(mesh, part, part->first_polyline + part->polyline_count);
 }
 
 bool camber_part_fits(const camber_mesh *mesh, const camber_mesh_part *part) {
@@ -219,7 +237,7 @@ bool camber_part_fits(const camber_mesh *mesh, const camber_mesh_part *part) {
 /* What the part has before a polyline. */
 static output_size size_before(const camber_mesh *mesh, const camber_mesh_part *part, const cl_uint *offsets,
                                size_t polyline) {
-    const size_t slot = mesh->first_slots[polyline] - part->first_slot, block = slot / mesh->device->block;
+    const size_t slot = camber_part_slot(mesh, part, polyline), block = slot / mesh->device->block;
     const cl_uint packed = slot < part->slot_count ? offsets[slot] : 0;
     const uint64_t indices = part->host_bases[2 * block + 1] + (packed >> 16);
     return (output_size){mesh->mesh_info.strips ? indices / 2 : slot, indices};
@@ -238,7 +256,7 @@ static camber_status find_cuts(const camber_mesh *mesh, const camber_mesh_part *
         if (larger_bytes(mesh, together) > limit) {
             const output_size alone = {after.records - before.records, after.indices - before.indices};
             if (larger_bytes(mesh, alone) > limit)
-                return fail_polyline(mesh, i, larger_bytes(mesh, alone));
+                return camber_fail_polyline(mesh, i, larger_bytes(mesh, alone));
             if (!camber_grow(mesh->device->context, cuts, &capacity, *cut_count + 1, sizeof **cuts))
                 return CAMBER_ERROR_MEMORY;
             (*cuts)[(*cut_count)++] = i;
@@ -260,6 +278,19 @@ static camber_status insert_parts(camber_mesh *mesh, size_t which, const size_t 
     for (size_t i = 0; i <= cut_count; i++)
         set_polylines(mesh, part + i, i ? cuts[i - 1] : first, i < cut_count ? cuts[i] : end);
     return CAMBER_OK;
+}
+
+camber_status camber_mesh_add_part(camber_mesh *mesh, size_t first_polyline, size_t end_polyline) {
+    if (!hold_parts(mesh, mesh->part_count + 1))
+        return CAMBER_ERROR_MEMORY;
+    set_polylines(mesh, mesh->parts + mesh->part_count++, first_polyline, end_polyline);
+    return CAMBER_OK;
+}
+
+camber_status camber_mesh_halve(camber_mesh *mesh, size_t which) {
+    const camber_mesh_part *part = mesh->parts + which;
+    const size_t middle = part->first_polyline + part->polyline_count / 2;
+    return insert_parts(mesh, which, &middle, 1);
 }
 
 camber_status camber_mesh_split(camber_mesh *mesh, size_t which) {

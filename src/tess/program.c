@@ -89,7 +89,11 @@ static camber_status make_kernels(camber_device *device, camber_program *program
     const struct {
         const char *name;
         cl_kernel *kernel;
-    } stages[] = {{"classify", &program->classify}, {"scan", &program->scan}, {"emit", &program->emit}};
+    } stages[] = {{"survey", &program->survey},
+                  {"project", &program->project},
+                  {"classify", &program->classify},
+                  {"scan", &program->scan},
+                  {"emit", &program->emit}};
     for (size_t i = 0; i < sizeof stages / sizeof *stages; i++) {
         cl_int code;
         *stages[i].kernel = clCreateKernel(program->cl, stages[i].name, &code);
@@ -158,7 +162,7 @@ void camber_program_save(camber_device *device, camber_program *program) {
 void camber_program_destroy(camber_context *context, camber_program *program) {
     if (!program)
         return;
-    cl_kernel kernels[] = {program->classify, program->scan, program->emit};
+    cl_kernel kernels[] = {program->survey, program->project, program->classify, program->scan, program->emit};
     for (size_t i = 0; i < sizeof kernels / sizeof *kernels; i++)
         if (kernels[i])
             clReleaseKernel(kernels[i]);

@@ -40,12 +40,12 @@ static camber_row make_row(const camber_stroke *stroke, float tolerance_px) {
     };
 }
 
-camber_status camber_rows_create(camber_context *context, const camber_polylines *polylines,
-                                 const camber_tessellation_desc *desc, camber_row **rows) {
+camber_status camber_rows_create(camber_context *context, uint32_t row_count, const camber_tessellation_desc *desc,
+                                 camber_row **rows) {
     assert(desc->stroke_count == 0 || desc->strokes);
-    if (polylines->row_count > desc->stroke_count)
+    if (row_count > desc->stroke_count)
         return camber_fail(context, CAMBER_ERROR_ARGUMENT,
-                           "a polyline has row %u, and there are %zu strokes; give one a row", polylines->row_count - 1,
+                           "a polyline has row %u, and there are %zu strokes; give one a row", row_count - 1,
                            desc->stroke_count);
     const float tolerance = desc->fan_tolerance_px == 0.0f ? 0.25f : desc->fan_tolerance_px;
     if (!(tolerance > 0.0f) || (unsigned)desc->method > CAMBER_METHOD_FAN)

@@ -35,9 +35,9 @@ static camber_status append_points(const camber_mesh *mesh, const camber_mesh_pa
                      sizeof *stages->points))
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < part->polyline_count; i++) {
-        const size_t polyline = part->first_polyline + i, end = mesh->first_slots[polyline + 1] - part->first_slot;
+        const size_t polyline = part->first_polyline + i, end = camber_part_slot(mesh, part, polyline + 1);
         uint32_t point = 0;
-        for (size_t slot = mesh->first_slots[polyline] - part->first_slot; slot < end; slot++) {
+        for (size_t slot = camber_part_slot(mesh, part, polyline); slot < end; slot++) {
             const size_t word = slot + 1, block = slot / mesh->device->block;
             if (!(a->info[word] & CAMBER_POINT_REAL))
                 continue;
@@ -61,6 +61,8 @@ camber_status camber_mesh_read_stages(camber_mesh *mesh, camber_stages *stages) 
     camber_status status = CAMBER_OK;
     for (size_t i = 0; i < mesh->part_count && mesh->done && status == CAMBER_OK; i++) {
         const camber_mesh_part *part = mesh->parts + i;
+        if (part->slot_count == 0)
+            continue;
         const size_t words = part->slot_count + 2;
         const arrays seen = {
             .x = map(mesh, part->x, words, &status),

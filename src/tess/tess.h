@@ -38,7 +38,7 @@ camber_status camber_fail_cl(camber_context *context, const char *call, cl_int c
 
 typedef struct camber_program {
     cl_program cl;
-    cl_kernel classify, scan, emit;
+    cl_kernel survey, project, classify, scan, emit;
     uint64_t key; /* of the cache */
     bool to_save; /* built from source: its binary is saved once the kernels have run */
 } camber_program;
@@ -77,6 +77,10 @@ typedef struct camber_mesh_part {
     camber_buffer buffers[2]; /* records, indices: of strips none */
     size_t first_polyline, polyline_count;
     size_t first_slot, slot_count; /* of the polylines; slot_count is padded to whole blocks */
+    /* Of a network: which of its sections, the points of it, and the slots before each of their chunks. */
+    size_t section, first_point, end_point;
+    uint32_t *chunk_bases; /* the chunks and one behind them */
+    size_t chunk_capacity;
     bool uploaded;
     cl_mem x, y, info, joins, offsets, sums, bases;
     size_t slot_capacity;
@@ -93,7 +97,8 @@ struct camber_mesh {
     void *ops_user;
 
     /* Of the polylines last tessellated: polyline_count + 1 slots, where a polyline begins; polyline_count rows. */
-    uint64_t serial; /* 0: of none */
+    uint64_t serial;                  /* 0: of none */
+    struct camber_held_network *held; /* NULL: not of a network, whose polylines have no first_slots */
     uint32_t *first_slots, *polyline_rows;
     size_t polyline_count, polyline_capacity, row_list_capacity;
     size_t row_count;        /* every polyline's row is below it */
@@ -115,6 +120,8 @@ enum { CAMBER_BUFFER_RECORDS, CAMBER_BUFFER_INDICES };
 
 camber_status camber_mesh_create_on(camber_device *device, const camber_buffer_ops *ops, void *ops_user,
                                     camber_mesh **mesh);
+/* First slot of a polyline in its part; the part's first polyline + polyline_count gives the end. */
+size_t camber_part_slot(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline);
 /* How many of a part's output buffers there are. */
 static inline size_t camber_buffer_count(const camber_mesh *mesh) {
     return mesh->mesh_info.strips ? 1 : 2;
@@ -136,6 +143,29 @@ size_t camber_part_records(const camber_mesh *mesh, const camber_mesh_part *part
 bool camber_part_fits(const camber_mesh *mesh, const camber_mesh_part *part);
 camber_status camber_part_upload(const camber_mesh *mesh, camber_mesh_part *part, const camber_polylines *polylines);
 void camber_mesh_release_parts(camber_mesh *mesh);
+/* Room for slots in the buffers of a part's input and its host_bases. */
+camber_status camber_part_reserve(const camber_device *device, camber_mesh_part *part, size_t slots);
+/* Frees what parts past the mesh's hold, but for the first. */
+void camber_mesh_trim_parts(camber_mesh *mesh);
+/* Adds an empty part, or cuts one in two at the middle of its polylines. */
+camber_status camber_mesh_add_part(camber_mesh *mesh, size_t first_polyline, size_t end_polyline);
+camber_status camber_mesh_halve(camber_mesh *mesh, size_t which);
+camber_status camber_fail_polyline(const camber_mesh *mesh, size_t polyline, uint64_t size_bytes);
+
+/* network_parts.c: the same for a network, which is uploaded here. */
+camber_status camber_mesh_plan_network(camber_mesh *mesh, camber_network *network);
+/* Aims the network that a mesh holds. */
+camber_status camber_mesh_aim(camber_mesh *mesh, const camber_camera *camera, const camber_tessellation_desc *desc);
+void camber_mesh_let_go(camber_mesh *mesh);
+/* Which of a network's points a part has. */
+void camber_part_set_points(const camber_mesh *mesh, camber_mesh_part *part);
+/* survey and project: makes the part's slots. *fits is false, and there are none, where the device makes no buffer that
+ * is large enough. */
+camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program, bool *fits);
+size_t camber_part_network_slot(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline);
+/* Adds the time of a command to ms and releases the event, which may be NULL. */
+void camber_add_ms(cl_event event, double *ms);
+camber_status camber_fail_stage(const camber_device *device, const char *call, const char *name, cl_int code);
 
 /* Ends what ops->begin began on a part's output. Gives status where that is a failure, whose story is told. */
 camber_status camber_part_finish(const camber_mesh *mesh, camber_mesh_part *part, bool written, camber_status status);
@@ -147,9 +177,10 @@ camber_status camber_write_buffer(const camber_device *device, cl_mem mem, size_
 
 /* ---- Rows ---- */
 
-/* Checks a desc against the polylines and makes the kernels' style table; freed with camber_free. */
-camber_status camber_rows_create(camber_context *context, const camber_polylines *polylines,
-                                 const camber_tessellation_desc *desc, camber_row **rows);
+/* Checks a desc against the polylines, whose rows are below row_count, and makes the kernels' style table; freed with
+ * camber_free. */
+camber_status camber_rows_create(camber_context *context, uint32_t row_count, const camber_tessellation_desc *desc,
+                                 camber_row **rows);
 
 /* The host's part of the scan: adds up the blocks' sums, vertices | indices << 16, in 64 bits. bases takes
  * 2 * (block_count + 1): each block's first vertex and first index, and the totals behind the last. */

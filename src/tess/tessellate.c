@@ -1,5 +1,5 @@
 /* classify -> scan -> emit on a device, a part of the mesh at a time. */
-#include "tess/tess.h"
+#include "tess/network.h"
 
 #include "kernels/layout.h"
 
@@ -17,7 +17,7 @@ typedef struct stage {
     size_t points;
 } stage;
 
-static camber_status fail_stage(const camber_device *device, const char *call, const char *name, cl_int code) {
+camber_status camber_fail_stage(const camber_device *device, const char *call, const char *name, cl_int code) {
     char what[64];
     snprintf(what, sizeof what, "%s of %s", call, name);
     return camber_fail_cl(device->context, what, code);
@@ -29,10 +29,10 @@ static camber_status run_stage(const camber_device *device, const camber_mesh_pa
     for (cl_uint i = 0; i < s.mem_count; i++) {
         const cl_int code = clSetKernelArg(s.kernel, i, sizeof *s.mems, s.mems + i);
         if (code != CL_SUCCESS)
-            return fail_stage(device, "clSetKernelArg", s.name, code);
+            return camber_fail_stage(device, "clSetKernelArg", s.name, code);
     }
     const cl_int code = clEnqueueNDRangeKernel(device->queue, s.kernel, 1, NULL, &global, &local, 0, NULL, event);
-    return code == CL_SUCCESS ? CAMBER_OK : fail_stage(device, "clEnqueueNDRangeKernel", s.name, code);
+    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_stage(device, "clEnqueueNDRangeKernel", s.name, code);
 }
 
 size_t camber_records_max(camber_method method) {
@@ -73,7 +73,7 @@ static camber_status scan_blocks(const camber_mesh *mesh, camber_mesh_part *part
     return CAMBER_OK;
 }
 
-static void add_ms(cl_event event, double *ms) {
+void camber_add_ms(cl_event event, double *ms) {
     cl_ulong begin = 0, end = 0;
     if (!event)
         return;
@@ -95,8 +95,8 @@ static camber_status measure(camber_mesh *mesh, camber_mesh_part *part, const ca
         status = run_stage(device, part, (stage){"scan", program->scan, scan, 4, CAMBER_SCAN_POINTS}, events + 1);
     if (status == CAMBER_OK)
         status = scan_blocks(mesh, part);
-    add_ms(events[0], &mesh->mesh_info.classify_ms);
-    add_ms(events[1], &mesh->mesh_info.scan_ms);
+    camber_add_ms(events[0], &mesh->mesh_info.classify_ms);
+    camber_add_ms(events[1], &mesh->mesh_info.scan_ms);
     return status;
 }
 
@@ -105,7 +105,10 @@ static camber_status reserve_output(camber_mesh *mesh, camber_mesh_part *part) {
     const size_t indices = part->index_count ? part->index_count : 1; /* no buffer is empty */
     const size_t sizes[2] = {records * sizeof(camber_record), indices * 4};
     for (size_t i = 0; i < camber_buffer_count(mesh); i++) {
-        const camber_status status = mesh->ops->reserve(mesh->ops_user, part->buffers + i, sizes[i]);
+        /* The next frame of a network may take a little more. */
+        const size_t room = sizes[i] + (mesh->held ? sizes[i] / 4 : 0), most = mesh->device->info.largest_buffer_bytes;
+        const size_t size_bytes = sizes[i] <= part->buffers[i].capacity_bytes || room > most ? sizes[i] : room;
+        const camber_status status = mesh->ops->reserve(mesh->ops_user, part->buffers + i, size_bytes);
         if (status != CAMBER_OK)
             return status;
         part->buffers[i].used_bytes = sizes[i];
@@ -136,7 +139,7 @@ static camber_status emit(camber_mesh *mesh, camber_mesh_part *part, const cambe
     if (status == CAMBER_OK && code != CL_SUCCESS)
         status = camber_fail_cl(device->context, "clFinish", code);
     status = camber_part_finish(mesh, part, true, status);
-    add_ms(event, &mesh->mesh_info.emit_ms);
+    camber_add_ms(event, &mesh->mesh_info.emit_ms);
     return status;
 }
 
@@ -166,15 +169,26 @@ static camber_status upload_rows(camber_mesh *mesh, const camber_row *rows, size
     return camber_write_buffer(device, mesh->rows, 0, count * sizeof *rows, rows);
 }
 
-/* Part after part; one whose output turns out too large is split, and what takes its place is done anew. */
+/* Part after part; one whose output turns out too large is split, and what takes its place is done anew. polylines
+ * NULL: the slots of the network that the mesh holds. */
 static camber_status run_parts(camber_mesh *mesh, const camber_polylines *polylines, const camber_program *program) {
     camber_mesh_info *info = &mesh->mesh_info;
     camber_status status = CAMBER_OK;
     for (size_t i = 0; i < mesh->part_count && status == CAMBER_OK;) {
         camber_mesh_part *part = mesh->parts + i;
-        status = camber_part_upload(mesh, part, polylines);
-        if (status == CAMBER_OK)
+        bool fits = true;
+        status =
+            polylines ? camber_part_upload(mesh, part, polylines) : camber_part_project(mesh, part, program, &fits);
+        if (status == CAMBER_OK && !fits) {
+            status = camber_mesh_halve(mesh, i);
+            continue;
+        }
+        if (status == CAMBER_OK && part->slot_count > 0)
             status = measure(mesh, part, program);
+        if (mesh->held) {
+            camber_add_ms(mesh->held->projected, &info->project_ms);
+            mesh->held->projected = NULL;
+        }
         if (status == CAMBER_OK && !camber_part_fits(mesh, part)) {
             status = camber_mesh_split(mesh, i);
             continue;
@@ -194,8 +208,22 @@ static camber_status run_parts(camber_mesh *mesh, const camber_polylines *polyli
     return status;
 }
 
-camber_status camber_tessellate(camber_mesh *mesh, const camber_polylines *polylines,
-                                const camber_tessellation_desc *desc) {
+/* What is tessellated: polylines, or else a network as a camera sees it. */
+typedef struct source {
+    const camber_polylines *polylines;
+    camber_network *network;
+    const camber_camera *camera;
+    uint32_t row_count;
+} source;
+
+static camber_status plan(camber_mesh *mesh, const source *from, const camber_tessellation_desc *desc) {
+    if (from->polylines)
+        return camber_mesh_plan(mesh, from->polylines);
+    const camber_status status = camber_mesh_plan_network(mesh, from->network);
+    return status == CAMBER_OK ? camber_mesh_aim(mesh, from->camera, desc) : status;
+}
+
+static camber_status tessellate(camber_mesh *mesh, const source *from, const camber_tessellation_desc *desc) {
     const camber_mesh_info nothing = {.method = desc->method, .strips = desc->method == CAMBER_METHOD_STRIP};
     camber_context *context = mesh->device->context;
     camber_row *rows = NULL;
@@ -207,15 +235,15 @@ camber_status camber_tessellate(camber_mesh *mesh, const camber_polylines *polyl
         mesh->flat_caps |= desc->strokes[i].cap != CAMBER_CAP_ROUND;
     }
     mesh->mesh_info = nothing;
-    camber_status status = camber_rows_create(context, polylines, desc, &rows);
+    camber_status status = camber_rows_create(context, from->row_count, desc, &rows);
     if (status == CAMBER_OK)
-        status = camber_mesh_plan(mesh, polylines);
+        status = plan(mesh, from, desc);
     if (status == CAMBER_OK && mesh->part_count > 0) {
         status = camber_device_program(mesh->device, desc->method, &program);
         if (status == CAMBER_OK)
             status = upload_rows(mesh, rows, desc->stroke_count);
         if (status == CAMBER_OK)
-            status = run_parts(mesh, polylines, program);
+            status = run_parts(mesh, from->polylines, program);
         if (status == CAMBER_OK && mesh->mesh_info.record_count > 0)
             camber_program_save(mesh->device, program);
         camber_mesh_info *info = &mesh->mesh_info;
@@ -228,4 +256,16 @@ camber_status camber_tessellate(camber_mesh *mesh, const camber_polylines *polyl
     mesh->empty = mesh->mesh_info.vertex_count == 0;
     camber_free(context, rows);
     return status;
+}
+
+camber_status camber_tessellate(camber_mesh *mesh, const camber_polylines *polylines,
+                                const camber_tessellation_desc *desc) {
+    const source from = {.polylines = polylines, .row_count = polylines->row_count};
+    return tessellate(mesh, &from, desc);
+}
+
+camber_status camber_tessellate_network(camber_mesh *mesh, camber_network *network, const camber_camera *camera,
+                                        const camber_tessellation_desc *desc) {
+    const source from = {.network = network, .camera = camera, .row_count = network->row_count};
+    return tessellate(mesh, &from, desc);
 }

@@ -238,7 +238,7 @@ static camber_status number_vertices(camber_context *context, const camber_mesh_
 static camber_status run(camber_context *context, const camber_polylines *polylines,
                          const camber_tessellation_desc *desc, camber_mesh_data *data, camber_stages *stages) {
     camber_row *rows = NULL;
-    camber_status status = camber_rows_create(context, polylines, desc, &rows);
+    camber_status status = camber_rows_create(context, polylines->row_count, desc, &rows);
     if (status != CAMBER_OK)
         return status;
     data->info = (camber_mesh_info){.method = desc->method, .strips = desc->method == CAMBER_METHOD_STRIP};

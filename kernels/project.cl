@@ -1,0 +1,31 @@
+/* project: the slots of a network that the camera sees, in px, as classify reads them.
+ * Reads what survey reads and bases[chunks + 1], the slots before each chunk and all of them; writes x, y, info[s + 2]
+ * with s these rounded up to CAMBER_BLOCK, a ghost before them and ghosts behind, and the joins of the first ghost and
+ * the last, which classify leaves. A work-item a chunk. */
+kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK / CAMBER_SCAN_POINTS, 1, 1))) void project(
+    global const camber_i32 *restrict x, global const camber_i32 *restrict y, global const float *restrict importance,
+    global const camber_run *restrict runs, global const camber_u32 *restrict chunk_runs,
+    global const camber_u32 *restrict bases, global float *restrict slot_x, global float *restrict slot_y,
+    global camber_u32 *restrict slot_info, global camber_u32 *restrict joins, const camber_projection projection) {
+    const camber_u32 item = (camber_u32)get_global_id(0), chunk = projection.begin / CAMBER_CHUNK + item;
+    camber_u32 begin, end;
+    camber_chunk_bounds(&projection, chunk, &begin, &end);
+    if (begin >= end)
+        return;
+    camber_walk w = {x, y, importance, slot_x, slot_y, slot_info, 1u, bases[item] + 1u, 0, 0, 0};
+    if (item == 0u) {
+        slot_x[0] = slot_y[0] = 0.0f;
+        slot_info[0] = joins[0] = 0u;
+    }
+    if (bases[item + 1u] > bases[item])
+        camber_walk_chunk(&w, &projection, runs + chunk_runs[chunk], begin, end);
+    if (end == projection.end) {
+        const camber_u32 count = bases[item + 1u];
+        const camber_u32 padded = (count + CAMBER_BLOCK - 1u) / CAMBER_BLOCK * CAMBER_BLOCK;
+        for (camber_u32 i = count + 1u; i < padded + 2u; i++) {
+            slot_x[i] = slot_y[i] = 0.0f;
+            slot_info[i] = 0u;
+        }
+        joins[padded + 1u] = 0u;
+    }
+}

@@ -1,0 +1,294 @@
+/* Networks: cleaning polylines in world coordinates into steps of their box, and aiming a camera at them. */
+#include "tess/network.h"
+
+#include <assert.h>
+#include <math.h>
+
+/* Steps over the longer side of the box: differences of two of them are 32-bit numbers. */
+static const double STEPS = 2147483646.0;
+/* No difference of two coordinates is infinite. */
+static const double FARTHEST = 1e300;
+/* Of slots a point: its own, a ring's ghost, and the end of a piece. */
+static const size_t MOST_POINTS = INT32_MAX;
+/* A miter limit without reason must not undo the cutting. */
+static const double LARGEST_REACH_PX = 65536.0;
+
+/* ---- Making ---- */
+
+static camber_status check_entry(camber_context *context, const camber_network_desc *desc,
+                                 const camber_network_entry *entry, size_t index) {
+    if (entry->polyline >= desc->polyline_count)
+        return camber_fail(context, CAMBER_ERROR_INPUT,
+                           "network: entry %zu is polyline %u, and there are %zu; give one of these", index,
+                           entry->polyline, desc->polyline_count);
+    if (desc->offsets[entry->polyline + 1] < desc->offsets[entry->polyline])
+        return camber_fail(context, CAMBER_ERROR_INPUT,
+                           "network: polyline %u ends before it begins; offsets must ascend", entry->polyline);
+    if (entry->row >= 1u << 24)
+        return camber_fail(context, CAMBER_ERROR_INPUT,
+                           "network: entry %zu: its row %u is not below %u; merge equal rows", index, entry->row,
+                           1u << 24);
+    return CAMBER_OK;
+}
+
+static camber_network_entry entry_of(const camber_network_desc *desc, size_t index) {
+    return desc->entries ? desc->entries[index] : (camber_network_entry){.polyline = (uint32_t)index};
+}
+
+static bool is_valid(double x, double y) {
+    return fabs(x) <= FARTHEST && fabs(y) <= FARTHEST;
+}
+
+typedef struct bounds {
+    double x0, y0, x1, y1;
+} bounds;
+
+static void add_polyline(const camber_network_desc *desc, camber_network_entry entry, bounds *box) {
+    for (size_t i = desc->offsets[entry.polyline]; i < desc->offsets[entry.polyline + 1]; i++) {
+        const double x = desc->points[2 * i] + entry.shift_x, y = desc->points[2 * i + 1];
+        if (!is_valid(x, y))
+            continue;
+        box->x0 = x < box->x0 ? x : box->x0;
+        box->x1 = x > box->x1 ? x : box->x1;
+        box->y0 = y < box->y0 ? y : box->y0;
+        box->y1 = y > box->y1 ? y : box->y1;
+    }
+}
+
+/* Checks the entries, counts their points and finds their box. */
+static camber_status measure(camber_network *n, const camber_network_desc *desc) {
+    bounds box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+    for (size_t i = 0; i < n->entry_count; i++) {
+        const camber_network_entry entry = entry_of(desc, i);
+        const camber_status status = check_entry(n->context, desc, &entry, i);
+        if (status != CAMBER_OK)
+            return status;
+        add_polyline(desc, entry, &box);
+        n->stats.points += desc->offsets[entry.polyline + 1] - desc->offsets[entry.polyline];
+    }
+    n->stats.polylines = n->entry_count;
+    if (n->stats.points > MOST_POINTS || n->entry_count > MOST_POINTS)
+        return camber_fail(n->context, CAMBER_ERROR_LIMIT,
+                           "network: %zu points in %zu polylines are more than 32-bit indices hold; draw them in parts",
+                           n->stats.points, n->entry_count);
+    if (box.x0 > box.x1)
+        box = (bounds){0, 0, 0, 0};
+    const double extent = fmax(box.x1 - box.x0, box.y1 - box.y0);
+    n->x0 = box.x0;
+    n->y0 = box.y0;
+    n->step = extent > 0.0 ? extent / STEPS : 1.0;
+    return CAMBER_OK;
+}
+
+static int32_t to_step(double offset, double step) {
+    const double steps = floor(offset / step + 0.5);
+    return (int32_t)(steps < STEPS ? steps : STEPS);
+}
+
+static void put_point(camber_network *n, const double *point, double shift_x, float importance) {
+    const int32_t x = to_step(point[0] + shift_x - n->x0, n->step), y = to_step(point[1] - n->y0, n->step);
+    camber_run *run = n->runs + n->run_count;
+    const float weight = importance >= 0.0f ? importance : importance < 0.0f ? 0.0f : INFINITY;
+    if (n->point_count > run->first && n->x[n->point_count - 1] == x && n->y[n->point_count - 1] == y) {
+        float *kept = n->importance + n->point_count - 1;
+        *kept = weight > *kept ? weight : *kept;
+        n->stats.repeated_points++;
+        return;
+    }
+    n->x[n->point_count] = x;
+    n->y[n->point_count] = y;
+    n->importance[n->point_count++] = weight;
+    run->x0 = x < run->x0 ? x : run->x0;
+    run->x1 = x > run->x1 ? x : run->x1;
+    run->y0 = y < run->y0 ? y : run->y0;
+    run->y1 = y > run->y1 ? y : run->y1;
+}
+
+/* Valid points [first, end) of the desc. */
+static void put_run(camber_network *n, const camber_network_desc *desc, camber_network_entry entry, size_t first,
+                    size_t end, bool may_close) {
+    const double *from = desc->points + 2 * first, *last = desc->points + 2 * (end - 1);
+    const bool closes = may_close && end - first > 2 && from[0] == last[0] && from[1] == last[1];
+    camber_run *run = n->runs + n->run_count;
+    *run = (camber_run){(uint32_t)n->point_count, entry.row << CAMBER_POINT_ROW_SHIFT, INT32_MAX, INT32_MAX, -1, -1};
+    for (size_t i = first; i < end; i++)
+        put_point(n, desc->points + 2 * i, entry.shift_x, desc->importance ? desc->importance[i] : INFINITY);
+    const size_t count = n->point_count - run->first;
+    n->importance[run->first] = n->importance[n->point_count - 1] = INFINITY;
+    if (closes && count > 2)
+        run->word |= CAMBER_RUN_RING;
+    n->stats.kept_points += count;
+    n->stats.kept_segments += count - 1;
+    n->stats.dots += count == 1;
+    n->stats.rings += closes && count > 2;
+    n->run_count++;
+}
+
+static camber_status put_entry(camber_network *n, const camber_network_desc *desc, camber_network_entry entry,
+                               size_t *run_capacity) {
+    const size_t begin = desc->offsets[entry.polyline], end = desc->offsets[entry.polyline + 1];
+    n->stats.empty_polylines += begin == end;
+    size_t first = begin;
+    for (size_t i = begin; i <= end; i++) {
+        if (i < end && is_valid(desc->points[2 * i] + entry.shift_x, desc->points[2 * i + 1]))
+            continue;
+        if (!camber_grow(n->context, &n->runs, run_capacity, n->run_count + 2, sizeof *n->runs))
+            return CAMBER_ERROR_MEMORY;
+        if (i > first)
+            put_run(n, desc, entry, first, i, !desc->keep_open && first == begin && i == end);
+        n->stats.invalid_points += i < end;
+        first = i + 1;
+    }
+    return CAMBER_OK;
+}
+
+static camber_status fill(camber_network *n, const camber_network_desc *desc) {
+    camber_context *context = n->context;
+    const size_t points = n->stats.points;
+    size_t run_capacity = 0;
+    if (!(n->x = camber_alloc(context, points, sizeof *n->x)) ||
+        !(n->y = camber_alloc(context, points, sizeof *n->y)) ||
+        !(n->importance = camber_alloc(context, points, sizeof *n->importance)) ||
+        !(n->entry_runs = camber_alloc(context, n->entry_count + 1, sizeof *n->entry_runs)) ||
+        !(n->entry_rows = camber_alloc(context, n->entry_count, sizeof *n->entry_rows)) ||
+        !camber_grow(context, &n->runs, &run_capacity, n->entry_count + 1, sizeof *n->runs))
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < n->entry_count; i++) {
+        const camber_network_entry entry = entry_of(desc, i);
+        n->entry_runs[i] = (uint32_t)n->run_count;
+        n->entry_rows[i] = entry.row;
+        n->row_count = entry.row + 1 > n->row_count ? entry.row + 1 : n->row_count;
+        const camber_status status = put_entry(n, desc, entry, &run_capacity);
+        if (status != CAMBER_OK)
+            return status;
+    }
+    n->entry_runs[n->entry_count] = (uint32_t)n->run_count;
+    n->runs[n->run_count] = (camber_run){.first = (uint32_t)n->point_count};
+    return CAMBER_OK;
+}
+
+camber_status camber_network_create(camber_context *context, const camber_network_desc *desc,
+                                    camber_network **network) {
+    assert(desc->polyline_count == 0 || desc->offsets);
+    assert(desc->entry_count == 0 || desc->entries);
+    camber_network *made = camber_alloc_zero(context, 1, sizeof *made);
+    if (!made)
+        return CAMBER_ERROR_MEMORY;
+    made->context = context;
+    made->holders = 1;
+    made->serial = context->next_serial++;
+    made->entry_count = desc->entries ? desc->entry_count : desc->polyline_count;
+    camber_status status = measure(made, desc);
+    if (status == CAMBER_OK)
+        status = fill(made, desc);
+    if (status == CAMBER_OK)
+        *network = made;
+    else
+        camber_network_destroy(made);
+    return status;
+}
+
+void camber_network_hold(camber_network *network) {
+    network->holders++;
+}
+
+void camber_network_destroy(camber_network *network) {
+    if (!network || --network->holders > 0)
+        return;
+    camber_context *context = network->context;
+    camber_free(context, network->entry_rows);
+    camber_free(context, network->entry_runs);
+    camber_free(context, network->runs);
+    camber_free(context, network->importance);
+    camber_free(context, network->y);
+    camber_free(context, network->x);
+    camber_free(context, network);
+}
+
+camber_polylines_stats camber_network_get_stats(const camber_network *network) {
+    return network->stats;
+}
+
+/* ---- Aiming ---- */
+
+static camber_status check_camera(camber_context *context, const camber_camera *camera) {
+    const double sides = (double)camera->width * camera->height;
+    if (!(isfinite(camera->x) && isfinite(camera->y) && isfinite(camera->bearing_deg)))
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "camera: at %g, %g with a bearing of %g; give numbers",
+                           camera->x, camera->y, camera->bearing_deg);
+    if (!(camera->scale_px > 0.0 && isfinite(camera->scale_px)))
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "camera: %g px a world unit; choose a number above 0",
+                           camera->scale_px);
+    if (!(camera->simplify_px >= 0.0 && isfinite(camera->simplify_px)))
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT,
+                           "camera: a simplification of %g px; choose 0 or a distance in pixels", camera->simplify_px);
+    if (sides < 1.0 || camera->width > 65535u || camera->height > 65535u)
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT,
+                           "camera: a picture of %u x %u px; choose sides of 1 to 65535", camera->width,
+                           camera->height);
+    return CAMBER_OK;
+}
+
+/* How far from its polyline a stroke touches pixels. */
+static double reach_of(const camber_stroke *stroke) {
+    const double half = 0.5 * (double)stroke->width_px;
+    double factor = stroke->cap == CAMBER_CAP_SQUARE ? 1.5 : 1.0; /* a corner lies sqrt(2) away */
+    if (stroke->join == CAMBER_JOIN_MITER)
+        factor = fmax(factor, stroke->miter_limit > 0.0f ? (double)stroke->miter_limit : 2.0);
+    return fmin(half * factor, fmax(half, LARGEST_REACH_PX));
+}
+
+/* Steps of the network, rounded outwards and bound to 32 bits. */
+static int32_t outwards(double offset, double step, double by) {
+    const double steps = floor(offset / step) + by;
+    return steps <= (double)INT32_MIN ? INT32_MIN : steps >= (double)INT32_MAX ? INT32_MAX : (int32_t)steps;
+}
+
+static double origin_of(double offset, double step) {
+    const double steps = floor(offset / step + 0.5);
+    return steps <= 0.0 ? 0.0 : steps >= STEPS ? STEPS : steps;
+}
+
+camber_status camber_network_aim(const camber_network *network, const camber_camera *camera,
+                                 const camber_tessellation_desc *desc, camber_projection *projection) {
+    const camber_status status = check_camera(network->context, camera);
+    if (status != CAMBER_OK)
+        return status;
+    const double angle = fmod(camera->bearing_deg, 360.0) * (3.14159265358979323846 / 180.0);
+    const bool quarters = remainder(camera->bearing_deg, 90.0) == 0.0; /* axis-parallel lines stay so */
+    const double cosine = quarters ? round(cos(angle)) : cos(angle), sine = quarters ? round(sin(angle)) : sin(angle);
+    const double step = network->step, scale = step * camera->scale_px;
+    const double origin_x = origin_of(camera->x - network->x0, step),
+                 origin_y = origin_of(camera->y - network->y0, step);
+    const double dx = (network->x0 + origin_x * step - camera->x) * camera->scale_px;
+    const double dy = (network->y0 + origin_y * step - camera->y) * camera->scale_px;
+    const double half_x = 0.5 * camera->width, half_y = 0.5 * camera->height;
+    double reach = 0.0;
+    for (size_t i = 0; i < desc->stroke_count; i++)
+        reach = fmax(reach, reach_of(desc->strokes + i));
+    const double margin = fmax(reach + 16.0, 64.0);
+    /* Half the box of the turned window, in world units. */
+    const double seen_x = ((half_x + margin) * fabs(cosine) + (half_y + margin) * fabs(sine)) / camera->scale_px;
+    const double seen_y = ((half_x + margin) * fabs(sine) + (half_y + margin) * fabs(cosine)) / camera->scale_px;
+    *projection = (camber_projection){
+        .origin_x = (int32_t)origin_x,
+        .origin_y = (int32_t)origin_y,
+        .across_x = (float)(scale * cosine),
+        .down_x = (float)(scale * sine),
+        .at_x = (float)(dx * cosine + dy * sine + half_x),
+        .across_y = (float)(-scale * sine),
+        .down_y = (float)(scale * cosine),
+        .at_y = (float)(dy * cosine - dx * sine + half_y),
+        .tolerance = (float)(camera->simplify_px / camera->scale_px),
+        .window_x0 = (float)-margin,
+        .window_y0 = (float)-margin,
+        .window_x1 = (float)(camera->width + margin),
+        .window_y1 = (float)(camera->height + margin),
+        .seen_x0 = outwards(camera->x - seen_x - network->x0, step, -2.0),
+        .seen_y0 = outwards(camera->y - seen_y - network->y0, step, -2.0),
+        .seen_x1 = outwards(camera->x + seen_x - network->x0, step, 3.0),
+        .seen_y1 = outwards(camera->y + seen_y - network->y0, step, 3.0),
+        .end = (uint32_t)network->point_count,
+    };
+    return CAMBER_OK;
+}

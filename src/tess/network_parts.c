@@ -1,0 +1,319 @@
+/* What a mesh holds of a network on the device, and survey -> project, which make a part's slots of it. */
+#include "tess/network.h"
+
+#include <string.h>
+
+/* ---- Upload ---- */
+
+static void release_mem(cl_mem *mem) {
+    if (*mem)
+        clReleaseMemObject(*mem);
+    *mem = NULL;
+}
+
+void camber_mesh_let_go(camber_mesh *mesh) {
+    struct camber_held_network *held = mesh->held;
+    if (!held)
+        return;
+    for (size_t i = 0; i < held->section_count; i++) {
+        camber_section *s = held->sections + i;
+        release_mem(&s->x);
+        release_mem(&s->y);
+        release_mem(&s->importance);
+        release_mem(&s->runs);
+        release_mem(&s->chunk_runs);
+    }
+    release_mem(&held->counts);
+    release_mem(&held->bases);
+    camber_free(mesh->device->context, held->sections);
+    camber_network_destroy(held->network);
+    camber_free(mesh->device->context, held);
+    mesh->held = NULL;
+    mesh->serial = 0;
+}
+
+/* A buffer that the kernels read. A device that works in host memory reads the network's own, which is held as long. */
+static camber_status upload(const camber_device *device, const void *bytes, size_t size_bytes, bool is_kept,
+                            cl_mem *mem) {
+    const cl_mem_flags from = device->host_memory && is_kept ? CL_MEM_USE_HOST_PTR : CL_MEM_COPY_HOST_PTR;
+    cl_int code;
+    /* CL_MEM_USE_HOST_PTR wants a pointer to what may be written; nothing writes. */
+    cl_mem made = clCreateBuffer(device->cl, CL_MEM_READ_ONLY | from, size_bytes, (void *)(uintptr_t)bytes, &code);
+    if (code != CL_SUCCESS)
+        return camber_fail_cl(device->context, "clCreateBuffer", code);
+    *mem = made;
+    return CAMBER_OK;
+}
+
+static size_t chunks_of(size_t points) {
+    return (points + CAMBER_CHUNK - 1) / CAMBER_CHUNK;
+}
+
+static camber_status upload_chunk_runs(const camber_device *device, const camber_network *network,
+                                       camber_section *section) {
+    const size_t count = chunks_of(section->end_point - section->first_point);
+    uint32_t *chunk_runs = camber_alloc(device->context, count, sizeof *chunk_runs);
+    if (!chunk_runs)
+        return CAMBER_ERROR_MEMORY;
+    const camber_run *first = network->runs + network->entry_runs[section->first_entry], *run = first;
+    for (size_t i = 0; i < count; i++) {
+        while (run[1].first <= section->first_point + i * CAMBER_CHUNK)
+            run++;
+        chunk_runs[i] = (uint32_t)(run - first);
+    }
+    const camber_status status = upload(device, chunk_runs, 4 * count, false, &section->chunk_runs);
+    camber_free(device->context, chunk_runs);
+    return status;
+}
+
+static camber_status upload_section(const camber_device *device, const camber_network *network,
+                                    camber_section *section) {
+    const size_t first = section->first_point, points = section->end_point - first;
+    const size_t first_run = network->entry_runs[section->first_entry];
+    const size_t runs = network->entry_runs[section->end_entry] - first_run + 1;
+    camber_status status = upload(device, network->x + first, 4 * points, true, &section->x);
+    if (status == CAMBER_OK)
+        status = upload(device, network->y + first, 4 * points, true, &section->y);
+    if (status == CAMBER_OK)
+        status = upload(device, network->importance + first, 4 * points, true, &section->importance);
+    if (status == CAMBER_OK)
+        status = upload(device, network->runs + first_run, runs * sizeof *network->runs, true, &section->runs);
+    return status == CAMBER_OK ? upload_chunk_runs(device, network, section) : status;
+}
+
+/* ---- Layout ---- */
+
+/* The largest buffer that the entries [first, end) take. */
+static uint64_t section_bytes(const camber_network *network, size_t first, size_t end) {
+    const uint64_t points = camber_network_first_point(network, end) - camber_network_first_point(network, first);
+    const uint64_t runs = (uint64_t)network->entry_runs[end] - network->entry_runs[first] + 1;
+    return 4 * points > runs * sizeof(camber_run) ? 4 * points : runs * sizeof(camber_run);
+}
+
+/* The entry behind the last that fits a section beginning with first; first itself where none does. */
+static size_t find_end(const camber_network *network, size_t first, uint64_t largest) {
+    size_t low = first, high = network->entry_count + 1;
+    while (high - low > 1) {
+        const size_t middle = low + (high - low) / 2;
+        if (section_bytes(network, first, middle) <= largest)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+static camber_status lay_out(camber_mesh *mesh) {
+    struct camber_held_network *held = mesh->held;
+    const camber_network *network = held->network;
+    const uint64_t largest = mesh->device->info.largest_buffer_bytes;
+    const size_t count = network->point_count ? network->entry_count : 0;
+    for (size_t first = 0; first < count;) {
+        const size_t end = find_end(network, first, largest);
+        if (end == first)
+            return camber_fail_polyline(mesh, first, section_bytes(network, first, first + 1));
+        if (!camber_grow(mesh->device->context, &held->sections, &held->section_capacity, held->section_count + 1,
+                         sizeof *held->sections))
+            return CAMBER_ERROR_MEMORY;
+        camber_section *section = held->sections + held->section_count++;
+        *section = (camber_section){.first_entry = first,
+                                    .end_entry = end,
+                                    .first_point = camber_network_first_point(network, first),
+                                    .end_point = camber_network_first_point(network, end)};
+        first = end;
+        if (section->first_point == section->end_point)
+            continue;
+        camber_status status = upload_section(mesh->device, network, section);
+        if (status == CAMBER_OK)
+            status = camber_mesh_add_part(mesh, section->first_entry, section->end_entry);
+        if (status != CAMBER_OK)
+            return status;
+    }
+    return CAMBER_OK;
+}
+
+static camber_status hold(camber_mesh *mesh, camber_network *network) {
+    camber_context *context = mesh->device->context;
+    const size_t count = network->entry_count;
+    if (!camber_grow(context, &mesh->polyline_rows, &mesh->row_list_capacity, count, sizeof *mesh->polyline_rows) ||
+        !(mesh->held = camber_alloc_zero(context, 1, sizeof *mesh->held)))
+        return CAMBER_ERROR_MEMORY;
+    mesh->held->network = network;
+    camber_network_hold(network);
+    if (count)
+        memcpy(mesh->polyline_rows, network->entry_rows, count * sizeof *mesh->polyline_rows);
+    mesh->polyline_count = count;
+    mesh->row_count = network->row_count;
+    return lay_out(mesh);
+}
+
+camber_status camber_mesh_plan_network(camber_mesh *mesh, camber_network *network) {
+    if (mesh->serial == network->serial)
+        return CAMBER_OK;
+    camber_mesh_let_go(mesh);
+    mesh->serial = mesh->part_count = mesh->polyline_count = 0;
+    const camber_status status = hold(mesh, network);
+    if (status != CAMBER_OK) {
+        camber_mesh_let_go(mesh);
+        mesh->part_count = 0;
+        return status;
+    }
+    camber_mesh_trim_parts(mesh);
+    mesh->serial = network->serial;
+    return CAMBER_OK;
+}
+
+camber_status camber_mesh_aim(camber_mesh *mesh, const camber_camera *camera, const camber_tessellation_desc *desc) {
+    return camber_network_aim(mesh->held->network, camera, desc, &mesh->held->projection);
+}
+
+bool camber_mesh_holds(const camber_mesh *mesh, const camber_network *network) {
+    return mesh->done && mesh->serial == network->serial;
+}
+
+/* ---- Parts ---- */
+
+void camber_part_set_points(const camber_mesh *mesh, camber_mesh_part *part) {
+    const struct camber_held_network *held = mesh->held;
+    part->section = held->section_count - 1;
+    while (held->sections[part->section].first_entry > part->first_polyline)
+        part->section--;
+    part->first_point = camber_network_first_point(held->network, part->first_polyline);
+    part->end_point = camber_network_first_point(held->network, part->first_polyline + part->polyline_count);
+}
+
+/* The projection of a part: its points are counted from the start of its section. */
+static camber_projection projection_of(const camber_mesh *mesh, const camber_mesh_part *part) {
+    const size_t first = mesh->held->sections[part->section].first_point;
+    camber_projection p = mesh->held->projection;
+    p.first_point = (uint32_t)first;
+    p.begin = (uint32_t)(part->first_point - first);
+    p.end = (uint32_t)(part->end_point - first);
+    return p;
+}
+
+static size_t part_chunks(const camber_projection *p) {
+    return chunks_of(p->end) - p->begin / CAMBER_CHUNK;
+}
+
+size_t camber_part_network_slot(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline) {
+    const camber_projection p = projection_of(mesh, part);
+    const size_t point = camber_network_first_point(mesh->held->network, polyline);
+    if (part->slot_count == 0 || point >= part->end_point)
+        return part->slot_count ? part->chunk_bases[part_chunks(&p)] : 0;
+    const size_t chunk = (point - p.first_point) / CAMBER_CHUNK, start = p.first_point + chunk * CAMBER_CHUNK;
+    const size_t begin = start > part->first_point ? start : part->first_point;
+    return part->chunk_bases[chunk - p.begin / CAMBER_CHUNK] +
+           (size_t)camber_network_count(mesh->held->network, &p, begin, point);
+}
+
+/* ---- Stages ---- */
+
+typedef struct stage {
+    const char *name;
+    cl_kernel kernel;
+    const cl_mem *mems;
+    cl_uint mem_count;
+} stage;
+
+/* Runs a stage over the chunks of a part; the projection is its last argument. */
+static camber_status run_stage(const camber_device *device, const camber_projection *p, stage s, cl_event *event) {
+    const size_t local = device->block / CAMBER_SCAN_POINTS;
+    const size_t global = (part_chunks(p) + local - 1) / local * local;
+    cl_int code = CL_SUCCESS;
+    for (cl_uint i = 0; i < s.mem_count && code == CL_SUCCESS; i++)
+        code = clSetKernelArg(s.kernel, i, sizeof *s.mems, s.mems + i);
+    if (code == CL_SUCCESS)
+        code = clSetKernelArg(s.kernel, s.mem_count, sizeof *p, p);
+    if (code != CL_SUCCESS)
+        return camber_fail_stage(device, "clSetKernelArg", s.name, code);
+    code = clEnqueueNDRangeKernel(device->queue, s.kernel, 1, NULL, &global, &local, 0, NULL, event);
+    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_stage(device, "clEnqueueNDRangeKernel", s.name, code);
+}
+
+static camber_status reserve_chunks(const camber_mesh *mesh, camber_mesh_part *part, size_t chunks) {
+    struct camber_held_network *held = mesh->held;
+    if (!camber_grow(mesh->device->context, &part->chunk_bases, &part->chunk_capacity, chunks + 1,
+                     sizeof *part->chunk_bases))
+        return CAMBER_ERROR_MEMORY;
+    if (chunks <= held->chunk_capacity)
+        return CAMBER_OK;
+    release_mem(&held->counts);
+    release_mem(&held->bases);
+    held->chunk_capacity = 0;
+    camber_status status = camber_make_buffer(mesh->device, 4 * chunks, &held->counts);
+    if (status == CAMBER_OK)
+        status = camber_make_buffer(mesh->device, 4 * (chunks + 1), &held->bases);
+    if (status == CAMBER_OK)
+        held->chunk_capacity = chunks;
+    return status;
+}
+
+/* How many slots the part has, and how many each chunk has before it. */
+static camber_status survey(camber_mesh *mesh, camber_mesh_part *part, const camber_projection *p,
+                            const camber_program *program, uint64_t *slots) {
+    const camber_device *device = mesh->device;
+    const struct camber_held_network *held = mesh->held;
+    const camber_section *section = held->sections + part->section;
+    const size_t chunks = part_chunks(p);
+    const cl_mem mems[] = {section->x,    section->y,          section->importance,
+                           section->runs, section->chunk_runs, held->counts};
+    cl_event event = NULL;
+    const camber_status status = run_stage(device, p, (stage){"survey", program->survey, mems, 6}, &event);
+    if (status != CAMBER_OK)
+        return status;
+    cl_int code;
+    const cl_uint *counts =
+        clEnqueueMapBuffer(device->queue, held->counts, CL_TRUE, CL_MAP_READ, 0, 4 * chunks, 0, NULL, NULL, &code);
+    camber_add_ms(event, &mesh->mesh_info.survey_ms);
+    if (code != CL_SUCCESS)
+        return camber_fail_cl(device->context, "clEnqueueMapBuffer", code);
+    *slots = 0;
+    for (size_t i = 0; i <= chunks; i++) {
+        part->chunk_bases[i] = (uint32_t)*slots;
+        *slots += i < chunks ? counts[i] : 0;
+    }
+    clEnqueueUnmapMemObject(device->queue, held->counts, (void *)(uintptr_t)counts, 0, NULL, NULL);
+    return CAMBER_OK;
+}
+
+/* Gives a part room for slots, and some more where the device has it: the next frame may take them. */
+static camber_status reserve_slots(const camber_device *device, camber_mesh_part *part, size_t slots) {
+    const size_t block = device->block, more = slots + slots / 4 / block * block;
+    const uint64_t largest = device->info.largest_buffer_bytes;
+    part->slot_count = slots;
+    return camber_part_reserve(device, part,
+                               slots <= part->slot_capacity || 4 * ((uint64_t)more + 2) > largest ? slots : more);
+}
+
+camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program,
+                                  bool *fits) {
+    const camber_device *device = mesh->device;
+    const camber_projection p = projection_of(mesh, part);
+    const size_t block = device->block;
+    uint64_t slots = 0;
+    part->slot_count = part->record_count = part->vertex_count = part->index_count = 0;
+    if (p.begin == p.end)
+        return CAMBER_OK;
+    camber_status status = reserve_chunks(mesh, part, part_chunks(&p));
+    if (status == CAMBER_OK)
+        status = survey(mesh, part, &p, program, &slots);
+    const uint64_t padded = (slots + block - 1) / block * block;
+    const uint64_t size_bytes = 4 * (padded + 2);
+    if (status != CAMBER_OK || slots == 0)
+        return status;
+    if (size_bytes > device->info.largest_buffer_bytes || padded > UINT32_MAX - 1024u) {
+        *fits = false;
+        return part->polyline_count > 1 ? CAMBER_OK : camber_fail_polyline(mesh, part->first_polyline, size_bytes);
+    }
+    status = reserve_slots(device, part, (size_t)padded);
+    if (status == CAMBER_OK)
+        status = camber_write_buffer(device, mesh->held->bases, 0, 4 * (part_chunks(&p) + 1), part->chunk_bases);
+    if (status != CAMBER_OK)
+        return status;
+    const camber_section *section = mesh->held->sections + part->section;
+    const cl_mem mems[] = {
+        section->x, section->y, section->importance, section->runs, section->chunk_runs, mesh->held->bases,
+        part->x,    part->y,    part->info,          part->joins};
+    return run_stage(device, &p, (stage){"project", program->project, mems, 10}, &mesh->held->projected);
+}

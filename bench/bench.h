@@ -1,31 +1,167 @@
-/* What the benchmark draws, and whom it draws it with. */
+/* The benchmark: sections that measure, each into rows and figures of one JSON document, from which tables, plots,
+ * comparisons and the README's numbers are made. */
 #ifndef CAMBER_BENCH_H
 #define CAMBER_BENCH_H
 
 #include "camber.h"
+#include "peers/peer.h"
 
+#include <jansson.h>
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 
-enum { BENCH_SIDE_PX = 2048 };
+enum { BENCH_SCENES_MAX = 8, BENCH_RUNS_MAX = 16 };
+
+/* What a frame leaves out by default: detail that it cannot show. */
+#define BENCH_SIMPLIFY_PX 0.1
+
+typedef enum bench_size {
+    BENCH_FULL = 0,
+    BENCH_QUICK, /* about a minute */
+    BENCH_TINY,  /* seconds: scenes too small to mean anything, to see that it runs */
+} bench_size;
 
 /* Polylines in pixels of a BENCH_SIDE_PX square, as every renderer gets them. */
 typedef struct bench_scene {
-    char name[64];
+    const char *key, *name; /* "porto", "Porto" */
     camber_lines lines;
+    size_t segments;
     float width_px;
 } bench_scene;
 
-/* Random walks that turn like roads: seeded, the same on every machine. */
-bool bench_scene_walks(camber_context *context, size_t polyline_count, double step_px, camber_lines *lines);
-/* Roads of a map file, the middle 99 % of the points on each axis spanning the square. false: not there, or built
- * without maps. */
-bool bench_scene_map(camber_context *context, const char *path, camber_lines *lines);
+typedef struct bench {
+    camber_context *context;
+    camber_surface *surface;
+    camber_device *device;
+    camber_renderer *renderer;
+    camber_mesh *mesh;
+    bench_size size;
+    size_t warm_ups, runs;       /* up to BENCH_RUNS_MAX */
+    const char *data;            /* the folder that has data/ with the larger cities, or NULL */
+    const char *program, *tool;  /* paths of camber_bench and camber */
+    uint8_t *picture, *pictured; /* a square each, RGBA: camber's, a peer's */
+    bench_scene scenes[BENCH_SCENES_MAX];
+    size_t scene_count;
+} bench;
 
-/* Milliseconds of one frame of Cairo: white, every polyline stroked by itself, black, round joins, butt caps,
- * tolerance 0.25 px. Below 0: not built in. */
-double bench_cairo_ms(const bench_scene *scene);
-/* "1.16.0", or NULL where it is not built in. */
-const char *bench_cairo_version(void);
+/* ---- rig.c: camber at work ---- */
+
+bool bench_open(bench *b);
+void bench_close(bench *b);
+
+typedef struct bench_frame_desc {
+    const camber_lines *lines;
+    float width_px;
+    double simplify_px; /* 0: everything is drawn */
+    camber_overlap overlap;
+    uint8_t *picture; /* NULL: not read back */
+} bench_frame_desc;
+
+typedef struct bench_frame_times {
+    double frame_ms; /* from lines in memory to pixels in memory */
+    double draw_ms;  /* clear, draw, finish */
+    double kernels_ms;
+} bench_frame_times;
+
+camber_status bench_frame(bench *b, const bench_frame_desc *desc, bench_frame_times *times);
+
+/* A series of measurements. */
+typedef struct bench_series {
+    double values[BENCH_RUNS_MAX];
+    size_t count;
+} bench_series;
+
+void bench_series_add(bench_series *series, double value);
+/* 0 of none. */
+double bench_series_median(const bench_series *series);
+
+/* Milliseconds that a copy of size_bytes takes, shared out over as many threads as the kernels run on. 0 where it
+ * cannot be measured. */
+double bench_copy_ms(const bench *b, size_t size_bytes);
+/* What a frame that no peer draws is compared with: a scene that is the same everywhere, drawn by the first peer that
+ * is built in, or else a copy in memory. */
+typedef struct bench_yardstick {
+    const char *name; /* "Cairo's long walks" */
+    double ms;
+} bench_yardstick;
+
+bench_yardstick bench_yardstick_measure(bench *b);
+
+/* ---- scenes.c ---- */
+
+/* All that can be made here, or the one of that key. false: none. */
+bool bench_scenes_make(bench *b, const char *key);
+void bench_scenes_free(bench *b);
+/* NULL: not here. */
+const bench_scene *bench_scene_find(const bench *b, const char *key);
+/* Where the scene's map lies. false: it has none here. */
+bool bench_scene_path(const bench *b, const char *key, char *path, size_t size);
+
+/* ---- child.c: other processes ---- */
+
+typedef struct bench_child {
+    double wall_ms;
+    int status;   /* as it exited; -1: it could not be started, or a signal ended it */
+    char *output; /* what it printed; free it */
+} bench_child;
+
+/* arguments end with NULL; the first is the program. cache_dir is its XDG_CACHE_HOME; NULL: as it is here. input goes
+ * to its standard input; NULL: none. */
+bench_child bench_child_run(const char *const *arguments, const char *cache_dir, const char *input);
+
+/* ---- Sections ---- */
+
+/* A section's result is {"rows": [...], "figures": [...]}. only: the item to measure, NULL for all. */
+typedef struct bench_section {
+    const char *name;
+    json_t *(*measure)(bench *b, const char *only);
+    void (*print)(const json_t *result, FILE *to);
+} bench_section;
+
+extern const bench_section *const bench_sections[]; /* NULL behind the last */
+
+extern const bench_section bench_section_stages, bench_section_frames, bench_section_zooms, bench_section_mosaic,
+    bench_section_fly, bench_section_start;
+
+json_t *bench_result_new(void);
+/* Takes row. */
+void bench_result_add_row(json_t *result, json_t *row);
+json_t *bench_result_rows(const json_t *result);
+
+/* A number that two runs can be compared by: never a time, which belongs to its machine, but a ratio to something
+ * measured in the same run, or a count of bytes. item: what of the section to measure again. */
+typedef struct bench_figure {
+    const char *item, *what, *against; /* "porto", "draw at 0.1 px", "Cairo"; against NULL: a count */
+    double value;
+    bool less; /* is better */
+} bench_figure;
+
+/* Left out where the value is not a number above 0. */
+void bench_result_add_figure(json_t *result, const bench_figure *figure);
+
+/* Times of a row are kept to a microsecond. */
+json_t *bench_ms(double ms);
+/* Of a row: 0 or "" where it is not there. */
+double bench_number(const json_t *row, const char *key);
+const char *bench_text(const json_t *row, const char *key);
+
+/* The fastest of a library's ways to draw, by the row's "peers", of those whose picture is like camber's; 0: none. */
+double bench_best_peer(const json_t *peers, const char *library);
+
+/* One child's part of the mosaic; prints its row. Gives the exit status. */
+int bench_mosaic_child(bench *b, size_t points);
+
+/* ---- The document ---- */
+
+/* Every section measured, or the one of that name, and what on; each is printed as it comes. */
+json_t *bench_document_make(bench *b, const char *section);
+void bench_document_print(const json_t *document, FILE *to);
+/* SVG of the mosaic's curve; false: gnuplot is not there, which is said. */
+bool bench_plot_mosaic(const json_t *document, const char *path);
+/* Measures again what looks like a loss against old. Gives the losses that stay; -1: the two cannot be compared. */
+int bench_compare(bench *b, const json_t *document, const json_t *old, FILE *to);
+/* Rewrites what lies between the markers in the README at path. */
+bool bench_readme_write(const json_t *document, const char *json_path, const char *path);
 
 #endif

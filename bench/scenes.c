@@ -1,6 +1,8 @@
+/* The scenes: roads of real cities and random walks that turn like roads, as polylines in pixels of one square. */
 #include "bench.h"
 
 #include "base/base.h"
+#include "proof/statistics.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -18,8 +20,8 @@ static double uniform(uint64_t *state) {
     return (double)(*state >> 11) / 9007199254740992.0;
 }
 
-bool bench_scene_walks(camber_context *context, size_t polyline_count, double step_px, camber_lines *lines) {
-    uint64_t state = 0x2545f4914f6cdd1dull;
+static bool make_walks(camber_context *context, size_t polyline_count, double step_px, camber_lines *lines) {
+    uint64_t state = 88172645463325252ull;
     camber_lines made = {.polyline_count = polyline_count};
     made.offsets = camber_alloc(context, polyline_count + 1, sizeof *made.offsets);
     made.points = camber_alloc(context, polyline_count * WALK_POINTS_MAX, 2 * sizeof *made.points);
@@ -31,14 +33,16 @@ bool bench_scene_walks(camber_context *context, size_t polyline_count, double st
         made.offsets[i] = (uint32_t)made.point_count;
         size_t count = 2 + (size_t)(-log(1 - uniform(&state)) * 5);
         count = count < WALK_POINTS_MAX ? count : WALK_POINTS_MAX;
-        double x = uniform(&state) * BENCH_SIDE_PX, y = uniform(&state) * BENCH_SIDE_PX,
-               heading = uniform(&state) * 6.283;
+        double x = uniform(&state) * BENCH_SIDE_PX;
+        double y = uniform(&state) * BENCH_SIDE_PX;
+        double heading = uniform(&state) * 6.283;
         for (size_t k = 0; k < count; k++) {
             made.points[2 * made.point_count] = (float)x;
             made.points[2 * made.point_count + 1] = (float)y;
             made.point_count++;
             const double length = step_px * (0.3 + 1.4 * uniform(&state));
-            heading += (uniform(&state) - 0.5) * (uniform(&state) < 0.1 ? 4 : 0.8);
+            const double turn = uniform(&state) - 0.5;
+            heading += turn * (uniform(&state) < 0.1 ? 4 : 0.8);
             x += cos(heading) * length;
             y += sin(heading) * length;
         }
@@ -48,80 +52,136 @@ bool bench_scene_walks(camber_context *context, size_t polyline_count, double st
     return true;
 }
 
-/* ---- Maps ---- */
+/* ---- Cities ---- */
 
 #ifdef CAMBER_MAP
 
-#include "camber_map.h"
+#include <gdal.h>
+#include <ogr_api.h>
+#include <ogr_srs_api.h>
 
-static int ascending(const void *a, const void *b) {
-    const float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
+/* World coordinates, 0 to 1, y down. */
+typedef struct city {
+    camber_context *context;
+    double *points;
+    uint32_t *offsets; /* polyline_count + 1 */
+    size_t point_count, polyline_count, point_capacity, offset_capacity;
+    OGRCoordinateTransformationH to_degrees; /* NULL: they are */
+} city;
 
-/* Stretches one axis so that all but half a percent of the points at each end lie in 0 to the side; gives the scale. */
-static double middle_of(const camber_lines *lines, size_t axis, float *sorted, double *low) {
-    for (size_t i = 0; i < lines->point_count; i++)
-        sorted[i] = lines->points[2 * i + axis];
-    qsort(sorted, lines->point_count, sizeof *sorted, ascending);
-    *low = (double)sorted[lines->point_count / 200];
-    return (double)sorted[lines->point_count - 1 - lines->point_count / 200] - *low;
-}
-
-static bool fit(camber_context *context, camber_lines *lines) {
-    float *sorted = camber_alloc(context, lines->point_count, sizeof *sorted);
-    if (!sorted)
+static bool add_line(city *c, OGRGeometryH line) {
+    const double degrees_to_world = 1.0 / 360, pi = 3.14159265358979323846;
+    const size_t count = (size_t)OGR_G_GetPointCount(line);
+    if (!camber_grow(c->context, &c->points, &c->point_capacity, c->point_count + count, 2 * sizeof *c->points) ||
+        !camber_grow(c->context, &c->offsets, &c->offset_capacity, c->polyline_count + 2, sizeof *c->offsets))
         return false;
-    double low_x, low_y;
-    const double across = middle_of(lines, 0, sorted, &low_x), down = middle_of(lines, 1, sorted, &low_y);
-    const double scale = BENCH_SIDE_PX / (across > down ? across : down);
-    for (size_t i = 0; i < lines->point_count; i++) {
-        lines->points[2 * i] = (float)(((double)lines->points[2 * i] - low_x) * scale);
-        lines->points[2 * i + 1] = (float)(((double)lines->points[2 * i + 1] - low_y) * scale);
+    for (size_t i = 0; i < count; i++) {
+        double longitude = OGR_G_GetX(line, (int)i), latitude = OGR_G_GetY(line, (int)i);
+        if (c->to_degrees)
+            OCTTransform(c->to_degrees, 1, &longitude, &latitude, NULL);
+        double *point = c->points + 2 * c->point_count++;
+        point[0] = (longitude + 180) * degrees_to_world;
+        point[1] = (1 - asinh(tan(latitude * pi / 180)) / pi) / 2;
     }
-    camber_free(context, sorted);
-    return lines->point_count > 0;
-}
-
-static bool copy_lines(camber_context *context, const camber_lines *from, camber_lines *to) {
-    camber_lines made = {.polyline_count = from->polyline_count, .point_count = from->point_count};
-    made.offsets = camber_alloc(context, from->polyline_count + 1, sizeof *made.offsets);
-    made.points = camber_alloc(context, from->point_count, 2 * sizeof *made.points);
-    if (!made.offsets || !made.points) {
-        camber_lines_free(context, &made);
-        return false;
-    }
-    memcpy(made.offsets, from->offsets, (from->polyline_count + 1) * sizeof *made.offsets);
-    memcpy(made.points, from->points, from->point_count * 2 * sizeof *made.points);
-    *to = made;
+    c->offsets[0] = 0;
+    c->offsets[++c->polyline_count] = (uint32_t)c->point_count;
     return true;
 }
 
-bool bench_scene_map(camber_context *context, const char *path, camber_lines *lines) {
-    camber_style *style = NULL;
-    camber_features *features = NULL;
-    camber_scene *scene = NULL;
-    /* Large enough that floats keep what the fit needs, and nothing lies outside. */
-    const camber_scene_desc view = {.view = {.width = 16384, .height = 16384}};
-    const camber_source_desc source = {.path = path};
-    bool done = camber_style_builtin(context, CAMBER_THEME_LIGHT, &style) == CAMBER_OK &&
-                camber_features_create(context, style, &features) == CAMBER_OK &&
-                camber_features_read(features, &source) == CAMBER_OK &&
-                camber_scene_create(features, &view, &scene) == CAMBER_OK &&
-                copy_lines(context, camber_scene_lines(scene), lines);
-    if (done && !fit(context, lines)) {
-        camber_lines_free(context, lines);
-        done = false;
+static bool add_geometry(city *c, OGRGeometryH geometry) {
+    if (!geometry)
+        return true;
+    const OGRwkbGeometryType type = wkbFlatten(OGR_G_GetGeometryType(geometry));
+    bool done = true;
+    if (type == wkbLineString)
+        done = add_line(c, geometry);
+    for (int i = 0; type == wkbMultiLineString && done && i < OGR_G_GetGeometryCount(geometry); i++)
+        done = add_line(c, OGR_G_GetGeometryRef(geometry, i));
+    return done;
+}
+
+static bool add_layer(city *c, OGRLayerH layer) {
+    OGRSpatialReferenceH from = OGR_L_GetSpatialRef(layer), degrees = OSRNewSpatialReference(NULL);
+    OSRImportFromEPSG(degrees, 4326);
+    OSRSetAxisMappingStrategy(degrees, OAMS_TRADITIONAL_GIS_ORDER);
+    c->to_degrees = from && OSRIsProjected(from) ? OCTNewCoordinateTransformation(from, degrees) : NULL;
+    bool done = true;
+    OGRFeatureH feature;
+    while (done && (feature = OGR_L_GetNextFeature(layer))) {
+        done = add_geometry(c, OGR_F_GetGeometryRef(feature));
+        OGR_F_Destroy(feature);
     }
-    camber_scene_destroy(scene);
-    camber_features_destroy(features);
-    camber_style_destroy(style);
+    if (c->to_degrees)
+        OCTDestroyCoordinateTransformation(c->to_degrees);
+    OSRDestroySpatialReference(degrees);
+    return done;
+}
+
+/* Of OpenStreetMap its highways; of vector tiles their roads; of anything else every line. */
+static bool read_city(city *c, const char *path) {
+    GDALAllRegister();
+    const char *const options[] = {"USE_CUSTOM_INDEXING=NO", NULL}; /* reads files that are not sorted by id as well */
+    CPLPushErrorHandler(CPLQuietErrorHandler);
+    GDALDatasetH file = GDALOpenEx(path, GDAL_OF_VECTOR, NULL, options, NULL);
+    bool done = file != NULL;
+    if (file && strcmp(GDALGetDriverShortName(GDALGetDatasetDriver(file)), "OSM") == 0) {
+        OGRLayerH layer = GDALDatasetGetLayerByName(file, "lines");
+        OGR_L_SetAttributeFilter(layer, "highway IS NOT NULL");
+        done = add_layer(c, layer);
+    } else if (file && GDALDatasetGetLayerByName(file, "roads")) {
+        done = add_layer(c, GDALDatasetGetLayerByName(file, "roads"));
+    } else {
+        for (int i = 0; file && done && i < GDALDatasetGetLayerCount(file); i++)
+            done = add_layer(c, GDALDatasetGetLayer(file, i));
+    }
+    if (file)
+        GDALClose(file);
+    CPLPopErrorHandler();
+    return done && c->point_count > 0;
+}
+
+/* The middle 99 % of the points of an axis: the least of them, and how far they reach. */
+static double middle_of(const city *c, size_t axis, double *sorted, double *low) {
+    for (size_t i = 0; i < c->point_count; i++)
+        sorted[i] = c->points[2 * i + axis];
+    camber_statistics_sort(sorted, c->point_count);
+    *low = sorted[(size_t)((double)c->point_count * 0.005)];
+    return sorted[(size_t)((double)c->point_count * 0.995)] - *low;
+}
+
+/* The middle 99 % of the points on each axis span the square; the rest lies outside. */
+static bool fit(const city *c, camber_lines *lines) {
+    double *sorted = camber_alloc(c->context, c->point_count, sizeof *sorted);
+    camber_lines made = {.point_count = c->point_count, .polyline_count = c->polyline_count};
+    made.points = camber_alloc(c->context, c->point_count, 2 * sizeof *made.points);
+    made.offsets = camber_alloc(c->context, c->polyline_count + 1, sizeof *made.offsets);
+    const bool done = sorted && made.points && made.offsets;
+    if (done) {
+        double low[2];
+        const double across = middle_of(c, 0, sorted, low), down = middle_of(c, 1, sorted, low + 1);
+        const double scale = BENCH_SIDE_PX / (across > down ? across : down);
+        for (size_t i = 0; i < 2 * c->point_count; i++)
+            made.points[i] = (float)((c->points[i] - low[i % 2]) * scale);
+        memcpy(made.offsets, c->offsets, (c->polyline_count + 1) * sizeof *made.offsets);
+        *lines = made;
+    } else {
+        camber_lines_free(c->context, &made);
+    }
+    camber_free(c->context, sorted);
+    return done;
+}
+
+static bool make_city(camber_context *context, const char *path, camber_lines *lines) {
+    city c = {.context = context};
+    const bool done = read_city(&c, path) && fit(&c, lines);
+    camber_free(context, c.points);
+    camber_free(context, c.offsets);
     return done;
 }
 
 #else
 
-bool bench_scene_map(camber_context *context, const char *path, camber_lines *lines) {
+static bool make_city(camber_context *context, const char *path, camber_lines *lines) {
     (void)context;
     (void)path;
     (void)lines;
@@ -129,3 +189,87 @@ bool bench_scene_map(camber_context *context, const char *path, camber_lines *li
 }
 
 #endif
+
+/* ---- The list ---- */
+
+typedef struct scene_source {
+    const char *key, *name, *file; /* NULL: walks */
+    float width_px;
+    size_t walks;
+    double step_px;
+    bool own;  /* the file lies in the repository */
+    bool slow; /* left out of a quick run */
+} scene_source;
+
+static const scene_source sources[] = {
+    {.key = "santa_cruz", .name = "Santa Cruz", .file = CAMBER_DEMO_CITY, .width_px = 2, .own = true},
+    {.key = "porto", .name = "Porto", .file = "porto_portugal.osm.pbf", .width_px = 2},
+    {.key = "nyc", .name = "New York", .file = "nyc.osm.pbf", .width_px = 4},
+    {.key = "columbus", .name = "Columbus", .file = "columbus.osm.pbf", .width_px = 2, .slow = true},
+    {.key = "beijing", .name = "Beijing", .file = "beijing-2013.geojson", .width_px = 4, .slow = true},
+    {.key = "zoom", .name = "long walks", .walks = 10000, .step_px = 32, .width_px = 8},
+    {.key = "synth", .name = "short walks", .walks = 200000, .step_px = 3.2, .width_px = 2, .slow = true},
+};
+
+static bool path_of(const bench *b, const scene_source *from, char *path, size_t size) {
+    if (!from->file || (!from->own && !b->data))
+        return false;
+    snprintf(path, size, "%s%s%s", from->own ? "" : b->data, from->own ? "" : "/data/", from->file);
+    return true;
+}
+
+static bool make_scene(bench *b, const scene_source *from, bench_scene *scene) {
+    char path[1024];
+    *scene = (bench_scene){.key = from->key, .name = from->name, .width_px = from->width_px};
+    if (!from->file)
+        return make_walks(b->context, b->size == BENCH_TINY ? from->walks / 100 : from->walks, from->step_px,
+                          &scene->lines);
+    if (!path_of(b, from, path, sizeof path))
+        return false;
+    const bool done = make_city(b->context, path, &scene->lines);
+    if (!done)
+        fprintf(stderr, "camber_bench: %s is left out: %s cannot be read\n", from->name, path);
+    return done;
+}
+
+static bool is_wanted(const bench *b, const scene_source *from, const char *key) {
+    if (key)
+        return strcmp(key, from->key) == 0 && (b->size != BENCH_TINY || !from->file);
+    return b->size == BENCH_FULL || (b->size == BENCH_QUICK && !from->slow) || (b->size == BENCH_TINY && !from->file);
+}
+
+bool bench_scenes_make(bench *b, const char *key) {
+    if (!b->data && !key && b->size != BENCH_TINY)
+        fprintf(stderr, "camber_bench: CAMBER_DATA is unset: the larger cities are left out\n");
+    for (size_t i = 0; i < sizeof sources / sizeof *sources; i++) {
+        bench_scene *scene = b->scenes + b->scene_count;
+        if (!is_wanted(b, sources + i, key) || !make_scene(b, sources + i, scene))
+            continue;
+        for (size_t k = 0; k < scene->lines.polyline_count; k++) {
+            const uint32_t count = scene->lines.offsets[k + 1] - scene->lines.offsets[k];
+            scene->segments += count > 1 ? count - 1 : 0;
+        }
+        b->scene_count++;
+    }
+    return b->scene_count > 0;
+}
+
+bool bench_scene_path(const bench *b, const char *key, char *path, size_t size) {
+    for (size_t i = 0; i < sizeof sources / sizeof *sources; i++)
+        if (strcmp(sources[i].key, key) == 0)
+            return path_of(b, sources + i, path, size);
+    return false;
+}
+
+const bench_scene *bench_scene_find(const bench *b, const char *key) {
+    for (size_t i = 0; i < b->scene_count; i++)
+        if (strcmp(b->scenes[i].key, key) == 0)
+            return b->scenes + i;
+    return NULL;
+}
+
+void bench_scenes_free(bench *b) {
+    for (size_t i = 0; i < b->scene_count; i++)
+        camber_lines_free(b->context, &b->scenes[i].lines);
+    b->scene_count = 0;
+}

@@ -2,6 +2,7 @@
 #include "proof/bands.h"
 #include "proof/batches.h"
 #include "proof/joins.h"
+#include "proof/statistics.h"
 #include "proof/turns.h"
 
 #include <math.h>
@@ -108,18 +109,6 @@ static camber_status draw(const trial *t, bool keep, camber_frame_stats *stats) 
     return camber_render(c->session->renderer, &frame, keep ? keep_levels : NULL, &to, stats);
 }
 
-static int ascending(const void *a, const void *b) {
-    double x, y;
-    memcpy(&x, a, sizeof x);
-    memcpy(&y, b, sizeof y);
-    return (x > y) - (x < y);
-}
-
-static double median(double *series, size_t count) {
-    qsort(series, count, sizeof *series, ascending);
-    return count % 2 ? series[count / 2] : (series[count / 2 - 1] + series[count / 2]) / 2;
-}
-
 static camber_status time_runs(const trial *t) {
     camber_comparison *c = t->comparison;
     const size_t runs = c->session->options->runs;
@@ -137,8 +126,8 @@ static camber_status time_runs(const trial *t) {
         draw_ms[i - WARM_UPS] = stats.draw_ms;
     }
     if (status == CAMBER_OK) {
-        t->row->measures[t->method][CAMBER_MEASURE_TESSELLATE_MS] = median(tessellate_ms, runs);
-        t->row->measures[t->method][CAMBER_MEASURE_DRAW_MS] = median(draw_ms, runs);
+        t->row->measures[t->method][CAMBER_MEASURE_TESSELLATE_MS] = camber_statistics_median(tessellate_ms, runs);
+        t->row->measures[t->method][CAMBER_MEASURE_DRAW_MS] = camber_statistics_median(draw_ms, runs);
     }
     free(tessellate_ms);
     free(draw_ms);

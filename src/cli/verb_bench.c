@@ -1,5 +1,6 @@
 #include "cli/picture.h"
 #include "cli/verbs.h"
+#include "proof/statistics.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -62,13 +63,6 @@ static int time_run(job *j, run_times *times) {
     return camber_report_status(j->session->report, status);
 }
 
-static int ascending(const void *a, const void *b) {
-    double x, y;
-    memcpy(&x, a, sizeof x);
-    memcpy(&y, b, sizeof y);
-    return (x > y) - (x < y);
-}
-
 static bool summarise(job *j, size_t count) {
     double *series = calloc(count, sizeof *series);
     if (!series)
@@ -76,10 +70,8 @@ static bool summarise(job *j, size_t count) {
     for (size_t member = 0; member < TIMES; member++) {
         for (size_t i = 0; i < count; i++)
             memcpy(&series[i], (const char *)&j->runs[i] + member * sizeof(double), sizeof(double));
-        qsort(series, count, sizeof *series, ascending);
-        j->summaries[member] =
-            (summary){series[0], count % 2 ? series[count / 2] : (series[count / 2 - 1] + series[count / 2]) / 2,
-                      series[count - 1]};
+        const double median = camber_statistics_median(series, count);
+        j->summaries[member] = (summary){series[0], median, series[count - 1]};
     }
     free(series);
     return true;

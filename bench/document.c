@@ -1,0 +1,105 @@
+/* The document: what was measured, on what, and by which versions. */
+#include "bench.h"
+
+#include "base/base.h"
+
+#include <string.h>
+#include <time.h>
+
+#ifdef CAMBER_MAP
+#include "camber_map.h"
+#endif
+
+const bench_section *const bench_sections[] = {&bench_section_stages,
+                                               &bench_section_frames,
+                                               &bench_section_zooms,
+                                               &bench_section_mosaic,
+                                               &bench_section_fly,
+                                               &bench_section_start,
+                                               NULL};
+
+static json_t *describe_peers(void) {
+    json_t *peers = json_object();
+    for (size_t i = 0; i < bench_peer_count; i++)
+        json_object_set_new(
+            peers, bench_peers[i]->key,
+            json_pack("{s:s, s:s}", "name", bench_peers[i]->name, "version", bench_peers[i]->version()));
+    return peers;
+}
+
+static json_t *describe(const bench *b) {
+    static const char *const sizes[] = {"full", "quick", "tiny"};
+    const camber_device_info device = camber_device_get_info(b->device);
+    const camber_surface_info surface = camber_surface_get_info(b->surface);
+    char date[32];
+    const time_t now = time(NULL);
+    struct tm parts;
+    strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &parts));
+    json_t *document =
+        json_pack("{s:s, s:s, s:s, s:I, s:{s:s, s:s, s:s, s:s, s:I}, s:{s:s, s:s, s:s, s:b}, s:s, s:o}", "date", date,
+                  "camber", camber_version(), "size", sizes[b->size], "runs", (json_int_t)b->runs, "device", "name",
+                  device.name, "platform", device.platform, "version", device.version, "driver", device.driver, "units",
+                  (json_int_t)device.compute_units, "gl", "backend", surface.backend, "renderer", surface.renderer,
+                  "version", surface.version, "software", surface.software, "sharing",
+                  camber_sharing_name(camber_renderer_get_sharing(b->renderer)), "peers", describe_peers());
+#ifdef CAMBER_MAP
+    json_object_set_new(document, "gdal", json_string(camber_gdal_version()));
+#endif
+    return document;
+}
+
+static void print_head(const json_t *document, FILE *to) {
+    const json_t *device = json_object_get(document, "device"), *gl = json_object_get(document, "gl");
+    fprintf(to, "camber %s, %s: %s (%s %s), %.0f units; %s, %s; sharing: %s\n", bench_text(document, "camber"),
+            bench_text(document, "date"), bench_text(device, "name"), bench_text(device, "platform"),
+            bench_text(device, "driver"), bench_number(device, "units"), bench_text(gl, "renderer"),
+            bench_text(gl, "version"), bench_text(document, "sharing"));
+    fprintf(to, "Peers:");
+    const char *key;
+    json_t *peer;
+    json_object_foreach(json_object_get(document, "peers"), key, peer) if (!strchr(key, '_'))
+        fprintf(to, " %s %s;", bench_text(peer, "name"), bench_text(peer, "version"));
+    fprintf(to, " one thread each. Medians of %.0f runs, in turn.\n", bench_number(document, "runs"));
+}
+
+static void print_section(const json_t *document, const bench_section *section, FILE *to) {
+    const json_t *result = json_object_get(json_object_get(document, "sections"), section->name);
+    if (json_array_size(bench_result_rows(result)) == 0)
+        return;
+    fprintf(to, "\n");
+    section->print(result, to);
+    fprintf(to, "(%s: %.0f s)\n", section->name, bench_number(result, "seconds"));
+    fflush(to);
+}
+
+void bench_document_print(const json_t *document, FILE *to) {
+    print_head(document, to);
+    for (size_t i = 0; bench_sections[i]; i++)
+        print_section(document, bench_sections[i], to);
+}
+
+json_t *bench_document_make(bench *b, const char *section) {
+    json_t *document = describe(b), *sections = json_object();
+    const double begin = camber_now_ms();
+    json_object_set_new(document, "sections", sections);
+    print_head(document, stdout);
+    if (*bench_peers_missing)
+        printf("Not built in: %s\n", bench_peers_missing);
+    for (size_t i = 0; bench_sections[i]; i++) {
+        if (section && strcmp(section, bench_sections[i]->name) != 0)
+            continue;
+        const double start = camber_now_ms();
+        json_t *result = bench_sections[i]->measure(b, NULL);
+        if (!result) {
+            fprintf(stderr, "camber_bench: %s could not be measured\n", bench_sections[i]->name);
+            json_decref(document);
+            return NULL;
+        }
+        json_object_set_new(sections, bench_sections[i]->name, result);
+        json_object_set_new(result, "seconds", json_integer((json_int_t)((camber_now_ms() - start) / 1e3)));
+        print_section(document, bench_sections[i], stdout);
+    }
+    json_object_set_new(document, "seconds", json_integer((json_int_t)((camber_now_ms() - begin) / 1e3)));
+    printf("\n%.0f s\n", bench_number(document, "seconds"));
+    return document;
+}

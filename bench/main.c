@@ -1,0 +1,112 @@
+/* camber_bench: measures every section, prints the tables, and keeps, compares or publishes the document. */
+#include "bench.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct request {
+    const char *json, *plot, *against, *section;
+    long mosaic; /* points of the one mosaic that this process is a child for */
+    bench_size size;
+} request;
+
+static int usage(void) {
+    fprintf(stderr, "usage: camber_bench [--quick | --tiny] [--json OUT.json] [--plot OUT.svg] [--against OLD.json]\n"
+                    "                    [--section NAME]\n"
+                    "       camber_bench --readme RESULTS.json README.md\n");
+    return 2;
+}
+
+static bool parse(int argc, char **argv, request *r) {
+    for (int i = 1; i < argc; i++) {
+        const char *next = i + 1 < argc ? argv[i + 1] : NULL;
+        const struct {
+            const char *option;
+            const char **value;
+        } texts[] = {
+            {"--json", &r->json}, {"--plot", &r->plot}, {"--against", &r->against}, {"--section", &r->section}};
+        bool known = false;
+        for (size_t k = 0; k < sizeof texts / sizeof *texts; k++)
+            if (next && strcmp(argv[i], texts[k].option) == 0) {
+                *texts[k].value = next;
+                known = true;
+            }
+        if (next && strcmp(argv[i], "--mosaic") == 0)
+            known = (r->mosaic = strtol(next, NULL, 10)) > 0;
+        i += known;
+        if (!known && strcmp(argv[i], "--quick") == 0)
+            r->size = BENCH_QUICK;
+        else if (!known && strcmp(argv[i], "--tiny") == 0)
+            r->size = BENCH_TINY;
+        else if (!known)
+            return false;
+    }
+    return true;
+}
+
+static json_t *load(const char *path) {
+    json_error_t error;
+    json_t *document = json_load_file(path, 0, &error);
+    if (!document)
+        fprintf(stderr, "camber_bench: %s: %s\n", path, error.text);
+    return document;
+}
+
+static int publish(const char *json_path, const char *readme_path) {
+    json_t *document = load(json_path);
+    const bool done = document && bench_readme_write(document, json_path, readme_path);
+    json_decref(document);
+    return done ? 0 : 1;
+}
+
+static int keep(const json_t *document, const request *r) {
+    if (r->json && json_dump_file(document, r->json, JSON_INDENT(1) | JSON_REAL_PRECISION(6)) != 0) {
+        perror(r->json);
+        return 73;
+    }
+    if (r->plot)
+        bench_plot_mosaic(document, r->plot);
+    return 0;
+}
+
+static int measure_all(bench *b, const request *r) {
+    json_t *old = NULL, *document = NULL;
+    int status = 1;
+    if (r->against && !(old = load(r->against)))
+        return 66;
+    if (bench_scenes_make(b, NULL))
+        document = bench_document_make(b, r->section);
+    if (document)
+        status = keep(document, r);
+    if (document && status == 0 && old) {
+        const int losses = bench_compare(b, document, old, stdout);
+        status = losses < 0 ? 2 : losses > 0;
+    }
+    json_decref(document);
+    json_decref(old);
+    return status;
+}
+
+int main(int argc, char **argv) {
+    static const size_t runs[] = {7, 3, 3};
+    request r = {.json = NULL};
+    if (argc == 4 && strcmp(argv[1], "--readme") == 0)
+        return publish(argv[2], argv[3]);
+    if (!parse(argc, argv, &r))
+        return usage();
+    /* As the tool does: a core for each of PoCL's threads. */
+    setenv("POCL_AFFINITY", "1", 0);
+    const char *data = getenv("CAMBER_DATA");
+    bench b = {.size = r.size,
+               .warm_ups = r.size == BENCH_FULL ? 2 : 1,
+               .runs = runs[r.size],
+               .program = argv[0],
+               .tool = CAMBER_TOOL,
+               .data = data && *data ? data : NULL};
+    int status = bench_open(&b) ? 0 : 69;
+    if (status == 0)
+        status = r.mosaic ? bench_mosaic_child(&b, (size_t)r.mosaic) : measure_all(&b, &r);
+    bench_scenes_free(&b);
+    bench_close(&b);
+    return status;
+}

@@ -1,0 +1,87 @@
+/* Anti-Grain Geometry: conv_stroke into the scanline rasterizer, every polyline by itself or all of them in one. */
+#include "peers/peer.h"
+
+#include <agg_conv_stroke.h>
+#include <agg_pixfmt_rgba.h>
+#include <agg_rasterizer_scanline_aa.h>
+#include <agg_renderer_scanline.h>
+#include <agg_rendering_buffer.h>
+#include <agg_scanline_u.h>
+
+#include <chrono>
+
+namespace {
+
+/* A polyline where it lies. */
+class line_source {
+  public:
+    line_source(const float *points, std::size_t count) : points_(points), count_(count) {
+    }
+    void rewind(unsigned) {
+        next_ = 0;
+    }
+    unsigned vertex(double *x, double *y) {
+        if (next_ == count_)
+            return agg::path_cmd_stop;
+        *x = static_cast<double>(points_[2 * next_]);
+        *y = static_cast<double>(points_[2 * next_ + 1]);
+        return next_++ == 0 ? agg::path_cmd_move_to : agg::path_cmd_line_to;
+    }
+
+  private:
+    const float *points_;
+    std::size_t count_, next_ = 0;
+};
+
+using pixels = agg::pixfmt_rgba32;
+using rasterizer = agg::rasterizer_scanline_aa<>;
+
+void add_line(rasterizer &cells, const camber_lines &lines, std::size_t polyline, double width_px) {
+    const std::size_t first = lines.offsets[polyline], end = lines.offsets[polyline + 1];
+    if (end - first < 2)
+        return;
+    line_source source(lines.points + 2 * first, end - first);
+    agg::conv_stroke<line_source> stroke(source);
+    stroke.width(width_px);
+    stroke.line_join(agg::round_join);
+    stroke.line_cap(agg::butt_cap);
+    cells.add_path(stroke);
+}
+
+double draw(const camber_lines *lines, float width_px, uint8_t *rgba, bool one_path) {
+    const auto begin = std::chrono::steady_clock::now();
+    agg::rendering_buffer buffer(rgba, BENCH_SIDE_PX, BENCH_SIDE_PX, 4 * BENCH_SIDE_PX);
+    pixels format(buffer);
+    agg::renderer_base<pixels> base(format);
+    base.clear(agg::rgba8(255, 255, 255));
+    rasterizer cells(one_path ? 65536 : 1024); /* blocks of cells: all lines at once take more than its usual limit */
+    cells.clip_box(0, 0, BENCH_SIDE_PX, BENCH_SIDE_PX);
+    agg::scanline_u8 scanline;
+    for (std::size_t i = 0; i < lines->polyline_count; i++) {
+        add_line(cells, *lines, i, static_cast<double>(width_px));
+        if (!one_path)
+            agg::render_scanlines_aa_solid(cells, scanline, base, agg::rgba8(0, 0, 0));
+    }
+    if (one_path)
+        agg::render_scanlines_aa_solid(cells, scanline, base, agg::rgba8(0, 0, 0));
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+}
+
+double draw_lines(const camber_lines *lines, float width_px, uint8_t *rgba) {
+    return draw(lines, width_px, rgba, false);
+}
+
+double draw_path(const camber_lines *lines, float width_px, uint8_t *rgba) {
+    return draw(lines, width_px, rgba, true);
+}
+
+const char *version() {
+    return CAMBER_BENCH_AGG;
+}
+
+} // namespace
+
+extern "C" {
+const bench_peer bench_peer_agg = {"agg", "AGG", version, draw_lines};
+const bench_peer bench_peer_agg_path = {"agg_path", "AGG, one path", version, draw_path};
+}

@@ -1,0 +1,30 @@
+#include "peers/peer.h"
+
+const bench_peer *const bench_peers[] = {
+#ifdef CAMBER_BENCH_CAIRO
+    &bench_peer_cairo,
+    &bench_peer_cairo_path,
+#endif
+#ifdef CAMBER_BENCH_AGG
+    &bench_peer_agg,
+    &bench_peer_agg_path,
+#endif
+#ifdef CAMBER_BENCH_MAPNIK
+    &bench_peer_mapnik,
+#endif
+    NULL,
+};
+
+const size_t bench_peer_count = sizeof bench_peers / sizeof *bench_peers - 1;
+
+const char *const bench_peers_missing = ""
+#ifndef CAMBER_BENCH_CAIRO
+                                        "Cairo (libcairo2-dev) "
+#endif
+#ifndef CAMBER_BENCH_AGG
+                                        "AGG (libagg-dev) "
+#endif
+#ifndef CAMBER_BENCH_MAPNIK
+                                        "Mapnik (libmapnik-dev) "
+#endif
+    ;

@@ -1,0 +1,205 @@
+/* A fly-through of a city in the built-in style: pan and zoom, frame after frame, through the map's API. */
+#include "bench.h"
+
+#include "base/base.h"
+#include "proof/statistics.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#ifdef CAMBER_MAP
+
+#include "camber_map.h"
+
+enum { WIDTH_PX = 1280, HEIGHT_PX = 720, WARM_UPS = 10 };
+
+static const char *const cities[] = {"porto", "santa_cruz", NULL};
+
+typedef enum part { PART_SCENE = 0, PART_TESSELLATE, PART_DRAW, PART_READ, PART_FRAME, PARTS } part;
+
+static const char *const part_keys[PARTS] = {"scene", "tessellate", "draw", "read", "frame"};
+
+typedef struct flight {
+    bench *b;
+    camber_style *style;
+    camber_features *features;
+    camber_scene *scene;
+    camber_scene_info start;
+    size_t frames;
+    double *times[PARTS]; /* frames each */
+    double draw_calls, points;
+} flight;
+
+/* Where the flight is after a share of its way: it circles over the city and goes down to the streets and up again. */
+static camber_view_desc view_at(const flight *f, double share) {
+    const double turn = 2 * 3.14159265358979323846 * share;
+    const double degrees_across = WIDTH_PX * 360 / (512 * exp2(f->start.zoom));
+    return (camber_view_desc){.kind = CAMBER_VIEW_CENTER,
+                              .width = WIDTH_PX,
+                              .height = HEIGHT_PX,
+                              .zoom = f->start.zoom + 2 - 2 * cos(turn),
+                              .longitude = f->start.longitude + 0.15 * degrees_across * sin(turn),
+                              .latitude = f->start.latitude + 0.05 * degrees_across * sin(2 * turn)};
+}
+
+/* The scene for the next view, and its mesh. */
+static camber_status move_to(flight *f, const camber_view_desc *view) {
+    const camber_scene_desc desc = {.view = *view, .simplify_px = BENCH_SIMPLIFY_PX};
+    camber_scene_destroy(f->scene);
+    f->scene = NULL;
+    return camber_scene_create(f->features, &desc, &f->scene);
+}
+
+static camber_status tessellate(const flight *f) {
+    camber_tessellation_desc desc = {.strokes = NULL};
+    desc.strokes = camber_scene_strokes(f->scene, &desc.stroke_count);
+    return camber_tessellate(f->b->mesh, camber_scene_polylines(f->scene), &desc);
+}
+
+static bool take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
+    memcpy((uint8_t *)user + 4 * (size_t)WIDTH_PX * first_row, rgba, 4 * (size_t)WIDTH_PX * row_count);
+    return true;
+}
+
+static camber_status fly_frame(flight *f, double share, double times[PARTS]) {
+    const camber_view_desc view = view_at(f, share);
+    camber_frame_stats stats = {0};
+    const double begin = camber_now_ms();
+    camber_status status = move_to(f, &view);
+    const double moved = camber_now_ms();
+    if (status == CAMBER_OK)
+        status = tessellate(f);
+    const double made = camber_now_ms();
+    if (status == CAMBER_OK) {
+        const camber_frame frame = camber_scene_frame(f->scene, f->b->mesh);
+        status = camber_render(f->b->renderer, &frame, take_rows, f->b->picture, &stats);
+    }
+    times[PART_FRAME] = camber_now_ms() - begin;
+    times[PART_SCENE] = moved - begin;
+    times[PART_TESSELLATE] = made - moved;
+    times[PART_DRAW] = stats.draw_ms;
+    times[PART_READ] = stats.read_ms;
+    if (status == CAMBER_OK) {
+        f->draw_calls += (double)stats.draw_calls / (double)f->frames;
+        f->points += (double)camber_scene_get_info(f->scene).points_in / (double)f->frames;
+    }
+    return status;
+}
+
+static camber_status fly(flight *f) {
+    camber_status status = CAMBER_OK;
+    double times[PARTS];
+    for (int i = 0; i < WARM_UPS && status == CAMBER_OK; i++)
+        status = fly_frame(f, (double)i / WARM_UPS, times);
+    f->draw_calls = f->points = 0;
+    for (size_t i = 0; i < f->frames && status == CAMBER_OK; i++) {
+        status = fly_frame(f, (double)i / (double)f->frames, times);
+        for (int k = 0; k < PARTS; k++)
+            f->times[k][i] = times[k];
+    }
+    return status;
+}
+
+static camber_status open_flight(flight *f, const char *path) {
+    bench *b = f->b;
+    const camber_source_desc source = {.path = path};
+    const camber_scene_desc whole = {.view = {.width = WIDTH_PX, .height = HEIGHT_PX}};
+    camber_status status = camber_style_builtin(b->context, CAMBER_THEME_LIGHT, &f->style);
+    if (status == CAMBER_OK)
+        status = camber_features_create(b->context, f->style, &f->features);
+    if (status == CAMBER_OK)
+        status = camber_features_read(f->features, &source);
+    if (status == CAMBER_OK)
+        status = camber_scene_create(f->features, &whole, &f->scene);
+    if (status == CAMBER_OK)
+        f->start = camber_scene_get_info(f->scene);
+    for (int k = 0; k < PARTS; k++)
+        if (!(f->times[k] = calloc(f->frames, sizeof(double))))
+            status = CAMBER_ERROR_MEMORY;
+    return status;
+}
+
+static void close_flight(flight *f) {
+    for (int k = 0; k < PARTS; k++)
+        free(f->times[k]);
+    camber_scene_destroy(f->scene);
+    camber_features_destroy(f->features);
+    camber_style_destroy(f->style);
+}
+
+static void report(flight *f, const char *city, json_t *result) {
+    json_t *row = json_pack("{s:s, s:I, s:I, s:I, s:f, s:f}", "city", city, "width", (json_int_t)WIDTH_PX, "height",
+                            (json_int_t)HEIGHT_PX, "frames", (json_int_t)f->frames, "draw_calls", f->draw_calls,
+                            "points_in_view", f->points);
+    for (int k = 0; k < PARTS; k++) {
+        double *times = f->times[k];
+        camber_statistics_sort(times, f->frames);
+        json_object_set_new(row, part_keys[k],
+                            json_pack("{s:o, s:o, s:o}", "p50_ms",
+                                      bench_ms(camber_statistics_quantile(times, f->frames, 0.5)), "p99_ms",
+                                      bench_ms(camber_statistics_quantile(times, f->frames, 0.99)), "max_ms",
+                                      bench_ms(times[f->frames - 1])));
+    }
+    const bench_yardstick stick = bench_yardstick_measure(f->b);
+    static const char *const shares[] = {"p50_ms", "p99_ms"};
+    for (int i = 0; i < 2; i++) {
+        const double ms = bench_number(json_object_get(row, "frame"), shares[i]);
+        const bench_figure figure = {"flight", i ? "p99" : "p50", stick.name, stick.ms / ms, false};
+        bench_result_add_figure(result, &figure);
+    }
+    bench_result_add_row(result, row);
+}
+
+static json_t *measure(bench *b, const char *only) {
+    static const size_t frames[] = {300, 60, 5};
+    flight f = {.b = b, .frames = frames[b->size]};
+    json_t *result = bench_result_new();
+    char path[1024];
+    size_t i = 0;
+    (void)only; /* there is one */
+    while (cities[i] && !(bench_scene_path(b, cities[i], path, sizeof path) && open_flight(&f, path) == CAMBER_OK)) {
+        close_flight(&f);
+        f = (flight){.b = b, .frames = frames[b->size]};
+        i++;
+    }
+    const bool done = cities[i] && fly(&f) == CAMBER_OK;
+    if (done)
+        report(&f, i == 0 ? "Porto" : "Santa Cruz", result);
+    close_flight(&f);
+    if (done)
+        return result;
+    json_decref(result);
+    return NULL;
+}
+
+#else
+
+static json_t *measure(bench *b, const char *only) {
+    (void)b;
+    (void)only;
+    return bench_result_new();
+}
+
+#endif
+
+static void print(const json_t *result, FILE *to) {
+    const json_t *row = json_array_get(bench_result_rows(result), 0);
+    fprintf(to,
+            "Fly-through of %s, built-in style, %.0f frames of %.0f x %.0f px, pan and zoom, at %g px: %.0f points in "
+            "view and %.1f\n"
+            "draw calls a frame on average. scene: style, project, cull, simplify; frame: from the view to pixels in "
+            "memory.\n\n"
+            "%-10s %8s %8s %8s   ms\n",
+            bench_text(row, "city"), bench_number(row, "frames"), bench_number(row, "width"),
+            bench_number(row, "height"), BENCH_SIMPLIFY_PX, bench_number(row, "points_in_view"),
+            bench_number(row, "draw_calls"), "", "p50", "p99", "max");
+    static const char *const keys[] = {"scene", "tessellate", "draw", "read", "frame"};
+    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
+        const json_t *times = json_object_get(row, keys[i]);
+        fprintf(to, "%-10s %8.2f %8.2f %8.2f\n", keys[i], bench_number(times, "p50_ms"), bench_number(times, "p99_ms"),
+                bench_number(times, "max_ms"));
+    }
+}
+
+const bench_section bench_section_fly = {"fly", measure, print};

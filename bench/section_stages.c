@@ -1,0 +1,147 @@
+/* Tessellation: every stage against what memcpy moves in the same run, and how large the mesh is by method. */
+#include "bench.h"
+
+#include <string.h>
+
+enum { STAGES = 3, METHODS = 3, WIDTHS = 2 };
+
+static const float widths_px[WIDTHS] = {2, 8};
+
+/* Bytes a point that a stage reads and writes, by the heads of kernels/<stage>.cl, but for the mesh that emit writes;
+ * what there is once a block is left out. */
+static const struct {
+    const char *name;
+    double read, written;
+} stages[STAGES] = {
+    {"classify", 12, 4}, /* x, y, info; joins */
+    {"scan", 8, 4},      /* joins, info; offsets */
+    {"emit", 20, 0},     /* x, y, info, joins, offsets; the mesh */
+};
+
+typedef struct trial {
+    bench *b;
+    const bench_scene *scene;
+    camber_polylines *polylines;
+    float width_px;
+    camber_method method;
+    camber_mesh_info info;
+    bench_series series[STAGES], all;
+} trial;
+
+static camber_status tessellate(trial *t) {
+    const camber_stroke stroke = {.width_px = t->width_px};
+    const camber_tessellation_desc desc = {.strokes = &stroke, .stroke_count = 1, .method = t->method};
+    camber_status status = CAMBER_OK;
+    for (size_t run = 0; run < t->b->warm_ups + t->b->runs && status == CAMBER_OK; run++) {
+        status = camber_tessellate(t->b->mesh, t->polylines, &desc);
+        if (status != CAMBER_OK || run < t->b->warm_ups)
+            continue;
+        const camber_mesh_info info = camber_mesh_get_info(t->b->mesh);
+        bench_series_add(t->series + 0, info.classify_ms);
+        bench_series_add(t->series + 1, info.scan_ms);
+        bench_series_add(t->series + 2, info.emit_ms);
+        bench_series_add(&t->all, info.classify_ms + info.scan_ms + info.emit_ms);
+        t->info = info;
+    }
+    return status;
+}
+
+/* GB/s of a copy, counting bytes read and written. */
+static double copy_gb_s(const bench *b, double moved_bytes) {
+    const double ms = bench_copy_ms(b, (size_t)(moved_bytes / 2));
+    return ms > 0 ? moved_bytes / ms / 1e6 : 0;
+}
+
+static void add_stage(json_t *row, const char *name, double ms, double points, double bytes, double copied_gb_s) {
+    const double gb_s = ms > 0 ? bytes / ms / 1e6 : 0;
+    json_object_set_new(row, name,
+                        json_pack("{s:o, s:f, s:f, s:f}", "ms", bench_ms(ms), "m_points_s",
+                                  ms > 0 ? points / ms / 1e3 : 0, "gb_s", gb_s, "share",
+                                  copied_gb_s > 0 ? gb_s / copied_gb_s : 0));
+}
+
+static void report(trial *t, json_t *result) {
+    const double points = (double)camber_polylines_get_stats(t->polylines).kept_points;
+    const double segments = (double)t->scene->segments, mesh = (double)t->info.bytes, ms = bench_series_median(&t->all);
+    double moved[STAGES], sum = 0;
+    for (int i = 0; i < STAGES; i++) {
+        moved[i] = points * (stages[i].read + stages[i].written) + (i == STAGES - 1 ? mesh : 0);
+        sum += moved[i];
+    }
+    const double copied_gb_s = copy_gb_s(t->b, sum);
+    const char *method = camber_method_name(t->method);
+    json_t *row =
+        json_pack("{s:s, s:s, s:s, s:f, s:I, s:I, s:f, s:f, s:f, s:f}", "key", t->scene->key, "scene", t->scene->name,
+                  "method", method, "width_px", (double)t->width_px, "points", (json_int_t)points, "segments",
+                  (json_int_t)segments, "mesh_bytes", mesh, "bytes_a_segment", mesh / segments, "m_segments_s",
+                  ms > 0 ? segments / ms / 1e3 : 0, "memcpy_gb_s", copied_gb_s);
+    for (int i = 0; i < STAGES; i++)
+        add_stage(row, stages[i].name, bench_series_median(t->series + i), points, moved[i], copied_gb_s);
+    add_stage(row, "all", ms, points, sum, copied_gb_s);
+    char what[64];
+    snprintf(what, sizeof what, "bytes a segment, %s, %g px", method, (double)t->width_px);
+    bench_result_add_figure(result, &(bench_figure){t->scene->key, what, NULL, mesh / segments, true});
+    snprintf(what, sizeof what, "kernels, %s, %g px", method, (double)t->width_px);
+    const double share = bench_number(json_object_get(row, "all"), "share");
+    bench_result_add_figure(result, &(bench_figure){t->scene->key, what, "memcpy", share, false});
+    bench_result_add_row(result, row);
+}
+
+static camber_status measure_scene(bench *b, const bench_scene *scene, json_t *result) {
+    trial t = {.b = b, .scene = scene};
+    const camber_polylines_desc desc = {.points = scene->lines.points,
+                                        .point_count = scene->lines.point_count,
+                                        .offsets = scene->lines.offsets,
+                                        .polyline_count = scene->lines.polyline_count,
+                                        .keep_open = true};
+    camber_status status = camber_polylines_create(b->context, &desc, &t.polylines);
+    for (int i = 0; i < METHODS * WIDTHS && status == CAMBER_OK; i++) {
+        t.method = (camber_method)(i / WIDTHS);
+        t.width_px = widths_px[i % WIDTHS];
+        t.all.count = 0;
+        for (int k = 0; k < STAGES; k++)
+            t.series[k].count = 0;
+        status = tessellate(&t);
+        if (status == CAMBER_OK)
+            report(&t, result);
+    }
+    camber_polylines_destroy(t.polylines);
+    return status;
+}
+
+static json_t *measure(bench *b, const char *only) {
+    json_t *result = bench_result_new();
+    camber_status status = CAMBER_OK;
+    for (size_t i = 0; i < b->scene_count && status == CAMBER_OK; i++)
+        if (!only || strcmp(only, b->scenes[i].key) == 0)
+            status = measure_scene(b, b->scenes + i, result);
+    if (status == CAMBER_OK)
+        return result;
+    json_decref(result);
+    return NULL;
+}
+
+static void print(const json_t *result, FILE *to) {
+    size_t i;
+    const json_t *row;
+    fprintf(to, "Tessellation: M points a second, GB/s of bytes read and written, and their share of what memcpy of as "
+                "many moves\n"
+                "on as many threads. B/seg: bytes of the mesh a segment, everything included.\n\n");
+    fprintf(to, "%-12s %-6s %3s %9s %6s %8s", "scene", "method", "px", "segments", "B/seg", "M seg/s");
+    for (int k = 0; k < STAGES; k++)
+        fprintf(to, " | %-8s M/s  GB/s share", stages[k].name);
+    fprintf(to, " | all      M/s  GB/s share\n");
+    json_array_foreach(bench_result_rows(result), i, row) {
+        fprintf(to, "%-12s %-6s %3g %9.0f %6.1f %8.1f", bench_text(row, "scene"), bench_text(row, "method"),
+                bench_number(row, "width_px"), bench_number(row, "segments"), bench_number(row, "bytes_a_segment"),
+                bench_number(row, "m_segments_s"));
+        for (int k = 0; k <= STAGES; k++) {
+            const json_t *stage = json_object_get(row, k < STAGES ? stages[k].name : "all");
+            fprintf(to, " | %12.1f %5.1f %4.0f%%", bench_number(stage, "m_points_s"), bench_number(stage, "gb_s"),
+                    100 * bench_number(stage, "share"));
+        }
+        fprintf(to, "\n");
+    }
+}
+
+const bench_section bench_section_stages = {"stages", measure, print};

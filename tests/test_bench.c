@@ -1,0 +1,222 @@
+/* The benchmark from outside, on scenes too small to mean anything: that it measures what it should, and that it tells
+ * a loss from none. Ratios of times are spoilt a hundredfold, so that a busy machine cannot change the verdict. */
+#include <jansson.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+
+#include <cmocka.h>
+
+#define MADE CAMBER_BENCH_OUT "/made.json"
+#define OLD CAMBER_BENCH_OUT "/old.json"
+#define AGAIN CAMBER_BENCH_OUT "/again.json"
+#define SAID CAMBER_BENCH_OUT "/said.txt"
+#define README CAMBER_BENCH_OUT "/README.md"
+
+static int run(const char *arguments) {
+    char command[2048];
+    snprintf(command, sizeof command, "'%s' %s > '%s' 2>&1", CAMBER_BENCH, arguments, SAID);
+    const int status = system(command);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+static json_t *load(const char *path) {
+    json_error_t error;
+    json_t *document = json_load_file(path, 0, &error);
+    if (!document)
+        fail_msg("%s: %s", path, error.text);
+    return document;
+}
+
+static const json_t *section_of(const json_t *document, const char *name) {
+    const json_t *section = json_object_get(json_object_get(document, "sections"), name);
+    if (!section)
+        fail_msg("the document has no section %s", name);
+    return section;
+}
+
+static double number_of(const json_t *object, const char *key) {
+    const json_t *value = json_object_get(object, key);
+    if (!json_is_number(value))
+        fail_msg("%s is no number", key);
+    return json_number_value(value);
+}
+
+static bool said(const char *text) {
+    char line[512];
+    bool found = false;
+    FILE *file = fopen(SAID, "r");
+    assert_non_null(file);
+    while (fgets(line, sizeof line, file))
+        found = found || strstr(line, text);
+    fclose(file);
+    return found;
+}
+
+/* ---- What it measures ---- */
+
+static void check_stages(const json_t *document) {
+    const json_t *rows = json_object_get(section_of(document, "stages"), "rows"), *row;
+    static const char *const stages[] = {"classify", "scan", "emit", "all"};
+    size_t i;
+    assert_int_equal(json_array_size(rows), 2 * 3 * 2); /* scenes, methods, widths */
+    json_array_foreach(rows, i, row) {
+        const double segments = number_of(row, "segments"), bytes = number_of(row, "bytes_a_segment");
+        assert_true(segments > 100 && bytes >= 8 && bytes < 400);
+        assert_true(number_of(row, "memcpy_gb_s") > 0);
+        for (size_t k = 0; k < 4; k++) {
+            const json_t *stage = json_object_get(row, stages[k]);
+            assert_true(number_of(stage, "m_points_s") > 0 && number_of(stage, "gb_s") > 0);
+            assert_true(number_of(stage, "share") > 0);
+        }
+    }
+}
+
+static void check_frames(const json_t *document) {
+    const json_t *rows = json_object_get(section_of(document, "frames"), "rows"), *row;
+    const size_t peers = json_object_size(json_object_get(document, "peers"));
+    size_t i;
+    assert_int_equal(json_array_size(rows), 2);
+    json_array_foreach(rows, i, row) {
+        const char *key;
+        json_t *peer;
+        assert_true(number_of(row, "draw_ms") > 0 && number_of(row, "simple_draw_ms") > 0);
+        assert_true(number_of(row, "frame_ms") >= number_of(row, "draw_ms"));
+        assert_int_equal(json_object_size(json_object_get(row, "peers")), peers);
+        json_object_foreach(json_object_get(row, "peers"), key, peer) {
+            if (!json_is_true(json_object_get(peer, "alike")))
+                fail_msg("%s draws another picture: it differs by %g of 255", key, number_of(peer, "difference"));
+            assert_true(number_of(peer, "ms") > 0 && number_of(peer, "difference") > 0);
+        }
+    }
+}
+
+static void check_mosaic(const json_t *document) {
+    const json_t *rows = json_object_get(section_of(document, "mosaic"), "rows"), *row;
+    double before = 0;
+    size_t i;
+    assert_int_equal(json_array_size(rows), 2);
+    json_array_foreach(rows, i, row) {
+        const double points = number_of(row, "points");
+        assert_true(points > before);
+        assert_true(number_of(row, "peak_bytes") > 12 * points);
+        assert_true(number_of(json_object_get(row, "simple"), "frame_ms") > 0);
+        before = points;
+    }
+}
+
+static void test_document(void **state) {
+    (void)state;
+    assert_int_equal(run("--tiny --json '" MADE "'"), 0);
+    json_t *document = load(MADE);
+    assert_true(strlen(json_string_value(json_object_get(document, "date"))) == 20);
+    assert_non_null(json_object_get(json_object_get(document, "device"), "driver"));
+    assert_non_null(json_object_get(json_object_get(document, "gl"), "renderer"));
+    check_stages(document);
+    check_frames(document);
+    check_mosaic(document);
+    json_decref(document);
+}
+
+/* ---- Losses ---- */
+
+/* Figures of one section as they would be if that had been so many times better, in frames; all others left out. */
+static void write_old(double better) {
+    json_t *document = load(MADE), *sections = json_object_get(document, "sections"), *section, *figure;
+    const char *name;
+    void *next;
+    json_object_foreach_safe(sections, next, name, section) {
+        size_t i;
+        if (strcmp(name, "frames") != 0) {
+            json_object_del(sections, name);
+            continue;
+        }
+        json_array_foreach(json_object_get(section, "figures"), i, figure) {
+            const double factor = json_is_true(json_object_get(figure, "less")) ? 1 / better : better;
+            json_object_set_new(figure, "value", json_real(number_of(figure, "value") * factor));
+        }
+    }
+    assert_int_equal(json_dump_file(document, OLD, 0), 0);
+    json_decref(document);
+}
+
+static void need_peers(void) {
+    json_t *document = load(MADE);
+    const bool none = json_object_size(json_object_get(document, "peers")) == 0;
+    json_decref(document);
+    if (none) {
+        printf("no peer is built in: there is nothing to lose against\n");
+        skip();
+    }
+}
+
+static void test_loss(void **state) {
+    (void)state;
+    need_peers();
+    write_old(100);
+    assert_int_equal(run("--tiny --section frames --json '" AGAIN "' --against '" OLD "'"), 1);
+    assert_true(said("LOSS") && said("again  frames: zoom") && said("synth: draw at 0.1 px"));
+}
+
+static void test_gain(void **state) {
+    (void)state;
+    need_peers();
+    write_old(0.01);
+    assert_int_equal(run("--tiny --section frames --json '" AGAIN "' --against '" OLD "'"), 0);
+    assert_true(said("gain") && !said("LOSS") && !said("again"));
+}
+
+static void test_incomparable(void **state) {
+    (void)state;
+    json_t *document = load(MADE);
+    json_object_set_new(document, "size", json_string("full"));
+    assert_int_equal(json_dump_file(document, OLD, 0), 0);
+    json_decref(document);
+    assert_int_equal(run("--tiny --section stages --against '" OLD "'"), 2);
+    assert_true(said("another size"));
+    assert_int_equal(run("--tiny --section stages --against '" CAMBER_BENCH_OUT "/nothing.json'"), 66);
+    assert_int_equal(run("--size 3"), 2);
+}
+
+/* ---- The README ---- */
+
+static void write_text(const char *path, const char *text) {
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    assert_int_equal(fclose(file), 0);
+}
+
+static void test_readme(void **state) {
+    (void)state;
+    write_text(README, "# head\n<!-- measured: made by ./dev bench --readme -->\nold\n<!-- /measured -->\n# tail\n");
+    assert_int_equal(run("--readme '" MADE "' '" README "'"), 0);
+    char text[16384];
+    FILE *file = fopen(README, "r");
+    assert_non_null(file);
+    text[fread(text, 1, sizeof text - 1, file)] = 0;
+    fclose(file);
+    assert_true(strncmp(text, "# head\n<!-- measured", 20) == 0 && !strstr(text, "\nold\n"));
+    assert_non_null(strstr(text, "| long walks, 8 px | 617 |"));
+    assert_non_null(strstr(text, "<!-- /measured -->\n# tail\n"));
+    write_text(README, "# head\n# tail\n");
+    assert_int_equal(run("--readme '" MADE "' '" README "'"), 1);
+    assert_true(said("lacks one of the lines"));
+}
+
+int main(void) {
+    if (run("--tiny --section stages") == 69) {
+        printf("no OpenCL device or no GL here\n");
+        return 77;
+    }
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_document), cmocka_unit_test(test_loss),
+                                       cmocka_unit_test(test_gain), cmocka_unit_test(test_incomparable),
+                                       cmocka_unit_test(test_readme)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

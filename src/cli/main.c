@@ -23,9 +23,12 @@ static int run(camber_session *session) {
 
 static int run_guarded(camber_session *session) {
     camber_guard guard;
+    int status = camber_session_set_environment(session);
+    if (status != CAMBER_EXIT_DONE)
+        return status;
     const bool guarded = camber_guard_start(&guard, session->report->bars);
     session->guard = &guard;
-    const int status = run(session);
+    status = run(session);
     camber_session_close(session);
     camber_report_erase_bar(session->report);
     if (guarded)

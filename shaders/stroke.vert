@@ -6,18 +6,25 @@ precision highp int;
 
 layout(binding = 1) uniform highp usamplerBuffer u_records; // all other samplers are at unit 0
 uniform highp sampler2D u_rows; // two texels a row: half width px, -1 where not drawn, fan's step; premultiplied colour
+uniform vec2 u_origin;          // of this piece in the picture, px
 uniform vec2 u_corner;          // of the viewport in the picture, px: it reaches past the piece
 uniform vec2 u_scale;           // 2 / size of the viewport
 
-flat out highp vec4 v_segment; // A, direction
-flat out highp vec4 v_shape;   // length px, half width px, turns
+// What stroke.frag says of them.
+flat out vec4 v_segment;
+flat out vec4 v_shape;
+flat out vec4 v_turns;
+flat out vec4 v_edge;
+flat out vec4 v_limits;
+flat out vec2 v_tips;
+flat out highp uint v_kinds;
 flat out mediump vec4 v_color;
-flat out highp uint v_ends; // of a camber_vertex: flags
 
 const float PAD_PX = 0.75, NO_LIMIT_PX = 3.0e38;
 const uint START = 1u, BREAK = 2u, AFTER_FIRST = 4u, BEFORE_LAST = 8u, IN_LEFT = 16u, IN_RIGHT = 32u;
 const uint DOT = 1u, CUT = 3u, TIGHT = 4u; // kinds of joins
-const uint BUTT = 1u;
+const uint ROUND = 0u, BUTT = 1u, SQUARE = 2u, SPLIT_ROUND = 5u; // camber_end
+const float NEVER_PX = 1e6, ALWAYS_PX = -1e30;
 
 struct Record {
     vec2 p;
@@ -81,6 +88,49 @@ Extrusion corner_at(uint corner, float q, float step) {
 }
 #endif
 
+// Cosine and sine of half a turn from tan(turn / 4).
+vec2 half_turn(float q) {
+    float scale = 1.0 / (1.0 + q * q);
+    return vec2((1.0 - q * q) * scale, 2.0 * q * scale);
+}
+
+// Past a split end a segment has its own side of the bisector only. What its body has past the bisector on the inner
+// side it gives up where that is narrow: bends that gentle follow each other on curves, and their edges would be drawn
+// twice. More it keeps, and half of that where the line ends soon, as then nothing may cover it.
+float foreign_from(uint end, vec2 turn, bool ends_soon, float half_width) {
+    bool kept = half_width * abs(turn.y) > (ends_soon ? 0.35 : 0.6) * turn.x;
+    return end < SPLIT_ROUND ? NEVER_PX : kept ? 0.0 : ALWAYS_PX;
+}
+
+float round_from(uint end) {
+    return end == ROUND || end == SPLIT_ROUND ? 0.0 : NEVER_PX;
+}
+
+float flat_cap(uint end, float half_width) {
+    return end == BUTT ? 0.0 : end == SQUARE ? half_width : NEVER_PX;
+}
+
+// The arc alone takes a line thinner than the pixel for one that crosses it. A cap as thin as that ends like a flat one of
+// the same area, pi / 4 of half the width further on.
+float tip(uint join, float half_width) {
+    float reach = 0.785398 * half_width + 1.2 * max(half_width - 0.5, 0.0);
+    return kind_of(join) < CUT && end_of(join) == ROUND ? 0.5 + reach : NEVER_PX;
+}
+
+// All that is constant over a segment.
+void hand_over(vec2 a, vec2 u, float len, float half_width, uint join_a, uint join_b, bool after_first, bool before_last) {
+    uint end_a = end_of(join_a), end_b = end_of(join_b);
+    vec2 turn_a = half_turn(turn_of(join_a)), turn_b = half_turn(turn_of(join_b));
+    v_segment = vec4(a - u_origin, u);
+    v_shape = vec4(len, half_width, flat_cap(end_a, half_width), flat_cap(end_b, half_width));
+    v_turns = vec4(turn_a, turn_b);
+    v_edge = edge_of(u);
+    v_limits = vec4(foreign_from(end_a, turn_a, after_first, half_width),
+                    foreign_from(end_b, turn_b, before_last, half_width), round_from(end_a), round_from(end_b));
+    v_tips = vec2(tip(join_a, half_width), tip(join_b, half_width));
+    v_kinds = end_a | end_b << 3;
+}
+
 void main() {
 #if METHOD == 0
     int i = gl_VertexID >> 1;
@@ -125,10 +175,7 @@ void main() {
     float reach = half_width + PAD_PX;
     vec2 place = here.p + u * clamp(e.along * reach, -e.limit, e.limit) + vec2(-u.y, u.x) * (e.across * reach);
 
-    v_segment = vec4(a, u);
-    v_shape = vec4(len, half_width, turn_of(join_a), turn_of(join_b));
-    v_ends = end_of(join_a) | end_of(join_b) << 3u | ((last_a & AFTER_FIRST) != 0u ? 128u : 0u) |
-             ((last_b & BEFORE_LAST) != 0u ? 256u : 0u);
+    hand_over(a, u, len, half_width, join_a, join_b, (last_a & AFTER_FIRST) != 0u, (last_b & BEFORE_LAST) != 0u);
     // A row that is not drawn leaves no area; what lies outside the viewport would be clipped at some cost.
     gl_Position = vec4(half_width < 0.0 ? vec2(0.0) : (place - u_corner) * u_scale - 1.0, 0.0, 1.0);
 }

@@ -146,17 +146,17 @@ mutant fan shaders/stroke.vert "a fan that turns back" 'vec2(sin(angle), outer *
 mutant strip shaders/stroke.vert "a segment from its end to its start" 'goes_out ? other.p - here.p' 'goes_out ? here.p - other.p'
 mutant strip shaders/stroke.vert "breaks that are drawn" 'right = !right;' ''
 mutant strip shaders/stroke.vert "no pad" 'PAD_PX = 0.75' 'PAD_PX = 0.0'
-mutant strip shaders/stroke.frag "the slope of an edge" '0.5 + s * e.slope' '0.5 + s * 0.8 * e.slope'
-mutant strip shaders/stroke.frag "the corner of a pixel" 'rest * rest * e.curve' 'rest * e.curve'
+mutant strip shaders/edge.glsl "the slope of an edge" '1.0 / p,' '0.8 / p,'
+mutant strip shaders/stroke.frag "the corner of a pixel" 'corner * corner * edge.w' 'corner * edge.w'
 evidence=(--pictures "$tmp/pictures" --junit "$tmp/junit.xml")
-mutant strip shaders/stroke.frag "half the width" 'covered(half_width - d, edge)' 'covered(0.9 * half_width - d, edge)'
+mutant strip shaders/stroke.frag "half the width" 'covered(half_width - d, v_edge)' 'covered(0.9 * half_width - d, v_edge)'
 evidence=()
-mutant strip shaders/stroke.frag "the sine of a turn" '2.0 * q * scale' 'q * scale'
-mutant strip shaders/stroke.frag "the wrong side of a bisector" 'e.c * e.past + e.s * y > tie' 'e.c * e.past - e.s * y > tie'
-mutant strip shaders/stroke.frag "square caps of a whole width" 'half_width - e.past' '2.0 * half_width - e.past'
-mutant strip shaders/stroke.frag "bevels that reach too far" 'bevel ? half_width * e.c' 'bevel ? half_width'
-mutant strip shaders/stroke.frag "a bend to the wrong side" 'y - (bend(end_a, y)' 'y + (bend(end_a, y)'
-mutant strip shaders/stroke.frag "caps of thin lines" 'clamp(0.5 + reach - e.past, 0.0, 1.0)' 'clamp(0.5 - e.past, 0.0, 1.0)'
+mutant strip shaders/stroke.vert "the sine of a turn" '2.0 * q * scale' 'q * scale'
+mutant strip shaders/stroke.frag "the wrong side of a bisector" 'v_turns.yw * y' '-v_turns.yw * y'
+mutant strip shaders/stroke.vert "square caps of a whole width" 'SQUARE ? half_width' 'SQUARE ? 2.0 * half_width'
+mutant strip shaders/stroke.frag "bevels that reach too far" 'bevel ? half_width * turn.x' 'bevel ? half_width'
+mutant strip shaders/stroke.frag "a bend to the wrong side" 'y - (bend(beyond.x' 'y + (bend(beyond.x'
+mutant strip shaders/stroke.vert "caps of thin lines" '0.5 + reach : NEVER_PX' '0.5 : NEVER_PX'
 
 echo "$caught caught, $failures failures"
 [ "$failures" = 0 ]

@@ -4,7 +4,9 @@
 
 extern const char camber_kernels_source[]; /* kernels/ as one program */
 extern const unsigned long camber_kernels_source_size;
-extern const char camber_stroke_vert[], camber_stroke_frag[]; /* shaders/ without their #version line */
+extern const char camber_edge_glsl[]; /* shaders/ without their #version line */
+extern const unsigned long camber_edge_glsl_size;
+extern const char camber_stroke_vert[], camber_stroke_frag[];
 extern const unsigned long camber_stroke_vert_size, camber_stroke_frag_size;
 extern const char camber_flatten_vert[], camber_flatten_frag[];
 extern const unsigned long camber_flatten_vert_size, camber_flatten_frag_size;

@@ -292,7 +292,7 @@ static camber_status prepare(counting *c, camber_index_range **list) {
     if (status == CAMBER_OK)
         status = camber_renderer_set_widths(c->renderer, desc->mesh, desc->paints, desc->paint_count);
     if (status == CAMBER_OK)
-        status = camber_renderer_mesh_shader(c->renderer, desc->mesh, CAMBER_VARIANT_COUNT, &c->cover);
+        status = camber_renderer_mesh_shader(c->renderer, desc->mesh, 0.0f, CAMBER_VARIANT_COUNT, &c->cover);
     if (status == CAMBER_OK)
         status = camber_renderer_count_shader(c->renderer, desc->mesh->mesh_info.method, &c->every);
     if (status != CAMBER_OK)

@@ -2,6 +2,7 @@
  * flattened onto the picture. */
 #include "draw/renderer.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { ROW_TEXTURE_WIDTH = 2048, TEXELS_A_ROW = 2 };
@@ -14,6 +15,16 @@ typedef struct pass_run {
     bool layered;
     camber_color color;
 } pass_run;
+
+float camber_renderer_thinnest(const camber_frame *frame) {
+    float thinnest_px = INFINITY;
+    for (size_t p = 0; p < frame->pass_count; p++)
+        for (size_t i = 0; i < frame->passes[p].paint_count; i++) {
+            const float width_px = frame->passes[p].paints[i].width_px;
+            thinnest_px = width_px > 0.0f && width_px < thinnest_px ? width_px : thinnest_px;
+        }
+    return thinnest_px;
+}
 
 static bool is_drawn(const camber_pass *pass, uint32_t row) {
     return row < pass->paint_count && pass->paints[row].width_px > 0.0f && pass->paints[row].color.a > 0.0f;
@@ -92,13 +103,15 @@ camber_status camber_renderer_set_widths(camber_renderer *renderer, const camber
     return CAMBER_OK;
 }
 
-camber_status camber_renderer_mesh_shader(camber_renderer *renderer, const camber_mesh *mesh, unsigned variant,
-                                          const camber_shader **shader) {
-    return camber_renderer_stroke_shader(renderer,
-                                         variant | (unsigned)mesh->mesh_info.method * CAMBER_VARIANT_METHOD |
-                                             (mesh->sharp_joins ? CAMBER_VARIANT_SHARP_JOINS : 0u) |
-                                             (mesh->flat_caps ? CAMBER_VARIANT_FLAT_CAPS : 0u),
-                                         shader);
+camber_status camber_renderer_mesh_shader(camber_renderer *renderer, const camber_mesh *mesh, float thinnest_px,
+                                          unsigned variant, const camber_shader **shader) {
+    /* A pixel reaches sqrt(1/2) px along any normal; stroke.vert says where a tip ends: past where the cap does. */
+    const bool thin = thinnest_px < 1.4143f, tips = thin || (mesh->round_caps && thinnest_px < 3.7f);
+    variant |=
+        (mesh->sharp_joins ? CAMBER_VARIANT_SHARP_JOINS : 0u) | (mesh->flat_caps ? CAMBER_VARIANT_FLAT_CAPS : 0u);
+    variant |= (unsigned)mesh->mesh_info.method * CAMBER_VARIANT_METHOD;
+    variant |= (thin ? CAMBER_VARIANT_THIN : 0u) | (tips ? CAMBER_VARIANT_TIPS : 0u);
+    return camber_renderer_stroke_shader(renderer, variant, shader);
 }
 
 void camber_renderer_use_shader(camber_renderer *renderer, const camber_shader *shader, const camber_piece *piece) {
@@ -180,7 +193,7 @@ static camber_status draw_run(camber_renderer *renderer, const camber_mesh *mesh
     const camber_shader *shader;
     const unsigned variant = (piece->coverage == CAMBER_COVERAGE_LINEAR ? CAMBER_VARIANT_LINEAR : 0u) |
                              (kind_of(renderer, run) == CAMBER_FLATTEN_UNION ? CAMBER_VARIANT_UNION : 0u);
-    camber_status status = camber_renderer_mesh_shader(renderer, mesh, variant, &shader);
+    camber_status status = camber_renderer_mesh_shader(renderer, mesh, piece->thinnest_px, variant, &shader);
     if (status != CAMBER_OK)
         return status;
     camber_renderer_use_shader(renderer, shader, piece);

@@ -180,6 +180,7 @@ camber_status camber_render(camber_renderer *renderer, const camber_frame *frame
         return status;
     camber_piece piece = first_piece(renderer, frame);
     piece.draw_calls = &counted.draw_calls;
+    piece.thinnest_px = camber_renderer_thinnest(frame);
     const uint32_t tallest = piece.height;
     if (rows) {
         band = camber_alloc(context, (size_t)frame->width * tallest, 4);

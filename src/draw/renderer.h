@@ -9,9 +9,11 @@ enum {
     CAMBER_VARIANT_LINEAR = 1,
     CAMBER_VARIANT_SHARP_JOINS = 2,
     CAMBER_VARIANT_FLAT_CAPS = 4,
-    CAMBER_VARIANT_COUNT = 8,   /* counts the fragments with coverage instead of drawing them */
-    CAMBER_VARIANT_UNION = 16,  /* leaves what the union of a layer's strokes is made from */
-    CAMBER_VARIANT_METHOD = 32, /* times camber_method */
+    CAMBER_VARIANT_COUNT = 8,    /* counts the fragments with coverage instead of drawing them */
+    CAMBER_VARIANT_UNION = 16,   /* leaves what the union of a layer's strokes is made from */
+    CAMBER_VARIANT_THIN = 32,    /* strokes with both edges in a pixel */
+    CAMBER_VARIANT_TIPS = 64,    /* round caps that are hardly wider than a pixel */
+    CAMBER_VARIANT_METHOD = 128, /* times camber_method */
     CAMBER_METHODS = 3,
     CAMBER_VARIANTS = CAMBER_METHODS * CAMBER_VARIANT_METHOD
 };
@@ -74,15 +76,18 @@ void camber_renderer_release_targets(camber_renderer *renderer);
 typedef struct camber_piece {
     uint32_t x, y, width, height; /* in the picture, px */
     camber_coverage coverage;
+    float thinnest_px; /* that is drawn in the frame */
     size_t *draw_calls;
 } camber_piece;
+float camber_renderer_thinnest(const camber_frame *frame);
 camber_status camber_renderer_draw_pass(camber_renderer *renderer, const camber_pass *pass, const camber_piece *piece);
 /* The row texture of a mesh with widths alone; a row past the paints is not drawn. */
 camber_status camber_renderer_set_widths(camber_renderer *renderer, const camber_mesh *mesh, const camber_paint *paints,
                                          size_t paint_count);
-/* The stroke shader that a mesh needs, CAMBER_VARIANT_LINEAR or COUNT added to what its rows ask for. */
-camber_status camber_renderer_mesh_shader(camber_renderer *renderer, const camber_mesh *mesh, unsigned variant,
-                                          const camber_shader **shader);
+/* The stroke shader that a mesh needs for lines of this width at least, with CAMBER_VARIANT_LINEAR, COUNT or UNION
+ * added. */
+camber_status camber_renderer_mesh_shader(camber_renderer *renderer, const camber_mesh *mesh, float thinnest_px,
+                                          unsigned variant, const camber_shader **shader);
 /* Uses a shader, with its uniforms set for a piece. */
 void camber_renderer_use_shader(camber_renderer *renderer, const camber_shader *shader, const camber_piece *piece);
 /* Binds a part's records and indices, and the row texture. */

@@ -22,10 +22,10 @@ static camber_status compile(camber_renderer *renderer, GLenum kind, const char 
     const GLchar *version = renderer->share.surface->es_3_2
                                 ? "#version 320 es\n"
                                 : "#version 310 es\n#extension GL_EXT_texture_buffer : require\n";
-    const GLchar *parts[] = {version, head, "#line 1\n", source};
+    const GLchar *parts[] = {version, head, camber_edge_glsl, "#line 1\n", source};
     const GLuint shader = gl->CreateShader(kind);
     GLint built = 0;
-    gl->ShaderSource(shader, 4, parts, NULL);
+    gl->ShaderSource(shader, sizeof parts / sizeof *parts, parts, NULL);
     gl->CompileShader(shader);
     gl->GetShaderiv(shader, GL_COMPILE_STATUS, &built);
     *made = shader;
@@ -75,13 +75,14 @@ static camber_status build(camber_renderer *renderer, const char *head, const ch
 camber_status camber_renderer_stroke_shader(camber_renderer *renderer, unsigned variant, const camber_shader **shader) {
     camber_shader *wanted = renderer->strokes + variant;
     if (!wanted->program) {
-        char head[224];
+        char head[256];
         snprintf(head, sizeof head,
                  "#define LINEAR %d\n#define SHARP_JOINS %d\n#define FLAT_CAPS %d\n#define COUNT %d\n"
-                 "#define UNION %d\n#define METHOD %u\n",
+                 "#define UNION %d\n#define METHOD %u\n#define THIN %d\n#define TIPS %d\n",
                  (variant & CAMBER_VARIANT_LINEAR) != 0, (variant & CAMBER_VARIANT_SHARP_JOINS) != 0,
                  (variant & CAMBER_VARIANT_FLAT_CAPS) != 0, (variant & CAMBER_VARIANT_COUNT) != 0,
-                 (variant & CAMBER_VARIANT_UNION) != 0, variant / CAMBER_VARIANT_METHOD);
+                 (variant & CAMBER_VARIANT_UNION) != 0, variant / CAMBER_VARIANT_METHOD,
+                 (variant & CAMBER_VARIANT_THIN) != 0, (variant & CAMBER_VARIANT_TIPS) != 0);
         const camber_status status = build(renderer, head, camber_stroke_vert, camber_stroke_frag, wanted);
         if (status != CAMBER_OK)
             return status;

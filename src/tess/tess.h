@@ -112,6 +112,7 @@ struct camber_mesh {
     bool joins_counted; /* mesh_info's counts of joins and triangles are there */
     bool sharp_joins;   /* a row has miter or bevel joins */
     bool flat_caps;     /* a row has butt or square caps */
+    bool round_caps;    /* a row has round caps */
     bool done;          /* the last tessellation succeeded */
     bool empty;         /* nothing to draw: nothing tessellated yet, it failed, or nothing came of it */
 };

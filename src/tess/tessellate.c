@@ -229,10 +229,11 @@ static camber_status tessellate(camber_mesh *mesh, const source *from, const cam
     camber_row *rows = NULL;
     camber_program *program = NULL;
     mesh->empty = mesh->joins_counted = true;
-    mesh->done = mesh->sharp_joins = mesh->flat_caps = false;
+    mesh->done = mesh->sharp_joins = mesh->flat_caps = mesh->round_caps = false;
     for (size_t i = 0; i < desc->stroke_count; i++) {
         mesh->sharp_joins |= desc->strokes[i].join != CAMBER_JOIN_ROUND;
         mesh->flat_caps |= desc->strokes[i].cap != CAMBER_CAP_ROUND;
+        mesh->round_caps |= desc->strokes[i].cap == CAMBER_CAP_ROUND;
     }
     mesh->mesh_info = nothing;
     camber_status status = camber_rows_create(context, from->row_count, desc, &rows);

@@ -57,6 +57,13 @@ typedef struct camber_features_stats {
     size_t merged_polylines; /* so many polylines fewer, for lines were merged end to end */
 } camber_features_stats;
 
+/* Sums over the files. */
+typedef struct camber_features_times {
+    double file_ms;  /* GDAL from open to close, projection and attributes */
+    double merge_ms; /* lines end to end */
+    double weigh_ms; /* how much each point matters */
+} camber_features_times;
+
 typedef struct camber_features camber_features;
 
 /* An empty set that keeps the attributes that the style names. The style must outlive it. */
@@ -70,6 +77,7 @@ CAMBER_API camber_status camber_features_create(camber_context *context, const c
 CAMBER_API camber_status camber_features_read(camber_features *features, const camber_source_desc *desc);
 CAMBER_API void camber_features_destroy(camber_features *features);
 CAMBER_API camber_features_stats camber_features_get_stats(const camber_features *features);
+CAMBER_API camber_features_times camber_features_get_times(const camber_features *features);
 /* Whether any of the data is OpenStreetMap's, whose licence asks for attribution. */
 CAMBER_API bool camber_features_is_osm(const camber_features *features);
 

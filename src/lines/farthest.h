@@ -8,29 +8,28 @@
  * case costs n log n too. The result keeps its tolerance either way. */
 #define CAMBER_FARTHEST_SPLITS 48
 
-/* The squared distance of p from the segment a-b. */
-static inline double camber_distance_squared(const double *p, const double *a, const double *b) {
-    const double dx = b[0] - a[0], dy = b[1] - a[1], px = p[0] - a[0], py = p[1] - a[1];
-    const double length_squared = dx * dx + dy * dy, along = px * dx + py * dy;
-    if (along <= 0.0 || length_squared == 0.0)
-        return px * px + py * py;
-    if (along >= length_squared)
-        return (p[0] - b[0]) * (p[0] - b[0]) + (p[1] - b[1]) * (p[1] - b[1]);
-    const double cross = px * dy - py * dx;
-    return cross * cross / length_squared;
-}
-
-/* The point strictly between first and last that lies farthest from their segment; first where all lie on it. */
+/* The point strictly between first and last that lies farthest from their segment, and its squared distance; first
+ * where all lie on it. Without branches but the last: points lie beside the segment or beyond it as they like. */
 static inline size_t camber_farthest(const double *points, size_t first, size_t last, double *largest) {
+    const double *a = points + 2 * first, *b = points + 2 * last;
+    const double dx = b[0] - a[0], dy = b[1] - a[1], length_squared = dx * dx + dy * dy;
+    /* Where the segment is a point every point lies beyond it. */
+    const double inverse = length_squared > 0.0 ? 1.0 / length_squared : 0.0;
     size_t found = first;
-    *largest = 0.0;
+    double most = 0.0;
     for (size_t i = first + 1; i < last; i++) {
-        const double d = camber_distance_squared(points + 2 * i, points + 2 * first, points + 2 * last);
-        if (d > *largest) {
-            *largest = d;
+        const double *p = points + 2 * i;
+        const double px = p[0] - a[0], py = p[1] - a[1], qx = p[0] - b[0], qy = p[1] - b[1];
+        const double along = px * dx + py * dy, cross = px * dy - py * dx;
+        const double beside = cross * cross * inverse, before = px * px + py * py, beyond = qx * qx + qy * qy;
+        const double past = along <= 0.0 ? before : beyond;
+        const double d = (along > 0.0) & (along < length_squared) ? beside : past;
+        if (d > most) {
+            most = d;
             found = i;
         }
     }
+    *largest = most;
     return found;
 }
 

@@ -65,6 +65,10 @@ camber_features_stats camber_features_get_stats(const camber_features *features)
     return features->stats;
 }
 
+camber_features_times camber_features_get_times(const camber_features *features) {
+    return features->times;
+}
+
 bool camber_features_is_osm(const camber_features *features) {
     return features->is_osm;
 }
@@ -151,17 +155,16 @@ static bool equal_values(const camber_value *a, const camber_value *b, size_t co
 }
 
 static uint64_t hash_class(uint32_t layer, camber_geometry_kind geometry, const camber_value *values, size_t count) {
-    const uint32_t head[2] = {layer, (uint32_t)geometry};
-    uint64_t hash = camber_hash(CAMBER_HASH_START, head, sizeof head);
+    uint64_t hash = camber_mix(camber_mix(0, layer), (uint64_t)geometry);
     for (size_t i = 0; i < count; i++) {
-        uint64_t word[2] = {values[i].type, 0};
+        uint64_t word = 0;
         if (values[i].type == CAMBER_VALUE_BOOL)
-            word[1] = values[i].boolean;
+            word = values[i].boolean;
         else if (values[i].type == CAMBER_VALUE_NUMBER)
-            memcpy(&word[1], &values[i].number, sizeof word[1]);
+            memcpy(&word, &values[i].number, sizeof word);
         else if (values[i].type == CAMBER_VALUE_STRING)
-            word[1] = (uintptr_t)values[i].string;
-        hash = camber_hash(hash, word, sizeof word);
+            word = (uintptr_t)values[i].string;
+        hash = camber_mix(hash, word ^ (uint64_t)values[i].type << 56);
     }
     return hash;
 }

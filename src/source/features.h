@@ -50,6 +50,7 @@ struct camber_features {
 
     bool is_osm;
     camber_features_stats stats;
+    camber_features_times times;
 
     void *interned; /* features.c: strings and classes, hashed */
 };

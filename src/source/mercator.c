@@ -7,7 +7,10 @@ static const double pi = 3.14159265358979323846;
 
 void camber_mercator_project(double longitude, double latitude, double *x, double *y) {
     *x = longitude / 360.0 + 0.5;
-    *y = 0.5 - asinh(tan(latitude * (pi / 180.0))) / (2.0 * pi);
+    /* asinh by its definition: faster, and as exact once 1/2 is added. */
+    const double slope = tan(latitude * (pi / 180.0));
+    const double stretched = copysign(log(fabs(slope) + sqrt(slope * slope + 1.0)), slope);
+    *y = 0.5 - stretched / (2.0 * pi);
 }
 
 void camber_mercator_unproject(double x, double y, double *longitude, double *latitude) {

@@ -9,6 +9,8 @@
 #include <string.h>
 
 static const double PROGRESS_MS = 50;
+/* The clock is looked at so often. */
+enum { PROGRESS_FEATURES = 64 };
 
 typedef struct reader {
     camber_context *context;
@@ -145,6 +147,8 @@ static camber_status fail_stream(reader *self, const char *cause) {
 }
 
 static void show_progress(reader *self, double fraction) {
+    if (self->read % PROGRESS_FEATURES)
+        return;
     const double now = camber_now_ms();
     if (now - self->shown_ms < PROGRESS_MS)
         return;
@@ -153,8 +157,10 @@ static void show_progress(reader *self, double fraction) {
 }
 
 static OGRFeatureH next_feature(reader *self, double *fraction) {
-    self->dataset.errors = (camber_gdal_errors){0};
-    CPLErrorReset();
+    if (self->dataset.errors.failures) {
+        self->dataset.errors = (camber_gdal_errors){0};
+        CPLErrorReset();
+    }
     if (!self->dataset.osm)
         return OGR_L_GetNextFeature(self->layer);
     OGRLayerH layer = NULL;
@@ -315,9 +321,23 @@ static void add_stats(camber_features *features, const reader *self) {
     sum->points = features->point_count;
     sum->skipped_features += self->stats.skipped_features;
     sum->damaged_features += self->stats.damaged_features;
-    sum->invalid_points += self->parts.invalid_points;
-    sum->clamped_points += self->parts.clamped_points;
-    sum->antimeridian_splits += self->parts.antimeridian_splits;
+    sum->invalid_points += self->stats.invalid_points;
+    sum->clamped_points += self->stats.clamped_points;
+    sum->antimeridian_splits += self->stats.antimeridian_splits;
+}
+
+/* The file's lines, from first_polyline on. */
+static camber_status finish(camber_features *features, const camber_source_desc *desc, size_t first_polyline) {
+    const double start_ms = camber_now_ms();
+    camber_status status = CAMBER_OK;
+    if (!desc->keep_apart)
+        status = camber_features_merge(features, first_polyline, features->style->directed);
+    const double merged_ms = camber_now_ms();
+    if (status == CAMBER_OK)
+        status = camber_features_weigh(features, first_polyline);
+    features->times.merge_ms += merged_ms - start_ms;
+    features->times.weigh_ms += camber_now_ms() - merged_ms;
+    return status;
 }
 
 /* One attempt; on failure the set is as before but for spare classes. */
@@ -327,19 +347,22 @@ static camber_status read_once(camber_features *features, const camber_source_de
     const size_t points = features->point_count, polylines = features->polyline_count, count = features->feature_count;
     const bool was_osm = features->is_osm;
     const camber_features_stats stats = features->stats;
+    const double start_ms = camber_now_ms();
     camber_status status = camber_dataset_open(features->context, desc, features->style, *unsorted, &self.dataset);
     if (status != CAMBER_OK)
         return status;
     CPLPushErrorHandlerEx(camber_gdal_collect, &self.dataset.errors);
     status = read_dataset(&self, unsorted);
     CPLPopErrorHandler();
+    self.stats.invalid_points = self.parts.invalid_points;
+    self.stats.clamped_points = self.parts.clamped_points;
+    self.stats.antimeridian_splits = self.parts.antimeridian_splits;
+    /* What GDAL holds goes before the lines are copied. */
+    close_reader(&self);
+    features->times.file_ms += camber_now_ms() - start_ms;
     if (status == CAMBER_OK)
-        status = desc->keep_apart ? CAMBER_OK : camber_features_merge(features, polylines, features->style->directed);
-    if (status == CAMBER_OK)
-        status = camber_features_weigh(features, polylines);
+        status = finish(features, desc, polylines);
     if (status == CAMBER_OK) {
-        self.stats.invalid_points = self.parts.invalid_points;
-        self.stats.clamped_points = self.parts.clamped_points;
         add_stats(features, &self);
         warn(&self);
         camber_progress(features->context, "reading", 1);
@@ -350,7 +373,6 @@ static camber_status read_once(camber_features *features, const camber_source_de
         features->is_osm = was_osm;
         features->stats = stats;
     }
-    close_reader(&self);
     return status;
 }
 

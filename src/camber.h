@@ -83,7 +83,7 @@ typedef struct camber_context_desc {
     void *log_user;
     camber_progress_fn *progress; /* NULL: none */
     void *progress_user;
-    /* Folder for compiled kernels. NULL: $XDG_CACHE_HOME/camber, else ~/.cache/camber; "": no cache.
+    /* Folder for compiled kernels and linked shaders. NULL: $XDG_CACHE_HOME/camber, else ~/.cache/camber; "": no cache.
      * A folder that cannot be written is not an error. */
     const char *cache_dir;
 } camber_context_desc;

@@ -44,6 +44,38 @@ static inline void studio_close(studio *s) {
     camber_context_destroy(s->context);
 }
 
+/* Of a test program: PoCL's own cache apart, and whether there is something to draw with. false: what is missing is
+ * said, and the folder is gone; the program returns 77. true: folder_remove(cache) at its end. */
+static inline bool studio_begin(char cache[64]) {
+    studio probe;
+    pocl_cache_apart(cache);
+    bool possible = device_is_there();
+    if (possible) {
+        possible = studio_open(&probe);
+        studio_close(&probe);
+    }
+    if (possible)
+        return true;
+    puts("skipped: no OpenCL device, or neither EGL nor OSMesa");
+    folder_remove(cache);
+    return false;
+}
+
+/* A group's state: a studio. */
+static inline int studio_set_up(void **state) {
+    studio *s = malloc(sizeof *s);
+    *state = s;
+    return s && studio_open(s) ? 0 : -1;
+}
+
+static inline int studio_tear_down(void **state) {
+    studio *s = *state;
+    studio_close(s);
+    assert_int_equal(s->h.live_blocks, 0);
+    free(s);
+    return 0;
+}
+
 /* The first back end that is there. */
 static inline camber_renderer *studio_any(const studio *s) {
     return s->renderer[0] ? s->renderer[0] : s->renderer[1];

@@ -36,6 +36,26 @@ typedef struct property {
  * CAMBER_CASES tries as many. */
 void property_check(const property *p, void *user);
 
+/* ---- A context to make meshes with: the state of a group ---- */
+
+typedef struct property_bench {
+    host h;
+    camber_context *context;
+} property_bench;
+
+static inline int property_set_up(void **state) {
+    static property_bench b;
+    b.context = host_context(&b.h);
+    *state = &b;
+    return 0;
+}
+
+static inline int property_tear_down(void **state) {
+    property_bench *b = *state;
+    host_done(&b->h, b->context);
+    return 0;
+}
+
 /* ---- Makers ---- */
 
 /* Any polyline: gentle, wild, of tiny steps, of mixed ones, on a coarse grid with repeated points and reversals, a

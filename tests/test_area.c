@@ -137,11 +137,8 @@ static int tear_down(void **state) {
 
 int main(void) {
     char cache[64];
-    pocl_cache_apart(cache);
-    if (!device_is_there()) {
-        printf("no OpenCL device\n");
+    if (!studio_begin(cache))
         return 77;
-    }
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_plain), cmocka_unit_test(test_crossing)};
     const int failed = cmocka_run_group_tests(tests, set_up, tear_down);
     folder_remove(cache);

@@ -75,7 +75,7 @@ is_clean() {
     local file
     for file in "$1"/* "$1"/.[!.]*; do
         [ -e "$file" ] || continue
-        [[ $(basename "$file") =~ ^kernels-[0-9a-f]{16}\.bin$ ]] || fail "left in the cache: $(basename "$file")"
+        [[ $(basename "$file") =~ ^(kernels|shaders)-[0-9a-f]{16}\.bin$ ]] || fail "left in the cache: $(basename "$file")"
     done
 }
 
@@ -92,8 +92,8 @@ if [ "$status" != 0 ]; then
 fi
 kernels_come_from "the cache"
 cache=$XDG_CACHE_HOME/camber
-kernels=$(echo "$cache"/*)
-[ -f "$kernels" ] || fail "the cache has not one file: $(ls -A "$cache")"
+kernels=$(echo "$cache"/kernels-*)
+[ -f "$kernels" ] || fail "the cache has not one file of kernels: $(ls -A "$cache")"
 cp "$kernels" "$tmp/whole.bin"
 XDG_CACHE_HOME=$tmp/other draw "$tmp/kite.png" --method kite
 
@@ -199,12 +199,12 @@ cp "$tmp/whole.bin" "$kernels"
 draw kite.png --method kite
 draw fan.png --method fan
 rm -f kite.png fan.png
-for other in "$cache"/*; do
+for other in "$cache"/kernels-*; do
     [ "$other" = "$kernels" ] && continue
     cp "$other" "$kernels"
     spoilt "another method's kernels"
 done
-[ "$(ls "$cache" | wc -l)" = 3 ] || fail "not three files in the cache: $(ls "$cache")"
+[ "$(find "$cache" -name "kernels-*" | wc -l)" = 3 ] || fail "not three files of kernels in the cache: $(ls "$cache")"
 said "garbage"
 
 # ---- Two processes fill the cache at once ----
@@ -276,7 +276,7 @@ for run in $(seq $runs); do
     done
     for file in "$cache"/*; do
         [ -e "$file" ] || continue
-        [[ $(basename "$file") =~ ^kernels-[0-9a-f]{16}\.bin(\.[A-Za-z0-9]{6})?$ ]] || fail "left in the cache: $file"
+        [[ $(basename "$file") =~ ^(kernels|shaders)-[0-9a-f]{16}\.bin(\.[A-Za-z0-9]{6})?$ ]] || fail "left in the cache: $file"
     done
     rm -f a.png
 done

@@ -415,15 +415,10 @@ int main(void) {
         cmocka_unit_test(test_on_host), cmocka_unit_test(test_on_device),    cmocka_unit_test(test_with_cache),
         cmocka_unit_test(test_drawing), cmocka_unit_test(test_same_objects),
     };
-    char pocl_cache[64];
-    pocl_cache_apart(pocl_cache);
-    studio probe;
-    const bool possible = device_is_there() && studio_open(&probe);
-    if (possible)
-        studio_close(&probe);
-    else
-        puts("skipped: no OpenCL device, or neither EGL nor OSMesa");
-    const int failed = possible ? cmocka_run_group_tests(tests, set_up, tear_down) : 77;
-    folder_remove(pocl_cache);
+    char cache[64];
+    if (!studio_begin(cache))
+        return 77;
+    const int failed = cmocka_run_group_tests(tests, set_up, tear_down);
+    folder_remove(cache);
     return failed;
 }

@@ -264,24 +264,10 @@ static void test_torture(void **state) {
     torture_free(&set);
 }
 
-static int open_studio(void **state) {
-    static studio s;
-    *state = &s;
-    return studio_open(&s) ? 0 : -1;
-}
-
-static int close_studio(void **state) {
-    studio_close(*state);
-    return 0;
-}
-
 int main(void) {
     char cache[64];
-    pocl_cache_apart(cache);
-    if (!device_is_there()) {
-        printf("no OpenCL device\n");
+    if (!studio_begin(cache))
         return 77;
-    }
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_round_joins),
         cmocka_unit_test(test_miter_joins),
@@ -300,7 +286,7 @@ int main(void) {
         cmocka_unit_test(test_rows),
         cmocka_unit_test(test_torture),
     };
-    const int failed = cmocka_run_group_tests(tests, open_studio, close_studio);
+    const int failed = cmocka_run_group_tests(tests, studio_set_up, studio_tear_down);
     folder_remove(cache);
     return failed;
 }

@@ -236,22 +236,6 @@ static void show(camber_context *context, const drawing *d, const overlap *o, co
 
 /* ---- Tests ---- */
 
-static int set_up(void **state) {
-    studio *s = malloc(sizeof *s);
-    if (!s || !studio_open(s))
-        return -1;
-    *state = s;
-    return 0;
-}
-
-static int tear_down(void **state) {
-    studio *s = *state;
-    studio_close(s);
-    assert_int_equal(s->h.live_blocks, 0);
-    free(s);
-    return 0;
-}
-
 /* One view with one method; what its plain joins draw again, at the mesh's width and at half of it. */
 static uint64_t check_view(studio *s, const camber_scene *town, const network *n, const street_view *view,
                            camber_method method) {
@@ -390,15 +374,10 @@ int main(void) {
         cmocka_unit_test(test_least_room),
         cmocka_unit_test(test_seams),
     };
-    char pocl_cache[64];
-    pocl_cache_apart(pocl_cache);
-    studio probe;
-    const bool possible = device_is_there() && studio_open(&probe);
-    if (possible)
-        studio_close(&probe);
-    else
-        puts("skipped: no OpenCL device, or neither EGL nor OSMesa");
-    const int failed = possible ? cmocka_run_group_tests(tests, set_up, tear_down) : 77;
-    folder_remove(pocl_cache);
+    char cache[64];
+    if (!studio_begin(cache))
+        return 77;
+    const int failed = cmocka_run_group_tests(tests, studio_set_up, studio_tear_down);
+    folder_remove(cache);
     return failed;
 }

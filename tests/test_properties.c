@@ -4,11 +4,6 @@
 #include "kernels/join.h"
 #include "tess/tess.h"
 
-typedef struct bench {
-    host h;
-    camber_context *context;
-} bench;
-
 /* ---- Meshes of cases ---- */
 
 static camber_stages stages_of(camber_context *context, const property_case *c) {
@@ -128,7 +123,7 @@ static property_case without_repeats(const property_case *c) {
 }
 
 static property_outcome check_well_formed(void *user, const property_case *c, char story[PROPERTY_STORY]) {
-    const bench *b = user;
+    const property_bench *b = user;
     camber_mesh_data data = property_mesh(b->context, c);
     bool bad = has_bad_indices(&data, story);
     for (size_t i = 0; i < data.info.vertex_count && !bad; i++)
@@ -151,7 +146,7 @@ static property_outcome check_well_formed(void *user, const property_case *c, ch
 /* All triangles of all meshes wind the same way or have no area, at the widest and at smaller widths, tight joins
  * included. Less than the rounding of a vertex' floats makes is no area. */
 static property_outcome check_winding(void *user, const property_case *c, char story[PROPERTY_STORY]) {
-    const bench *b = user;
+    const property_bench *b = user;
     camber_mesh_data data = property_mesh(b->context, c);
     uint32_t(*triangles)[3];
     const size_t count = property_triangles(&data, &triangles);
@@ -242,7 +237,7 @@ static size_t unmatched(const place *a, place *b, size_t count, double near_px) 
 /* The same places, as often, whichever end the line begins at. Not the chords of a fan, which are counted from the
  * segment that comes in; nor rings of kite and fan, which have an edge vertex of the segment that begins them twice. */
 static property_outcome check_reversed(void *user, const property_case *c, char story[PROPERTY_STORY]) {
-    const bench *b = user;
+    const property_bench *b = user;
     property_case turned = *c;
     place *there, *back;
     if ((c->method == CAMBER_METHOD_FAN && c->stroke.join == CAMBER_JOIN_ROUND) ||
@@ -297,7 +292,7 @@ static bool differ(const property_case *c, const camber_stages *a, const camber_
 /* A turn of the plane leaves kinds and ends of joins as they are, and moves the turns by a bit: coordinates are rounded
  * to floats again, 2^-18 px, which at a neighbour of 2 px is a third of a bit. */
 static property_outcome check_rotated(void *user, const property_case *c, char story[PROPERTY_STORY]) {
-    const bench *b = user;
+    const property_bench *b = user;
     uint64_t dice = c->dice | 1;
     const double angle = random_between(&dice, -SCENE_PI, SCENE_PI);
     property_case turned = *c;
@@ -320,7 +315,7 @@ static property_outcome check_rotated(void *user, const property_case *c, char s
  * changes. Then every vertex has its place's and segment's floats doubled, and turns, ends and shares of the reach the
  * same to the last bit; limits, which are pads or half lengths, grow by no more. */
 static property_outcome check_scaled(void *user, const property_case *c, char story[PROPERTY_STORY]) {
-    const bench *b = user;
+    const property_bench *b = user;
     property_case twice = *c;
     for (size_t i = 0; i < 2 * c->count; i++)
         twice.points[i] *= 2;
@@ -379,23 +374,10 @@ static void test_scaled(void **state) {
     property_check(&(property){"scaled", property_make_any, check_scaled, 20000, 0}, *state);
 }
 
-static int set_up(void **state) {
-    static bench b;
-    b.context = host_context(&b.h);
-    *state = &b;
-    return 0;
-}
-
-static int tear_down(void **state) {
-    bench *b = *state;
-    host_done(&b->h, b->context);
-    return 0;
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_well_formed),  cmocka_unit_test(test_winding), cmocka_unit_test(test_reversed),
         cmocka_unit_test(test_reversed_any), cmocka_unit_test(test_rotated), cmocka_unit_test(test_scaled),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, property_set_up, property_tear_down);
 }

@@ -310,11 +310,8 @@ static void test_methods(void **state) {
 
 int main(void) {
     char cache[64];
-    pocl_cache_apart(cache);
-    if (!device_is_there()) {
-        printf("no OpenCL device\n");
+    if (!studio_begin(cache))
         return 77;
-    }
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_device),  cmocka_unit_test(test_reversed), cmocka_unit_test(test_point_added),
         cmocka_unit_test(test_ring),    cmocka_unit_test(test_moved),    cmocka_unit_test(test_turned),

@@ -9,11 +9,6 @@ enum { ZOOM = 2, TILES = 3, TILE = 4096, BUFFER = 128, UNITS_A_PX = 96, POINTS_M
 /* Polylines run over 3 x 3 tiles of the world's 4 x 4. */
 static const double WORLD = 4 * 4096.0;
 
-typedef struct bench {
-    host h;
-    camber_context *context;
-} bench;
-
 /* Units from the world's corner; whole numbers. */
 typedef struct line {
     double points[2 * PROPERTY_POINTS];
@@ -90,7 +85,7 @@ static content content_of(const line *l, uint32_t column, uint32_t row) {
 
 /* ---- Cut and joined ---- */
 
-static camber_status add_tile(const bench *b, camber_tiles *tiles, const line *l, uint32_t tile) {
+static camber_status add_tile(const property_bench *b, camber_tiles *tiles, const line *l, uint32_t tile) {
     content t = content_of(l, tile % TILES, tile / TILES);
     const camber_parts parts = {
         .context = b->context, .points = t.points, .point_count = t.count, .ends = t.ends, .part_count = t.parts};
@@ -158,7 +153,7 @@ static bool crosses_twice(const line *l, int axis) {
 static property_outcome check_joined(void *user, const property_case *c, char story[PROPERTY_STORY]) {
     static char *names[] = {"highway"};
     static const uint32_t orders[][TILES * TILES] = {{0, 1, 2, 3, 4, 5, 6, 7, 8}, {8, 3, 1, 6, 4, 0, 7, 5, 2}};
-    const bench *b = user;
+    const property_bench *b = user;
     const line l = line_of(c);
     if (l.count < 2 || is_on_border(&l) || crosses_twice(&l, 0) || crosses_twice(&l, 1))
         return PROPERTY_SILENT;
@@ -197,21 +192,8 @@ static void test_any(void **state) {
     property_check(&(property){"cut by tiles, any lines", property_make_any, check_joined, 3000, 0}, *state);
 }
 
-static int set_up(void **state) {
-    static bench b;
-    b.context = host_context(&b.h);
-    *state = &b;
-    return 0;
-}
-
-static int tear_down(void **state) {
-    bench *b = *state;
-    host_done(&b->h, b->context);
-    return 0;
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_plain), cmocka_unit_test(test_crossing),
                                        cmocka_unit_test(test_rings), cmocka_unit_test(test_any)};
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, property_set_up, property_tear_down);
 }

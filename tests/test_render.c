@@ -3,22 +3,6 @@
 
 #include "draw/renderer.h"
 
-static int set_up(void **state) {
-    studio *s = malloc(sizeof *s);
-    if (!s || !studio_open(s))
-        return -1;
-    *state = s;
-    return 0;
-}
-
-static int tear_down(void **state) {
-    studio *s = *state;
-    studio_close(s);
-    assert_int_equal(s->h.live_blocks, 0);
-    free(s);
-    return 0;
-}
-
 static camber_mesh *make_mesh(studio *s, camber_renderer *renderer, const scene *lines,
                               const camber_tessellation_desc *desc) {
     camber_mesh *mesh = NULL;
@@ -342,15 +326,10 @@ int main(void) {
         cmocka_unit_test(test_rows_refused),        cmocka_unit_test(test_background_is_premultiplied),
         cmocka_unit_test(test_empty_mesh),          cmocka_unit_test(test_surface_info),
     };
-    char pocl_cache[64];
-    pocl_cache_apart(pocl_cache);
-    studio probe;
-    const bool possible = device_is_there() && studio_open(&probe);
-    if (possible)
-        studio_close(&probe);
-    else
-        puts("skipped: no OpenCL device, or neither EGL nor OSMesa");
-    const int failed = possible ? cmocka_run_group_tests(tests, set_up, tear_down) : 77;
-    folder_remove(pocl_cache);
+    char cache[64];
+    if (!studio_begin(cache))
+        return 77;
+    const int failed = cmocka_run_group_tests(tests, studio_set_up, studio_tear_down);
+    folder_remove(cache);
     return failed;
 }

@@ -1,40 +1,7 @@
 /* What classify and scan found: the device against the twin's walk, and both against the mesh that came of it. */
-#include "scene.h"
+#include "bench.h"
 
 #include "kernels/join.h"
-#include "tess/tess.h"
-
-typedef struct bench {
-    host h;
-    camber_context *context;
-    camber_device *device;
-    camber_mesh *mesh;
-    bool rounds; /* the device divides and takes roots as the host does */
-} bench;
-
-static int set_up(void **state) {
-    bench *b = calloc(1, sizeof *b);
-    if (!b)
-        return -1;
-    b->context = host_context(&b->h);
-    if (camber_device_create(b->context, NULL, NULL, &b->device) != CAMBER_OK ||
-        camber_mesh_create(b->device, NULL, &b->mesh) != CAMBER_OK)
-        return -1;
-    cl_device_fp_config rounding = 0;
-    clGetDeviceInfo(b->device->id, CL_DEVICE_SINGLE_FP_CONFIG, sizeof rounding, &rounding, NULL);
-    b->rounds = rounding & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT;
-    *state = b;
-    return 0;
-}
-
-static int tear_down(void **state) {
-    bench *b = *state;
-    camber_mesh_destroy(b->mesh);
-    camber_device_destroy(b->device);
-    host_done(&b->h, b->context);
-    free(b);
-    return 0;
-}
 
 /* The first point where two stages differ, in any field; the count of points where they do not. */
 static size_t first_difference(const camber_stages *a, const camber_stages *b) {
@@ -278,7 +245,7 @@ int main(void) {
     pocl_cache_apart(pocl_cache);
     int failed = 77;
     if (device_is_there())
-        failed = cmocka_run_group_tests(tests, set_up, tear_down);
+        failed = cmocka_run_group_tests(tests, bench_set_up, bench_tear_down);
     else
         puts("skipped: no OpenCL device");
     folder_remove(pocl_cache);

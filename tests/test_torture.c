@@ -42,11 +42,8 @@ static int tear_down(void **state) {
 
 int main(void) {
     char cache[64];
-    pocl_cache_apart(cache);
-    if (!device_is_there()) {
-        printf("no OpenCL device\n");
+    if (!studio_begin(cache))
         return 77;
-    }
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_strips_are_uniform),
         cmocka_unit_test(test_kites_are_uniform),

@@ -85,11 +85,8 @@ int main(void) {
         printf("no %s; set CAMBER_DATA\n", data ? path : FILE_NAME);
         return 77;
     }
-    pocl_cache_apart(cache);
-    if (!device_is_there()) {
-        printf("no OpenCL device\n");
+    if (!studio_begin(cache))
         return 77;
-    }
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_strips_are_uniform),
         cmocka_unit_test(test_kites_are_uniform),

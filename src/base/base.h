@@ -69,6 +69,8 @@ static inline uint64_t camber_mix_point(uint64_t hash, const double *point) {
 
 /* ---- Cache: small files by name in the context's cache folder; every failure is a miss ---- */
 
+/* Whether the context has a cache folder at all. */
+bool camber_cache_is_on(const camber_context *context);
 /* *bytes is freed with camber_free. */
 bool camber_cache_load(camber_context *context, const char *name, char **bytes, size_t *size_bytes);
 /* Written beside and renamed: readers see a whole file or none. */

@@ -91,6 +91,11 @@ static bool make_folders(char *folder) {
     return mkdir(folder, 0700) == 0 || errno == EEXIST;
 }
 
+bool camber_cache_is_on(const camber_context *context) {
+    char folder[PATH_SIZE];
+    return cache_folder(context, folder);
+}
+
 bool camber_cache_load(camber_context *context, const char *name, char **bytes, size_t *size_bytes) {
     char folder[PATH_SIZE], path[PATH_SIZE + 256];
     if (!cache_folder(context, folder))

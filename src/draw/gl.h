@@ -38,6 +38,9 @@
     X(void, LinkProgram, (GLuint))                                                                                     \
     X(void, GetProgramiv, (GLuint, GLenum, GLint *))                                                                   \
     X(void, GetProgramInfoLog, (GLuint, GLsizei, GLsizei *, GLchar *))                                                 \
+    X(void, ProgramParameteri, (GLuint, GLenum, GLint))                                                                \
+    X(void, GetProgramBinary, (GLuint, GLsizei, GLsizei *, GLenum *, void *))                                          \
+    X(void, ProgramBinary, (GLuint, GLenum, const void *, GLsizei))                                                    \
     X(void, DeleteProgram, (GLuint))                                                                                   \
     X(void, UseProgram, (GLuint))                                                                                      \
     X(GLint, GetUniformLocation, (GLuint, const GLchar *))                                                             \

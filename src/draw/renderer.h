@@ -58,6 +58,12 @@ struct camber_renderer {
     size_t row_capacity;
 };
 
+/* linked.c: programs in the cache folder. A key is of the driver and all the sources. */
+uint64_t camber_linked_key(const camber_renderer *renderer, const char *const *sources, size_t count);
+/* false: it is not there, or the driver takes it no more. */
+bool camber_linked_load(camber_renderer *renderer, uint64_t key, GLuint program);
+void camber_linked_save(camber_renderer *renderer, uint64_t key, GLuint program);
+
 /* shaders.c */
 camber_status camber_renderer_stroke_shader(camber_renderer *renderer, unsigned variant, const camber_shader **shader);
 camber_status camber_renderer_flatten_shader(camber_renderer *renderer, camber_flatten_kind kind,

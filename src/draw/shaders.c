@@ -50,11 +50,11 @@ static camber_status link(camber_renderer *renderer, GLuint program, const GLuin
     return fail_step(renderer, "shaders do not link", log);
 }
 
-static camber_status build(camber_renderer *renderer, const char *head, const char *vertex, const char *fragment,
-                           camber_shader *shader) {
+/* From the sources. */
+static camber_status make(camber_renderer *renderer, const char *head, const char *vertex, const char *fragment,
+                          GLuint program) {
     const camber_gl *gl = &renderer->share.surface->gl;
     GLuint parts[2] = {0, 0};
-    const GLuint program = gl->CreateProgram();
     camber_status status = compile(renderer, GL_VERTEX_SHADER, head, vertex, parts);
     if (status == CAMBER_OK)
         status = compile(renderer, GL_FRAGMENT_SHADER, head, fragment, parts + 1);
@@ -62,10 +62,28 @@ static camber_status build(camber_renderer *renderer, const char *head, const ch
         status = link(renderer, program, parts);
     for (int i = 0; i < 2; i++)
         gl->DeleteShader(parts[i]); /* 0 is none */
-    if (status != CAMBER_OK) {
-        gl->DeleteProgram(program);
-        return status;
+    return status;
+}
+
+static camber_status build(camber_renderer *renderer, const char *head, const char *vertex, const char *fragment,
+                           camber_shader *shader) {
+    const camber_gl *gl = &renderer->share.surface->gl;
+    const char *const sources[] = {head, vertex, fragment};
+    const uint64_t key = camber_linked_key(renderer, sources, sizeof sources / sizeof *sources);
+    const double begin = camber_now_ms();
+    const GLuint program = gl->CreateProgram();
+    const bool cached = camber_linked_load(renderer, key, program);
+    if (!cached) {
+        gl->ProgramParameteri(program, GL_PROGRAM_BINARY_RETRIEVABLE_HINT, GL_TRUE);
+        const camber_status status = make(renderer, head, vertex, fragment, program);
+        if (status != CAMBER_OK) {
+            gl->DeleteProgram(program);
+            return status;
+        }
+        camber_linked_save(renderer, key, program);
     }
+    camber_log(renderer->share.device->context, CAMBER_LOG_INFO, "shaders: %s in %.0f ms",
+               cached ? "from the cache" : "built", camber_now_ms() - begin);
     *shader = (camber_shader){program, gl->GetUniformLocation(program, "u_origin"),
                               gl->GetUniformLocation(program, "u_corner"), gl->GetUniformLocation(program, "u_scale"),
                               gl->GetUniformLocation(program, "u_color")};

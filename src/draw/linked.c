@@ -1,0 +1,86 @@
+/* Linked shader programs, kept in the user's cache folder as the driver gives them. Mesa keeps what its compiler made
+ * by itself, but reads the sources first; other drivers keep nothing. */
+#include "draw/renderer.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* A file: this, then the driver's bytes. */
+typedef struct linked_head {
+    uint64_t hash; /* of the key, the format and the bytes: what is torn or another's is no program */
+    GLenum format;
+    uint32_t unused;
+} linked_head;
+
+uint64_t camber_linked_key(const camber_renderer *renderer, const char *const *sources, size_t count) {
+    const camber_surface_info *info = &renderer->share.surface->info;
+    uint64_t key = camber_hash(CAMBER_HASH_START, info->renderer, strlen(info->renderer) + 1);
+    key = camber_hash(key, info->version, strlen(info->version) + 1);
+    for (size_t i = 0; i < count; i++)
+        key = camber_hash(key, sources[i], strlen(sources[i]) + 1);
+    return key;
+}
+
+static void file_name(uint64_t key, char name[64]) {
+    snprintf(name, 64, "shaders-%016llx.bin", (unsigned long long)key);
+}
+
+static uint64_t hash_bytes(uint64_t key, GLenum format, const void *bytes, size_t size) {
+    const uint64_t hash = camber_hash(camber_hash(CAMBER_HASH_START, &key, sizeof key), &format, sizeof format);
+    return camber_hash(hash, bytes, size);
+}
+
+static bool keeps_programs(const camber_gl *gl) {
+    GLint formats = 0;
+    gl->GetIntegerv(GL_NUM_PROGRAM_BINARY_FORMATS, &formats);
+    return formats > 0;
+}
+
+bool camber_linked_load(camber_renderer *renderer, uint64_t key, GLuint program) {
+    camber_surface *surface = renderer->share.surface;
+    const camber_gl *gl = &surface->gl;
+    char name[64], *bytes = NULL;
+    size_t size = 0;
+    GLint linked = 0;
+    linked_head head;
+    file_name(key, name);
+    if (!keeps_programs(gl) || !camber_cache_load(renderer->share.device->context, name, &bytes, &size))
+        return false;
+    if (size > sizeof head) {
+        memcpy(&head, bytes, sizeof head);
+        size -= sizeof head;
+        if (head.hash == hash_bytes(key, head.format, bytes + sizeof head, size)) {
+            gl->ProgramBinary(program, head.format, bytes + sizeof head, (GLsizei)size);
+            gl->GetProgramiv(program, GL_LINK_STATUS, &linked);
+            camber_surface_forget_errors(surface); /* of another version's bytes: they are built anew */
+        }
+    }
+    camber_free(renderer->share.device->context, bytes);
+    return linked != 0;
+}
+
+void camber_linked_save(camber_renderer *renderer, uint64_t key, GLuint program) {
+    camber_context *context = renderer->share.device->context;
+    const camber_context_desc *host = &context->desc;
+    const camber_gl *gl = &renderer->share.surface->gl;
+    GLint size = 0;
+    GLsizei written = 0;
+    linked_head head = {0};
+    if (!keeps_programs(gl) || !camber_cache_is_on(context))
+        return;
+    gl->GetProgramiv(program, GL_PROGRAM_BINARY_LENGTH, &size);
+    /* Past camber_alloc, which logs: a file that is not saved fails nothing. */
+    char *bytes = size > 0 ? host->reallocate(host->allocator_user, NULL, sizeof head + (size_t)size) : NULL;
+    if (bytes) {
+        gl->GetProgramBinary(program, size, &written, &head.format, bytes + sizeof head);
+        if (written > 0) {
+            char name[64];
+            head.hash = hash_bytes(key, head.format, bytes + sizeof head, (size_t)written);
+            memcpy(bytes, &head, sizeof head);
+            file_name(key, name);
+            camber_cache_save(context, name, bytes, sizeof head + (size_t)written);
+        }
+    }
+    camber_surface_forget_errors(renderer->share.surface);
+    camber_free(context, bytes);
+}

@@ -22,6 +22,9 @@
 
 /* Points a work-item walks. */
 #define CAMBER_CHUNK 64
+/* Farther from the window than this, pixels are not drawn from: floats are exact to 1/2048 px there. */
+#define CAMBER_NEAR_PX 4096.0f
+#define CAMBER_NO_POINT 0xffffffffu
 /* Of a run's word, whose row stands at CAMBER_POINT_ROW_SHIFT. */
 #define CAMBER_RUN_RING CAMBER_POINT_RING
 
@@ -55,6 +58,13 @@ typedef struct camber_walk {
     camber_u32 first, end, word; /* of the run */
 } camber_walk;
 
+/* A point that is kept: its pixel, and which sides of the window that lies beyond. */
+typedef struct camber_kept {
+    camber_u32 point; /* CAMBER_NO_POINT: there is none */
+    camber_u32 beyond;
+    float x, y;
+} camber_kept;
+
 CAMBER_FN float camber_project_x(const camber_projection *p, camber_i32 x, camber_i32 y) {
     return (float)(x - p->origin_x) * p->across_x + (float)(y - p->origin_y) * p->down_x + p->at_x;
 }
@@ -63,23 +73,65 @@ CAMBER_FN float camber_project_y(const camber_projection *p, camber_i32 x, cambe
     return (float)(x - p->origin_x) * p->across_y + (float)(y - p->origin_y) * p->down_y + p->at_y;
 }
 
-CAMBER_FN camber_u32 camber_is_inside(const camber_projection *p, float x, float y) {
-    return x >= p->window_x0 && x <= p->window_x1 && y >= p->window_y0 && y <= p->window_y1;
+/* The sides of the window, grown by some px, that a pixel lies beyond. A segment whose ends have one in common misses
+ * it. */
+CAMBER_FN camber_u32 camber_beyond(const camber_projection *p, float x, float y, float grown) {
+    return (x < p->window_x0 - grown ? 1u : 0u) | (x > p->window_x1 + grown ? 2u : 0u) |
+           (y < p->window_y0 - grown ? 4u : 0u) | (y > p->window_y1 + grown ? 8u : 0u);
 }
 
-CAMBER_FN camber_u32 camber_misses(const camber_projection *p, float ax, float ay, float bx, float by) {
-    return (ax < p->window_x0 && bx < p->window_x0) || (ax > p->window_x1 && bx > p->window_x1) ||
-           (ay < p->window_y0 && by < p->window_y0) || (ay > p->window_y1 && by > p->window_y1);
+CAMBER_FN camber_kept camber_keep_at(const camber_projection *p, camber_u32 point, camber_i32 x, camber_i32 y) {
+    camber_kept kept;
+    kept.point = point;
+    kept.x = camber_project_x(p, x, y);
+    kept.y = camber_project_y(p, x, y);
+    kept.beyond = camber_beyond(p, kept.x, kept.y, 0.0f);
+    return kept;
+}
+
+CAMBER_FN camber_kept camber_keep(const camber_walk *w, const camber_projection *p, camber_u32 point) {
+    return camber_keep_at(p, point, w->x[point], w->y[point]);
+}
+
+CAMBER_FN camber_u32 camber_same_pixel(camber_kept a, camber_kept b) {
+    return a.x == b.x && a.y == b.y ? 1u : 0u;
+}
+
+/* The end a of a segment to b, or in its stead, where a lies so far out that its pixel is coarse, a place of the
+ * segment that does not, before the window. Halves the segment in steps of the network: what is left is exact to one of
+ * them. Where the segment misses what is near, the place does too. */
+CAMBER_FN camber_kept camber_pull(const camber_walk *w, const camber_projection *p, camber_kept a, camber_kept b) {
+    camber_u32 out = camber_beyond(p, a.x, a.y, CAMBER_NEAR_PX);
+    if (out == 0u)
+        return a;
+    camber_i32 x = w->x[a.point], y = w->y[a.point], to_x = w->x[b.point], to_y = w->y[b.point];
+    camber_kept found = b;
+    for (camber_u32 i = 0; i < 32u; i++) {
+        const camber_i32 mid_x = x + (to_x - x) / 2, mid_y = y + (to_y - y) / 2;
+        const camber_kept mid = camber_keep_at(p, a.point, mid_x, mid_y);
+        const camber_u32 mid_out = camber_beyond(p, mid.x, mid.y, CAMBER_NEAR_PX);
+        if (mid_out & out) {
+            x = mid_x;
+            y = mid_y;
+            out = mid_out;
+            continue;
+        }
+        to_x = mid_x;
+        to_y = mid_y;
+        found = mid;
+        if (mid_out == 0u && (mid.beyond & a.beyond))
+            break;
+    }
+    return found;
 }
 
 /* How far from a to b, 0 to 1, the first side of the window lies that b is beyond; 1 where it is beyond none. a is not
  * beyond any of these sides: no division by 0. */
-CAMBER_FN float camber_part_within(const camber_projection *p, float ax, float ay, float bx, float by) {
-    const float dx = bx - ax, dy = by - ay;
-    const float side_x = bx > p->window_x1 ? p->window_x1 : p->window_x0;
-    const float side_y = by > p->window_y1 ? p->window_y1 : p->window_y0;
-    const float tx = bx > p->window_x1 || bx < p->window_x0 ? (side_x - ax) / dx : 1.0f;
-    const float ty = by > p->window_y1 || by < p->window_y0 ? (side_y - ay) / dy : 1.0f;
+CAMBER_FN float camber_part_within(const camber_projection *p, camber_kept a, camber_kept b) {
+    const float side_x = b.beyond & 2u ? p->window_x1 : p->window_x0;
+    const float side_y = b.beyond & 8u ? p->window_y1 : p->window_y0;
+    const float tx = b.beyond & 3u ? (side_x - a.x) / (b.x - a.x) : 1.0f;
+    const float ty = b.beyond & 12u ? (side_y - a.y) / (b.y - a.y) : 1.0f;
     return tx < ty ? tx : ty;
 }
 
@@ -93,108 +145,94 @@ CAMBER_FN void camber_put_slot(camber_walk *w, float x, float y, camber_u32 info
 }
 
 /* b, or where the way to it leaves the window. */
-CAMBER_FN void camber_put_cut(camber_walk *w, const camber_projection *p, float ax, float ay, float bx, float by,
+CAMBER_FN void camber_put_cut(camber_walk *w, const camber_projection *p, camber_kept a, camber_kept b,
                               camber_u32 info) {
-    const float t = camber_part_within(p, ax, ay, bx, by);
-    const camber_u32 cut = !camber_is_inside(p, bx, by);
-    camber_put_slot(w, cut ? ax + (bx - ax) * t : bx, cut ? ay + (by - ay) * t : by, info);
+    const float t = camber_part_within(p, a, b);
+    camber_put_slot(w, b.beyond ? a.x + (b.x - a.x) * t : b.x, b.beyond ? a.y + (b.y - a.y) * t : b.y, info);
 }
 
-/* The point before from that is kept: its place, its pixel. The run's first point is always kept. */
-CAMBER_FN camber_u32 camber_find_before(const camber_walk *w, const camber_projection *p, camber_u32 from, float *x,
-                                        float *y) {
+/* The last point before a place that is kept. The run's first point always is. */
+CAMBER_FN camber_kept camber_find_before(const camber_walk *w, const camber_projection *p, camber_u32 from) {
     camber_u32 i = from - 1;
     while (i > w->first && !(w->importance[i] >= p->tolerance))
         i--;
-    *x = camber_project_x(p, w->x[i], w->y[i]);
-    *y = camber_project_y(p, w->x[i], w->y[i]);
-    return i;
+    return camber_keep(w, p, i);
 }
 
-/* The first point from a place on that is kept and does not lie on the pixel x, y. 0: there is none. */
-CAMBER_FN camber_u32 camber_find_next(const camber_walk *w, const camber_projection *p, camber_u32 from, float x,
-                                      float y, float *next_x, float *next_y) {
+/* The first point from a place on that is kept and has another pixel. */
+CAMBER_FN camber_kept camber_find_next(const camber_walk *w, const camber_projection *p, camber_u32 from,
+                                       camber_kept other) {
+    camber_kept next = other;
     for (camber_u32 i = from; i < w->end; i++) {
         if (!(w->importance[i] >= p->tolerance))
             continue;
-        const float px = camber_project_x(p, w->x[i], w->y[i]), py = camber_project_y(p, w->x[i], w->y[i]);
-        if (px != x || py != y) {
-            *next_x = px;
-            *next_y = py;
-            return 1u;
-        }
+        next = camber_keep(w, p, i);
+        if (!camber_same_pixel(next, other))
+            return next;
     }
-    return 0u;
+    next.point = CAMBER_NO_POINT;
+    return next;
 }
 
 /* The ghost of a ring: its last other point before the first, its second behind the last. Cut like the segment that
  * it stands for, so that both ends of the ring see the same turn. */
-CAMBER_FN void camber_put_ghost(camber_walk *w, const camber_projection *p, camber_u32 before, float x, float y) {
-    float other_x = x, other_y = y;
+CAMBER_FN void camber_put_ghost(camber_walk *w, const camber_projection *p, camber_u32 before, camber_kept seam) {
+    camber_kept other = seam;
     if (before) {
-        camber_u32 i = w->end;
-        while (i > w->first && other_x == x && other_y == y)
-            i = camber_find_before(w, p, i, &other_x, &other_y);
+        other.point = w->end;
+        while (other.point > w->first && camber_same_pixel(other, seam))
+            other = camber_find_before(w, p, other.point);
     } else {
-        camber_find_next(w, p, w->first, x, y, &other_x, &other_y);
+        other = camber_find_next(w, p, w->first, seam);
     }
-    camber_put_cut(w, p, x, y, other_x, other_y, 0u);
+    camber_put_cut(w, p, seam, camber_pull(w, p, other, seam), 0u);
 }
 
 /* The slots that belong to a point: its own, a ring's ghost, and the ends of the segment to the next point. */
-CAMBER_FN void camber_put_point(camber_walk *w, const camber_projection *p, camber_u32 i, float x, float y,
-                                camber_u32 has_next, float next_x, float next_y) {
+CAMBER_FN void camber_put_point(camber_walk *w, const camber_projection *p, camber_kept a, camber_kept b) {
     const camber_u32 real = (w->word & ~0xffu) | CAMBER_POINT_REAL;
-    const camber_u32 inside = camber_is_inside(p, x, y);
-    if (inside) {
-        const camber_u32 begins = i == w->first ? 1u : 0u;
+    const camber_u32 has_next = b.point != CAMBER_NO_POINT ? 1u : 0u;
+    if (!a.beyond) {
+        const camber_u32 begins = a.point == w->first ? 1u : 0u;
         const camber_u32 seam = (w->word & CAMBER_RUN_RING) && begins == has_next ? CAMBER_POINT_RING : 0u;
         if (seam && begins)
-            camber_put_ghost(w, p, 1u, x, y);
-        camber_put_slot(w, x, y,
+            camber_put_ghost(w, p, 1u, a);
+        camber_put_slot(w, a.x, a.y,
                         real | (begins ? CAMBER_POINT_FIRST : 0u) | (has_next ? 0u : CAMBER_POINT_LAST) | seam);
         if (seam && !begins)
-            camber_put_ghost(w, p, 0u, x, y);
+            camber_put_ghost(w, p, 0u, a);
     }
-    if (!has_next)
+    if (!has_next || (a.beyond & b.beyond) || !(a.beyond | b.beyond))
         return;
-    const camber_u32 next_inside = camber_is_inside(p, next_x, next_y);
-    if (inside && next_inside)
+    const camber_kept from = camber_pull(w, p, a, b), to = camber_pull(w, p, b, a);
+    if (from.beyond && to.beyond &&
+        ((from.beyond & to.beyond) || !(camber_part_within(p, from, to) + camber_part_within(p, to, from) > 1.0f)))
         return;
-    if (!inside && !next_inside &&
-        (camber_misses(p, x, y, next_x, next_y) ||
-         !(camber_part_within(p, x, y, next_x, next_y) + camber_part_within(p, next_x, next_y, x, y) > 1.0f)))
-        return;
-    if (!inside)
-        camber_put_cut(w, p, next_x, next_y, x, y, real | CAMBER_POINT_FIRST);
-    if (!next_inside)
-        camber_put_cut(w, p, x, y, next_x, next_y, real | CAMBER_POINT_LAST);
+    if (a.beyond)
+        camber_put_cut(w, p, to, from, real | CAMBER_POINT_FIRST);
+    if (b.beyond)
+        camber_put_cut(w, p, from, to, real | CAMBER_POINT_LAST);
 }
 
 /* The points [begin, end) of the run. Of points that follow each other on one pixel the first counts. */
 CAMBER_FN void camber_walk_run(camber_walk *w, const camber_projection *p, camber_u32 begin, camber_u32 end) {
-    camber_u32 waits = 0, at = 0;
-    float x = 0.0f, y = 0.0f;
+    camber_kept now = {CAMBER_NO_POINT, 0, 0, 0};
+    camber_u32 waits = 0;
     for (camber_u32 i = begin; i < end; i++) {
         if (!(w->importance[i] >= p->tolerance))
             continue;
-        const float next_x = camber_project_x(p, w->x[i], w->y[i]), next_y = camber_project_y(p, w->x[i], w->y[i]);
+        const camber_kept next = camber_keep(w, p, i);
         if (!waits && i > w->first)
-            camber_find_before(w, p, i, &x, &y);
-        if ((waits || i > w->first) && next_x == x && next_y == y)
+            now = camber_find_before(w, p, i);
+        if (now.point != CAMBER_NO_POINT && camber_same_pixel(now, next))
             continue;
         if (waits)
-            camber_put_point(w, p, at, x, y, 1u, next_x, next_y);
+            camber_put_point(w, p, now, next);
         waits = 1u;
-        at = i;
-        x = next_x;
-        y = next_y;
+        now = next;
     }
-    if (!waits)
-        return;
-    float next_x = 0.0f, next_y = 0.0f;
-    const camber_u32 has_next = camber_find_next(w, p, end, x, y, &next_x, &next_y);
-    camber_put_point(w, p, at, x, y, has_next, next_x, next_y);
+    if (waits)
+        camber_put_point(w, p, now, camber_find_next(w, p, end, now));
 }
 
 /* The points [begin, end), of which the first belongs to the run that is given. */

@@ -42,7 +42,7 @@ typedef struct camber_projection {
     float across_y, down_y, at_y;
     float tolerance;                                  /* points of less importance are left out */
     float window_x0, window_y0, window_x1, window_y1; /* px: nothing lies outside it */
-    camber_i32 seen_x0, seen_y0, seen_x1, seen_y1;    /* the box of that in the network's steps */
+    camber_i32 seen_x0, seen_y0, seen_x1, seen_y1;    /* runs whose boxes miss it are not seen */
     camber_u32 first_point;                           /* where the arrays of points begin in the network */
     camber_u32 begin, end;                            /* the points to walk, counted from there */
 } camber_projection;

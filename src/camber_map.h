@@ -113,37 +113,53 @@ typedef struct camber_view_desc {
 
 typedef struct camber_scene_desc {
     camber_view_desc view;
-    double simplify_px; /* a point is dropped where the line stays this close to it, device px. 0: none */
+    /* A point is dropped where the line stays this close to it, device px; nodes that lines share go or stay in all of
+     * them. 0: none */
+    double simplify_px;
+    /* What the scene has on the host is made when it is asked for: camber_scene_tessellate does without. */
+    bool on_device;
 } camber_scene_desc;
 
 typedef struct camber_scene_info {
     double longitude, latitude, zoom; /* of the view's centre */
     uint32_t width, height;           /* device px */
+    bool opaque;                      /* the background covers the picture */
     size_t layers;                    /* of the style that draw something here */
     size_t features;                  /* of the polylines of which something lies in the view, once for layers that
                                        * share lines; a merged polyline counts for all features that are in it */
     size_t polylines, points;         /* to tessellate */
     size_t points_in;                 /* of these features' polylines, before simplification and clipping */
-    bool opaque;                      /* the background covers the picture */
 } camber_scene_info;
 
 typedef struct camber_scene camber_scene;
 
-/* Evaluates the style, projects, culls. The features must outlive the scene.
+/* Evaluates the style and makes a network of what it draws. The features must outlive the scene.
  * Returns CAMBER_ERROR_ARGUMENT (a view out of range), CAMBER_ERROR_MEMORY. Nothing to draw is no error. */
 CAMBER_API camber_status camber_scene_create(const camber_features *features, const camber_scene_desc *desc,
                                              camber_scene **scene);
 CAMBER_API void camber_scene_destroy(camber_scene *scene);
+
+/* Another view of the same features. Evaluates the style for its zoom; the network stays, on the device too, where
+ * filters still draw the same features, and the picture does not come to another copy of the world. The scene is as
+ * before where this fails. Cost: some microseconds a class of features; else about 30 ns a point. */
+CAMBER_API camber_status camber_scene_move(camber_scene *scene, const camber_view_desc *view);
+/* camber_tessellate_network of what the view sees. */
+CAMBER_API camber_status camber_scene_tessellate(const camber_scene *scene, camber_mesh *mesh, camber_method method);
+
+/* Where the view is and whether its background is opaque; counts are 0. Makes nothing. */
+CAMBER_API camber_scene_info camber_scene_get_view(const camber_scene *scene);
+/* Counts are 0 where memory for the parts below ran out. */
 CAMBER_API camber_scene_info camber_scene_get_info(const camber_scene *scene);
 
-/* The parts, owned by the scene. */
+/* What the view sees, on the host and owned by the scene: made by the CPU twin, with each piece by itself. After a
+ * move, and of a scene on the device, the first of these calls makes it: NULL where memory ran out. */
 CAMBER_API const camber_polylines *camber_scene_polylines(const camber_scene *scene);
 CAMBER_API const camber_lines *camber_scene_lines(const camber_scene *scene);
 /* The row of each polyline, an index into the strokes. */
 CAMBER_API const uint32_t *camber_scene_rows(const camber_scene *scene);
 CAMBER_API const camber_stroke *camber_scene_strokes(const camber_scene *scene, size_t *count);
-/* The frame with all passes drawing mesh, which holds the tessellated scene. Valid until the next call on
- * this scene. */
+/* The frame with all passes drawing mesh, which holds the scene as camber_scene_tessellate left it, or else its
+ * polylines tessellated. Valid until the next call on this scene. */
 CAMBER_API camber_frame camber_scene_frame(camber_scene *scene, camber_mesh *mesh);
 
 /* ---- GLB ------------------------------------------------------------------------------------------- */

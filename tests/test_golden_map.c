@@ -3,13 +3,14 @@
 
 #include "camber_map.h"
 
+static const camber_view_desc CROSSING = {CAMBER_VIEW_CENTER, .longitude = -122.0268, .latitude = 36.9735, .zoom = 15.8,
+                                          .width = 300,       .height = 200,          .ratio = 1.25};
+
 static camber_scene *load(camber_context *context, camber_theme theme, camber_style **style,
                           camber_features **features) {
     camber_scene *map = NULL;
     const camber_source_desc source = {.path = CAMBER_TEST_DATA "/santa_cruz/osm.mbtiles"};
-    const camber_scene_desc desc = {.view = {CAMBER_VIEW_CENTER, .longitude = -122.0268, .latitude = 36.9735,
-                                             .zoom = 15.8, .width = 300, .height = 200, .ratio = 1.25},
-                                    .simplify_px = 0.1};
+    const camber_scene_desc desc = {.view = CROSSING, .simplify_px = 0.1};
     assert_int_equal(camber_style_builtin(context, theme, style), CAMBER_OK);
     assert_int_equal(camber_features_create(context, *style, features), CAMBER_OK);
     assert_int_equal(camber_features_read(*features, &source), CAMBER_OK);
@@ -22,13 +23,13 @@ static void draw_crossing(void **state, const char *name, camber_theme theme) {
     camber_style *style = NULL;
     camber_features *features = NULL;
     camber_scene *map = load(s->context, theme, &style, &features);
-    size_t stroke_count = 0;
-    const camber_stroke *strokes = camber_scene_strokes(map, &stroke_count);
     bool good = true;
     for (int b = 0; b < BACKENDS && good; b++) {
         if (!s->renderer[b])
             continue;
         camber_mesh *mesh = NULL;
+        size_t stroke_count = 0;
+        const camber_stroke *strokes = camber_scene_strokes(map, &stroke_count);
         const camber_tessellation_desc desc = {strokes, stroke_count, CAMBER_METHOD_STRIP, 0};
         assert_int_equal(camber_mesh_create(s->device, s->renderer[b], &mesh), CAMBER_OK);
         assert_int_equal(camber_tessellate(mesh, camber_scene_polylines(map), &desc), CAMBER_OK);
@@ -38,6 +39,21 @@ static void draw_crossing(void **state, const char *name, camber_theme theme) {
         if (!good)
             printf("%s: not as it should be with %s\n", name, BACKEND_NAME[b]);
         picture_free(&drawn);
+        /* The same by the network, and once more after the view was elsewhere. */
+        for (int round = 0; round < 2 && good; round++) {
+            assert_int_equal(camber_scene_tessellate(map, mesh, CAMBER_METHOD_STRIP), CAMBER_OK);
+            const camber_frame again = camber_scene_frame(map, mesh);
+            drawn = picture_draw(s->renderer[b], &again);
+            good = golden_judge(name, &drawn);
+            if (!good)
+                printf("%s: not as it should be by the network with %s, round %d\n", name, BACKEND_NAME[b], round);
+            picture_free(&drawn);
+            const camber_view_desc elsewhere = {CAMBER_VIEW_CENTER, .longitude = -122.03, .latitude = 36.97,
+                                                .zoom = 11.3, .bearing_deg = 40};
+            assert_int_equal(camber_scene_move(map, &elsewhere), CAMBER_OK);
+            assert_int_equal(camber_scene_tessellate(map, mesh, CAMBER_METHOD_STRIP), CAMBER_OK);
+            assert_int_equal(camber_scene_move(map, &CROSSING), CAMBER_OK);
+        }
         camber_mesh_destroy(mesh);
     }
     camber_scene_destroy(map);

@@ -1,4 +1,5 @@
 #include "camber_map.h"
+#include "lines/importance.h"
 #include "map/view.h"
 #include "source/features.h"
 
@@ -468,6 +469,9 @@ static void test_simplification(void **state) {
         px[2 * i + 1] = 100 + (i % 2) * 0.2;
     }
     add_px(&t, add_class(&t, "a", 0), px, 60);
+    float importance[60];
+    assert_int_equal(camber_importance_weigh(t.context, t.points, t.offsets, 1, importance), CAMBER_OK);
+    t.features.importance = importance;
     camber_scene *scene = NULL;
     assert_int_equal(camber_scene_create(&t.features, &(camber_scene_desc){.view = WORLD, .simplify_px = 0.25}, &scene),
                      CAMBER_OK);

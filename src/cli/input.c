@@ -163,8 +163,8 @@ static int open_map(camber_input *input) {
 }
 
 static camber_status project_map(camber_input *input) {
-    camber_scene_destroy(input->scene);
-    input->scene = NULL;
+    if (input->scene)
+        return camber_scene_move(input->scene, &input->session->options->view);
     const camber_scene_desc desc = {.view = input->session->options->view,
                                     .simplify_px = input->session->options->simplify_px};
     return camber_scene_create(input->features, &desc, &input->scene);
@@ -266,13 +266,19 @@ camber_frame camber_input_frame(camber_input *input, camber_mesh *mesh) {
 bool camber_input_opaque(const camber_input *input) {
 #ifdef CAMBER_MAP
     if (input->scene)
-        return camber_scene_get_info(input->scene).opaque;
+        return camber_scene_get_view(input->scene).opaque;
 #endif
     return input->polylines != NULL; /* on white */
 }
 
 camber_status camber_input_tessellate(const camber_input *input, camber_mesh *mesh) {
     camber_tessellation_desc desc = {.method = camber_session_method(input->session)};
+#ifdef CAMBER_MAP
+    /* What is drawn is made on the device; what proves something, of the polylines that it is held against. */
+    const int verb = input->session->options->verb;
+    if (input->scene && (verb == CAMBER_VERB_RENDER || verb == CAMBER_VERB_BENCH))
+        return camber_scene_tessellate(input->scene, mesh, desc.method);
+#endif
     desc.strokes = camber_input_strokes(input, &desc.stroke_count);
     return camber_tessellate(mesh, camber_input_polylines(input), &desc);
 }

@@ -6,7 +6,7 @@
 #include <string.h>
 
 /* A tenth of a pixel does not show, and drops a fifth to a third of a city's points. */
-#define RENDER_SIMPLIFY_PX 0.1
+#define DRAWN_SIMPLIFY_PX 0.1
 
 enum {
     RENDER = 1 << CAMBER_VERB_RENDER,
@@ -107,7 +107,7 @@ static const option_spec specs[] = {
      "farthest that a fan's chord lies from its arc (0.25)", 1e-6, 16384},
     {"coverage", 0, KIND_CHOICE, READING, FIELD(coverage), "exact|linear", "how edges are smoothed (exact)", 0, 0},
     {"simplify-px", 0, KIND_NUMBER, READING, FIELD(simplify_px), "T",
-     "drop points that the line stays this close to (render: 0.1, else 0: none)", 0, 1e6},
+     "drop points that the line stays this close to (render, bench: 0.1, else 0: none)", 0, 1e6},
     {"device", 0, KIND_TEXT, EVERY, FIELD(device), "TEXT", "OpenCL: cpu, gpu, or part of a device's name", 0, 0},
     {"backend", 0, KIND_CHOICE, EVERY, FIELD(backend), "auto|egl|osmesa", "where GL comes from (auto)", 0, 0},
     {"sharing", 0, KIND_CHOICE, RENDER | COMPARE | BENCH | INFO, FIELD(sharing), "auto|gl|zero-copy|copy",
@@ -402,8 +402,10 @@ int camber_options_parse(int argc, char **argv, camber_options *options, char *m
             options->inputs[options->input_count++] = text;
     }
     options->where = options->wheres[0];
-    if (isnan(options->simplify_px))
-        options->simplify_px = options->verb == CAMBER_VERB_RENDER ? RENDER_SIMPLIFY_PX : 0;
+    if (isnan(options->simplify_px)) {
+        const bool drawn = options->verb == CAMBER_VERB_RENDER || options->verb == CAMBER_VERB_BENCH;
+        options->simplify_px = drawn && !options->polylines ? DRAWN_SIMPLIFY_PX : 0;
+    }
     if (status == CAMBER_EXIT_DONE && !options->help && !options->version)
         status = camber_options_check(options, verb_name(options->verb), message, message_size);
     return status;

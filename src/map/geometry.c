@@ -1,63 +1,39 @@
 #include "map/geometry.h"
 
-#include "lines/simplify.h"
-#include "map/clip.h"
-
 #include <math.h>
-#include <string.h>
 
-/* Within this of the picture points keep their places; floats are exact to 1/128 px there. */
-static const double FAR_PX = 4096.0;
 /* A miter limit without reason must not undo the culling. */
 static const double LARGEST_REACH_PX = 65536.0;
-static const size_t MOST_POINTS = UINT32_MAX - 1024u;
 
-typedef struct projector {
-    const camber_features *features;
-    const camber_view *view;
-    camber_geometry *geometry;
-    double simplify_px;
-    camber_clip clip;
-    camber_box reached; /* nothing outside it touches a pixel */
-    double *points;     /* scratch: a polyline in device px */
-    unsigned char *keep;
-    size_t point_capacity, keep_capacity;
-    uint32_t row; /* of the polyline in work */
-} projector;
-
-/* ---- Output; room is reserved a polyline at a time ---- */
-
-static camber_status reserve(projector *p, size_t count) {
-    camber_geometry *g = p->geometry;
-    /* Clipping makes two points and a piece of each segment at most. */
-    if (count > MOST_POINTS / 2 || g->lines.point_count > MOST_POINTS - 2 * count)
-        return camber_fail(g->context, CAMBER_ERROR_LIMIT,
-                           "scene: more than %zu points; draw a smaller part or simplify more", MOST_POINTS);
-    const bool fits =
-        camber_grow(g->context, &g->lines.points, &g->point_capacity, g->lines.point_count + 2 * count,
-                    2 * sizeof *g->lines.points) &&
-        camber_grow(g->context, &g->lines.offsets, &g->offset_capacity, g->lines.polyline_count + count + 1,
-                    sizeof *g->lines.offsets) &&
-        camber_grow(g->context, &g->rows, &g->row_capacity, g->lines.polyline_count + count, sizeof *g->rows) &&
-        camber_grow(g->context, &p->points, &p->point_capacity, count, 2 * sizeof *p->points) &&
-        camber_grow(g->context, &p->keep, &p->keep_capacity, count, sizeof *p->keep);
-    return fits ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+static double reach_of(const camber_plan_set *set) {
+    const double half = 0.5 * (double)set->width_px;
+    double factor = set->layer->cap == CAMBER_CAP_SQUARE ? 1.5 : 1.0; /* a corner lies sqrt(2) away */
+    if (set->layer->join == CAMBER_JOIN_MITER)
+        factor = fmax(factor, (double)set->layer->miter_limit);
+    return fmin(half * factor, fmax(half, LARGEST_REACH_PX));
 }
 
-static bool put_point(void *user, const double *point, bool first) {
-    const projector *p = user;
-    camber_lines *lines = &p->geometry->lines;
-    if (first) {
-        p->geometry->rows[lines->polyline_count] = p->row;
-        lines->offsets[lines->polyline_count++] = (uint32_t)lines->point_count;
-    }
-    lines->points[2 * lines->point_count] = (float)point[0];
-    lines->points[2 * lines->point_count + 1] = (float)point[1];
-    lines->point_count++;
-    return true;
+double camber_plan_reach(const camber_plan *plan) {
+    double reach = 0.0;
+    for (size_t s = 0; s < plan->set_count; s++)
+        reach = fmax(reach, reach_of(plan->sets + s));
+    return reach;
 }
 
-/* ---- Polylines ---- */
+/* ---- Copies of the world ---- */
+
+/* The worlds from the first to the last in the picture; where it is about as wide as a world, what lies within half a
+ * world of its centre, in one copy, or in two where that crosses the line. */
+typedef struct copies {
+    double first, last, centre;
+} copies;
+
+static copies copies_in(const camber_view *view, const camber_plan *plan) {
+    const double radius = (0.5 * hypot(view->width, view->height) + camber_plan_reach(plan) + 1.0) / view->scale_px;
+    if (radius >= 0.5)
+        return (copies){0.0, -1.0, view->x};
+    return (copies){floor(view->x - radius), floor(view->x + radius), 0.0};
+}
 
 static camber_box world_box(const double *points, size_t count) {
     camber_box box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
@@ -71,108 +47,163 @@ static camber_box world_box(const double *points, size_t count) {
     return box;
 }
 
-static camber_status draw_copy(projector *p, const double *world, size_t count, double shift, bool inside) {
-    const camber_status status = reserve(p, count);
-    if (status != CAMBER_OK)
-        return status;
-    for (size_t i = 0; i < count; i++)
-        camber_view_project(p->view, world[2 * i] + shift, world[2 * i + 1], p->points + 2 * i);
-    const size_t left = camber_simplify(p->points, count, p->simplify_px, p->keep);
-    if (!inside) {
-        camber_clip_polyline(&p->clip, p->points, left);
-        return CAMBER_OK;
-    }
-    for (size_t i = 0; i < left; i++)
-        put_point(p, p->points + 2 * i, i == 0);
-    return CAMBER_OK;
-}
-
-/* Draws the polyline in each copy of the world in which it comes within half a world of the centre: one copy, or
- * two where it crosses that line. */
-static camber_status draw_polyline(projector *p, size_t polyline) {
-    const double *world = p->features->points + 2 * p->features->offsets[polyline];
-    const size_t count = p->features->offsets[polyline + 1] - p->features->offsets[polyline];
-    const camber_box box = world_box(world, count);
+/* The first and the last shift of a polyline; false where it has no points or is no place on earth. */
+static bool find_shifts(const camber_features *features, const copies *worlds, size_t polyline, double *first,
+                        double *last) {
+    const size_t begin = features->offsets[polyline], end = features->offsets[polyline + 1];
+    const camber_box box = world_box(features->points + 2 * begin, end - begin);
     if (!(box.x0 <= box.x1 && box.y0 <= box.y1 && box.x1 - box.x0 <= 2.0))
-        return CAMBER_OK; /* no points, or not a place on earth */
-    const double first = floor(p->view->x - 0.5 - box.x1) + 1.0;
-    const double last = fmax(first, ceil(p->view->x + 0.5 - box.x0) - 1.0);
-    const size_t before = p->geometry->lines.polyline_count;
-    for (double shift = first; shift <= last; shift += 1.0) {
-        const camber_box copy = {box.x0 + shift, box.y0, box.x1 + shift, box.y1};
-        const camber_box px = camber_view_project_box(p->view, copy);
-        if (!camber_box_overlaps(px, p->reached))
-            continue;
-        const camber_status status = draw_copy(p, world, count, shift, camber_box_holds(p->clip.seen, px));
-        if (status != CAMBER_OK)
-            return status;
+        return false;
+    if (worlds->first > worlds->last) {
+        *first = floor(worlds->centre - 0.5 - box.x1) + 1.0;
+        *last = fmax(*first, ceil(worlds->centre + 0.5 - box.x0) - 1.0);
+        return true;
     }
-    if (p->geometry->lines.polyline_count > before)
-        p->geometry->points_in += count;
-    return CAMBER_OK;
+    /* What ends on the border of two worlds lies in the western one. */
+    *first = worlds->first - fmax(ceil(box.x1) - 1.0, floor(box.x0));
+    *last = worlds->last - floor(box.x0);
+    return true;
 }
 
-/* How far from its polyline a stroke touches pixels. */
-static double reach_of(const camber_plan_set *set) {
-    const double half = 0.5 * (double)set->width_px;
-    double factor = set->layer->cap == CAMBER_CAP_SQUARE ? 1.5 : 1.0; /* a corner lies sqrt(2) away */
-    if (set->layer->join == CAMBER_JOIN_MITER)
-        factor = fmax(factor, (double)set->layer->miter_limit);
-    return fmin(half * factor, fmax(half, LARGEST_REACH_PX));
+static uint64_t key_of(const camber_view *view, const camber_plan *plan) {
+    const copies worlds = copies_in(view, plan);
+    return camber_hash(plan->key, &worlds, sizeof worlds);
 }
 
-static camber_box grown_picture(const camber_view *view, double by) {
-    return (camber_box){-by, -by, view->width + by, view->height + by};
+bool camber_geometry_serves(const camber_geometry *geometry, const camber_view *view, const camber_plan *plan) {
+    return geometry->network && geometry->key == key_of(view, plan);
 }
 
-static camber_status draw_set(projector *p, const camber_plan *plan, camber_plan_set *set) {
-    camber_geometry *g = p->geometry;
-    const double reach = reach_of(set);
-    const double seen = fmax(reach + 16.0, 64.0);
-    p->reached = grown_picture(p->view, reach + 1.0);
-    p->clip.seen = grown_picture(p->view, seen);
-    p->clip.far = grown_picture(p->view, seen + FAR_PX);
-    set->first_polyline = g->lines.polyline_count;
-    uint32_t counted = UINT32_MAX;
+/* ---- The network ---- */
+
+typedef struct entry_list {
+    camber_network_entry *entries;
+    size_t count, capacity;
+} entry_list;
+
+static camber_status list_set(const camber_features *features, const camber_plan *plan, const camber_plan_set *set,
+                              const copies *worlds, entry_list *list) {
     for (size_t i = 0; i < set->entry_count; i++) {
         const camber_plan_entry entry = plan->entries[set->first_entry + i];
-        const size_t before = g->lines.polyline_count;
-        p->row = entry.row;
-        const camber_status status = draw_polyline(p, entry.polyline);
-        if (status != CAMBER_OK)
-            return status;
-        if (g->lines.polyline_count == before)
+        double first, last;
+        if (!find_shifts(features, worlds, entry.polyline, &first, &last))
             continue;
-        /* A later part of a feature counts where the first is not seen. */
-        const uint32_t feature = p->features->polyline_feature[entry.polyline];
-        const uint32_t features = p->features->feature_counts[entry.polyline];
-        g->feature_count += features || feature == counted ? features : 1;
-        counted = feature;
+        for (double shift = first; shift <= last; shift += 1.0) {
+            if (!camber_grow(features->context, &list->entries, &list->capacity, list->count + 1,
+                             sizeof *list->entries))
+                return CAMBER_ERROR_MEMORY;
+            list->entries[list->count++] = (camber_network_entry){entry.polyline, entry.pair, shift};
+        }
     }
-    set->polyline_count = g->lines.polyline_count - set->first_polyline;
     return CAMBER_OK;
 }
 
-camber_status camber_geometry_create(const camber_features *features, const camber_view *view, double simplify_px,
-                                     camber_plan *plan, camber_geometry *geometry) {
-    *geometry = (camber_geometry){.context = features->context};
-    projector p = {.features = features,
-                   .view = view,
-                   .geometry = geometry,
-                   .simplify_px = simplify_px,
-                   .clip = {.put = put_point}};
-    p.clip.user = &p;
-    camber_status status = reserve(&p, 1);
-    for (size_t s = 0; status == CAMBER_OK && s < plan->set_count; s++)
-        status = draw_set(&p, plan, plan->sets + s);
+static camber_status make_network(const camber_features *features, const entry_list *list, camber_geometry *geometry) {
+    static const size_t none[1] = {0};
+    const camber_network_entry nothing = {0};
+    const camber_network_desc desc = {.points = features->points,
+                                      .offsets = features->offsets ? features->offsets : none,
+                                      .polyline_count = features->polyline_count,
+                                      .importance = features->importance,
+                                      .entries = list->entries ? list->entries : &nothing,
+                                      .entry_count = list->count};
+    camber_context *context = geometry->context;
+    if (!(geometry->polylines = camber_alloc(context, list->count, sizeof *geometry->polylines)) ||
+        !(geometry->pairs = camber_alloc(context, list->count, sizeof *geometry->pairs)))
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < list->count; i++) {
+        geometry->polylines[i] = list->entries[i].polyline;
+        geometry->pairs[i] = list->entries[i].row;
+    }
+    return camber_network_create(geometry->context, &desc, &geometry->network);
+}
+
+camber_status camber_geometry_create(const camber_features *features, const camber_view *view, const camber_plan *plan,
+                                     camber_geometry *geometry) {
+    *geometry =
+        (camber_geometry){.context = features->context, .set_count = plan->set_count, .key = key_of(view, plan)};
+    const copies worlds = copies_in(view, plan);
+    entry_list list = {0};
+    camber_status status = CAMBER_OK;
+    geometry->first_entries = camber_alloc(geometry->context, plan->set_count + 1, sizeof *geometry->first_entries);
+    if (!geometry->first_entries)
+        return CAMBER_ERROR_MEMORY;
+    for (size_t s = 0; status == CAMBER_OK && s < plan->set_count; s++) {
+        geometry->first_entries[s] = list.count;
+        status = list_set(features, plan, plan->sets + s, &worlds, &list);
+    }
+    geometry->first_entries[plan->set_count] = list.count;
     if (status == CAMBER_OK)
-        geometry->lines.offsets[geometry->lines.polyline_count] = (uint32_t)geometry->lines.point_count;
-    camber_free(features->context, p.keep);
-    camber_free(features->context, p.points);
+        status = make_network(features, &list, geometry);
+    camber_free(geometry->context, list.entries);
     return status;
 }
 
 void camber_geometry_destroy(camber_geometry *geometry) {
-    camber_lines_free(geometry->context, &geometry->lines);
-    camber_free(geometry->context, geometry->rows);
+    if (!geometry->context)
+        return;
+    camber_network_destroy(geometry->network);
+    camber_free(geometry->context, geometry->first_entries);
+    camber_free(geometry->context, geometry->pairs);
+    camber_free(geometry->context, geometry->polylines);
+    *geometry = (camber_geometry){0};
+}
+
+/* ---- What is seen of it ---- */
+
+/* Counts polylines once a set, however often the world repeats and in however many pieces. */
+static void count_set(const camber_features *features, const camber_geometry *geometry, size_t first, size_t end,
+                      camber_seen *seen) {
+    uint32_t before = UINT32_MAX, counted = UINT32_MAX;
+    for (size_t i = first; i < end; i++) {
+        const uint32_t polyline = geometry->polylines[seen->entries[i]];
+        if (polyline == before)
+            continue;
+        before = polyline;
+        seen->points_in += features->offsets[polyline + 1] - features->offsets[polyline];
+        /* A later part of a feature counts where the first is not seen. */
+        const uint32_t feature = features->polyline_feature[polyline], count = features->feature_counts[polyline];
+        seen->feature_count += count || feature == counted ? count : 1;
+        counted = feature;
+    }
+}
+
+/* The row of each polyline, and where each set begins. */
+static camber_status fill_rows(const camber_geometry *geometry, const camber_plan *plan, camber_seen *seen) {
+    const size_t count = seen->lines.polyline_count;
+    if (!(seen->rows = camber_alloc(geometry->context, count, sizeof *seen->rows)) ||
+        !(seen->first_polylines =
+              camber_alloc(geometry->context, geometry->set_count + 1, sizeof *seen->first_polylines)))
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < count; i++)
+        seen->rows[i] = plan->pair_rows[geometry->pairs[seen->entries[i]]];
+    size_t at = 0;
+    for (size_t s = 0; s <= geometry->set_count; s++) {
+        while (at < count && seen->entries[at] < geometry->first_entries[s])
+            at++;
+        seen->first_polylines[s] = at;
+    }
+    return CAMBER_OK;
+}
+
+camber_status camber_geometry_see(const camber_features *features, const camber_geometry *geometry,
+                                  const camber_plan *plan, const camber_camera *camera,
+                                  const camber_tessellation_desc *desc, camber_seen *seen) {
+    *seen = (camber_seen){.context = geometry->context};
+    camber_status status = camber_network_lines(geometry->network, camera, desc, &seen->lines, &seen->entries);
+    if (status == CAMBER_OK)
+        status = fill_rows(geometry, plan, seen);
+    for (size_t s = 0; status == CAMBER_OK && s < geometry->set_count; s++)
+        count_set(features, geometry, seen->first_polylines[s], seen->first_polylines[s + 1], seen);
+    return status;
+}
+
+void camber_seen_destroy(camber_seen *seen) {
+    if (!seen->context)
+        return;
+    camber_free(seen->context, seen->first_polylines);
+    camber_free(seen->context, seen->rows);
+    camber_entries_free(seen->context, seen->entries);
+    camber_lines_free(seen->context, &seen->lines);
+    *seen = (camber_seen){0};
 }

@@ -1,4 +1,4 @@
-/* The polylines of a plan in device pixels: projected, culled, simplified, clipped. */
+/* What a plan draws, as a network, and on the host the part of it that a camera sees. */
 #ifndef CAMBER_GEOMETRY_H
 #define CAMBER_GEOMETRY_H
 
@@ -6,18 +6,35 @@
 
 typedef struct camber_geometry {
     camber_context *context;
-    camber_lines lines; /* by set, and in input order in a set */
-    size_t point_capacity, offset_capacity;
-    uint32_t *rows; /* of the polylines */
-    size_t row_capacity;
-    size_t feature_count; /* of which something was kept, a set */
-    size_t points_in;     /* of the polylines of which something was kept */
+    camber_network *network;     /* rows are the plan's pairs; entries by set, and in input order in a set */
+    uint32_t *polylines, *pairs; /* of the entries: the features' and the plan's */
+    size_t *first_entries;       /* set_count + 1 */
+    size_t set_count;
+    uint64_t key;
 } camber_geometry;
 
-/* Sets the polyline ranges of the plan's sets. Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT.
- * camber_geometry_destroy frees also what a failure left. */
-camber_status camber_geometry_create(const camber_features *features, const camber_view *view, double simplify_px,
-                                     camber_plan *plan, camber_geometry *geometry);
+/* How far from its polyline a stroke of the plan touches pixels. */
+double camber_plan_reach(const camber_plan *plan);
+/* Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT. camber_geometry_destroy frees also what a failure left. */
+camber_status camber_geometry_create(const camber_features *features, const camber_view *view, const camber_plan *plan,
+                                     camber_geometry *geometry);
+/* Whether the geometry is that of another view and plan of the same features. */
+bool camber_geometry_serves(const camber_geometry *geometry, const camber_view *view, const camber_plan *plan);
 void camber_geometry_destroy(camber_geometry *geometry);
+
+typedef struct camber_seen {
+    camber_context *context;
+    camber_lines lines;
+    uint32_t *entries, *rows; /* of the polylines; rows are the plan's */
+    size_t *first_polylines;  /* set_count + 1 */
+    size_t feature_count;     /* of which something is seen, a set */
+    size_t points_in;         /* of the polylines of which something is seen */
+} camber_seen;
+
+/* camber_seen_destroy frees also what a failure left. */
+camber_status camber_geometry_see(const camber_features *features, const camber_geometry *geometry,
+                                  const camber_plan *plan, const camber_camera *camera,
+                                  const camber_tessellation_desc *desc, camber_seen *seen);
+void camber_seen_destroy(camber_seen *seen);
 
 #endif

@@ -173,15 +173,44 @@ static camber_status match_set(const camber_features *features, const camber_vie
 
 /* ---- Entries: polylines by set, in input order ---- */
 
-typedef struct set_row {
-    uint32_t set, row;
-} set_row;
+typedef struct set_pair {
+    uint32_t set, pair;
+} set_pair;
 
-/* The sets that draw a class, with their rows: [first[class], first[class + 1]) of pairs. */
+/* The sets that draw a class: [first[class], first[class + 1]) of pairs. */
 typedef struct class_sets {
     size_t *first;
-    set_row *pairs;
+    set_pair *pairs;
 } class_sets;
+
+/* Numbers the pairs of sets and classes, by set. */
+static camber_status number_pairs(const camber_features *features, camber_plan *plan, const uint32_t *class_rows) {
+    const size_t class_count = features->class_count;
+    size_t total = 0;
+    for (size_t i = 0; i < plan->set_count * class_count; i++)
+        total += class_rows[i] != CAMBER_NO_ROW;
+    if (total >= MOST_ROWS)
+        return camber_fail(plan->context, CAMBER_ERROR_LIMIT,
+                           "style: more than %zu combinations of layers and properties; let filters depend on fewer",
+                           MOST_ROWS);
+    plan->pair_rows = camber_alloc(plan->context, total, sizeof *plan->pair_rows);
+    if (!plan->pair_rows)
+        return CAMBER_ERROR_MEMORY;
+    plan->key = camber_hash(CAMBER_HASH_START, &features->polyline_count, sizeof features->polyline_count);
+    for (size_t s = 0; s < plan->set_count; s++) {
+        plan->sets[s].first_pair = plan->pair_count;
+        for (size_t c = 0; c < class_count; c++) {
+            const uint32_t row = class_rows[s * class_count + c];
+            if (row == CAMBER_NO_ROW)
+                continue;
+            const size_t pair[2] = {s, c};
+            plan->key = camber_hash(plan->key, pair, sizeof pair);
+            plan->pair_rows[plan->pair_count++] = row;
+        }
+        plan->sets[s].pair_count = plan->pair_count - plan->sets[s].first_pair;
+    }
+    return CAMBER_OK;
+}
 
 static camber_status group_by_class(const camber_features *features, const camber_plan *plan,
                                     const uint32_t *class_rows, class_sets *by_class) {
@@ -199,11 +228,15 @@ static camber_status group_by_class(const camber_features *features, const cambe
     by_class->pairs = camber_alloc(plan->context, total, sizeof *by_class->pairs);
     if (!by_class->pairs)
         return CAMBER_ERROR_MEMORY;
-    size_t next = 0;
-    for (size_t c = 0; c < class_count; c++)
-        for (size_t s = 0; s < plan->set_count; s++)
+    /* By set: each class takes its pairs in turn, as they are numbered. */
+    uint32_t pair = 0;
+    for (size_t s = 0; s < plan->set_count; s++)
+        for (size_t c = 0; c < class_count; c++)
             if (class_rows[s * class_count + c] != CAMBER_NO_ROW)
-                by_class->pairs[next++] = (set_row){(uint32_t)s, class_rows[s * class_count + c]};
+                by_class->pairs[by_class->first[c]++] = (set_pair){(uint32_t)s, pair++};
+    for (size_t c = class_count; c > 0; c--)
+        by_class->first[c] = by_class->first[c - 1];
+    by_class->first[0] = 0;
     return CAMBER_OK;
 }
 
@@ -230,7 +263,7 @@ static camber_status list_entries(const camber_features *features, camber_plan *
         for (size_t k = by_class->first[class]; k < by_class->first[class + 1]; k++) {
             camber_plan_set *set = plan->sets + by_class->pairs[k].set;
             plan->entries[set->first_entry + set->entry_count++] =
-                (camber_plan_entry){(uint32_t)p, by_class->pairs[k].row};
+                (camber_plan_entry){(uint32_t)p, by_class->pairs[k].pair};
         }
     }
     return CAMBER_OK;
@@ -261,7 +294,9 @@ camber_status camber_plan_create(const camber_features *features, const camber_v
         if (status != CAMBER_OK)
             goto done;
     }
-    status = group_by_class(features, plan, class_rows, &by_class);
+    status = number_pairs(features, plan, class_rows);
+    if (status == CAMBER_OK)
+        status = group_by_class(features, plan, class_rows, &by_class);
     if (status == CAMBER_OK)
         status = list_entries(features, plan, &by_class);
 done:
@@ -275,6 +310,7 @@ done:
 
 void camber_plan_destroy(camber_plan *plan) {
     camber_free(plan->context, plan->entries);
+    camber_free(plan->context, plan->pair_rows);
     camber_free(plan->context, plan->paints);
     camber_free(plan->context, plan->sets);
     camber_free(plan->context, plan->layers);

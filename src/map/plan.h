@@ -15,10 +15,10 @@ typedef struct camber_plan_set {
     const camber_style_layer *layer; /* the first of them */
     size_t first_layer, layer_count; /* the plan's index of the first; the others follow it, not at once */
     size_t first_row, row_count;
-    size_t first_paint;                    /* into paints: row_count tuples of layer_count */
-    float width_px;                        /* the largest, device px */
-    size_t first_entry, entry_count;       /* into entries */
-    size_t first_polyline, polyline_count; /* of the scene; geometry.c fills these */
+    size_t first_pair, pair_count;   /* its classes, in order */
+    size_t first_paint;              /* into paints: row_count tuples of layer_count */
+    float width_px;                  /* the largest, device px */
+    size_t first_entry, entry_count; /* into entries */
 } camber_plan_set;
 
 typedef struct camber_plan_layer {
@@ -27,9 +27,10 @@ typedef struct camber_plan_layer {
     size_t slot; /* which of the set's layers it is */
 } camber_plan_layer;
 
-/* A polyline of the features that a set draws, with its row. */
+/* A polyline of the features that a set draws, with its pair: the set and the class. Pairs stay what they are while
+ * zooming, until a filter or a width of 0 changes what is drawn; rows need not. */
 typedef struct camber_plan_entry {
-    uint32_t polyline, row;
+    uint32_t polyline, pair;
 } camber_plan_entry;
 
 typedef struct camber_plan {
@@ -43,6 +44,9 @@ typedef struct camber_plan {
     camber_paint *paints;
     size_t paint_count, paint_capacity;
     size_t row_count;
+    uint32_t *pair_rows; /* pair_count */
+    size_t pair_count;
+    uint64_t key; /* of the sets and classes of the pairs: two plans of the same features have equal entries by it */
     camber_plan_entry *entries;
 } camber_plan;
 

@@ -3,56 +3,98 @@
 #include <math.h>
 #include <string.h>
 
+/* The passes over the polylines of a mesh: by entries and pairs where a network was tessellated, by pieces and rows
+ * where polylines were. */
+typedef struct pass_list {
+    camber_pass *passes;
+    size_t count;
+    camber_paint *paints; /* of all passes */
+} pass_list;
+
 struct camber_scene {
     camber_context *context;
-    camber_scene_info info;
-    camber_color background;
+    const camber_features *features;
+    double simplify_px;
+
+    camber_view view;
+    camber_plan plan;
     camber_geometry geometry;
+    camber_stroke *pair_strokes;
+    pass_list pair_passes;
+
+    /* On the host; nothing until asked for. */
+    bool is_seen;
+    camber_seen seen;
+    size_t layer_count; /* that draw something */
     camber_polylines *polylines;
     camber_stroke *strokes;
-    size_t stroke_count;
-    camber_pass *passes;
-    size_t pass_count;
-    camber_paint *paints; /* of all passes */
+    pass_list passes;
 };
 
-static camber_status make_strokes(camber_scene *scene, const camber_plan *plan) {
-    scene->strokes = camber_alloc(scene->context, plan->row_count, sizeof *scene->strokes);
-    if (!scene->strokes)
+/* ---- Strokes ---- */
+
+static camber_stroke stroke_of(const camber_plan *plan, const camber_plan_set *set, size_t row) {
+    float width_px = 0.0f;
+    for (size_t slot = 0; slot < set->layer_count; slot++)
+        width_px = fmaxf(width_px, camber_plan_paint(plan, set, row, slot).width_px);
+    /* A limit of 1 bevels every turn, and so do those below; 0 would mean the default. */
+    return (camber_stroke){width_px, set->layer->join, set->layer->cap, fmaxf(set->layer->miter_limit, 1.0f)};
+}
+
+static camber_status make_strokes(camber_scene *scene) {
+    const camber_plan *plan = &scene->plan;
+    if (!(scene->strokes = camber_alloc(scene->context, plan->row_count, sizeof *scene->strokes)) ||
+        !(scene->pair_strokes = camber_alloc(scene->context, plan->pair_count, sizeof *scene->pair_strokes)))
         return CAMBER_ERROR_MEMORY;
     for (size_t s = 0; s < plan->set_count; s++) {
         const camber_plan_set *set = plan->sets + s;
-        for (size_t row = set->first_row; row < set->first_row + set->row_count; row++) {
-            float width_px = 0.0f;
-            for (size_t slot = 0; slot < set->layer_count; slot++)
-                width_px = fmaxf(width_px, camber_plan_paint(plan, set, row, slot).width_px);
-            /* A limit of 1 bevels every turn, and so do those below; 0 would mean the default. */
-            scene->strokes[row] =
-                (camber_stroke){width_px, set->layer->join, set->layer->cap, fmaxf(set->layer->miter_limit, 1.0f)};
-        }
+        for (size_t row = set->first_row; row < set->first_row + set->row_count; row++)
+            scene->strokes[row] = stroke_of(plan, set, row);
+        for (size_t pair = set->first_pair; pair < set->first_pair + set->pair_count; pair++)
+            scene->pair_strokes[pair] = scene->strokes[plan->pair_rows[pair]];
     }
-    scene->stroke_count = plan->row_count;
     return CAMBER_OK;
 }
 
 /* ---- Passes ---- */
 
+/* How a mesh numbers what the sets draw. */
+typedef struct numbering {
+    const camber_plan *plan;
+    bool by_pair;                  /* else by row */
+    const size_t *first_polylines; /* set_count + 1 */
+    const bool *used;              /* by pair or row: a polyline has it */
+} numbering;
+
+static size_t first_of(const numbering *n, const camber_plan_set *set) {
+    return n->by_pair ? set->first_pair : set->first_row;
+}
+
+static size_t end_of(const numbering *n, const camber_plan_set *set) {
+    return n->by_pair ? set->first_pair + set->pair_count : set->first_row + set->row_count;
+}
+
+static camber_paint paint_of(const numbering *n, const camber_plan_layer *layer, size_t number) {
+    const size_t row = n->by_pair ? n->plan->pair_rows[number] : number;
+    return camber_plan_paint(n->plan, n->plan->sets + layer->set, row, layer->slot);
+}
+
 /* Consecutive layers that one pass draws. */
 typedef struct layer_run {
     size_t first_layer, end_layer; /* of the plan */
     size_t first_polyline, end_polyline;
-    size_t end_row;
+    size_t end_paint;
     bool opaque;
 } layer_run;
 
-/* Whether the layer draws anything, and only opaque lines, of the rows that polylines in view have. */
-static bool layer_draws(const camber_plan *plan, const camber_plan_layer *layer, const bool *row_used, bool *opaque) {
-    const camber_plan_set *set = plan->sets + layer->set;
+/* Whether the layer draws anything, and only opaque lines, of what polylines have. */
+static bool layer_draws(const numbering *n, const camber_plan_layer *layer, bool *opaque) {
+    const camber_plan_set *set = n->plan->sets + layer->set;
     bool draws = false;
     *opaque = true;
-    for (size_t row = set->first_row; row < set->first_row + set->row_count; row++) {
-        const camber_paint paint = camber_plan_paint(plan, set, row, layer->slot);
-        if (!row_used[row] || !(paint.width_px > 0.0f))
+    for (size_t i = first_of(n, set); i < end_of(n, set); i++) {
+        const camber_paint paint = paint_of(n, layer, i);
+        if (!n->used[i] || !(paint.width_px > 0.0f))
             continue;
         draws = true;
         *opaque &= paint.color.a >= 1.0f;
@@ -62,108 +104,194 @@ static bool layer_draws(const camber_plan *plan, const camber_plan_layer *layer,
 
 /* Opaque layers whose polylines follow each other become one run. A translucent layer is one by itself: it is
  * flattened by itself. */
-static size_t find_runs(camber_scene *scene, const camber_plan *plan, const bool *row_used, layer_run *runs) {
+static size_t find_runs(const numbering *n, layer_run *runs, size_t *layer_count) {
+    const camber_plan *plan = n->plan;
     size_t count = 0;
+    *layer_count = 0;
     for (size_t i = 0; i < plan->layer_count; i++) {
         bool opaque;
-        if (!layer_draws(plan, plan->layers + i, row_used, &opaque))
+        if (!layer_draws(n, plan->layers + i, &opaque))
             continue;
-        scene->info.layers++;
+        ++*layer_count;
         const camber_plan_set *set = plan->sets + plan->layers[i].set;
-        const size_t end = set->first_polyline + set->polyline_count, end_row = set->first_row + set->row_count;
+        const size_t first = n->first_polylines[plan->layers[i].set], end = n->first_polylines[plan->layers[i].set + 1];
         layer_run *last = count ? runs + count - 1 : NULL;
-        if (last && last->opaque && opaque && last->end_polyline == set->first_polyline) {
+        if (last && last->opaque && opaque && last->end_polyline == first) {
             last->end_layer = i + 1;
             last->end_polyline = end;
-            last->end_row = end_row;
+            last->end_paint = end_of(n, set);
         } else {
-            runs[count++] = (layer_run){i, i + 1, set->first_polyline, end, end_row, opaque};
+            runs[count++] = (layer_run){i, i + 1, first, end, end_of(n, set), opaque};
         }
     }
     return count;
 }
 
-/* The paints of a run: rows below its end, of width 0 where it does not draw them. */
-static void put_paints(const camber_plan *plan, const layer_run *run, const bool *row_used, camber_paint *paints) {
-    memset(paints, 0, run->end_row * sizeof *paints);
+/* The paints of a run: those below its end, of width 0 where it does not draw them. */
+static void put_paints(const numbering *n, const layer_run *run, camber_paint *paints) {
+    memset(paints, 0, run->end_paint * sizeof *paints);
     for (size_t i = run->first_layer; i < run->end_layer; i++) {
-        const camber_plan_layer *layer = plan->layers + i;
-        const camber_plan_set *set = plan->sets + layer->set;
+        const camber_plan_layer *layer = n->plan->layers + i;
+        const camber_plan_set *set = n->plan->sets + layer->set;
         bool opaque;
-        if (!layer_draws(plan, layer, row_used, &opaque))
+        if (!layer_draws(n, layer, &opaque))
             continue;
-        for (size_t row = set->first_row; row < set->first_row + set->row_count; row++)
-            paints[row] = camber_plan_paint(plan, set, row, layer->slot);
+        for (size_t k = first_of(n, set); k < end_of(n, set); k++)
+            paints[k] = paint_of(n, layer, k);
     }
 }
 
-static camber_status make_passes(camber_scene *scene, const camber_plan *plan) {
-    camber_context *context = scene->context;
+static camber_status make_passes(camber_context *context, const numbering *n, size_t *layer_count, pass_list *list) {
     camber_status status = CAMBER_ERROR_MEMORY;
-    bool *row_used = camber_alloc_zero(context, plan->row_count, sizeof *row_used);
-    layer_run *runs = row_used ? camber_alloc(context, plan->layer_count, sizeof *runs) : NULL;
+    layer_run *runs = camber_alloc(context, n->plan->layer_count, sizeof *runs);
     if (!runs)
-        goto done;
-    for (size_t i = 0; i < scene->geometry.lines.polyline_count; i++)
-        row_used[scene->geometry.rows[i]] = true;
-    const size_t count = find_runs(scene, plan, row_used, runs);
+        return CAMBER_ERROR_MEMORY;
+    const size_t count = find_runs(n, runs, layer_count);
     size_t paint_count = 0;
     for (size_t i = 0; i < count; i++)
-        paint_count += runs[i].end_row;
-    if (!(scene->paints = camber_alloc(context, paint_count, sizeof *scene->paints)) ||
-        !(scene->passes = camber_alloc(context, count, sizeof *scene->passes)))
+        paint_count += runs[i].end_paint;
+    if (!(list->paints = camber_alloc(context, paint_count, sizeof *list->paints)) ||
+        !(list->passes = camber_alloc(context, count, sizeof *list->passes)))
         goto done;
-    camber_paint *paints = scene->paints;
+    camber_paint *paints = list->paints;
     for (size_t i = 0; i < count; i++) {
-        put_paints(plan, runs + i, row_used, paints);
-        scene->passes[i] = (camber_pass){.first_polyline = runs[i].first_polyline,
-                                         .polyline_count = runs[i].end_polyline - runs[i].first_polyline,
-                                         .paints = paints,
-                                         .paint_count = runs[i].end_row};
-        paints += runs[i].end_row;
+        put_paints(n, runs + i, paints);
+        list->passes[i] = (camber_pass){.first_polyline = runs[i].first_polyline,
+                                        .polyline_count = runs[i].end_polyline - runs[i].first_polyline,
+                                        .paints = paints,
+                                        .paint_count = runs[i].end_paint};
+        paints += runs[i].end_paint;
     }
-    scene->pass_count = count;
+    list->count = count;
     status = CAMBER_OK;
 done:
     camber_free(context, runs);
-    camber_free(context, row_used);
     return status;
 }
 
-/* ---- The scene ---- */
+static void free_passes(camber_context *context, pass_list *list) {
+    camber_free(context, list->passes);
+    camber_free(context, list->paints);
+}
 
-static camber_status fill_scene(camber_scene *scene, const camber_features *features, double simplify_px,
-                                const camber_view *view, camber_plan *plan) {
-    camber_status status = camber_geometry_create(features, view, simplify_px, plan, &scene->geometry);
-    if (status != CAMBER_OK)
-        return status;
-    const camber_lines *lines = &scene->geometry.lines;
+/* Of the network: every pair has an entry somewhere. */
+static camber_status make_pair_passes(camber_scene *scene) {
+    size_t layer_count;
+    bool *used = camber_alloc_zero(scene->context, scene->plan.pair_count, sizeof *used);
+    if (!used)
+        return CAMBER_ERROR_MEMORY;
+    const size_t count = scene->geometry.first_entries[scene->plan.set_count];
+    for (size_t i = 0; i < count; i++)
+        used[scene->geometry.pairs[i]] = true;
+    const numbering n = {&scene->plan, true, scene->geometry.first_entries, used};
+    const camber_status status = make_passes(scene->context, &n, &layer_count, &scene->pair_passes);
+    camber_free(scene->context, used);
+    return status;
+}
+
+/* ---- On the host ---- */
+
+static camber_camera camera_of(const camber_scene *scene) {
+    const camber_view *view = &scene->view;
+    return (camber_camera){.x = view->x,
+                           .y = view->y,
+                           .scale_px = view->scale_px,
+                           .bearing_deg = view->bearing_deg,
+                           .width = view->width,
+                           .height = view->height,
+                           .simplify_px = scene->simplify_px};
+}
+
+static camber_tessellation_desc desc_of(const camber_scene *scene, camber_method method) {
+    return (camber_tessellation_desc){
+        .strokes = scene->pair_strokes, .stroke_count = scene->plan.pair_count, .method = method};
+}
+
+static void forget(camber_scene *scene) {
+    free_passes(scene->context, &scene->passes);
+    camber_polylines_destroy(scene->polylines);
+    camber_seen_destroy(&scene->seen);
+    scene->passes = (pass_list){0};
+    scene->polylines = NULL;
+    scene->is_seen = false;
+}
+
+static camber_status make_row_passes(camber_scene *scene) {
+    bool *used = camber_alloc_zero(scene->context, scene->plan.row_count, sizeof *used);
+    if (!used)
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < scene->seen.lines.polyline_count; i++)
+        used[scene->seen.rows[i]] = true;
+    const numbering n = {&scene->plan, false, scene->seen.first_polylines, used};
+    const camber_status status = make_passes(scene->context, &n, &scene->layer_count, &scene->passes);
+    camber_free(scene->context, used);
+    return status;
+}
+
+static camber_status see(camber_scene *scene) {
+    if (scene->is_seen)
+        return CAMBER_OK;
+    const camber_camera camera = camera_of(scene);
+    const camber_tessellation_desc strokes = desc_of(scene, CAMBER_METHOD_STRIP);
+    camber_status status =
+        camber_geometry_see(scene->features, &scene->geometry, &scene->plan, &camera, &strokes, &scene->seen);
+    const camber_lines *lines = &scene->seen.lines;
     const camber_polylines_desc desc = {.points = lines->points,
                                         .point_count = lines->point_count,
                                         .offsets = lines->offsets,
                                         .polyline_count = lines->polyline_count,
-                                        .rows = scene->geometry.rows};
-    status = camber_polylines_create(scene->context, &desc, &scene->polylines);
+                                        .rows = scene->seen.rows};
     if (status == CAMBER_OK)
-        status = make_strokes(scene, plan);
+        status = camber_polylines_create(scene->context, &desc, &scene->polylines);
     if (status == CAMBER_OK)
-        status = make_passes(scene, plan);
+        status = make_row_passes(scene);
+    if (status == CAMBER_OK)
+        scene->is_seen = true;
+    else
+        forget(scene);
+    return status;
+}
+
+/* What is made when it is asked for is no change of the scene. */
+static bool is_seen(const camber_scene *scene) {
+    return see((camber_scene *)(uintptr_t)scene) == CAMBER_OK;
+}
+
+/* ---- The scene ---- */
+
+static camber_status look(camber_scene *scene, const camber_view_desc *desc, camber_geometry *geometry) {
+    camber_status status = camber_view_create(scene->context, desc, &scene->view);
     if (status != CAMBER_OK)
         return status;
-    scene->background = plan->background;
-    camber_view_center(view, &scene->info.longitude, &scene->info.latitude);
-    scene->info.zoom = view->zoom;
-    scene->info.width = view->width;
-    scene->info.height = view->height;
-    scene->info.features = scene->geometry.feature_count;
-    scene->info.polylines = lines->polyline_count;
-    scene->info.points = lines->point_count;
-    scene->info.points_in = scene->geometry.points_in;
-    scene->info.opaque = plan->background.a >= 1.0f;
-    if (plan->misplaced_background)
-        camber_log(scene->context, CAMBER_LOG_WARNING,
-                   "style: a translucent background above lines is drawn below them; place it before the line layers");
-    return CAMBER_OK;
+    status = desc->kind == CAMBER_VIEW_FIT ? camber_plan_fit(scene->features, &scene->view, &scene->plan)
+                                           : camber_plan_create(scene->features, &scene->view, &scene->plan);
+    if (status != CAMBER_OK)
+        return status;
+    if (camber_geometry_serves(geometry, &scene->view, &scene->plan)) {
+        scene->geometry = *geometry;
+        *geometry = (camber_geometry){0};
+    } else {
+        status = camber_geometry_create(scene->features, &scene->view, &scene->plan, &scene->geometry);
+    }
+    if (status == CAMBER_OK)
+        status = make_strokes(scene);
+    return status == CAMBER_OK ? make_pair_passes(scene) : status;
+}
+
+static void empty(camber_scene *scene) {
+    forget(scene);
+    free_passes(scene->context, &scene->pair_passes);
+    camber_free(scene->context, scene->pair_strokes);
+    camber_free(scene->context, scene->strokes);
+    camber_geometry_destroy(&scene->geometry);
+    camber_plan_destroy(&scene->plan);
+}
+
+static camber_scene bare_scene(const camber_features *features, double simplify_px) {
+    return (camber_scene){.context = features->context,
+                          .features = features,
+                          .simplify_px = simplify_px,
+                          .plan = {.context = features->context}};
 }
 
 camber_status camber_scene_create(const camber_features *features, const camber_scene_desc *desc,
@@ -172,66 +300,106 @@ camber_status camber_scene_create(const camber_features *features, const camber_
     if (!(desc->simplify_px >= 0.0 && isfinite(desc->simplify_px)))
         return camber_fail(context, CAMBER_ERROR_ARGUMENT,
                            "scene: a simplification of %g px; choose 0 or a distance in pixels", desc->simplify_px);
-    camber_view view;
-    camber_status status = camber_view_create(context, &desc->view, &view);
-    if (status != CAMBER_OK)
-        return status;
     camber_scene *made = camber_alloc_zero(context, 1, sizeof *made);
     if (!made)
         return CAMBER_ERROR_MEMORY;
-    made->context = context;
-    made->geometry.context = context;
-    camber_plan plan;
-    status = desc->view.kind == CAMBER_VIEW_FIT ? camber_plan_fit(features, &view, &plan)
-                                                : camber_plan_create(features, &view, &plan);
-    if (status == CAMBER_OK)
-        status = fill_scene(made, features, desc->simplify_px, &view, &plan);
-    camber_plan_destroy(&plan);
-    if (status == CAMBER_OK)
-        *scene = made;
-    else
+    camber_geometry none = {0};
+    *made = bare_scene(features, desc->simplify_px);
+    camber_status status = look(made, &desc->view, &none);
+    if (status == CAMBER_OK && !desc->on_device)
+        status = see(made);
+    if (status != CAMBER_OK) {
         camber_scene_destroy(made);
-    return status;
+        return status;
+    }
+    if (made->plan.misplaced_background)
+        camber_log(context, CAMBER_LOG_WARNING,
+                   "style: a translucent background above lines is drawn below them; place it before the line layers");
+    *scene = made;
+    return CAMBER_OK;
+}
+
+camber_status camber_scene_move(camber_scene *scene, const camber_view_desc *view) {
+    camber_scene moved = bare_scene(scene->features, scene->simplify_px);
+    /* The geometry is the one or the other's, never both's. */
+    camber_geometry geometry = scene->geometry;
+    const camber_status status = look(&moved, view, &geometry);
+    if (status != CAMBER_OK) {
+        if (!geometry.context)
+            moved.geometry = (camber_geometry){0};
+        empty(&moved);
+        return status;
+    }
+    scene->geometry = geometry;
+    empty(scene);
+    *scene = moved;
+    return CAMBER_OK;
+}
+
+camber_status camber_scene_tessellate(const camber_scene *scene, camber_mesh *mesh, camber_method method) {
+    const camber_camera camera = camera_of(scene);
+    const camber_tessellation_desc desc = desc_of(scene, method);
+    return camber_tessellate_network(mesh, scene->geometry.network, &camera, &desc);
 }
 
 void camber_scene_destroy(camber_scene *scene) {
     if (!scene)
         return;
-    camber_free(scene->context, scene->passes);
-    camber_free(scene->context, scene->paints);
-    camber_free(scene->context, scene->strokes);
-    camber_polylines_destroy(scene->polylines);
-    camber_geometry_destroy(&scene->geometry);
-    camber_free(scene->context, scene);
+    camber_context *context = scene->context;
+    empty(scene);
+    camber_free(context, scene);
+}
+
+/* ---- What is told ---- */
+
+camber_scene_info camber_scene_get_view(const camber_scene *scene) {
+    camber_scene_info info = {.zoom = scene->view.zoom,
+                              .width = scene->view.width,
+                              .height = scene->view.height,
+                              .opaque = scene->plan.background.a >= 1.0f};
+    camber_view_center(&scene->view, &info.longitude, &info.latitude);
+    return info;
 }
 
 camber_scene_info camber_scene_get_info(const camber_scene *scene) {
-    return scene->info;
+    camber_scene_info info = camber_scene_get_view(scene);
+    if (!is_seen(scene))
+        return info;
+    info.layers = scene->layer_count;
+    info.features = scene->seen.feature_count;
+    info.polylines = scene->seen.lines.polyline_count;
+    info.points = scene->seen.lines.point_count;
+    info.points_in = scene->seen.points_in;
+    return info;
 }
 
 const camber_polylines *camber_scene_polylines(const camber_scene *scene) {
-    return scene->polylines;
+    return is_seen(scene) ? scene->polylines : NULL;
 }
 
 const uint32_t *camber_scene_rows(const camber_scene *scene) {
-    return scene->geometry.rows;
+    return is_seen(scene) ? scene->seen.rows : NULL;
 }
 
 const camber_lines *camber_scene_lines(const camber_scene *scene) {
-    return &scene->geometry.lines;
+    return is_seen(scene) ? &scene->seen.lines : NULL;
 }
 
 const camber_stroke *camber_scene_strokes(const camber_scene *scene, size_t *count) {
-    *count = scene->stroke_count;
+    *count = scene->plan.row_count;
     return scene->strokes;
 }
 
 camber_frame camber_scene_frame(camber_scene *scene, camber_mesh *mesh) {
-    for (size_t i = 0; i < scene->pass_count; i++)
-        scene->passes[i].mesh = mesh;
-    return (camber_frame){.width = scene->info.width,
-                          .height = scene->info.height,
-                          .background = scene->background,
-                          .passes = scene->passes,
-                          .pass_count = scene->pass_count};
+    const bool holds_network = mesh && camber_mesh_holds(mesh, scene->geometry.network);
+    if (!holds_network)
+        (void)is_seen(scene);
+    const pass_list *list = holds_network ? &scene->pair_passes : &scene->passes;
+    for (size_t i = 0; i < list->count; i++)
+        list->passes[i].mesh = mesh;
+    return (camber_frame){.width = scene->view.width,
+                          .height = scene->view.height,
+                          .background = scene->plan.background,
+                          .passes = list->passes,
+                          .pass_count = list->count};
 }

@@ -47,6 +47,7 @@ static void set_zoom(camber_view *view, double zoom) {
 }
 
 static void set_bearing(camber_view *view, double bearing_deg) {
+    view->bearing_deg = bearing_deg;
     const double angle = fmod(bearing_deg, 360.0) * (3.14159265358979323846 / 180.0);
     view->cosine = cos(angle);
     view->sine = sin(angle);

@@ -13,9 +13,10 @@ typedef struct camber_box {
 #define CAMBER_BOX_EMPTY ((camber_box){1.0, 1.0, 0.0, 0.0})
 
 typedef struct camber_view {
-    double x, y;            /* of the centre: world coordinates, 0 to 1 from the north-west, y down */
-    double zoom;            /* MapLibre's; below 0 where a fitted world is smaller than 512 CSS px */
-    double scale_px;        /* device px that the world is wide */
+    double x, y;     /* of the centre: world coordinates, 0 to 1 from the north-west, y down */
+    double zoom;     /* MapLibre's; below 0 where a fitted world is smaller than 512 CSS px */
+    double scale_px; /* device px that the world is wide */
+    double bearing_deg;
     double cosine, sine;    /* of the bearing */
     double ratio;           /* device px a CSS px */
     uint32_t width, height; /* device px */

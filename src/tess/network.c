@@ -267,9 +267,10 @@ camber_status camber_network_aim(const camber_network *network, const camber_cam
     for (size_t i = 0; i < desc->stroke_count; i++)
         reach = fmax(reach, reach_of(desc->strokes + i));
     const double margin = fmax(reach + 16.0, 64.0);
-    /* Half the box of the turned window, in world units. */
-    const double seen_x = ((half_x + margin) * fabs(cosine) + (half_y + margin) * fabs(sine)) / camera->scale_px;
-    const double seen_y = ((half_x + margin) * fabs(sine) + (half_y + margin) * fabs(cosine)) / camera->scale_px;
+    /* Half the box of the turned picture and what strokes reach around it, in world units. */
+    const double across = half_x + reach + 1.0, down = half_y + reach + 1.0;
+    const double seen_x = (across * fabs(cosine) + down * fabs(sine)) / camera->scale_px;
+    const double seen_y = (across * fabs(sine) + down * fabs(cosine)) / camera->scale_px;
     *projection = (camber_projection){
         .origin_x = (int32_t)origin_x,
         .origin_y = (int32_t)origin_y,

@@ -45,16 +45,11 @@ static camber_view_desc view_at(const flight *f, double share) {
 
 /* The scene for the next view, and its mesh. */
 static camber_status move_to(flight *f, const camber_view_desc *view) {
-    const camber_scene_desc desc = {.view = *view, .simplify_px = BENCH_SIMPLIFY_PX};
-    camber_scene_destroy(f->scene);
-    f->scene = NULL;
-    return camber_scene_create(f->features, &desc, &f->scene);
+    return camber_scene_move(f->scene, view);
 }
 
 static camber_status tessellate(const flight *f) {
-    camber_tessellation_desc desc = {.strokes = NULL};
-    desc.strokes = camber_scene_strokes(f->scene, &desc.stroke_count);
-    return camber_tessellate(f->b->mesh, camber_scene_polylines(f->scene), &desc);
+    return camber_scene_tessellate(f->scene, f->b->mesh, CAMBER_METHOD_STRIP);
 }
 
 static bool take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
@@ -104,7 +99,8 @@ static camber_status fly(flight *f) {
 static camber_status open_flight(flight *f, const char *path) {
     bench *b = f->b;
     const camber_source_desc source = {.path = path};
-    const camber_scene_desc whole = {.view = {.width = WIDTH_PX, .height = HEIGHT_PX}};
+    const camber_scene_desc whole = {
+        .view = {.width = WIDTH_PX, .height = HEIGHT_PX}, .simplify_px = BENCH_SIMPLIFY_PX, .on_device = true};
     camber_status status = camber_style_builtin(b->context, CAMBER_THEME_LIGHT, &f->style);
     if (status == CAMBER_OK)
         status = camber_features_create(b->context, f->style, &f->features);
@@ -113,7 +109,7 @@ static camber_status open_flight(flight *f, const char *path) {
     if (status == CAMBER_OK)
         status = camber_scene_create(f->features, &whole, &f->scene);
     if (status == CAMBER_OK)
-        f->start = camber_scene_get_info(f->scene);
+        f->start = camber_scene_get_view(f->scene);
     for (int k = 0; k < PARTS; k++)
         if (!(f->times[k] = calloc(f->frames, sizeof(double))))
             status = CAMBER_ERROR_MEMORY;

@@ -9,7 +9,7 @@
 
 /* Times of a run; every member is a series. */
 typedef struct run_times {
-    double tessellate, draw, frame, classify, scan, emit;
+    double tessellate, draw, frame, survey, project, classify, scan, emit;
 } run_times;
 
 #define TIMES (sizeof(run_times) / sizeof(double))
@@ -53,6 +53,9 @@ static int time_run(job *j, run_times *times) {
         status = camber_input_tessellate(&j->input, j->mesh);
     times->tessellate = camber_clock_ms() - resident_ms;
     const camber_mesh_info info = camber_mesh_get_info(j->mesh);
+    times->tessellate -= info.survey_ms + info.project_ms; /* from classify on */
+    times->survey = info.survey_ms;
+    times->project = info.project_ms;
     times->classify = info.classify_ms;
     times->scan = info.scan_ms;
     times->emit = info.emit_ms;
@@ -131,6 +134,9 @@ static int run(job *j) {
             camber_report_status(session->report, camber_mesh_create(session->device, session->renderer, &j->mesh));
     if (status == CAMBER_EXIT_DONE)
         status = measure(j);
+    /* A scene that was moved makes them once more. */
+    if (status == CAMBER_EXIT_DONE && !camber_input_polylines(&j->input))
+        status = camber_report_status(session->report, CAMBER_ERROR_MEMORY);
     if (status == CAMBER_EXIT_DONE && session->options->dump)
         status = write_dump(j);
     if (status == CAMBER_EXIT_DONE && session->options->output)
@@ -175,9 +181,9 @@ static int print_json(const job *j) {
     json_object_set_new(object, "draw_ms", summary_json(&j->summaries[1]));
     json_object_set_new(object, "frame_ms", summary_json(&j->summaries[2]));
     json_t *stages = json_object();
-    json_object_set_new(stages, "classify", summary_json(&j->summaries[3]));
-    json_object_set_new(stages, "scan", summary_json(&j->summaries[4]));
-    json_object_set_new(stages, "emit", summary_json(&j->summaries[5]));
+    static const char *const names[] = {"survey", "project", "classify", "scan", "emit"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        json_object_set_new(stages, names[i], summary_json(&j->summaries[3 + i]));
     json_object_set_new(object, "stage_ms", stages);
     return camber_report_json(session->report, object);
 }
@@ -199,12 +205,13 @@ static int print_text(const job *j) {
             lines.kept_segments, j->input.segments_in);
     fprintf(file, "%zu vertices, %zu triangles, %.1f MB, %zu draw calls, peak memory %.0f MB\n", mesh.vertex_count,
             mesh.triangle_count, (double)mesh.bytes / 1e6, j->stats.draw_calls, (double)camber_peak_rss_bytes() / 1e6);
-    static const char *const names[TIMES] = {"tessellate", "draw", "frame", "classify", "scan", "emit"};
+    static const char *const names[TIMES] = {"tessellate", "draw",     "frame", "survey",
+                                             "project",    "classify", "scan",  "emit"};
     fprintf(file, "\n%-12s %10s %10s %10s   ms, %u runs\n", "", "min", "median", "max", options->runs);
     for (size_t i = 0; i < TIMES; i++)
         fprintf(file, "%-12s %10.3f %10.3f %10.3f\n", names[i], j->summaries[i].min, j->summaries[i].median,
                 j->summaries[i].max);
-    const double kernels_ms = j->summaries[3].median + j->summaries[4].median + j->summaries[5].median;
+    const double kernels_ms = j->summaries[5].median + j->summaries[6].median + j->summaries[7].median;
     if (kernels_ms > 0)
         fprintf(file, "\n%.1f million segments a second through the kernels, %.1f with what the host does for them\n",
                 (double)lines.kept_segments / kernels_ms / 1e3,

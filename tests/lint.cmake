@@ -31,6 +31,11 @@ foreach(method 0 1 2)
     DEPENDS ${CMAKE_BINARY_DIR}/src/kernels.cl)
 endforeach()
 
+lint_step(kernels_network
+  COMMAND ${CLANG} -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only -Wall -Wextra -Werror
+          -Wno-unused-function -Wno-unused-parameter -Wno-ignored-pragmas -D__OPENCL_VERSION__=120 ${CMAKE_BINARY_DIR}/src/network.cl
+  DEPENDS ${CMAKE_BINARY_DIR}/src/network.cl)
+
 foreach(header camber.h camber_map.h)
   lint_step(c_${header} COMMAND ${CLANG} -std=c11 -pedantic -Wall -Wextra -Werror -fsyntax-only -x c ${PROJECT_SOURCE_DIR}/src/${header}
             DEPENDS ${PROJECT_SOURCE_DIR}/src/camber.h ${PROJECT_SOURCE_DIR}/src/camber_map.h)

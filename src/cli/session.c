@@ -80,18 +80,19 @@ struct camber_opener {
 /* One line through the kernels and the shaders that maps use: drivers compile them now, not in the first frame. What
  * fails here fails there again, and is told there. */
 static void warm_up(const camber_session *session, camber_context *context) {
-    const float points[] = {2, 2, 14, 2, 14, 14};
-    const uint32_t offsets[] = {0, 3};
-    const camber_polylines_desc lines = {.points = points, .point_count = 3, .offsets = offsets, .polyline_count = 1};
+    const double points[] = {2, 2, 14, 2, 14, 14};
+    const size_t offsets[] = {0, 3};
+    const camber_network_desc lines = {.points = points, .offsets = offsets, .polyline_count = 1};
+    const camber_camera camera = {.x = 8, .y = 8, .scale_px = 1, .width = 16, .height = 16};
     const camber_stroke stroke = {.width_px = 3};
     const camber_paint paint = {3, {0, 0, 0, 1}};
     const camber_tessellation_desc tessellation = {
         .strokes = &stroke, .stroke_count = 1, .method = camber_session_method(session)};
-    camber_polylines *polylines = NULL;
+    camber_network *network = NULL;
     camber_mesh *mesh = NULL;
-    if (camber_polylines_create(context, &lines, &polylines) == CAMBER_OK &&
+    if (camber_network_create(context, &lines, &network) == CAMBER_OK &&
         camber_mesh_create(session->device, session->renderer, &mesh) == CAMBER_OK &&
-        camber_tessellate(mesh, polylines, &tessellation) == CAMBER_OK) {
+        camber_tessellate_network(mesh, network, &camera, &tessellation) == CAMBER_OK) {
         const camber_pass pass = {.mesh = mesh, .paints = &paint, .paint_count = 1};
         const camber_frame frame = {.width = 16,
                                     .height = 16,
@@ -101,7 +102,7 @@ static void warm_up(const camber_session *session, camber_context *context) {
         (void)camber_render(session->renderer, &frame, NULL, NULL, NULL);
     }
     camber_mesh_destroy(mesh);
-    camber_polylines_destroy(polylines);
+    camber_network_destroy(network);
 }
 
 static void *open_beside(void *user) {

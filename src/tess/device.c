@@ -291,6 +291,7 @@ void camber_device_destroy(camber_device *device) {
         return;
     for (int i = 0; i < 3; i++)
         camber_program_destroy(device->context, device->programs[i]);
+    camber_program_destroy(device->context, device->network_program);
     if (device->queue)
         clReleaseCommandQueue(device->queue);
     if (device->cl)

@@ -47,6 +47,7 @@ typedef struct camber_section {
 struct camber_held_network {
     camber_network *network;
     camber_projection projection; /* of the last tessellation */
+    camber_program *program;
     camber_section *sections;
     size_t section_count, section_capacity;
     cl_mem counts, bases; /* of a part's chunks, one part after the other */

@@ -164,7 +164,8 @@ camber_status camber_mesh_plan_network(camber_mesh *mesh, camber_network *networ
 }
 
 camber_status camber_mesh_aim(camber_mesh *mesh, const camber_camera *camera, const camber_tessellation_desc *desc) {
-    return camber_network_aim(mesh->held->network, camera, desc, &mesh->held->projection);
+    const camber_status status = camber_network_aim(mesh->held->network, camera, desc, &mesh->held->projection);
+    return status == CAMBER_OK ? camber_device_network_program(mesh->device, &mesh->held->program) : status;
 }
 
 bool camber_mesh_holds(const camber_mesh *mesh, const camber_network *network) {
@@ -250,8 +251,7 @@ static camber_status reserve_chunks(const camber_mesh *mesh, camber_mesh_part *p
 }
 
 /* How many slots the part has, and how many each chunk has before it. */
-static camber_status survey(camber_mesh *mesh, camber_mesh_part *part, const camber_projection *p,
-                            const camber_program *program, uint64_t *slots) {
+static camber_status survey(camber_mesh *mesh, camber_mesh_part *part, const camber_projection *p, uint64_t *slots) {
     const camber_device *device = mesh->device;
     const struct camber_held_network *held = mesh->held;
     const camber_section *section = held->sections + part->section;
@@ -259,7 +259,7 @@ static camber_status survey(camber_mesh *mesh, camber_mesh_part *part, const cam
     const cl_mem mems[] = {section->x,    section->y,          section->importance,
                            section->runs, section->chunk_runs, held->counts};
     cl_event event = NULL;
-    const camber_status status = run_stage(device, p, (stage){"survey", program->survey, mems, 6}, &event);
+    const camber_status status = run_stage(device, p, (stage){"survey", held->program->survey, mems, 6}, &event);
     if (status != CAMBER_OK)
         return status;
     cl_int code;
@@ -286,8 +286,7 @@ static camber_status reserve_slots(const camber_device *device, camber_mesh_part
                                slots <= part->slot_capacity || 4 * ((uint64_t)more + 2) > largest ? slots : more);
 }
 
-camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program,
-                                  bool *fits) {
+camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, bool *fits) {
     const camber_device *device = mesh->device;
     const camber_projection p = projection_of(mesh, part);
     const size_t block = device->block;
@@ -297,7 +296,7 @@ camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, con
         return CAMBER_OK;
     camber_status status = reserve_chunks(mesh, part, part_chunks(&p));
     if (status == CAMBER_OK)
-        status = survey(mesh, part, &p, program, &slots);
+        status = survey(mesh, part, &p, &slots);
     const uint64_t padded = (slots + block - 1) / block * block;
     const uint64_t size_bytes = 4 * (padded + 2);
     if (status != CAMBER_OK || slots == 0)
@@ -315,5 +314,5 @@ camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, con
     const cl_mem mems[] = {
         section->x, section->y, section->importance, section->runs, section->chunk_runs, mesh->held->bases,
         part->x,    part->y,    part->info,          part->joins};
-    return run_stage(device, &p, (stage){"project", program->project, mems, 10}, &mesh->held->projected);
+    return run_stage(device, &p, (stage){"project", mesh->held->program->project, mems, 10}, &mesh->held->projected);
 }

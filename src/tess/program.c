@@ -8,9 +8,18 @@
 
 static const char *const OPTIONS = "-cl-std=CL1.2 -DCAMBER_METHOD=%d%s%s";
 
+/* What a program is made of. */
+typedef struct recipe {
+    const char *name;
+    const char *source;
+    size_t source_size;
+    char options[128];
+} recipe;
+
 /* Everything that a binary depends on. */
-static uint64_t cache_key(const camber_device_info *info, const char *options) {
-    uint64_t key = camber_hash(CAMBER_HASH_START, camber_kernels_source, camber_kernels_source_size);
+static uint64_t cache_key(const camber_device_info *info, const recipe *from) {
+    uint64_t key = camber_hash(CAMBER_HASH_START, from->source, from->source_size);
+    const char *options = from->options;
     const char *parts[] = {info->platform, info->name, info->version, info->driver, options};
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
         key = camber_hash(key, parts[i], strlen(parts[i]) + 1);
@@ -69,14 +78,12 @@ static camber_status fail_build(camber_device *device, cl_program program) {
     return CAMBER_ERROR_DEVICE;
 }
 
-static camber_status build(camber_device *device, camber_program *program, const char *options) {
+static camber_status build(camber_device *device, camber_program *program, const recipe *from) {
     cl_int code;
-    const char *source = camber_kernels_source;
-    const size_t size = camber_kernels_source_size;
-    program->cl = clCreateProgramWithSource(device->cl, 1, &source, &size, &code);
+    program->cl = clCreateProgramWithSource(device->cl, 1, (const char *[]){from->source}, &from->source_size, &code);
     if (code != CL_SUCCESS)
         return camber_fail_cl(device->context, "clCreateProgramWithSource", code);
-    code = clBuildProgram(program->cl, 1, &device->id, options, NULL, NULL);
+    code = clBuildProgram(program->cl, 1, &device->id, from->options, NULL, NULL);
     if (code == CL_BUILD_PROGRAM_FAILURE)
         return fail_build(device, program->cl);
     if (code != CL_SUCCESS)
@@ -85,17 +92,21 @@ static camber_status build(camber_device *device, camber_program *program, const
     return CAMBER_OK;
 }
 
-static camber_status make_kernels(camber_device *device, camber_program *program) {
+/* Which kernels there are tells whose program it is. */
+static camber_status make_kernels(camber_device *device, camber_program *program, bool is_network) {
     const struct {
         const char *name;
         cl_kernel *kernel;
-    } stages[] = {{"survey", &program->survey},
-                  {"project", &program->project},
-                  {"classify", &program->classify},
-                  {"scan", &program->scan},
-                  {"emit", &program->emit}};
+        bool of_network;
+    } stages[] = {{"survey", &program->survey, true},
+                  {"project", &program->project, true},
+                  {"classify", &program->classify, false},
+                  {"scan", &program->scan, false},
+                  {"emit", &program->emit, false}};
     for (size_t i = 0; i < sizeof stages / sizeof *stages; i++) {
         cl_int code;
+        if (stages[i].of_network != is_network)
+            continue;
         *stages[i].kernel = clCreateKernel(program->cl, stages[i].name, &code);
         if (code != CL_SUCCESS)
             return camber_fail_cl(device->context, "clCreateKernel", code);
@@ -103,36 +114,56 @@ static camber_status make_kernels(camber_device *device, camber_program *program
     return CAMBER_OK;
 }
 
-camber_status camber_device_program(camber_device *device, camber_method method, camber_program **program) {
-    if (device->programs[method]) {
-        *program = device->programs[method];
-        return CAMBER_OK;
-    }
+static camber_status make_program(camber_device *device, const recipe *from, bool is_network,
+                                  camber_program **program) {
     camber_program *made = camber_alloc_zero(device->context, 1, sizeof *made);
     if (!made)
         return CAMBER_ERROR_MEMORY;
-    char options[128], block[32] = "";
-    if (device->block != CAMBER_BLOCK)
-        snprintf(block, sizeof block, " -DCAMBER_BLOCK=%zu", device->block);
-    snprintf(options, sizeof options, OPTIONS, (int)method,
-             device->rounds_correctly ? " -cl-fp32-correctly-rounded-divide-sqrt" : "", block);
-    made->key = cache_key(&device->info, options);
+    made->key = cache_key(&device->info, from);
     camber_status status = CAMBER_OK;
     const double begin = camber_now_ms();
-    const bool cached = load(device, made, options);
+    const bool cached = load(device, made, from->options);
     if (!cached)
-        status = build(device, made, options);
+        status = build(device, made, from);
     if (status == CAMBER_OK)
-        status = make_kernels(device, made);
+        status = make_kernels(device, made, is_network);
     if (status != CAMBER_OK) {
         camber_program_destroy(device->context, made);
         return status;
     }
-    camber_log(device->context, CAMBER_LOG_INFO, "kernels of %s: %s in %.0f ms", camber_method_name(method),
+    camber_log(device->context, CAMBER_LOG_INFO, "kernels of %s: %s in %.0f ms", from->name,
                cached ? "from the cache" : "built", camber_now_ms() - begin);
-    device->programs[method] = made;
     *program = made;
     return CAMBER_OK;
+}
+
+/* method: one of camber_method's, or what stands for no method. */
+static void set_options(const camber_device *device, int method, recipe *from) {
+    char block[32] = "";
+    if (device->block != CAMBER_BLOCK)
+        snprintf(block, sizeof block, " -DCAMBER_BLOCK=%zu", device->block);
+    snprintf(from->options, sizeof from->options, OPTIONS, method,
+             device->rounds_correctly ? " -cl-fp32-correctly-rounded-divide-sqrt" : "", block);
+}
+
+camber_status camber_device_program(camber_device *device, camber_method method, camber_program **program) {
+    recipe from = {camber_method_name(method), camber_kernels_source, camber_kernels_source_size, ""};
+    set_options(device, (int)method, &from);
+    const camber_status status =
+        device->programs[method] ? CAMBER_OK : make_program(device, &from, false, device->programs + method);
+    if (status == CAMBER_OK)
+        *program = device->programs[method];
+    return status;
+}
+
+camber_status camber_device_network_program(camber_device *device, camber_program **program) {
+    recipe from = {"networks", camber_network_kernels_source, camber_network_kernels_source_size, ""};
+    set_options(device, -1, &from);
+    const camber_status status =
+        device->network_program ? CAMBER_OK : make_program(device, &from, true, &device->network_program);
+    if (status == CAMBER_OK)
+        *program = device->network_program;
+    return status;
 }
 
 void camber_program_save(camber_device *device, camber_program *program) {

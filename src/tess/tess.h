@@ -21,6 +21,7 @@ struct camber_device {
     bool gl_context;                    /* cl was made for a GL context: GL buffers can be shared */
     size_t block;                       /* points a work-group: CAMBER_BLOCK as its kernels see it */
     struct camber_program *programs[3]; /* by camber_method, built when first used */
+    struct camber_program *network_program;
 };
 
 /* What a surface tells OpenCL about its GL context, for cl_khr_gl_sharing. Zero: it cannot be told. */
@@ -38,13 +39,15 @@ camber_status camber_fail_cl(camber_context *context, const char *call, cl_int c
 
 typedef struct camber_program {
     cl_program cl;
-    cl_kernel survey, project, classify, scan, emit;
-    uint64_t key; /* of the cache */
-    bool to_save; /* built from source: its binary is saved once the kernels have run */
+    cl_kernel classify, scan, emit; /* of a method */
+    cl_kernel survey, project;      /* of networks */
+    uint64_t key;                   /* of the cache */
+    bool to_save;                   /* built from source: its binary is saved once the kernels have run */
 } camber_program;
 
 /* The kernels of a method, built or loaded at first use. */
 camber_status camber_device_program(camber_device *device, camber_method method, camber_program **program);
+camber_status camber_device_network_program(camber_device *device, camber_program **program);
 /* Saves the binary if it is new. Called after the kernels have run: only then does PoCL's hold machine code. */
 void camber_program_save(camber_device *device, camber_program *program);
 void camber_program_destroy(camber_context *context, camber_program *program);
@@ -162,7 +165,7 @@ void camber_mesh_let_go(camber_mesh *mesh);
 void camber_part_set_points(const camber_mesh *mesh, camber_mesh_part *part);
 /* survey and project: makes the part's slots. *fits is false, and there are none, where the device makes no buffer that
  * is large enough. */
-camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program, bool *fits);
+camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, bool *fits);
 size_t camber_part_network_slot(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline);
 /* Adds the time of a command to ms and releases the event, which may be NULL. */
 void camber_add_ms(cl_event event, double *ms);

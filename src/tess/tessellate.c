@@ -177,8 +177,7 @@ static camber_status run_parts(camber_mesh *mesh, const camber_polylines *polyli
     for (size_t i = 0; i < mesh->part_count && status == CAMBER_OK;) {
         camber_mesh_part *part = mesh->parts + i;
         bool fits = true;
-        status =
-            polylines ? camber_part_upload(mesh, part, polylines) : camber_part_project(mesh, part, program, &fits);
+        status = polylines ? camber_part_upload(mesh, part, polylines) : camber_part_project(mesh, part, &fits);
         if (status == CAMBER_OK && !fits) {
             status = camber_mesh_halve(mesh, i);
             continue;
@@ -247,6 +246,8 @@ static camber_status tessellate(camber_mesh *mesh, const source *from, const cam
             status = run_parts(mesh, from->polylines, program);
         if (status == CAMBER_OK && mesh->mesh_info.record_count > 0)
             camber_program_save(mesh->device, program);
+        if (status == CAMBER_OK && mesh->held && mesh->mesh_info.record_count > 0)
+            camber_program_save(mesh->device, mesh->held->program);
         camber_mesh_info *info = &mesh->mesh_info;
         info->bytes = info->record_count * sizeof(camber_record) + (info->strips ? 0 : 4 * info->index_count);
         mesh->joins_counted = status != CAMBER_OK;

@@ -96,7 +96,13 @@ static void measure_starts(bench *b, const char *only, json_t *result) {
 
 #include <gdal_utils.h>
 
-static double read_ms(bench *b, const char *path, size_t *points) {
+/* What came of a file, and how long its parts took. */
+typedef struct reading {
+    camber_features_stats stats;
+    camber_features_times times;
+} reading;
+
+static double read_ms(bench *b, const char *path, reading *read) {
     camber_style *style = NULL;
     camber_features *features = NULL;
     camber_status status = camber_style_builtin(b->context, CAMBER_THEME_LIGHT, &style);
@@ -107,7 +113,7 @@ static double read_ms(bench *b, const char *path, size_t *points) {
         status = camber_features_read(features, &(camber_source_desc){.path = path});
     const double ms = camber_now_ms() - begin;
     if (status == CAMBER_OK)
-        *points = camber_features_get_stats(features).points;
+        *read = (reading){camber_features_get_stats(features), camber_features_get_times(features)};
     camber_features_destroy(features);
     camber_style_destroy(style);
     return status == CAMBER_OK ? ms : -1;
@@ -138,12 +144,12 @@ static double copy_ms(const char *path, bool osm) {
 static void measure_reading(bench *b, const char *key, const char *name, json_t *result) {
     char path[1024];
     bench_series ours = {.count = 0}, theirs = {.count = 0};
-    size_t points = 0;
+    reading last = {0};
     if (!bench_scene_path(b, key, path, sizeof path))
         return;
     GDALAllRegister();
     for (size_t run = 0; run <= b->runs; run++) {
-        const double read = read_ms(b, path, &points), copied = copy_ms(path, strstr(path, ".pbf") != NULL);
+        const double read = read_ms(b, path, &last), copied = copy_ms(path, strstr(path, ".pbf") != NULL);
         if (run == 0 || read < 0) /* the first takes the file from the disk */
             continue;
         bench_series_add(&ours, read);
@@ -153,9 +159,12 @@ static void measure_reading(bench *b, const char *key, const char *name, json_t 
     if (ours.count == 0)
         return;
     const double ms = bench_series_median(&ours), ogr_ms = bench_series_median(&theirs);
-    bench_result_add_row(result, json_pack("{s:s, s:s, s:I, s:o, s:o, s:f}", "key", key, "reading", name, "points",
-                                           (json_int_t)points, "read_ms", bench_ms(ms), "ogr_ms", bench_ms(ogr_ms),
-                                           "m_points_s", (double)points / ms / 1e3));
+    const json_int_t points = (json_int_t)last.stats.points, polylines = (json_int_t)last.stats.polylines;
+    bench_result_add_row(result, json_pack("{s:s, s:s, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:f}", "key", key, "reading",
+                                           name, "points", points, "polylines", polylines, "merged_polylines",
+                                           (json_int_t)last.stats.merged_polylines, "read_ms", bench_ms(ms), "merge_ms",
+                                           bench_ms(last.times.merge_ms), "weigh_ms", bench_ms(last.times.weigh_ms),
+                                           "ogr_ms", bench_ms(ogr_ms), "m_points_s", (double)points / ms / 1e3));
     bench_result_add_figure(result, &(bench_figure){key, "reading", "OGR's copy", ogr_ms / ms, false});
 }
 
@@ -190,10 +199,14 @@ static void print(const json_t *result, FILE *to) {
     fprintf(to, "\nReading, from the file to points in world coordinates and their attributes; beside it OGR's own "
                 "copy of the file's lines\n"
                 "to FlatGeobuf in memory.\n\n");
-    json_array_foreach(bench_result_rows(result), i, row) if (*bench_text(row, "reading"))
-        fprintf(to, "%-30s %8.0f ms, %.1f M points/s; OGR %8.0f ms, %.2f times as long\n", bench_text(row, "reading"),
-                bench_number(row, "read_ms"), bench_number(row, "m_points_s"), bench_number(row, "ogr_ms"),
-                bench_number(row, "ogr_ms") / bench_number(row, "read_ms"));
+    json_array_foreach(bench_result_rows(result), i, row) if (*bench_text(row, "reading")) fprintf(
+        to,
+        "%-30s %8.0f ms, %.1f M points/s (%.0f ms merge %.0f lines to %.0f, %.0f ms weigh points); OGR %8.0f ms, "
+        "%.2f times as long\n",
+        bench_text(row, "reading"), bench_number(row, "read_ms"), bench_number(row, "m_points_s"),
+        bench_number(row, "merge_ms"), bench_number(row, "polylines") + bench_number(row, "merged_polylines"),
+        bench_number(row, "polylines"), bench_number(row, "weigh_ms"), bench_number(row, "ogr_ms"),
+        bench_number(row, "ogr_ms") / bench_number(row, "read_ms"));
 }
 
 const bench_section bench_section_start = {"start", measure, print};

@@ -51,20 +51,35 @@ bool bench_open(bench *b);
 void bench_close(bench *b);
 
 typedef struct bench_frame_desc {
-    const camber_lines *lines;
+    const camber_lines *lines; /* everything is drawn; or else */
+    camber_network *network;   /* what the camera sees of it */
+    camber_camera camera;
     float width_px;
-    double simplify_px; /* 0: everything is drawn */
     camber_overlap overlap;
     uint8_t *picture; /* NULL: not read back */
 } bench_frame_desc;
 
 typedef struct bench_frame_times {
-    double frame_ms; /* from lines in memory to pixels in memory */
-    double draw_ms;  /* clear, draw, finish */
-    double kernels_ms;
+    double frame_ms; /* from lines in memory, or the network on the device, to pixels in memory */
+    double tessellate_ms;
+    double draw_ms; /* clear, draw, finish */
 } bench_frame_times;
 
 camber_status bench_frame(bench *b, const bench_frame_desc *desc, bench_frame_times *times);
+
+/* Polylines in world coordinates, pixels of the square: polyline i has the points [offsets[i], offsets[i + 1]). */
+typedef struct bench_plane {
+    double *points;
+    size_t *offsets; /* polyline_count + 1 */
+    size_t polyline_count;
+} bench_plane;
+
+void bench_plane_free(bench_plane *plane);
+/* With the importance of each point weighed, as a map has it once it is read. */
+camber_status bench_network_make(bench *b, const bench_plane *plane, camber_network **network);
+camber_status bench_network_of_lines(bench *b, const camber_lines *lines, camber_network **network);
+/* That sees the square. */
+camber_camera bench_camera(double simplify_px);
 
 /* A series of measurements. */
 typedef struct bench_series {
@@ -76,9 +91,10 @@ void bench_series_add(bench_series *series, double value);
 /* 0 of none. */
 double bench_series_median(const bench_series *series);
 
-/* Milliseconds that a copy of size_bytes takes, shared out over as many threads as the kernels run on. 0 where it
- * cannot be measured. */
-double bench_copy_ms(const bench *b, size_t size_bytes);
+/* GB/s of memcpy at best, bytes read and written: of 16 MB, what a city's mesh comes to, shared out over as many
+ * threads as the kernels run on. 0 where it cannot be measured. */
+double bench_copy_gb_s(const bench *b);
+
 /* What a frame that no peer draws is compared with: a scene that is the same everywhere, drawn by the first peer that
  * is built in, or else a copy in memory. */
 typedef struct bench_yardstick {
@@ -121,8 +137,8 @@ typedef struct bench_section {
 
 extern const bench_section *const bench_sections[]; /* NULL behind the last */
 
-extern const bench_section bench_section_stages, bench_section_frames, bench_section_zooms, bench_section_mosaic,
-    bench_section_fly, bench_section_start;
+extern const bench_section bench_section_stages, bench_section_network, bench_section_frames, bench_section_zooms,
+    bench_section_mosaic, bench_section_fly, bench_section_start;
 
 json_t *bench_result_new(void);
 /* Takes row. */

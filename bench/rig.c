@@ -2,9 +2,9 @@
 #include "bench.h"
 
 #include "base/base.h"
+#include "lines/importance.h"
 #include "proof/statistics.h"
 
-#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -58,41 +58,86 @@ static camber_status draw_mesh(bench *b, const bench_frame_desc *desc, camber_fr
     return camber_render(b->renderer, &frame, desc->picture ? take_rows : NULL, desc->picture, stats);
 }
 
-static camber_status tessellate(bench *b, const bench_frame_desc *desc, const camber_lines *lines) {
+static camber_status tessellate_lines(bench *b, const bench_frame_desc *desc, const camber_tessellation_desc *strokes) {
     camber_polylines *polylines = NULL;
-    const camber_stroke stroke = {.width_px = desc->width_px};
-    const camber_polylines_desc made = {.points = lines->points,
-                                        .point_count = lines->point_count,
-                                        .offsets = lines->offsets,
-                                        .polyline_count = lines->polyline_count,
+    const camber_polylines_desc made = {.points = desc->lines->points,
+                                        .point_count = desc->lines->point_count,
+                                        .offsets = desc->lines->offsets,
+                                        .polyline_count = desc->lines->polyline_count,
                                         .keep_open = true};
     camber_status status = camber_polylines_create(b->context, &made, &polylines);
     if (status == CAMBER_OK)
-        status =
-            camber_tessellate(b->mesh, polylines, &(camber_tessellation_desc){.strokes = &stroke, .stroke_count = 1});
+        status = camber_tessellate(b->mesh, polylines, strokes);
     camber_polylines_destroy(polylines);
     return status;
 }
 
+static camber_status tessellate(bench *b, const bench_frame_desc *desc) {
+    const camber_stroke stroke = {.width_px = desc->width_px};
+    const camber_tessellation_desc strokes = {.strokes = &stroke, .stroke_count = 1};
+    return desc->network ? camber_tessellate_network(b->mesh, desc->network, &desc->camera, &strokes)
+                         : tessellate_lines(b, desc, &strokes);
+}
+
 camber_status bench_frame(bench *b, const bench_frame_desc *desc, bench_frame_times *times) {
-    camber_lines simple = {0};
     camber_frame_stats stats = {0};
-    camber_status status = CAMBER_OK;
     const double begin = camber_now_ms();
-    if (desc->simplify_px > 0)
-        status = camber_lines_simplify(b->context, desc->lines, desc->simplify_px, &simple);
-    if (status == CAMBER_OK)
-        status = tessellate(b, desc, desc->simplify_px > 0 ? &simple : desc->lines);
+    camber_status status = tessellate(b, desc);
+    times->tessellate_ms = camber_now_ms() - begin;
     if (status == CAMBER_OK)
         status = draw_mesh(b, desc, &stats);
     times->frame_ms = camber_now_ms() - begin;
     times->draw_ms = stats.draw_ms;
-    if (status == CAMBER_OK) {
-        const camber_mesh_info info = camber_mesh_get_info(b->mesh);
-        times->kernels_ms = info.classify_ms + info.scan_ms + info.emit_ms;
-    }
-    camber_lines_free(b->context, &simple);
     return status;
+}
+
+/* ---- Networks ---- */
+
+camber_camera bench_camera(double simplify_px) {
+    return (camber_camera){.x = BENCH_SIDE_PX / 2.0,
+                           .y = BENCH_SIDE_PX / 2.0,
+                           .scale_px = 1,
+                           .width = BENCH_SIDE_PX,
+                           .height = BENCH_SIDE_PX,
+                           .simplify_px = simplify_px};
+}
+
+camber_status bench_network_make(bench *b, const bench_plane *plane, camber_network **network) {
+    float *importance = malloc((plane->offsets[plane->polyline_count] + 1) * sizeof *importance);
+    const camber_network_desc desc = {.points = plane->points,
+                                      .offsets = plane->offsets,
+                                      .polyline_count = plane->polyline_count,
+                                      .importance = importance,
+                                      .keep_open = true};
+    camber_status status = importance ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    if (status == CAMBER_OK)
+        status = camber_importance_weigh(b->context, plane->points, plane->offsets, plane->polyline_count, importance);
+    if (status == CAMBER_OK)
+        status = camber_network_create(b->context, &desc, network);
+    free(importance);
+    return status;
+}
+
+camber_status bench_network_of_lines(bench *b, const camber_lines *lines, camber_network **network) {
+    bench_plane plane = {.points = malloc(2 * sizeof(double) * (lines->point_count + 1)),
+                         .offsets = malloc(sizeof(size_t) * (lines->polyline_count + 1)),
+                         .polyline_count = lines->polyline_count};
+    camber_status status = plane.points && plane.offsets ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    if (status == CAMBER_OK) {
+        for (size_t i = 0; i < 2 * lines->point_count; i++)
+            plane.points[i] = (double)lines->points[i];
+        for (size_t i = 0; i <= lines->polyline_count; i++)
+            plane.offsets[i] = lines->offsets[i];
+        status = bench_network_make(b, &plane, network);
+    }
+    bench_plane_free(&plane);
+    return status;
+}
+
+void bench_plane_free(bench_plane *plane) {
+    free(plane->points);
+    free(plane->offsets);
+    *plane = (bench_plane){0};
 }
 
 /* ---- Series ---- */
@@ -107,70 +152,13 @@ double bench_series_median(const bench_series *series) {
     return sorted.count ? camber_statistics_median(sorted.values, sorted.count) : 0;
 }
 
-/* ---- What the memory can do ---- */
-
-enum { COPY_THREADS_MAX = 64, COPY_REPEATS = 4 };
-
-typedef struct copy_share {
-    uint8_t *to;
-    const uint8_t *from;
-    size_t size_bytes;
-} copy_share;
-
-static void *copy(void *argument) {
-    const copy_share *share = argument;
-    for (int i = 0; i < COPY_REPEATS; i++)
-        memcpy(share->to, share->from, share->size_bytes);
-    return NULL;
-}
-
-static unsigned copy_threads(const bench *b) {
-    const camber_device_info device = camber_device_get_info(b->device);
-    return device.compute_units < COPY_THREADS_MAX ? device.compute_units : COPY_THREADS_MAX;
-}
-
-static double run_copies(copy_share *shares, unsigned count) {
-    pthread_t threads[COPY_THREADS_MAX];
-    bool started[COPY_THREADS_MAX] = {false};
-    const double begin = camber_now_ms();
-    for (unsigned i = 1; i < count; i++)
-        started[i] = pthread_create(threads + i, NULL, copy, shares + i) == 0;
-    copy(shares);
-    bool all = true;
-    for (unsigned i = 1; i < count; i++) {
-        if (started[i])
-            pthread_join(threads[i], NULL);
-        all = all && started[i];
-    }
-    return all ? (camber_now_ms() - begin) / COPY_REPEATS : 0;
-}
-
-double bench_copy_ms(const bench *b, size_t size_bytes) {
-    const unsigned count = copy_threads(b);
-    const size_t each = (size_bytes + count - 1) / count;
-    uint8_t *from = malloc(each * count), *to = malloc(each * count);
-    bench_series series = {.count = 0};
-    if (from && to) {
-        copy_share shares[COPY_THREADS_MAX];
-        memset(from, 1, each * count); /* pages that nothing wrote to are all one */
-        memset(to, 2, each * count);
-        for (unsigned i = 0; i < count; i++)
-            shares[i] = (copy_share){to + i * each, from + i * each, each};
-        for (size_t run = 0; run < b->runs; run++)
-            bench_series_add(&series, run_copies(shares, count));
-    }
-    free(to);
-    free(from);
-    return bench_series_median(&series);
-}
-
 /* ---- The yardstick ---- */
 
 bench_yardstick bench_yardstick_measure(bench *b) {
-    enum { RUNS = 3, COPY_BYTES = 64 << 20 };
+    enum { RUNS = 3 };
     const bench_scene *walks = bench_scene_find(b, "zoom");
     if (bench_peer_count == 0 || !walks)
-        return (bench_yardstick){"memcpy of 64 MB", bench_copy_ms(b, COPY_BYTES)};
+        return (bench_yardstick){"memcpy of 1 GB", 2e3 / bench_copy_gb_s(b)};
     bench_series series = {.count = 0};
     for (int run = 0; run < RUNS; run++)
         bench_series_add(&series, bench_peers[0]->draw(&walks->lines, walks->width_px, b->pictured));

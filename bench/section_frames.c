@@ -13,6 +13,7 @@ enum { PEERS_MAX = 8 };
 typedef struct trial {
     bench *b;
     const bench_scene *scene;
+    camber_network *network;
     bench_series draw, frame, simple_draw, simple_frame, united_draw, peers[PEERS_MAX];
     double differences[PEERS_MAX];
 } trial;
@@ -32,7 +33,8 @@ static camber_status draw_ours(trial *t, bool counts) {
     bench_frame_times times = {0}, simple = {0}, united = {0};
     bench_frame_desc desc = {.lines = &t->scene->lines, .width_px = t->scene->width_px, .picture = b->picture};
     camber_status status = bench_frame(b, &desc, &times);
-    desc.simplify_px = BENCH_SIMPLIFY_PX;
+    desc.network = t->network;
+    desc.camera = bench_camera(BENCH_SIMPLIFY_PX);
     desc.picture = b->pictured; /* the one of everything is what peers are held against */
     if (status == CAMBER_OK)
         status = bench_frame(b, &desc, &simple);
@@ -106,11 +108,13 @@ static json_t *measure(bench *b, const char *only) {
         trial t = {.b = b, .scene = b->scenes + i};
         if (only && strcmp(only, t.scene->key) != 0)
             continue;
+        status = bench_network_of_lines(b, &t.scene->lines, &t.network);
         /* In turn, so that a machine whose speed drifts is fair to all. */
         for (size_t run = 0; run < b->warm_ups + b->runs && status == CAMBER_OK; run++) {
             status = draw_ours(&t, run >= b->warm_ups);
             draw_peers(&t, run >= b->warm_ups);
         }
+        camber_network_destroy(t.network);
         report(&t, result);
     }
     if (status == CAMBER_OK)

@@ -24,28 +24,29 @@ static const char *city_of(const bench *b) {
 /* ---- The child ---- */
 
 /* Copies row by row into a grid, or a city thinned out; whole polylines, until there are as many points. */
-static bool make_mosaic(const camber_lines *city, size_t points, camber_lines *mosaic) {
+static bool make_mosaic(const camber_lines *city, size_t points, bench_plane *mosaic) {
     const size_t copies = (points + city->point_count - 1) / city->point_count;
     const size_t side = (size_t)ceil(sqrt((double)copies)), stride = copies > 1 ? 1 : city->point_count / points;
-    const float scale = 1.0f / (float)side;
-    mosaic->points = malloc(2 * sizeof(float) * (points + city->point_count));
-    mosaic->offsets = malloc(sizeof(uint32_t) * (copies * city->polyline_count + 1));
+    const double scale = 1.0 / (double)side;
+    size_t made = 0;
+    mosaic->points = malloc(2 * sizeof(double) * (points + city->point_count));
+    mosaic->offsets = malloc(sizeof(size_t) * (copies * city->polyline_count + 1));
     if (!mosaic->points || !mosaic->offsets)
         return false;
-    for (size_t i = 0; mosaic->point_count < points && i < copies * city->polyline_count; i += stride) {
+    for (size_t i = 0; made < points && i < copies * city->polyline_count; i += stride) {
         const size_t copy = i / city->polyline_count, line = i % city->polyline_count;
-        const float at[2] = {(float)(copy % side) * BENCH_SIDE_PX, (float)(copy / side) * BENCH_SIDE_PX};
+        const double at[2] = {(double)(copy % side) * BENCH_SIDE_PX, (double)(copy / side) * BENCH_SIDE_PX};
         const size_t first = city->offsets[line], count = city->offsets[line + 1] - first;
-        mosaic->offsets[mosaic->polyline_count++] = (uint32_t)mosaic->point_count;
+        mosaic->offsets[mosaic->polyline_count++] = made;
         for (size_t k = 0; k < 2 * count; k++)
-            mosaic->points[2 * mosaic->point_count + k] = (city->points[2 * first + k] + at[k % 2]) * scale;
-        mosaic->point_count += count;
+            mosaic->points[2 * made + k] = ((double)city->points[2 * first + k] + at[k % 2]) * scale;
+        made += count;
     }
-    mosaic->offsets[mosaic->polyline_count] = (uint32_t)mosaic->point_count;
+    mosaic->offsets[mosaic->polyline_count] = made;
     return true;
 }
 
-/* "VmHWM": the peak; "VmRSS": now. */
+/* "VmHWM:": the peak of this process. */
 static double memory_bytes(const char *key) {
     char line[256];
     double bytes = 0;
@@ -59,12 +60,12 @@ static double memory_bytes(const char *key) {
 }
 
 typedef struct trial {
-    bench_series frame, draw, kernels;
+    bench_series frame, draw, tessellate;
 } trial;
 
-static camber_status measure_cost(bench *b, const camber_lines *lines, double simplify_px, trial *c) {
+static camber_status measure_cost(bench *b, camber_network *network, double simplify_px, trial *c) {
     const bench_frame_desc desc = {
-        .lines = lines, .width_px = WIDTH_PX, .simplify_px = simplify_px, .picture = b->picture};
+        .network = network, .camera = bench_camera(simplify_px), .width_px = WIDTH_PX, .picture = b->picture};
     camber_status status = CAMBER_OK;
     const double begin = camber_now_ms();
     for (size_t run = 0; run < b->warm_ups + b->runs && status == CAMBER_OK; run++) {
@@ -75,7 +76,7 @@ static camber_status measure_cost(bench *b, const camber_lines *lines, double si
             continue;
         bench_series_add(&c->frame, times.frame_ms);
         bench_series_add(&c->draw, times.draw_ms);
-        bench_series_add(&c->kernels, times.kernels_ms);
+        bench_series_add(&c->tessellate, times.tessellate_ms);
         if (late)
             break;
     }
@@ -85,39 +86,59 @@ static camber_status measure_cost(bench *b, const camber_lines *lines, double si
 static json_t *cost_json(const trial *c, double fixed_ms, double points) {
     const double frame_ms = bench_series_median(&c->frame);
     return json_pack("{s:o, s:o, s:o, s:f}", "frame_ms", bench_ms(frame_ms), "draw_ms",
-                     bench_ms(bench_series_median(&c->draw)), "kernels_ms", bench_ms(bench_series_median(&c->kernels)),
-                     "ns_a_point", fmax(frame_ms - fixed_ms, 0) * 1e6 / points);
+                     bench_ms(bench_series_median(&c->draw)), "tessellate_ms",
+                     bench_ms(bench_series_median(&c->tessellate)), "ns_a_point",
+                     fmax(frame_ms - fixed_ms, 0) * 1e6 / points);
+}
+
+static camber_status measure_empty(bench *b, trial *none) {
+    camber_network *network = NULL;
+    double nowhere[4] = {-1e6, -1e6, -1e6 - 1, -1e6};
+    size_t offsets[2] = {0, 2};
+    camber_status status =
+        bench_network_make(b, &(bench_plane){.points = nowhere, .offsets = offsets, .polyline_count = 1}, &network);
+    if (status == CAMBER_OK)
+        status = measure_cost(b, network, 0, none);
+    camber_network_destroy(network);
+    return status;
+}
+
+static camber_status make_network(bench *b, size_t points, camber_network **network) {
+    bench_plane mosaic = {0};
+    camber_status status = make_mosaic(&b->scenes[0].lines, points, &mosaic) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    if (status == CAMBER_OK)
+        status = bench_network_make(b, &mosaic, network);
+    bench_plane_free(&mosaic);
+    return status;
 }
 
 int bench_mosaic_child(bench *b, size_t points) {
-    camber_lines mosaic = {0};
+    camber_network *network = NULL;
     trial none = {.frame = {.count = 0}}, simple = none, everything = none;
     for (size_t i = 0; cities[i] && b->scene_count == 0; i++)
         bench_scenes_make(b, cities[i]);
     if (b->scene_count == 0)
         return 1;
-    const camber_lines empty = {.points = b->scenes[0].lines.points, .offsets = (uint32_t[]){0}};
-    camber_status status = measure_cost(b, &empty, 0, &none);
-    const double before = memory_bytes("VmRSS:");
-    if (status == CAMBER_OK && !make_mosaic(&b->scenes[0].lines, points, &mosaic))
-        status = CAMBER_ERROR_MEMORY;
+    camber_status status = measure_empty(b, &none);
     if (status == CAMBER_OK)
-        status = measure_cost(b, &mosaic, BENCH_SIMPLIFY_PX, &simple);
+        status = make_network(b, points, &network);
+    if (status == CAMBER_OK)
+        status = measure_cost(b, network, BENCH_SIMPLIFY_PX, &simple);
     const double simple_peak = memory_bytes("VmHWM:");
     if (status == CAMBER_OK)
-        status = measure_cost(b, &mosaic, 0, &everything);
+        status = measure_cost(b, network, 0, &everything);
     if (status == CAMBER_OK) {
-        const double fixed_ms = bench_series_median(&none.frame), count = (double)mosaic.point_count;
-        json_t *row =
-            json_pack("{s:s, s:I, s:I, s:o, s:f, s:f, s:f, s:o, s:o}", "city", b->scenes[0].name, "points",
-                      (json_int_t)mosaic.point_count, "polylines", (json_int_t)mosaic.polyline_count, "fixed_ms",
-                      bench_ms(fixed_ms), "before_bytes", before, "peak_bytes", simple_peak, "everything_peak_bytes",
-                      memory_bytes("VmHWM:"), "simple", cost_json(&simple, fixed_ms, count), "everything",
-                      cost_json(&everything, fixed_ms, count));
+        const camber_polylines_stats stats = camber_network_get_stats(network);
+        const double fixed_ms = bench_series_median(&none.frame), count = (double)stats.points;
+        json_t *row = json_pack("{s:s, s:I, s:I, s:o, s:f, s:f, s:o, s:o}", "city", b->scenes[0].name, "points",
+                                (json_int_t)stats.points, "polylines", (json_int_t)stats.polylines, "fixed_ms",
+                                bench_ms(fixed_ms), "peak_bytes", simple_peak, "everything_peak_bytes",
+                                memory_bytes("VmHWM:"), "simple", cost_json(&simple, fixed_ms, count), "everything",
+                                cost_json(&everything, fixed_ms, count));
         json_dumpf(row, stdout, JSON_COMPACT);
         json_decref(row);
     }
-    camber_lines_free(b->context, &mosaic);
+    camber_network_destroy(network);
     return status == CAMBER_OK ? 0 : 1;
 }
 
@@ -181,7 +202,7 @@ static json_t *measure(bench *b, const char *only) {
 
 static void print_cost(const json_t *cost, FILE *to) {
     fprintf(to, " | %9.1f %9.1f %8.1f %8.1f", bench_number(cost, "frame_ms"), bench_number(cost, "draw_ms"),
-            bench_number(cost, "kernels_ms"), bench_number(cost, "ns_a_point"));
+            bench_number(cost, "tessellate_ms"), bench_number(cost, "ns_a_point"));
 }
 
 static void print(const json_t *result, FILE *to) {
@@ -193,7 +214,7 @@ static void print(const json_t *result, FILE *to) {
             "empty picture. Peak: resident memory of the process, drivers and input included.\n\n"
             "%9s | %9s %9s %8s %8s | %9s %9s %8s %8s | %8s %8s\n%9s | %37s | %37s | %8s %8s\n",
             bench_text(json_array_get(bench_result_rows(result), 0), "city"), BENCH_SIDE_PX, BENCH_SIDE_PX,
-            (double)WIDTH_PX, "points", "frame", "draw", "kernels", "ns/point", "frame", "draw", "kernels", "ns/point",
+            (double)WIDTH_PX, "points", "frame", "draw", "tess.", "ns/point", "frame", "draw", "tess.", "ns/point",
             "peak MB", "B/point", "", "at 0.1 px", "everything", "0.1 px", "");
     json_array_foreach(bench_result_rows(result), i, row) {
         const double points = bench_number(row, "points"), peak = bench_number(row, "peak_bytes");

@@ -25,6 +25,7 @@ typedef struct trial {
     float width_px;
     camber_method method;
     camber_mesh_info info;
+    double copied_gb_s; /* by memcpy */
     bench_series series[STAGES], all;
 } trial;
 
@@ -46,12 +47,6 @@ static camber_status tessellate(trial *t) {
     return status;
 }
 
-/* GB/s of a copy, counting bytes read and written. */
-static double copy_gb_s(const bench *b, double moved_bytes) {
-    const double ms = bench_copy_ms(b, (size_t)(moved_bytes / 2));
-    return ms > 0 ? moved_bytes / ms / 1e6 : 0;
-}
-
 static void add_stage(json_t *row, const char *name, double ms, double points, double bytes, double copied_gb_s) {
     const double gb_s = ms > 0 ? bytes / ms / 1e6 : 0;
     json_object_set_new(row, name,
@@ -68,16 +63,15 @@ static void report(trial *t, json_t *result) {
         moved[i] = points * (stages[i].read + stages[i].written) + (i == STAGES - 1 ? mesh : 0);
         sum += moved[i];
     }
-    const double copied_gb_s = copy_gb_s(t->b, sum);
     const char *method = camber_method_name(t->method);
     json_t *row =
         json_pack("{s:s, s:s, s:s, s:f, s:I, s:I, s:f, s:f, s:f, s:f}", "key", t->scene->key, "scene", t->scene->name,
                   "method", method, "width_px", (double)t->width_px, "points", (json_int_t)points, "segments",
                   (json_int_t)segments, "mesh_bytes", mesh, "bytes_a_segment", mesh / segments, "m_segments_s",
-                  ms > 0 ? segments / ms / 1e3 : 0, "memcpy_gb_s", copied_gb_s);
+                  ms > 0 ? segments / ms / 1e3 : 0, "memcpy_gb_s", t->copied_gb_s);
     for (int i = 0; i < STAGES; i++)
-        add_stage(row, stages[i].name, bench_series_median(t->series + i), points, moved[i], copied_gb_s);
-    add_stage(row, "all", ms, points, sum, copied_gb_s);
+        add_stage(row, stages[i].name, bench_series_median(t->series + i), points, moved[i], t->copied_gb_s);
+    add_stage(row, "all", ms, points, sum, t->copied_gb_s);
     char what[64];
     snprintf(what, sizeof what, "bytes a segment, %s, %g px", method, (double)t->width_px);
     bench_result_add_figure(result, &(bench_figure){t->scene->key, what, NULL, mesh / segments, true});
@@ -87,8 +81,8 @@ static void report(trial *t, json_t *result) {
     bench_result_add_row(result, row);
 }
 
-static camber_status measure_scene(bench *b, const bench_scene *scene, json_t *result) {
-    trial t = {.b = b, .scene = scene};
+static camber_status measure_scene(bench *b, const bench_scene *scene, double copied_gb_s, json_t *result) {
+    trial t = {.b = b, .scene = scene, .copied_gb_s = copied_gb_s};
     const camber_polylines_desc desc = {.points = scene->lines.points,
                                         .point_count = scene->lines.point_count,
                                         .offsets = scene->lines.offsets,
@@ -111,10 +105,11 @@ static camber_status measure_scene(bench *b, const bench_scene *scene, json_t *r
 
 static json_t *measure(bench *b, const char *only) {
     json_t *result = bench_result_new();
+    const double copied_gb_s = bench_copy_gb_s(b);
     camber_status status = CAMBER_OK;
     for (size_t i = 0; i < b->scene_count && status == CAMBER_OK; i++)
         if (!only || strcmp(only, b->scenes[i].key) == 0)
-            status = measure_scene(b, b->scenes + i, result);
+            status = measure_scene(b, b->scenes + i, copied_gb_s, result);
     if (status == CAMBER_OK)
         return result;
     json_decref(result);
@@ -124,9 +119,11 @@ static json_t *measure(bench *b, const char *only) {
 static void print(const json_t *result, FILE *to) {
     size_t i;
     const json_t *row;
-    fprintf(to, "Tessellation: M points a second, GB/s of bytes read and written, and their share of what memcpy of as "
-                "many moves\n"
-                "on as many threads. B/seg: bytes of the mesh a segment, everything included.\n\n");
+    fprintf(to,
+            "Tessellation: M points a second, GB/s of bytes read and written, and their share of memcpy's on as many "
+            "threads,\n"
+            "as many threads: %.1f GB/s). B/seg: bytes of the mesh a segment, everything included.\n\n",
+            bench_number(json_array_get(bench_result_rows(result), 0), "memcpy_gb_s"));
     fprintf(to, "%-12s %-6s %3s %9s %6s %8s", "scene", "method", "px", "segments", "B/seg", "M seg/s");
     for (int k = 0; k < STAGES; k++)
         fprintf(to, " | %-8s M/s  GB/s share", stages[k].name);

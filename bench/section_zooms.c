@@ -48,16 +48,27 @@ static void magnify(const camber_lines *from, int zoom, const double middle[2], 
     seen->offsets[seen->polyline_count] = (uint32_t)seen->point_count;
 }
 
-static camber_status measure_view(bench *b, const bench_scene *city, const camber_lines *seen, const double view[2],
-                                  json_t *result) {
-    const bench_frame_desc desc = {
-        .lines = seen, .width_px = (float)view[1], .simplify_px = BENCH_SIMPLIFY_PX, .picture = b->picture};
+typedef struct trial {
+    bench *b;
+    const bench_scene *city;
+    camber_network *network;
+    double middle[2];
+    camber_lines seen; /* at a zoom, for the peer */
+} trial;
+
+static camber_status measure_view(const trial *t, int zoom, float width_px, json_t *result) {
+    bench *b = t->b;
+    bench_frame_desc desc = {
+        .network = t->network, .camera = bench_camera(BENCH_SIMPLIFY_PX), .width_px = width_px, .picture = b->picture};
+    desc.camera.x = t->middle[0];
+    desc.camera.y = t->middle[1];
+    desc.camera.scale_px = ldexp(1, zoom);
     bench_series draw = {.count = 0}, frame = {.count = 0}, peer = {.count = 0};
     camber_status status = CAMBER_OK;
     for (int run = -1; run < RUNS && status == CAMBER_OK; run++) {
         bench_frame_times times = {0};
         status = bench_frame(b, &desc, &times);
-        const double peer_ms = bench_peer_count ? bench_peers[0]->draw(seen, (float)view[1], b->pictured) : 0;
+        const double peer_ms = bench_peer_count ? bench_peers[0]->draw(&t->seen, width_px, b->pictured) : 0;
         if (run < 0)
             continue;
         bench_series_add(&draw, times.draw_ms);
@@ -66,37 +77,47 @@ static camber_status measure_view(bench *b, const bench_scene *city, const cambe
     }
     const double draw_ms = bench_series_median(&draw), peer_ms = bench_series_median(&peer);
     char what[64];
-    snprintf(what, sizeof what, "draw at zoom +%g, %g px", view[0], view[1]);
-    bench_result_add_row(result, json_pack("{s:s, s:s, s:f, s:f, s:I, s:I, s:o, s:o, s:o}", "key", city->key, "scene",
-                                           city->name, "zoom", view[0], "width_px", view[1], "polylines",
-                                           (json_int_t)seen->polyline_count, "points", (json_int_t)seen->point_count,
-                                           "draw_ms", bench_ms(draw_ms), "frame_ms",
+    snprintf(what, sizeof what, "draw at zoom +%d, %g px", zoom, (double)width_px);
+    bench_result_add_row(result, json_pack("{s:s, s:s, s:f, s:f, s:I, s:I, s:o, s:o, s:o}", "key", t->city->key,
+                                           "scene", t->city->name, "zoom", (double)zoom, "width_px", (double)width_px,
+                                           "polylines", (json_int_t)t->seen.polyline_count, "points",
+                                           (json_int_t)t->seen.point_count, "draw_ms", bench_ms(draw_ms), "frame_ms",
                                            bench_ms(bench_series_median(&frame)), "peer_ms", bench_ms(peer_ms)));
     if (bench_peer_count)
         bench_result_add_figure(result,
-                                &(bench_figure){city->key, what, bench_peers[0]->name, peer_ms / draw_ms, false});
+                                &(bench_figure){t->city->key, what, bench_peers[0]->name, peer_ms / draw_ms, false});
+    return status;
+}
+
+static camber_status measure_views(trial *t, json_t *result) {
+    const bool quick = t->b->size == BENCH_QUICK;
+    camber_status status = CAMBER_OK;
+    for (int i = 0; i < ZOOMS && status == CAMBER_OK; i++) {
+        magnify(&t->city->lines, zooms[i], t->middle, &t->seen);
+        for (int k = quick; k < WIDTHS - quick && status == CAMBER_OK; k++)
+            status = measure_view(t, zooms[i], widths_px[k], result);
+    }
     return status;
 }
 
 static camber_status measure_city(bench *b, const bench_scene *city, json_t *result) {
-    camber_lines seen = {.points = calloc(city->lines.point_count, 2 * sizeof(float)),
-                         .offsets = calloc(city->lines.polyline_count + 1, sizeof(uint32_t))};
+    trial t = {.b = b,
+               .city = city,
+               .seen = {.points = calloc(city->lines.point_count, 2 * sizeof(float)),
+                        .offsets = calloc(city->lines.polyline_count + 1, sizeof(uint32_t))}};
     double *values = calloc(city->lines.point_count, sizeof *values);
-    camber_status status = seen.points && seen.offsets && values ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    camber_status status = t.seen.points && t.seen.offsets && values ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    if (status == CAMBER_OK)
+        status = bench_network_of_lines(b, &city->lines, &t.network);
     if (status == CAMBER_OK) {
-        const double middle[2] = {middle_of(&city->lines, 0, values), middle_of(&city->lines, 1, values)};
-        for (int i = 0; i < ZOOMS * WIDTHS && status == CAMBER_OK; i++) {
-            if (b->size == BENCH_QUICK && i % WIDTHS != 1)
-                continue;
-            const double view[2] = {zooms[i / WIDTHS], (double)widths_px[i % WIDTHS]};
-            if (i % WIDTHS == 0 || b->size == BENCH_QUICK)
-                magnify(&city->lines, zooms[i / WIDTHS], middle, &seen);
-            status = measure_view(b, city, &seen, view, result);
-        }
+        t.middle[0] = middle_of(&city->lines, 0, values);
+        t.middle[1] = middle_of(&city->lines, 1, values);
+        status = measure_views(&t, result);
     }
+    camber_network_destroy(t.network);
     free(values);
-    free(seen.points);
-    free(seen.offsets);
+    free(t.seen.points);
+    free(t.seen.offsets);
     return status;
 }
 

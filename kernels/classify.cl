@@ -6,7 +6,9 @@
 kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK, 1, 1))) void classify(
     global const float *restrict x, global const float *restrict y, global const float *restrict x_before,
     global const float *restrict y_before, global const float *restrict x_after, global const float *restrict y_after,
-    global const camber_u32 *restrict info, global const camber_row *restrict rows, global camber_u32 *restrict joins) {
+    global const camber_u32 *restrict info, global const camber_u32 *restrict info_before,
+    global const camber_u32 *restrict info_after, global const camber_row *restrict rows,
+    global camber_u32 *restrict joins) {
     const size_t i = get_global_id(0) + 1;
     const camber_u32 point = info[i];
     global const camber_row *row = rows + (point >> CAMBER_POINT_ROW_SHIFT);
@@ -15,6 +17,8 @@ kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK, 1, 1))) void classify(
     const camber_u32 ends = point & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST);
     const camber_u32 dot = ends == (CAMBER_POINT_FIRST | CAMBER_POINT_LAST);
     const camber_u32 cap = ends != 0u && (point & CAMBER_POINT_RING) == 0u;
-    const camber_u32 word = cap ? camber_cap_word(row->cap, dot) : camber_join_word(turn, row, CAMBER_METHOD);
+    const camber_u32 line_ends = camber_line_ends(info_before[i - 1], info_after[i + 1]);
+    const camber_u32 word =
+        cap ? camber_cap_word(row->cap, dot) : camber_join_word(turn, row, CAMBER_METHOD) | line_ends;
     joins[i] = point & CAMBER_POINT_REAL ? word : 0u;
 }

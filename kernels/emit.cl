@@ -5,11 +5,7 @@
 
 static inline void put_record(global camber_u32 *restrict records, size_t k, float x, float y, camber_u32 join,
                               camber_u32 last) {
-    global camber_u32 *record = records + k * CAMBER_RECORD_WORDS;
-    record[0] = as_uint(x);
-    record[1] = as_uint(y);
-    record[2] = join;
-    record[3] = last;
+    vstore4((uint4)(as_uint(x), as_uint(y), join, last), k, records);
 }
 
 #if CAMBER_METHOD == CAMBER_STRIP
@@ -24,20 +20,19 @@ kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK, 1, 1))) void emit(
     if (kind == CAMBER_KIND_GHOST)
         return;
     const size_t k = ((size_t)bases[2 * get_group_id(0) + 1] + (offsets[i - 1] >> 16)) / 2; /* two indices a record */
-    const camber_u32 row = point & ~255u;
-    const camber_u32 last = row | camber_line_ends(joins[i - 1], join, joins[i + 1]);
-    const camber_u32 begins = point & CAMBER_POINT_FIRST;
-    put_record(records, begins ? k + 1 : k, x[i], y[i], join,
-               begins ? last | CAMBER_RECORD_START | camber_shared_edges(join, point) : last);
-    const camber_u32 breaks = kind > CAMBER_KIND_CUT && !(point & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST));
-    if (begins || breaks) {
-        /* Where the segment comes in from: an open line has none, and begins with itself. */
-        const size_t from = begins && !(point & CAMBER_POINT_RING) ? i : i - 1;
-        put_record(records, begins ? k : k + 1, x[from], y[from], 0, row | CAMBER_RECORD_BREAK);
+    const camber_u32 begins = point & CAMBER_POINT_FIRST ? 1u : 0u;
+    put_record(records, k + begins, x[i], y[i], join, point);
+    const camber_u32 splits = kind > CAMBER_KIND_CUT && !(point & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST));
+    if (begins) { /* a ring's first segment comes in from a ghost; an open line begins with itself */
+        const size_t from = point & CAMBER_POINT_RING ? i - 1 : i;
+        put_record(records, k, x[from], y[from], 0, CAMBER_RECORD_BREAK | (point & CAMBER_ROW_BITS));
     }
-    if (breaks || kind == CAMBER_KIND_DOT)
-        put_record(records, k + 2, x[i], y[i], join,
-                   breaks ? last | CAMBER_RECORD_START | camber_shared_edges(join, point) : last);
+    if (splits) {
+        put_record(records, k + 1, x[i - 1], y[i - 1], 0, CAMBER_RECORD_BREAK | (point & CAMBER_ROW_BITS));
+        put_record(records, k + 2, x[i], y[i], join, point | CAMBER_RECORD_START);
+    }
+    if (kind == CAMBER_KIND_DOT)
+        put_record(records, k + 2, x[i], y[i], join, point & ~CAMBER_POINT_FIRST);
 }
 
 #else
@@ -117,7 +112,7 @@ kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK, 1, 1))) void emit(
     put_record(records, i - 1, x[i], y[i],
                camber_record_join(
                    join, camber_half_shorter(x[i] - x[i - 1], y[i] - y[i - 1], x[i + 1] - x[i], y[i + 1] - y[i])),
-               (point & ~255u) | camber_line_ends(before, join, joins[i + 1]));
+               point);
     if (kind == CAMBER_KIND_GHOST || (point & CAMBER_POINT_FIRST && kind != CAMBER_KIND_DOT))
         return;
     const size_t block = get_group_id(0);

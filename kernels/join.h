@@ -70,13 +70,12 @@ CAMBER_FN camber_u32 camber_join_end(camber_u32 join) {
     return join >> CAMBER_JOIN_END_SHIFT & 7u;
 }
 
-/* What a record tells of its line beyond the next point, from the join words of three points in a row. A ring has no
- * first point: next to its seam lie ghosts. */
-CAMBER_FN camber_u32 camber_line_ends(camber_u32 before, camber_u32 join, camber_u32 after) {
-    const camber_u32 is_join = camber_join_kind(join) > CAMBER_KIND_CAP ? 1u : 0u;
-    const camber_u32 first = camber_join_kind(before) == CAMBER_KIND_CAP ? CAMBER_RECORD_AFTER_FIRST : 0u;
-    const camber_u32 last = camber_join_kind(after) == CAMBER_KIND_CAP ? CAMBER_RECORD_BEFORE_LAST : 0u;
-    return is_join ? first | last : 0u;
+/* What a join word tells of the line beyond the next point, from the info of the points beside it. A ring has neither
+ * first nor last. */
+CAMBER_FN camber_u32 camber_line_ends(camber_u32 before, camber_u32 after) {
+    const camber_u32 first = (before & (CAMBER_POINT_FIRST | CAMBER_POINT_RING)) == CAMBER_POINT_FIRST;
+    const camber_u32 last = (after & (CAMBER_POINT_LAST | CAMBER_POINT_RING)) == CAMBER_POINT_LAST;
+    return (first ? CAMBER_JOIN_AFTER_FIRST : 0u) | (last ? CAMBER_JOIN_BEFORE_LAST : 0u);
 }
 
 CAMBER_FN camber_u32 camber_join_triangles(camber_u32 join) {
@@ -193,13 +192,18 @@ CAMBER_FN camber_u32 camber_strip_records(camber_u32 kind, camber_u32 info) {
     return live + (kind > CAMBER_KIND_CUT ? inner : 0u);
 }
 
-/* The edges that a start has in common with the end before it: at a ring's cut seam both, so that no pixel falls
- * between; at a tight join the outer one. */
-CAMBER_FN camber_u32 camber_shared_edges(camber_u32 join, camber_u32 info) {
+/* Whether a record begins a strip. */
+CAMBER_FN camber_u32 camber_record_starts(camber_u32 last) {
+    return last & (CAMBER_POINT_FIRST | CAMBER_RECORD_START) ? 1u : 0u;
+}
+
+/* Whether a start's edge on a side is that of the end before it: at a ring's cut seam, so that no pixel falls between,
+ * and at the outer side of a tight join. */
+CAMBER_FN camber_u32 camber_edge_is_shared(camber_u32 join, camber_u32 last, float side) {
     const camber_u32 kind = camber_join_kind(join);
-    const camber_u32 outer = camber_turn_unpack(join) > 0.0f ? CAMBER_RECORD_IN_RIGHT : CAMBER_RECORD_IN_LEFT;
-    const camber_u32 seam = kind == CAMBER_KIND_CUT ? CAMBER_RECORD_IN_LEFT | CAMBER_RECORD_IN_RIGHT : 0u;
-    return info & CAMBER_POINT_FIRST ? seam : kind == CAMBER_KIND_TIGHT ? outer : 0u;
+    const camber_u32 seam = last & CAMBER_POINT_RING && kind == CAMBER_KIND_CUT ? 1u : 0u;
+    const camber_u32 outer = kind == CAMBER_KIND_TIGHT && side * camber_turn_unpack(join) < 0.0f ? 1u : 0u;
+    return last & CAMBER_POINT_FIRST ? seam : outer;
 }
 
 /* The join word of kite's and fan's records. */

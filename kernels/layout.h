@@ -41,6 +41,7 @@ typedef uint64_t camber_u64;
 #define CAMBER_POINT_LAST 4u
 #define CAMBER_POINT_RING 8u
 #define CAMBER_POINT_ROW_SHIFT 8
+#define CAMBER_ROW_BITS 0xffffff00u
 
 /* A row of the style table as the kernels read it. */
 typedef struct camber_row {
@@ -57,16 +58,11 @@ typedef struct camber_row {
 /* Words of a record: see camber_record in camber.h. */
 #define CAMBER_RECORD_WORDS 4
 
-/* A record's last word: row << CAMBER_RECORD_ROW_SHIFT | flags. The vertices of a start are placed by the segment
- * that goes out of it, but for the edges that it has in common with the end before, which lie where the segment that
- * comes in puts them, to the last bit. That segment begins where the break before the start says. */
-#define CAMBER_RECORD_START 1u       /* of a strip */
-#define CAMBER_RECORD_BREAK 2u       /* between two strips: both its vertices are the neighbours' */
-#define CAMBER_RECORD_AFTER_FIRST 4u /* the point before is its line's first */
-#define CAMBER_RECORD_BEFORE_LAST 8u /* the point behind is its line's last */
-#define CAMBER_RECORD_IN_LEFT 16u    /* of a start: the left edge is that of the segment that comes in */
-#define CAMBER_RECORD_IN_RIGHT 32u
-#define CAMBER_RECORD_ROW_SHIFT 8
+/* A record's last word is its point's info, with one of these. The vertices of a start are placed by the segment that
+ * goes out of it, but for the edges that it has in common with the end before, which lie where the segment that comes
+ * in puts them, to the last bit. That segment begins where the break before the start says. */
+#define CAMBER_RECORD_BREAK 16u /* between two strips: both its vertices are the neighbours' */
+#define CAMBER_RECORD_START 32u /* of a strip inside a polyline, where the one before has ended */
 
 /* kite and fan: an index is record << CAMBER_CORNER_BITS | corner. In and out: of the segments into and out of the
  * point. Past CAMBER_CORNER_FAN come a fan's own vertices, by the number of steps from the edge of the segment in. */
@@ -84,12 +80,14 @@ typedef struct camber_row {
 
 /* A point's join word, what classify writes and scan and emit read:
  *   bits 0-15 tan(turn / 4) * 32767, two's complement; 16-18 camber_end; 19-25 join triangles (in the words of
- *   strips, and in records: the limit); 28-31 kind.
- * The limit of a tight join, in units of CAMBER_PAD_PX / 127: half the shorter segment, and the pad at most.
- * The kind comes last, so that no mask narrows it to three bits: oclgrind 21.10 gets such integers wrong. */
+ *   strips, and in records: the limit); 26 the point before is its line's first; 27 that behind is its last; 28-31
+ * kind. The limit of a tight join, in units of CAMBER_PAD_PX / 127: half the shorter segment, and the pad at most. The
+ * kind comes last, so that no mask narrows it to three bits: oclgrind 21.10 gets such integers wrong. */
 #define CAMBER_JOIN_END_SHIFT 16
 #define CAMBER_JOIN_TRIANGLES_SHIFT 19
 #define CAMBER_JOIN_LIMIT_SHIFT 19
+#define CAMBER_JOIN_AFTER_FIRST (1u << 26)
+#define CAMBER_JOIN_BEFORE_LAST (1u << 27)
 #define CAMBER_JOIN_KIND_SHIFT 28
 #define CAMBER_JOIN_TRIANGLES_MAX 64 /* so that a block's index count fits 16 bits */
 

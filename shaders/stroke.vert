@@ -21,7 +21,8 @@ flat out highp uint v_kinds;
 flat out mediump vec4 v_color;
 
 const float PAD_PX = 0.75, NO_LIMIT_PX = 3.0e38;
-const uint START = 1u, BREAK = 2u, AFTER_FIRST = 4u, BEFORE_LAST = 8u, IN_LEFT = 16u, IN_RIGHT = 32u;
+const uint FIRST = 2u, RING = 8u, BREAK = 16u, START = 32u; // of a record
+const uint AFTER_FIRST = 1u << 26u, BEFORE_LAST = 1u << 27u; // of a join
 const uint DOT = 1u, CUT = 3u, TIGHT = 4u; // kinds of joins
 const uint ROUND = 0u, BUTT = 1u, SQUARE = 2u, SPLIT_ROUND = 5u; // camber_end
 const float NEVER_PX = 1e6, ALWAYS_PX = -1e30;
@@ -118,15 +119,15 @@ float tip(uint join, float half_width) {
 }
 
 // All that is constant over a segment.
-void hand_over(vec2 a, vec2 u, float len, float half_width, uint join_a, uint join_b, bool after_first, bool before_last) {
+void hand_over(vec2 a, vec2 u, float len, float half_width, uint join_a, uint join_b) {
     uint end_a = end_of(join_a), end_b = end_of(join_b);
     vec2 turn_a = half_turn(turn_of(join_a)), turn_b = half_turn(turn_of(join_b));
     v_segment = vec4(a - u_origin, u);
     v_shape = vec4(len, half_width, flat_cap(end_a, half_width), flat_cap(end_b, half_width));
     v_turns = vec4(turn_a, turn_b);
     v_edge = edge_of(u);
-    v_limits = vec4(foreign_from(end_a, turn_a, after_first, half_width),
-                    foreign_from(end_b, turn_b, before_last, half_width), round_from(end_a), round_from(end_b));
+    v_limits = vec4(foreign_from(end_a, turn_a, (join_a & AFTER_FIRST) != 0u, half_width),
+                    foreign_from(end_b, turn_b, (join_b & BEFORE_LAST) != 0u, half_width), round_from(end_a), round_from(end_b));
     v_tips = vec2(tip(join_a, half_width), tip(join_b, half_width));
     v_kinds = end_a | end_b << 3;
 }
@@ -141,7 +142,10 @@ void main() {
         right = !right;
         here = record_at(i);
     }
-    bool goes_out = (here.last & START) != 0u && (here.last & (right ? IN_RIGHT : IN_LEFT)) == 0u;
+    uint kind = kind_of(here.join);
+    bool is_seam = (here.last & RING) != 0u && kind == CUT, is_outer = kind == TIGHT && right == (turn_of(here.join) > 0.0);
+    bool is_shared = (here.last & FIRST) != 0u ? is_seam : is_outer;
+    bool goes_out = (here.last & (FIRST | START)) != 0u && !is_shared;
     Record other = record_at(goes_out ? i + 1 : i - 1);
 #else
     int i = gl_VertexID >> 7;
@@ -169,13 +173,12 @@ void main() {
 
     vec2 a = goes_out ? here.p : other.p, segment = goes_out ? other.p - here.p : here.p - other.p;
     uint join_a = goes_out ? here.join : other.join, join_b = goes_out ? other.join : here.join;
-    uint last_a = goes_out ? here.last : other.last, last_b = goes_out ? other.last : here.last;
     float len = length(segment);
     vec2 u = len > 0.0 ? segment / len : vec2(1.0, 0.0);
     float reach = half_width + PAD_PX;
     vec2 place = here.p + u * clamp(e.along * reach, -e.limit, e.limit) + vec2(-u.y, u.x) * (e.across * reach);
 
-    hand_over(a, u, len, half_width, join_a, join_b, (last_a & AFTER_FIRST) != 0u, (last_b & BEFORE_LAST) != 0u);
+    hand_over(a, u, len, half_width, join_a, join_b);
     // A row that is not drawn leaves no area; what lies outside the viewport would be clipped at some cost.
     gl_Position = vec4(half_width < 0.0 ? vec2(0.0) : (place - u_corner) * u_scale - 1.0, 0.0, 1.0);
 }

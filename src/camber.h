@@ -331,7 +331,7 @@ typedef struct camber_tessellation_desc {
 typedef struct camber_record {
     float x, y;    /* px */
     uint32_t join; /* CAMBER_JOIN_* in kernels/layout.h */
-    uint32_t last; /* row << 8 | flags: CAMBER_RECORD_* there */
+    uint32_t last; /* row << 8 | flags: CAMBER_POINT_* and CAMBER_RECORD_* there */
 } camber_record;
 
 /* A vertex as the vertex shader makes it from records. A segment runs from A to B, u is its direction, L its length.

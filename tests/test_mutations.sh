@@ -113,11 +113,10 @@ mutant strip kernels/classify.cl "only first points are ends" 'point & (CAMBER_P
 mutant strip kernels/scan.cl "a lane's points all at one offset" 'base + before[i]' 'base + before[0]'
 mutant kite kernels/scan.cl "a point in its neighbour's place" 'joins[first + i - 1]' 'joins[first + i]'
 evidence=(--pictures "$tmp/pictures" --junit "$tmp/junit.xml")
-mutant strip kernels/emit.cl "a missing break" 'row | CAMBER_RECORD_BREAK' 'row'
+mutant strip kernels/emit.cl "a missing break" 'CAMBER_RECORD_BREAK | (point' '(point'
 evidence=()
-mutant strip kernels/emit.cl "a start that is placed like an end" 'begins ? last | CAMBER_RECORD_START' 'begins ? last'
-mutant strip kernels/emit.cl "a line that forgets its ends" 'camber_line_ends(joins[i - 1], join, joins[i + 1])' \
-    'camber_line_ends(join, join, join)'
+mutant strip kernels/emit.cl "a start that is placed like an end" 'point | CAMBER_RECORD_START' 'point'
+mutant strip kernels/classify.cl "a line that forgets its ends" 'info_before[i - 1]' 'info_before[i]'
 mutant kite kernels/emit.cl "a triangle that winds the other way" 'put_triangle(indices + 3, sr, e + 1, e)' \
     'put_triangle(indices + 3, sr, e, e + 1)'
 mutant fan kernels/emit.cl "a fan from the inner edge" 'outer > 0.0f ? CAMBER_CORNER_IN_LEFT : CAMBER_CORNER_IN_RIGHT' \

@@ -11,8 +11,8 @@
 /* A vertex of the segment into or out of a point, whose other end is the record other. */
 static camber_vertex make_vertex(const camber_record *records, size_t at, size_t other, bool out) {
     const camber_record *p = records + at, *a = records + (out ? at : other), *b = records + (out ? other : at);
-    const uint32_t first = a->last & CAMBER_RECORD_AFTER_FIRST ? 128u : 0u;
-    const uint32_t last = b->last & CAMBER_RECORD_BEFORE_LAST ? 256u : 0u;
+    const uint32_t first = a->join & CAMBER_JOIN_AFTER_FIRST ? 128u : 0u;
+    const uint32_t last = b->join & CAMBER_JOIN_BEFORE_LAST ? 256u : 0u;
     return (camber_vertex){
         .x = p->x,
         .y = p->y,
@@ -22,7 +22,7 @@ static camber_vertex make_vertex(const camber_record *records, size_t at, size_t
         .flags = (uint16_t)(camber_join_end(a->join) | camber_join_end(b->join) << 3 | (out ? 0u : 64u) | first | last),
         .turn_a = (int16_t)(uint16_t)(a->join & 0xffffu),
         .turn_b = (int16_t)(uint16_t)(b->join & 0xffffu),
-        .row = p->last >> CAMBER_RECORD_ROW_SHIFT,
+        .row = p->last >> CAMBER_POINT_ROW_SHIFT,
     };
 }
 
@@ -42,10 +42,10 @@ static camber_vertex make_edge(const camber_record *records, size_t at, size_t o
 /* ---- Strips ---- */
 
 static camber_vertex strip_vertex(const camber_record *records, size_t record, bool right) {
-    const uint32_t flags = records[record].last;
-    const bool in = flags & (right ? CAMBER_RECORD_IN_RIGHT : CAMBER_RECORD_IN_LEFT);
-    const bool out = flags & CAMBER_RECORD_START && !in;
-    return make_edge(records, record, out ? record + 1 : record - 1, out, right ? -1.0f : 1.0f, CAMBER_STRIP);
+    const camber_record *r = records + record;
+    const float side = right ? -1.0f : 1.0f;
+    const bool out = camber_record_starts(r->last) && !camber_edge_is_shared(r->join, r->last, side);
+    return make_edge(records, record, out ? record + 1 : record - 1, out, side, CAMBER_STRIP);
 }
 
 /* Two indices a record: of breaks restarts, of others its vertices in the order of records. A start at a tight join has
@@ -54,10 +54,10 @@ static void expand_strip(camber_mesh_data *data) {
     uint32_t count = 0;
     for (size_t i = 0; i < data->info.index_count; i++) {
         const camber_record *record = data->records + i / 2;
-        const bool right = i % 2, tight = camber_join_kind(record->join) == CAMBER_KIND_TIGHT;
+        const bool right = i % 2, restarts = record->last & CAMBER_RECORD_START;
         if (record->last & CAMBER_RECORD_BREAK) {
             data->indices[i] = CAMBER_RESTART_INDEX;
-        } else if (tight && record->last & (right ? CAMBER_RECORD_IN_RIGHT : CAMBER_RECORD_IN_LEFT)) {
+        } else if (restarts && camber_edge_is_shared(record->join, record->last, right ? -1.0f : 1.0f)) {
             data->indices[i] = data->indices[i - 4];
         } else {
             data->vertices[count] = strip_vertex(data->records, i / 2, right);

@@ -87,10 +87,10 @@ void camber_add_ms(cl_event event, double *ms) {
 static camber_status measure(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program) {
     const camber_device *device = mesh->device;
     cl_event events[2] = {NULL, NULL};
-    const cl_mem classify[] = {part->x, part->y,    part->x,    part->y,    part->x,
-                               part->y, part->info, mesh->rows, part->joins};
+    const cl_mem classify[] = {part->x,    part->y,    part->x,    part->y,    part->x,    part->y,
+                               part->info, part->info, part->info, mesh->rows, part->joins};
     const cl_mem scan[] = {part->joins, part->info, part->offsets, part->sums};
-    camber_status status = run_stage(device, part, (stage){"classify", program->classify, classify, 9, 1}, events);
+    camber_status status = run_stage(device, part, (stage){"classify", program->classify, classify, 11, 1}, events);
     if (status == CAMBER_OK)
         status = run_stage(device, part, (stage){"scan", program->scan, scan, 4, CAMBER_SCAN_POINTS}, events + 1);
     if (status == CAMBER_OK)

@@ -17,10 +17,10 @@ typedef struct twin {
     bool failed; /* out of memory, or of 32-bit indices */
 } twin;
 
-/* What is known of a point when the walk comes to it: its join word and those beside it. */
+/* What is known of a point when the walk comes to it: its join word and that before it. */
 typedef struct place {
     size_t slot;
-    camber_u32 info, before, join, after;
+    camber_u32 info, before, join;
 } place;
 
 static void push_record(twin *t, float x, float y, camber_u32 join, camber_u32 last) {
@@ -51,14 +51,9 @@ static void push_triangle(twin *t, uint32_t a, uint32_t b, uint32_t c) {
     t->data->info.triangle_count++;
 }
 
-static camber_u32 row_of(const place *p) {
-    return p->info >> CAMBER_POINT_ROW_SHIFT << CAMBER_RECORD_ROW_SHIFT;
-}
-
 /* A record of the point itself. */
-static void push_point(twin *t, const place *p, camber_u32 join, camber_u32 flags) {
-    const camber_u32 ends = camber_line_ends(p->before, p->join, p->after);
-    push_record(t, t->polylines->x[p->slot], t->polylines->y[p->slot], join, row_of(p) | flags | ends);
+static void push_point(twin *t, const place *p, camber_u32 join, camber_u32 last) {
+    push_record(t, t->polylines->x[p->slot], t->polylines->y[p->slot], join, last);
 }
 
 /* Rings and open ends are told apart by the flags of the point. */
@@ -73,30 +68,30 @@ static camber_u32 join_word(const twin *t, size_t slot, float *half_shorter) {
         return 0;
     if (info & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST) && !(info & CAMBER_POINT_RING))
         return camber_cap_word(row->cap, info & CAMBER_POINT_FIRST && info & CAMBER_POINT_LAST);
-    return camber_join_word(turn, row, t->method);
+    return camber_join_word(turn, row, t->method) | camber_line_ends(p->info[slot - 1], p->info[slot + 1]);
 }
 
 /* ---- strip ---- */
 
 /* A strip begins: where the segment before it comes in from, then the point. */
-static void push_start(twin *t, const place *p, size_t from) {
-    push_record(t, t->polylines->x[from], t->polylines->y[from], 0, row_of(p) | CAMBER_RECORD_BREAK);
-    push_point(t, p, p->join, CAMBER_RECORD_START | camber_shared_edges(p->join, p->info));
-    t->data->info.vertex_count +=
-        p->info & CAMBER_POINT_FIRST || camber_join_kind(p->join) != CAMBER_KIND_TIGHT ? 2 : 1;
+static void push_start(twin *t, const place *p, size_t from, camber_u32 last) {
+    const bool shares = camber_join_kind(p->join) == CAMBER_KIND_TIGHT && last & CAMBER_RECORD_START;
+    push_record(t, t->polylines->x[from], t->polylines->y[from], 0, (p->info & CAMBER_ROW_BITS) | CAMBER_RECORD_BREAK);
+    push_point(t, p, p->join, last);
+    t->data->info.vertex_count += shares ? 1 : 2;
 }
 
 static void walk_strip_point(twin *t, const place *p) {
     const bool first = p->info & CAMBER_POINT_FIRST, last = p->info & CAMBER_POINT_LAST;
     if (first)
-        push_start(t, p, p->info & CAMBER_POINT_RING ? p->slot - 1 : p->slot);
+        push_start(t, p, p->info & CAMBER_POINT_RING ? p->slot - 1 : p->slot, p->info);
     if (first && !last)
         return;
-    push_point(t, p, p->join, 0);
+    push_point(t, p, p->join, p->info & ~CAMBER_POINT_FIRST);
     t->data->info.vertex_count += 2;
     t->data->info.triangle_count += 2;
     if (!last && camber_join_kind(p->join) != CAMBER_KIND_CUT)
-        push_start(t, p, p->slot - 1);
+        push_start(t, p, p->slot - 1, p->info | CAMBER_RECORD_START);
 }
 
 /* ---- kite and fan ---- */
@@ -200,7 +195,7 @@ static void walk_point(twin *t, const place *p, float half_shorter) {
         camber_mesh_info_count(&t->data->info, p->join, p->info);
     }
     if (t->method != CAMBER_STRIP) /* a record a slot, ghosts too */
-        push_point(t, p, camber_record_join(p->join, half_shorter), 0);
+        push_point(t, p, camber_record_join(p->join, half_shorter), p->info);
     if (real && drawn && t->method == CAMBER_STRIP)
         walk_strip_point(t, p);
     else if (real && drawn)
@@ -210,14 +205,12 @@ static void walk_point(twin *t, const place *p, float half_shorter) {
 static void walk(twin *t) {
     const camber_polylines *lines = t->polylines;
     const size_t slots = lines->first_slots[lines->polyline_count]; /* the padding behind them is no mesh's */
-    float half_shorter = 0.0f, half_after = 0.0f;
-    place p = {.after = slots ? join_word(t, 1, &half_after) : 0};
+    place p = {0};
     for (p.slot = 1; p.slot <= slots && !t->failed; p.slot++) {
+        float half_shorter = 0.0f;
         p.info = lines->info[p.slot];
         p.before = p.join;
-        p.join = p.after;
-        half_shorter = half_after;
-        p.after = p.slot < slots ? join_word(t, p.slot + 1, &half_after) : 0;
+        p.join = join_word(t, p.slot, &half_shorter);
         walk_point(t, &p, half_shorter);
     }
 }

@@ -234,7 +234,8 @@ typedef struct camber_surface camber_surface;
  * used.
  *
  * PoCL leaves its threads to the system, which often puts two on one core; POCL_AFFINITY=1 in the environment before
- * the first OpenCL call of the process gives each its own. The tool sets it; a library must not. PoCL also sets
+ * the first OpenCL call of the process gives each its own. The tool sets it, where
+ * there are no more threads than cores and the process may use all of these (PoCL aborts else); a library must not. PoCL also sets
  * HWLOC_PLUGINS_PATH in its first call, which is no time for another thread to read the environment: a program with
  * threads sets it to /dev/null before them.
  *
@@ -535,8 +536,7 @@ typedef enum camber_overlap {
     CAMBER_OVERLAP_ACCUMULATE, /* overlaps of translucent lines darken */
     /* FLATTEN, and opaque runs of one colour are gathered and composited once as well. Where edges meet in a pixel, of
      * one line or of several, the picture has the area of all lines together, which drawing one over the other
-     * misses: a third to three quarters of the error, for 1.1 to 1.8
-     * times the drawing on llvmpipe. */
+     * misses: a third to three quarters of the error, for 1.1 to 1.8 times the drawing on llvmpipe. */
     CAMBER_OVERLAP_UNITE,
 } camber_overlap;
 
@@ -562,7 +562,7 @@ typedef struct camber_frame {
     size_t pass_count;
     camber_coverage coverage;
     /* The picture is drawn in pieces where a side is longer than this. 0: the largest target, or less where
-     * that would take more than 64 MB. */
+     * that would take more than 64 MB; a layer that is united takes 128 MB more. */
     uint32_t largest_piece_px;
 } camber_frame;
 

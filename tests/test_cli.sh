@@ -193,6 +193,15 @@ has "$tmp/stdout" '"width": 64' '"device"' '"gl_renderer"' '"sharing"' '"draw_ca
 lacks tiger.png OpenStreetMap
 expect 0 "one thread, dark" render "$tiger" -o dark.png --size 64x64 --theme dark --threads 1
 cmp -s dark.png tiger.png && fail "dark looks like light"
+expect 0 "more threads than cores" render "$tiger" -o many.png --size 64x64 --theme dark --threads $(($(nproc) + 1))
+cmp -s dark.png many.png || fail "the number of threads shows"
+if command -v taskset >/dev/null && [ "$(nproc)" -gt 1 ]; then
+    name="not on the first core"
+    checks=$((checks + 1))
+    last=$(taskset -cp $$ | grep -oE '[0-9]+$')
+    taskset -c "$last" "$tool" render "$tiger" -qo pinned.png --size 64x64 --theme dark || fail "exit status $?"
+    cmp -s dark.png pinned.png || fail "the cores show"
+fi
 expect 0 "two inputs" render "$osm" "$tiger" -o two.png --size 64x64
 has two.png 'OpenStreetMap contributors'
 expect 0 "centre and zoom" render "$osm" -o close.png --center -122.03,36.974 --zoom 14 --bearing 30 --size 99x77

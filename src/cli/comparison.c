@@ -1,4 +1,5 @@
 #include "cli/comparison.h"
+#include "cli/levels.h"
 #include "proof/bands.h"
 #include "proof/batches.h"
 #include "proof/joins.h"
@@ -83,20 +84,6 @@ static camber_status tessellate(const trial *t) {
     return camber_tessellate(t->comparison->mesh, t->network->polylines, &desc);
 }
 
-/* Rows of coverage: black on nothing has it as alpha. */
-typedef struct level_rows {
-    uint8_t *levels;
-    size_t width;
-} level_rows;
-
-static bool keep_levels(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
-    const level_rows *to = user;
-    uint8_t *levels = to->levels + first_row * to->width;
-    for (size_t i = 0; i < row_count * to->width; i++)
-        levels[i] = rgba[4 * i + 3];
-    return true;
-}
-
 static camber_status draw(const trial *t, bool keep, camber_frame_stats *stats) {
     camber_comparison *c = t->comparison;
     const camber_pass pass = {.mesh = c->mesh, .paints = t->paints, .paint_count = t->network->stroke_count};
@@ -105,8 +92,9 @@ static camber_status draw(const trial *t, bool keep, camber_frame_stats *stats) 
                                 .passes = &pass,
                                 .pass_count = 1,
                                 .coverage = (camber_coverage)c->session->options->coverage};
-    level_rows to = {c->levels[t->method], frame.width};
-    return camber_render(c->session->renderer, &frame, keep ? keep_levels : NULL, &to, stats);
+    /* Black on nothing has its coverage as alpha. */
+    camber_levels to = {c->levels[t->method], frame.width, 3};
+    return camber_render(c->session->renderer, &frame, keep ? camber_levels_take : NULL, &to, stats);
 }
 
 static camber_status time_runs(const trial *t) {

@@ -1,4 +1,5 @@
 /* The tool `camber`. */
+#include "cli/environment.h"
 #include "cli/verbs.h"
 
 #include <signal.h>
@@ -23,12 +24,11 @@ static int run(camber_session *session) {
 
 static int run_guarded(camber_session *session) {
     camber_guard guard;
-    int status = camber_session_set_environment(session);
-    if (status != CAMBER_EXIT_DONE)
-        return status;
+    if (!camber_environment_set(session->options))
+        return camber_report_status(session->report, CAMBER_ERROR_MEMORY);
     const bool guarded = camber_guard_start(&guard, session->report->bars);
     session->guard = &guard;
-    status = run(session);
+    const int status = run(session);
     camber_session_close(session);
     camber_report_erase_bar(session->report);
     if (guarded)

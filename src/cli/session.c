@@ -7,37 +7,6 @@
 #include <pthread.h>
 #include <stdlib.h>
 
-/* ---- What drivers read from the environment ---- */
-
-/* Both names of PoCL, of before and after 4.0, and llvmpipe's, which read them when they start; GDAL's too. */
-static bool set_threads(uint32_t threads) {
-    char text[16];
-    snprintf(text, sizeof text, "%u", threads);
-    return setenv("POCL_MAX_PTHREAD_COUNT", text, 1) == 0 && setenv("POCL_CPU_MAX_CU_COUNT", text, 1) == 0 &&
-           setenv("LP_NUM_THREADS", text, 1) == 0 && setenv("GDAL_NUM_THREADS", text, 1) == 0;
-}
-
-int camber_session_set_environment(const camber_session *session) {
-    const struct {
-        const char *name, *value;
-    } defaults[] = {
-        /* Mesa's own warnings about missing GPUs would stand among the errors. */
-        {"EGL_LOG_LEVEL", "fatal"},
-        /* A core for each of PoCL's threads: left to themselves two of them often share one. */
-        {"POCL_AFFINITY", "1"},
-        /* PoCL sets it while it looks for devices. A variable that is new then moves the environment, under a getenv of
-         * GDAL's on another thread; one that is there stays where it is. */
-        {"HWLOC_PLUGINS_PATH", "/dev/null"},
-    };
-    const uint32_t threads = session->options->threads;
-    bool set = !threads || set_threads(threads);
-    for (size_t i = 0; i < sizeof defaults / sizeof *defaults; i++)
-        set = setenv(defaults[i].name, defaults[i].value, 0) == 0 && set;
-    return camber_report_status(session->report, set ? CAMBER_OK : CAMBER_ERROR_MEMORY);
-}
-
-/* ---- Opening ---- */
-
 static camber_status open_context(camber_report *report, camber_context **context) {
     const camber_context_desc desc = {
         .log = camber_report_log, .log_user = report, .progress = camber_report_progress, .progress_user = report};

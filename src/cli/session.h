@@ -26,10 +26,6 @@ typedef struct camber_session {
     double start_ms;
 } camber_session;
 
-/* What drivers are to find in the environment, where the user has not set it; before any thread starts. Returns an exit
- * status, its line printed. */
-int camber_session_set_environment(const camber_session *session);
-
 /* Starts opening a renderer beside what the caller does next; camber_session_need(CAMBER_NEEDS_RENDERER) waits for it
  * and tells how it went. */
 void camber_session_start(camber_session *session);

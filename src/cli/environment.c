@@ -1,0 +1,53 @@
+/* sched_getaffinity. */
+#define _GNU_SOURCE
+
+#include "cli/environment.h"
+
+#include <sched.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+/* The names of PoCL, of 4.0 and later and of before. */
+static const char *const POCL_THREADS[] = {"POCL_CPU_MAX_CU_COUNT", "POCL_MAX_PTHREAD_COUNT"};
+
+/* llvmpipe's too, which it reads when it starts, and GDAL's. */
+static bool set_threads(uint32_t threads) {
+    char text[16];
+    snprintf(text, sizeof text, "%u", threads);
+    bool set = setenv("LP_NUM_THREADS", text, 1) == 0 && setenv("GDAL_NUM_THREADS", text, 1) == 0;
+    for (size_t i = 0; i < sizeof POCL_THREADS / sizeof *POCL_THREADS; i++)
+        set = setenv(POCL_THREADS[i], text, 1) == 0 && set;
+    return set;
+}
+
+/* PoCL pins thread i to core i, and aborts where the process may not run there or there is no such core: in a container
+ * that has some of the cores, or with more threads than cores. */
+static bool may_pin(void) {
+#ifdef __linux__
+    cpu_set_t cores;
+    const long count = sysconf(_SC_NPROCESSORS_CONF);
+    if (count < 1 || count > CPU_SETSIZE || sched_getaffinity(0, sizeof cores, &cores) != 0 ||
+        CPU_COUNT(&cores) != (int)count)
+        return false;
+    for (size_t i = 0; i < sizeof POCL_THREADS / sizeof *POCL_THREADS; i++) {
+        const char *text = getenv(POCL_THREADS[i]);
+        if (text && strtol(text, NULL, 10) > count)
+            return false;
+    }
+    return true;
+#else
+    return false;
+#endif
+}
+
+bool camber_environment_set(const camber_options *options) {
+    bool set = !options->threads || set_threads(options->threads);
+    /* Mesa's own warnings about missing GPUs would stand among the errors. */
+    set = setenv("EGL_LOG_LEVEL", "fatal", 0) == 0 && set;
+    /* A core for each of PoCL's threads: left to themselves two of them often share one. */
+    set = (!may_pin() || setenv("POCL_AFFINITY", "1", 0) == 0) && set;
+    /* PoCL sets it while it looks for devices. A variable that is new then moves the environment, under a getenv of
+     * GDAL's on another thread; one that is there stays where it is. */
+    return setenv("HWLOC_PLUGINS_PATH", "/dev/null", 0) == 0 && set;
+}

@@ -234,10 +234,10 @@ typedef struct camber_surface camber_surface;
  * used.
  *
  * PoCL leaves its threads to the system, which often puts two on one core; POCL_AFFINITY=1 in the environment before
- * the first OpenCL call of the process gives each its own. The tool sets it, where
- * there are no more threads than cores and the process may use all of these (PoCL aborts else); a library must not. PoCL also sets
- * HWLOC_PLUGINS_PATH in its first call, which is no time for another thread to read the environment: a program with
- * threads sets it to /dev/null before them.
+ * the first OpenCL call of the process gives each its own. The tool sets it where there are no more threads than cores
+ * and the process may use them all (PoCL aborts else); a library must not. PoCL also sets HWLOC_PLUGINS_PATH in its
+ * first call, which is no time for another thread to read the environment: a program with threads sets it to /dev/null
+ * before them.
  *
  * Returns CAMBER_ERROR_DEVICE (no platform, no device that matches or not so many), CAMBER_ERROR_ARGUMENT (a work-group
  * size that is none of these, a largest buffer below 4096 bytes), CAMBER_ERROR_MEMORY. */

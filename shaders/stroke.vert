@@ -155,8 +155,8 @@ void main() {
     Record other = record_at(kind_of(here.join) == DOT ? i : goes_out ? i + 1 : i - 1);
 #endif
 
-    int texel = 2 * int(here.last >> 8u), across = textureSize(u_rows, 0).x;
-    ivec2 at = ivec2(texel % across, texel / across);
+    int texel = 2 * int(here.last >> 8u);
+    ivec2 at = ivec2(texel & 2047, texel >> 11);
     vec2 row = texelFetch(u_rows, at, 0).xy;
     float half_width = row.x;
     v_color = texelFetch(u_rows, at + ivec2(1, 0), 0);

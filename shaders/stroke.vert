@@ -8,6 +8,8 @@ layout(binding = 1) uniform highp usamplerBuffer u_records; // all other sampler
 uniform highp sampler2D u_rows; // two texels a row: half width px, -1 where not drawn, fan's step; premultiplied colour
 uniform vec2 u_origin;          // of this piece in the picture, px
 uniform vec2 u_corner;          // of the viewport in the picture, px: it reaches past the piece
+uniform int u_table;            // of the rows; of strips the bits of gl_VertexID below the table's number
+uniform int u_table_rows;
 uniform vec2 u_scale;           // 2 / size of the viewport
 
 // What stroke.frag says of them.
@@ -134,8 +136,8 @@ void hand_over(vec2 a, vec2 u, float len, float half_width, uint join_a, uint jo
 
 void main() {
 #if METHOD == 0
-    int i = gl_VertexID >> 1;
-    bool right = (gl_VertexID & 1) != 0;
+    int table = gl_VertexID >> u_table, id = gl_VertexID - (table << u_table), i = id >> 1;
+    bool right = (id & 1) != 0;
     Record here = record_at(i);
     if ((here.last & BREAK) != 0u) { // the last vertex of the strip before, the first of that behind: no area between
         i += right || i == 0 ? 1 : -1;
@@ -148,14 +150,14 @@ void main() {
     bool goes_out = (here.last & (FIRST | START)) != 0u && !is_shared;
     Record other = record_at(goes_out ? i + 1 : i - 1);
 #else
-    int i = gl_VertexID >> 7;
+    int table = u_table, i = gl_VertexID >> 7;
     uint corner = uint(gl_VertexID) & 127u;
     Record here = record_at(i);
     bool goes_out = corner == CENTRE || corner == OUT_LEFT_CORNER || corner == OUT_RIGHT_CORNER || corner == OUT_TIP;
     Record other = record_at(kind_of(here.join) == DOT ? i : goes_out ? i + 1 : i - 1);
 #endif
 
-    int texel = 2 * int(here.last >> 8u);
+    int texel = 2 * (table * u_table_rows + int(here.last >> 8u));
     ivec2 at = ivec2(texel & 2047, texel >> 11);
     vec2 row = texelFetch(u_rows, at, 0).xy;
     float half_width = row.x;

@@ -68,6 +68,7 @@ static GLenum fail_GetGraphicsResetStatus(void) {
     X(FramebufferTexture2D, (GLenum a, GLenum b, GLenum c, GLuint d, GLint e), (a, b, c, d, e))                        \
     X(Clear, (GLbitfield a), (a))                                                                                      \
     X(DrawArrays, (GLenum a, GLint b, GLsizei c), (a, b, c))                                                           \
+    X(MultiDrawArrays, (GLenum a, const GLint *b, const GLsizei *c, GLsizei d), (a, b, c, d))                          \
     X(DrawElements, (GLenum a, GLsizei b, GLenum c, const void *d), (a, b, c, d))                                      \
     X(ReadPixels, (GLint a, GLint b, GLsizei c, GLsizei d, GLenum e, GLenum f, void *g), (a, b, c, d, e, f, g))
 

@@ -467,15 +467,64 @@ static void test_mesh_changes(void **state) {
     scene_free(&large);
 }
 
+/* Opaque passes of one mesh are one draw call, as many as passes where the driver has no multi-draw or the mesh is
+ * indexed, and what is drawn is what meshes of their own, each drawn by itself, give. */
+static void test_passes_of_one_mesh(void **state) {
+    studio *s = *state;
+    enum { PASSES = 6, ROWS = 3 };
+    scene lines = {0};
+    for (size_t i = 0; i < 12; i++)
+        line(&lines, i % ROWS, 3 + 5 * (double)i, 4, 60 - 4 * (double)i, 60);
+    const camber_stroke strokes[ROWS] = {{9, 0, 0, 0}, {9, 0, 1, 0}, {9, 1, 0, 0}};
+    camber_paint paints[PASSES][ROWS];
+    for (int p = 0; p < PASSES; p++)
+        for (int r = 0; r < ROWS; r++)
+            paints[p][r] = (camber_paint){(float)(9 - p - r % 2), {(float)p / PASSES, (float)r / ROWS, 1, 1}};
+    for (int method = 0; method < 3; method++) {
+        camber_mesh *meshes[PASSES], *shared = make_mesh(s, &lines, strokes, ROWS, (camber_method)method);
+        camber_pass together[PASSES], apart[PASSES];
+        for (size_t p = 0; p < PASSES; p++) {
+            meshes[p] = make_mesh(s, &lines, strokes, ROWS, (camber_method)method);
+            together[p] = (camber_pass){.mesh = shared,
+                                        .first_polyline = p,
+                                        .polyline_count = 12 - 2 * p,
+                                        .paints = paints[p],
+                                        .paint_count = ROWS};
+            apart[p] = together[p];
+            apart[p].mesh = meshes[p];
+        }
+        picture one = draw(s, together, PASSES), many = draw(s, apart, PASSES);
+        assert_memory_equal(one.rgba, many.rgba, (size_t)4 * 64 * 64);
+        const camber_frame frame = {.width = 64, .height = 64, .passes = together, .pass_count = PASSES};
+        camber_gl *gl = &studio_any(s)->share.surface->gl;
+        camber_gl_multi_draw_arrays_fn *multi = gl->MultiDrawArrays;
+        camber_frame_stats stats;
+        assert_int_equal(camber_render(studio_any(s), &frame, NULL, NULL, &stats), CAMBER_OK);
+        assert_int_equal(stats.draw_calls, multi && method == 0 ? 1 : PASSES);
+        gl->MultiDrawArrays = NULL;
+        picture looped = draw(s, together, PASSES);
+        gl->MultiDrawArrays = multi;
+        assert_memory_equal(one.rgba, looped.rgba, (size_t)4 * 64 * 64);
+        picture_free(&looped);
+        picture_free(&many);
+        picture_free(&one);
+        for (size_t p = 0; p < PASSES; p++)
+            camber_mesh_destroy(meshes[p]);
+        camber_mesh_destroy(shared);
+    }
+    scene_free(&lines);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rectangles),        cmocka_unit_test(test_coverages),
-        cmocka_unit_test(test_united_edges),      cmocka_unit_test(test_without_half_floats),
-        cmocka_unit_test(test_flatten_is_even),   cmocka_unit_test(test_colors_of_one_run),
-        cmocka_unit_test(test_alphas_keep_order), cmocka_unit_test(test_paints_that_draw_nothing),
-        cmocka_unit_test(test_some_rows),         cmocka_unit_test(test_thousands_of_rows),
-        cmocka_unit_test(test_casing_and_fill),   cmocka_unit_test(test_polyline_range),
-        cmocka_unit_test(test_mesh_changes),      cmocka_unit_test(test_row_past_the_paints),
+        cmocka_unit_test(test_rectangles),         cmocka_unit_test(test_coverages),
+        cmocka_unit_test(test_united_edges),       cmocka_unit_test(test_without_half_floats),
+        cmocka_unit_test(test_flatten_is_even),    cmocka_unit_test(test_colors_of_one_run),
+        cmocka_unit_test(test_alphas_keep_order),  cmocka_unit_test(test_paints_that_draw_nothing),
+        cmocka_unit_test(test_some_rows),          cmocka_unit_test(test_thousands_of_rows),
+        cmocka_unit_test(test_casing_and_fill),    cmocka_unit_test(test_polyline_range),
+        cmocka_unit_test(test_mesh_changes),       cmocka_unit_test(test_row_past_the_paints),
+        cmocka_unit_test(test_passes_of_one_mesh),
     };
     char cache[64];
     if (!studio_begin(cache))

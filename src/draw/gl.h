@@ -81,6 +81,7 @@
 /* In the driver's extensions, not in every one. */
 typedef void camber_gl_buffer_storage_fn(GLenum target, GLsizeiptr size, const void *data, GLbitfield flags);
 typedef GLenum camber_gl_reset_status_fn(void);
+typedef void camber_gl_multi_draw_arrays_fn(GLenum mode, const GLint *first, const GLsizei *count, GLsizei draw_count);
 typedef void camber_gl_tex_buffer_fn(GLenum target, GLenum format, GLuint buffer);
 
 typedef struct camber_gl {
@@ -89,6 +90,7 @@ typedef struct camber_gl {
 #undef CAMBER_GL_MEMBER
     camber_gl_buffer_storage_fn *BufferStorage;        /* NULL: absent */
     camber_gl_reset_status_fn *GetGraphicsResetStatus; /* NULL: absent */
+    camber_gl_multi_draw_arrays_fn *MultiDrawArrays;   /* NULL: absent */
     camber_gl_tex_buffer_fn *TexBuffer;                /* required: core or an extension */
 } camber_gl;
 

@@ -254,8 +254,8 @@ static camber_status count_piece(counting *c) {
     if (status != CAMBER_OK)
         return status;
     c->bound = NULL; /* the target's texture has taken the rows' place */
-    camber_renderer_use_shader(c->renderer, c->cover, &c->piece);
-    camber_renderer_use_shader(c->renderer, c->every, &c->piece);
+    camber_renderer_use_shader(c->renderer, c->cover, c->desc->mesh, &c->piece);
+    camber_renderer_use_shader(c->renderer, c->every, c->desc->mesh, &c->piece);
     status = count_fragments(c);
     return status == CAMBER_OK ? count_pixels(c) : status;
 }

@@ -46,6 +46,9 @@ void camber_renderer_destroy(camber_renderer *renderer) {
         gl->DeleteTextures(1, &renderer->record_texture);
         gl->DeleteVertexArrays(1, &renderer->vertex_array);
     }
+    camber_free(context, renderer->batch.counts);
+    camber_free(context, renderer->batch.firsts);
+    camber_free(context, renderer->batch.ranges);
     camber_free(context, renderer->row_texels);
     camber_free(context, renderer);
 }
@@ -130,11 +133,15 @@ static camber_status draw_piece(camber_renderer *renderer, const camber_frame *f
     if (status != CAMBER_OK)
         return status;
     gl->Enable(GL_BLEND);
+    gl->BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA); /* but where layers are gathered */
     gl->Disable(GL_DITHER);
     gl->ClearColor(back.r * back.a, back.g * back.a, back.b * back.a, back.a);
     gl->Clear(GL_COLOR_BUFFER_BIT);
+    camber_batch_forget(renderer); /* of a frame that failed */
     for (size_t i = 0; i < frame->pass_count && status == CAMBER_OK; i++)
         status = camber_renderer_draw_pass(renderer, frame->passes + i, piece);
+    if (status == CAMBER_OK)
+        status = camber_batch_draw(renderer, 0, piece);
     gl->Finish();
     return status == CAMBER_OK ? camber_renderer_check(renderer, "drawing") : status;
 }

@@ -28,7 +28,7 @@ typedef enum camber_flatten_kind {
 
 typedef struct camber_shader {
     GLuint program; /* 0: not built yet */
-    GLint origin, corner, scale, layer_color;
+    GLint origin, corner, scale, layer_color, table, table_rows;
 } camber_shader;
 
 /* A texture to draw into, of the size of a piece. */
@@ -43,6 +43,33 @@ enum { CAMBER_TARGET_PICTURE, CAMBER_TARGET_COVERAGE, CAMBER_TARGET_LAYER, CAMBE
 /* The texture unit of the records, as stroke.vert has it; all else is at 0. */
 enum { CAMBER_RECORDS_UNIT = 1 };
 
+/* Polylines of equal alpha that follow each other in a pass. */
+typedef struct camber_run {
+    const camber_pass *pass;
+    size_t first, end; /* polylines */
+    float alpha;       /* of the flattened layer; 1: straight onto the picture */
+    bool one_color;    /* its layer holds coverage alone, and color is put over it */
+    bool layered;
+    camber_color color;
+} camber_run;
+
+typedef struct camber_batch_range {
+    size_t first, end; /* polylines */
+    size_t table;      /* of the row texture */
+} camber_batch_range;
+
+/* What waits to be drawn. */
+typedef struct camber_batch {
+    const camber_mesh *mesh;
+    const camber_pass *pass; /* of the last table */
+    size_t table_count;
+    camber_batch_range *ranges;
+    size_t range_count, range_capacity;
+    GLint *firsts; /* of the strips of a call */
+    GLsizei *counts;
+    size_t call_count, first_capacity, count_capacity;
+} camber_batch;
+
 struct camber_renderer {
     camber_share share;
     const camber_share_path *path;
@@ -56,6 +83,7 @@ struct camber_renderer {
     GLsizei row_height; /* texels */
     float *row_texels;  /* 4 floats a texel */
     size_t row_capacity;
+    camber_batch batch;
 };
 
 /* linked.c: programs in the cache folder. A key is of the driver and all the sources. */
@@ -87,15 +115,32 @@ typedef struct camber_piece {
 } camber_piece;
 float camber_renderer_thinnest(const camber_frame *frame);
 camber_status camber_renderer_draw_pass(camber_renderer *renderer, const camber_pass *pass, const camber_piece *piece);
-/* The row texture of a mesh with widths alone; a row past the paints is not drawn. */
+static inline bool camber_pass_draws(const camber_pass *pass, uint32_t row) {
+    return row < pass->paint_count && pass->paints[row].width_px > 0.0f && pass->paints[row].color.a > 0.0f;
+}
+
+/* rows.c: the row texture. */
+bool camber_renderer_holds_rows(const camber_renderer *renderer, size_t row_count);
+camber_status camber_renderer_reserve_rows(camber_renderer *renderer, size_t row_count);
+/* A run's table: rows of other alphas are left out, and a layer's rows are drawn opaque. */
+void camber_renderer_fill_rows(camber_renderer *renderer, const camber_run *run, size_t table);
+void camber_renderer_upload_rows(camber_renderer *renderer, size_t row_count);
+/* One table of a mesh with widths alone; a row past the paints is not drawn. */
 camber_status camber_renderer_set_widths(camber_renderer *renderer, const camber_mesh *mesh, const camber_paint *paints,
                                          size_t paint_count);
+
+/* batch.c: camber_batch_add puts a run behind those that wait, and draws them first where they cannot share a call;
+ * camber_batch_draw draws all that wait. */
+camber_status camber_batch_add(camber_renderer *renderer, const camber_run *run, const camber_piece *piece);
+camber_status camber_batch_draw(camber_renderer *renderer, unsigned variant, const camber_piece *piece);
+void camber_batch_forget(camber_renderer *renderer);
 /* The stroke shader that a mesh needs for lines of this width at least, with CAMBER_VARIANT_LINEAR, COUNT or UNION
  * added. */
 camber_status camber_renderer_mesh_shader(camber_renderer *renderer, const camber_mesh *mesh, float thinnest_px,
                                           unsigned variant, const camber_shader **shader);
-/* Uses a shader, with its uniforms set for a piece. */
-void camber_renderer_use_shader(camber_renderer *renderer, const camber_shader *shader, const camber_piece *piece);
+/* Uses a shader, with its uniforms set for a piece of a mesh that has one table. */
+void camber_renderer_use_shader(camber_renderer *renderer, const camber_shader *shader, const camber_mesh *mesh,
+                                const camber_piece *piece);
 /* Binds a part's records and indices, and the row texture. */
 void camber_renderer_bind_part(camber_renderer *renderer, const camber_mesh_part *part);
 /* Draws indices of the part that is bound. */

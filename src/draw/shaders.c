@@ -68,7 +68,7 @@ static camber_status make(camber_renderer *renderer, const char *head, const cha
 static camber_status build(camber_renderer *renderer, const char *head, const char *vertex, const char *fragment,
                            camber_shader *shader) {
     const camber_gl *gl = &renderer->share.surface->gl;
-    const char *const sources[] = {head, vertex, fragment};
+    const char *const sources[] = {head, camber_edge_glsl, vertex, fragment};
     const uint64_t key = camber_linked_key(renderer, sources, sizeof sources / sizeof *sources);
     const double begin = camber_now_ms();
     const GLuint program = gl->CreateProgram();
@@ -84,9 +84,13 @@ static camber_status build(camber_renderer *renderer, const char *head, const ch
     }
     camber_log(renderer->share.device->context, CAMBER_LOG_INFO, "shaders: %s in %.0f ms",
                cached ? "from the cache" : "built", camber_now_ms() - begin);
-    *shader = (camber_shader){program, gl->GetUniformLocation(program, "u_origin"),
-                              gl->GetUniformLocation(program, "u_corner"), gl->GetUniformLocation(program, "u_scale"),
-                              gl->GetUniformLocation(program, "u_color")};
+    *shader = (camber_shader){program,
+                              gl->GetUniformLocation(program, "u_origin"),
+                              gl->GetUniformLocation(program, "u_corner"),
+                              gl->GetUniformLocation(program, "u_scale"),
+                              gl->GetUniformLocation(program, "u_color"),
+                              gl->GetUniformLocation(program, "u_table"),
+                              gl->GetUniformLocation(program, "u_table_rows")};
     return CAMBER_OK;
 }
 

@@ -47,6 +47,7 @@ static camber_function *load_texture_buffers(camber_surface *surface) {
 static camber_status load_gl(camber_surface *surface) {
     static const optional_name storage[] = {{"GL_EXT_buffer_storage", "glBufferStorageEXT"},
                                             {"GL_ARB_buffer_storage", "glBufferStorage"}};
+    static const optional_name multi[] = {{"GL_EXT_multi_draw_arrays", "glMultiDrawArraysEXT"}};
     static const optional_name reset[] = {{"GL_EXT_robustness", "glGetGraphicsResetStatusEXT"},
                                           {"GL_ARB_robustness", "glGetGraphicsResetStatusARB"}};
     camber_gl *gl = &surface->gl;
@@ -61,6 +62,8 @@ static camber_status load_gl(camber_surface *surface) {
 #undef LOAD
     function = load_optional(surface, storage, sizeof storage / sizeof *storage);
     memcpy(&gl->BufferStorage, &function, sizeof function);
+    function = load_optional(surface, multi, sizeof multi / sizeof *multi);
+    memcpy(&gl->MultiDrawArrays, &function, sizeof function);
     function = load_optional(surface, reset, sizeof reset / sizeof *reset);
     memcpy(&gl->GetGraphicsResetStatus, &function, sizeof function);
     function = load_texture_buffers(surface);

@@ -1,0 +1,203 @@
+/* Draws that nothing comes between, in as few calls as the driver takes them in: runs of polylines of one mesh, each
+ * with a table in the row texture. Of strips a vertex's number says its table, in the bits above the mesh's own
+ * vertices; of kite and fan, whose indices are in the mesh, a uniform does. */
+#include "draw/renderer.h"
+
+/* Tables a call: more would hold more memory than a call costs. */
+enum { ROWS_MAX = 1 << 20 };
+
+camber_status camber_renderer_mesh_shader(camber_renderer *renderer, const camber_mesh *mesh, float thinnest_px,
+                                          unsigned variant, const camber_shader **shader) {
+    /* A pixel reaches sqrt(1/2) px along any normal; stroke.vert says where a tip ends: past where the cap does. */
+    const bool thin = thinnest_px < 1.4143f, tips = thin || (mesh->round_caps && thinnest_px < 3.7f);
+    variant |=
+        (mesh->sharp_joins ? CAMBER_VARIANT_SHARP_JOINS : 0u) | (mesh->flat_caps ? CAMBER_VARIANT_FLAT_CAPS : 0u);
+    variant |= (unsigned)mesh->mesh_info.method * CAMBER_VARIANT_METHOD;
+    variant |= (thin ? CAMBER_VARIANT_THIN : 0u) | (tips ? CAMBER_VARIANT_TIPS : 0u);
+    return camber_renderer_stroke_shader(renderer, variant, shader);
+}
+
+void camber_renderer_use_shader(camber_renderer *renderer, const camber_shader *shader, const camber_mesh *mesh,
+                                const camber_piece *piece) {
+    const camber_gl *gl = &renderer->share.surface->gl;
+    const GLfloat x = (GLfloat)piece->x, y = (GLfloat)piece->y, w = (GLfloat)piece->width, h = (GLfloat)piece->height;
+    const GLfloat guard_x = (GLfloat)camber_renderer_guard(renderer, 0, (GLsizei)piece->width),
+                  guard_y = (GLfloat)camber_renderer_guard(renderer, 1, (GLsizei)piece->height);
+    gl->UseProgram(shader->program);
+    gl->Uniform2f(shader->origin, x, y);
+    gl->Uniform2f(shader->corner, x - guard_x, y - guard_y);
+    gl->Uniform2f(shader->scale, 2.0f / (w + 2.0f * guard_x), 2.0f / (h + 2.0f * guard_y));
+    gl->Uniform1i(shader->table, mesh->mesh_info.strips ? 31 : 0);
+}
+
+void camber_renderer_bind_part(camber_renderer *renderer, const camber_mesh_part *part) {
+    const camber_gl *gl = &renderer->share.surface->gl;
+    gl->BindTexture(GL_TEXTURE_2D, renderer->row_texture);
+    gl->ActiveTexture(GL_TEXTURE0 + CAMBER_RECORDS_UNIT);
+    gl->BindTexture(GL_TEXTURE_BUFFER, renderer->record_texture);
+    gl->TexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32UI, part->buffers[CAMBER_BUFFER_RECORDS].gl_name);
+    gl->ActiveTexture(GL_TEXTURE0);
+    gl->BindVertexArray(renderer->vertex_array);
+    gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, part->buffers[CAMBER_BUFFER_INDICES].gl_name);
+}
+
+void camber_renderer_draw_indices(camber_renderer *renderer, const camber_mesh *mesh, uint64_t first, uint64_t count) {
+    const camber_gl *gl = &renderer->share.surface->gl;
+    if (mesh->mesh_info.strips)
+        gl->DrawArrays(GL_TRIANGLE_STRIP, (GLint)first, (GLsizei)count);
+    else
+        gl->DrawElements(GL_TRIANGLES, (GLsizei)count, GL_UNSIGNED_INT, (const void *)(uintptr_t)(4 * first));
+}
+
+/* Bits of a vertex's number within its part; all 31 where the numbers leave no room for tables. */
+static unsigned vertex_bits(const camber_mesh *mesh) {
+    size_t most = 0;
+    for (size_t i = 0; i < mesh->part_count; i++)
+        most = mesh->parts[i].index_count > most ? mesh->parts[i].index_count : most;
+    unsigned bits = 1;
+    while (bits < 31 && most >> bits)
+        bits++;
+    return bits;
+}
+
+static bool has_room(const camber_renderer *renderer, const camber_mesh *mesh) {
+    const size_t tables = renderer->batch.table_count + 1;
+    const unsigned bits = mesh->mesh_info.strips ? vertex_bits(mesh) : 0;
+    return tables * mesh->row_count <= ROWS_MAX && camber_renderer_holds_rows(renderer, tables * mesh->row_count) &&
+           tables <= (size_t)1 << (31 - bits);
+}
+
+camber_status camber_batch_add(camber_renderer *renderer, const camber_run *run, const camber_piece *piece) {
+    camber_batch *batch = &renderer->batch;
+    camber_context *context = renderer->share.device->context;
+    const camber_mesh *mesh = run->pass->mesh;
+    const bool same_mesh = batch->table_count == 0 || batch->mesh == mesh;
+    const bool same_table = batch->table_count && same_mesh && batch->pass == run->pass;
+    camber_status status = CAMBER_OK;
+    if (!same_mesh || (!same_table && batch->table_count && !has_room(renderer, mesh)))
+        status = camber_batch_draw(renderer, 0, piece);
+    if (status == CAMBER_OK && !same_table)
+        status = camber_renderer_reserve_rows(renderer, (batch->table_count + 1) * mesh->row_count);
+    if (status == CAMBER_OK &&
+        !camber_grow(context, &batch->ranges, &batch->range_capacity, batch->range_count + 1, sizeof *batch->ranges))
+        status = CAMBER_ERROR_MEMORY;
+    if (status != CAMBER_OK)
+        return status;
+    if (!same_table)
+        camber_renderer_fill_rows(renderer, run, batch->table_count++);
+    batch->mesh = mesh;
+    batch->pass = run->pass;
+    batch->ranges[batch->range_count++] = (camber_batch_range){run->first, run->end, batch->table_count - 1};
+    return CAMBER_OK;
+}
+
+void camber_batch_forget(camber_renderer *renderer) {
+    renderer->batch.table_count = renderer->batch.range_count = renderer->batch.call_count = 0;
+}
+
+/* ---- Calls ---- */
+
+/* Makes the strips that are listed. */
+static void draw_strips(camber_renderer *renderer, size_t *draw_calls) {
+    const camber_gl *gl = &renderer->share.surface->gl;
+    camber_batch *batch = &renderer->batch;
+    if (gl->MultiDrawArrays && batch->call_count > 1) {
+        gl->MultiDrawArrays(GL_TRIANGLE_STRIP, batch->firsts, batch->counts, (GLsizei)batch->call_count);
+        ++*draw_calls;
+    } else {
+        for (size_t i = 0; i < batch->call_count; i++)
+            gl->DrawArrays(GL_TRIANGLE_STRIP, batch->firsts[i], batch->counts[i]);
+        *draw_calls += batch->call_count;
+    }
+    batch->call_count = 0;
+}
+
+static camber_status list_strip(camber_renderer *renderer, GLint first, GLsizei count) {
+    camber_batch *batch = &renderer->batch;
+    camber_context *context = renderer->share.device->context;
+    if (!camber_grow(context, &batch->firsts, &batch->first_capacity, batch->call_count + 1, sizeof *batch->firsts) ||
+        !camber_grow(context, &batch->counts, &batch->count_capacity, batch->call_count + 1, sizeof *batch->counts))
+        return CAMBER_ERROR_MEMORY;
+    batch->firsts[batch->call_count] = first;
+    batch->counts[batch->call_count++] = count;
+    return CAMBER_OK;
+}
+
+/* Lists or draws what a part, which is bound, has of a range. */
+static camber_status draw_part(camber_renderer *renderer, const camber_mesh_part *part, camber_batch_range range,
+                               const camber_shader *shader, size_t *draw_calls) {
+    /* A count is a signed 32-bit number, and strips may be cut between polylines. */
+    enum { INDICES_MAX = 1 << 30 };
+    const camber_mesh *mesh = renderer->batch.mesh;
+    const unsigned bits = vertex_bits(mesh);
+    camber_status status = CAMBER_OK;
+    while (range.first < range.end && status == CAMBER_OK) {
+        size_t until = range.end;
+        uint64_t from = 0, to = 0;
+        status = camber_part_first_index(mesh, part, range.first, &from);
+        if (status == CAMBER_OK)
+            status = camber_part_first_index(mesh, part, until, &to);
+        while (status == CAMBER_OK && to - from > INDICES_MAX && until - range.first > 1) {
+            until = range.first + (until - range.first) / 2;
+            status = camber_part_first_index(mesh, part, until, &to);
+        }
+        range.first = until;
+        if (status != CAMBER_OK || to == from)
+            continue;
+        if (mesh->mesh_info.strips) {
+            status = list_strip(renderer, (GLint)((uint64_t)range.table << bits | from), (GLsizei)(to - from));
+        } else {
+            renderer->share.surface->gl.Uniform1i(shader->table, (GLint)range.table);
+            camber_renderer_draw_indices(renderer, mesh, from, to - from);
+            ++*draw_calls;
+        }
+    }
+    return status;
+}
+
+static camber_status draw_ranges(camber_renderer *renderer, const camber_shader *shader, size_t *draw_calls) {
+    const camber_batch *batch = &renderer->batch;
+    const camber_mesh *mesh = batch->mesh;
+    const camber_mesh_part *bound = NULL;
+    camber_status status = CAMBER_OK;
+    for (size_t r = 0; r < batch->range_count; r++)
+        for (size_t i = 0; i < mesh->part_count && status == CAMBER_OK; i++) {
+            const camber_mesh_part *part = mesh->parts + i;
+            const size_t part_end = part->first_polyline + part->polyline_count;
+            camber_batch_range range = batch->ranges[r];
+            range.first = range.first > part->first_polyline ? range.first : part->first_polyline;
+            range.end = range.end < part_end ? range.end : part_end;
+            if (range.first >= range.end || part->index_count == 0)
+                continue;
+            if (part != bound) {
+                draw_strips(renderer, draw_calls); /* of the part that is bound */
+                camber_renderer_bind_part(renderer, part);
+            }
+            bound = part;
+            status = draw_part(renderer, part, range, shader, draw_calls);
+        }
+    if (status == CAMBER_OK)
+        draw_strips(renderer, draw_calls);
+    return status;
+}
+
+camber_status camber_batch_draw(camber_renderer *renderer, unsigned variant, const camber_piece *piece) {
+    const camber_gl *gl = &renderer->share.surface->gl;
+    const camber_batch *batch = &renderer->batch;
+    const camber_mesh *mesh = batch->mesh;
+    const camber_shader *shader;
+    if (batch->range_count == 0)
+        return CAMBER_OK;
+    variant |= piece->coverage == CAMBER_COVERAGE_LINEAR ? CAMBER_VARIANT_LINEAR : 0u;
+    camber_status status = camber_renderer_mesh_shader(renderer, mesh, piece->thinnest_px, variant, &shader);
+    if (status == CAMBER_OK) {
+        camber_renderer_upload_rows(renderer, batch->table_count * mesh->row_count);
+        camber_renderer_use_shader(renderer, shader, mesh, piece);
+        gl->Uniform1i(shader->table, mesh->mesh_info.strips ? (GLint)vertex_bits(mesh) : 0);
+        gl->Uniform1i(shader->table_rows, (GLint)mesh->row_count);
+        status = draw_ranges(renderer, shader, piece->draw_calls);
+        gl->BindVertexArray(0);
+    }
+    camber_batch_forget(renderer);
+    return status;
+}

@@ -28,13 +28,16 @@ static void check_features(const camber_features *features) {
     const camber_features_stats stats = camber_features_get_stats(features);
     REQUIRE(stats.features == features->feature_count && stats.points == features->point_count);
     REQUIRE(stats.polylines == features->polyline_count);
+    size_t counted = 0;
     for (size_t i = 0; i < features->polyline_count; i++) {
+        counted += features->feature_counts[i];
         REQUIRE(features->offsets[i] < features->offsets[i + 1]);
         REQUIRE(features->polyline_feature[i] < features->feature_count);
     }
     REQUIRE(features->polyline_count == 0 || features->offsets[features->polyline_count] == features->point_count);
     for (size_t i = 0; i < 2 * features->point_count; i++)
         REQUIRE(features->points[i] >= 0.0 && features->points[i] <= 1.0);
+    REQUIRE(counted == features->feature_count);
     for (size_t i = 0; i < features->point_count; i++)
         REQUIRE(features->importance[i] >= 0.0f);
     for (size_t i = 0; i < features->feature_count; i++)

@@ -214,16 +214,23 @@ CAMBER_FN void camber_put_point(camber_walk *w, const camber_projection *p, camb
         camber_put_cut(w, p, from, to, real | CAMBER_POINT_LAST);
 }
 
-/* The points [begin, end) of the run. Of points that follow each other on one pixel the first counts. */
-CAMBER_FN void camber_walk_run(camber_walk *w, const camber_projection *p, camber_u32 begin, camber_u32 end) {
-    camber_kept now = {CAMBER_NO_POINT, 0, 0, 0};
-    camber_u32 waits = 0;
+/* The points [begin, end) of the run, CAMBER_CHUNK at most. Of points that follow each other on one pixel the first
+ * counts. Which are kept is found without a branch: no processor foresees it. */
+CAMBER_FN void camber_walk_part(camber_walk *w, const camber_projection *p, camber_u32 begin, camber_u32 end) {
+    camber_u32 kept[CAMBER_CHUNK];
+    camber_u32 count = 0;
     for (camber_u32 i = begin; i < end; i++) {
-        if (!(w->importance[i] >= p->tolerance))
-            continue;
-        const camber_kept next = camber_keep(w, p, i);
-        if (!waits && i > w->first)
-            now = camber_find_before(w, p, i);
+        kept[count] = i;
+        count += w->importance[i] >= p->tolerance ? 1u : 0u;
+    }
+    if (count == 0u)
+        return;
+    camber_kept now = {CAMBER_NO_POINT, 0, 0, 0};
+    if (kept[0] > w->first)
+        now = camber_find_before(w, p, kept[0]);
+    camber_u32 waits = 0;
+    for (camber_u32 i = 0; i < count; i++) {
+        const camber_kept next = camber_keep(w, p, kept[i]);
         if (now.point != CAMBER_NO_POINT && camber_same_pixel(now, next))
             continue;
         if (waits)
@@ -233,6 +240,12 @@ CAMBER_FN void camber_walk_run(camber_walk *w, const camber_projection *p, cambe
     }
     if (waits)
         camber_put_point(w, p, now, camber_find_next(w, p, end, now));
+}
+
+/* The points [begin, end) of the run. */
+CAMBER_FN void camber_walk_run(camber_walk *w, const camber_projection *p, camber_u32 begin, camber_u32 end) {
+    for (camber_u32 from = begin; from < end; from += CAMBER_CHUNK)
+        camber_walk_part(w, p, from, end - from > CAMBER_CHUNK ? from + CAMBER_CHUNK : end);
 }
 
 /* The points [begin, end), of which the first belongs to the run that is given. */

@@ -623,7 +623,7 @@ typedef struct camber_png_desc {
     bool opaque;            /* alpha is dropped: RGB instead of RGBA */
     const camber_png_text *texts;
     size_t text_count;
-    int compression; /* zlib's level 1 to 9. 0: 3 */
+    int compression; /* zlib's level 1 to 9. 0: 1 */
 } camber_png_desc;
 
 typedef struct camber_png camber_png;

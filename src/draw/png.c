@@ -63,9 +63,10 @@ static camber_status write_head(camber_png *writer, const camber_png_desc *desc)
     if (setjmp(png_jmpbuf(writer->png)))
         return writer->failed;
     png_set_write_fn(writer->png, writer, on_write, on_flush);
-    png_set_compression_level(writer->png, desc->compression ? desc->compression : 3);
-    /* Maps are flat areas and thin lines: one filter does as well as trying all five, in a third of the time. */
-    png_set_filter(writer->png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
+    png_set_compression_level(writer->png, desc->compression ? desc->compression : 1);
+    /* Maps are flat areas and thin lines of few colours, which repeat: filters only take that away (Porto at 1024 px,
+     * level 3: 39 ms and 1013 kB with differences, 34 and 839 without, 28 and 857 at level 1). */
+    png_set_filter(writer->png, PNG_FILTER_TYPE_BASE, PNG_FILTER_NONE);
     png_set_IHDR(writer->png, writer->info, desc->width, desc->height, 8,
                  desc->opaque ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_RGB_ALPHA, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_BASE, PNG_FILTER_TYPE_BASE);
@@ -85,7 +86,7 @@ static camber_status check_desc(camber_context *context, const camber_png_desc *
         return camber_fail(context, CAMBER_ERROR_ARGUMENT, "a picture of %u x %u px; each side must be 1 to 65535",
                            desc->width, desc->height);
     if (desc->compression < 0 || desc->compression > 9)
-        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "a PNG compression of %d; it must be 1 to 9, or 0 for 3",
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "a PNG compression of %d; it must be 1 to 9, or 0 for 1",
                            desc->compression);
     for (size_t i = 0; i < desc->text_count; i++) {
         const size_t length = strlen(desc->texts[i].key);

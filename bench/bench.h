@@ -37,10 +37,11 @@ typedef struct bench {
     camber_renderer *renderer;
     camber_mesh *mesh;
     bench_size size;
-    size_t warm_ups, runs;       /* up to BENCH_RUNS_MAX */
-    const char *data;            /* the folder that has data/ with the larger cities, or NULL */
-    const char *program, *tool;  /* paths of camber_bench and camber */
-    uint8_t *picture, *pictured; /* a square each, RGBA: camber's, a peer's */
+    size_t warm_ups, runs;          /* up to BENCH_RUNS_MAX */
+    const char *data;               /* the folder that has data/ with the larger cities, or NULL */
+    const char *program, *tool;     /* paths of camber_bench and camber */
+    uint32_t fly_width, fly_height; /* px, of the fly-through */
+    uint8_t *picture, *pictured;    /* a square each, RGBA: camber's, a peer's */
     bench_scene scenes[BENCH_SCENES_MAX];
     size_t scene_count;
 } bench;

@@ -8,13 +8,23 @@ typedef struct request {
     const char *json, *plot, *against, *section;
     long mosaic; /* points of the one mosaic that this process is a child for */
     bench_size size;
+    unsigned fly_width, fly_height;
 } request;
 
 static int usage(void) {
     fprintf(stderr, "usage: camber_bench [--quick | --tiny] [--json OUT.json] [--plot OUT.svg] [--against OLD.json]\n"
-                    "                    [--section NAME]\n"
+                    "                    [--section NAME] [--fly WIDTHxHEIGHT]\n"
                     "       camber_bench --readme RESULTS.json README.md\n");
     return 2;
+}
+
+/* "3840x2160", sides of 16 to 16384 px. */
+static bool parse_size(const char *text, request *r) {
+    char *end = NULL;
+    const unsigned long width = strtoul(text, &end, 10), height = *end == 'x' ? strtoul(end + 1, &end, 10) : 0;
+    r->fly_width = (unsigned)width;
+    r->fly_height = (unsigned)height;
+    return *end == 0 && width >= 16 && width <= 16384 && height >= 16 && height <= 16384;
 }
 
 static bool parse(int argc, char **argv, request *r) {
@@ -31,6 +41,8 @@ static bool parse(int argc, char **argv, request *r) {
                 *texts[k].value = next;
                 known = true;
             }
+        if (next && strcmp(argv[i], "--fly") == 0)
+            known = parse_size(next, r);
         if (next && strcmp(argv[i], "--mosaic") == 0)
             known = (r->mosaic = strtol(next, NULL, 10)) > 0;
         i += known;
@@ -89,7 +101,7 @@ static int measure_all(bench *b, const request *r) {
 
 int main(int argc, char **argv) {
     static const size_t runs[] = {7, 3, 3};
-    request r = {.json = NULL};
+    request r = {.fly_width = 1280, .fly_height = 720};
     if (argc == 4 && strcmp(argv[1], "--readme") == 0)
         return publish(argv[2], argv[3]);
     if (!parse(argc, argv, &r))
@@ -102,6 +114,8 @@ int main(int argc, char **argv) {
                .runs = runs[r.size],
                .program = argv[0],
                .tool = CAMBER_TOOL,
+               .fly_width = r.fly_width,
+               .fly_height = r.fly_height,
                .data = data && *data ? data : NULL};
     int status = bench_open(&b) ? 0 : 69;
     if (status == 0)

@@ -23,6 +23,17 @@ static const json_t *rows_of(const page *p, const char *section) {
     return bench_result_rows(json_object_get(p->sections, section));
 }
 
+/* "Project to emit" of a scene with every point. */
+static const json_t *find_network(const page *p, const char *key) {
+    size_t i;
+    const json_t *row;
+    json_array_foreach(rows_of(p, "network"), i, row) {
+        if (strcmp(bench_text(row, "key"), key) == 0 && bench_number(row, "simplify_px") <= 0)
+            return row;
+    }
+    return NULL;
+}
+
 /* The row of a scene's strip at a width. */
 static const json_t *find_stages(const page *p, const char *key, double width_px) {
     size_t i;
@@ -87,11 +98,11 @@ static void put_drawing(const page *p) {
         fputs("\n", p->to);
     }
     fprintf(p->to,
-            "\ndraws: clear, draw, finish, at the default %g px of simplification; frame: from lines in memory to "
-            "pixels in memory. "
-            "Peers draw everything, from lines to pixels in memory, a line at a time or all as one path, whichever is "
-            "faster; "
-            "ratio: how many times camber's drawing fits into that. The picture of each peer is compared with "
+            "\ndraws: clear, draw, finish, at the default %g px of simplification; frame: from lines on the device to "
+            "pixels in "
+            "memory. Peers draw everything, from lines to pixels in memory, a line at a time or all as one path, "
+            "whichever is "
+            "faster; ratio: how many times camber's drawing fits into that. The picture of each peer is compared with "
             "camber's.\n\n",
             BENCH_SIMPLIFY_PX);
 }
@@ -102,20 +113,24 @@ static void put_tessellation(const page *p) {
     size_t i;
     const json_t *row;
     fputs("| strip, 8 px wide | M segments/s | GB/s | share of memcpy's | bytes a segment | at 2 px "
-          "|\n|---|---|---|---|---|---|\n",
+          "| project to emit, M points/s |\n|---|---|---|---|---|---|---|\n",
           p->to);
     json_array_foreach(rows_of(p, "frames"), i, row) {
         const json_t *wide = find_stages(p, bench_text(row, "key"), 8),
                      *thin = find_stages(p, bench_text(row, "key"), 2);
         const json_t *all = json_object_get(wide, "all");
-        fprintf(p->to, "| %s | %.0f | %.1f | %.0f %% | %.1f | %.1f |\n", bench_text(row, "scene"),
+        fprintf(p->to, "| %s | %.0f | %.1f | %.0f %% | %.1f | %.1f | %.0f |\n", bench_text(row, "scene"),
                 bench_number(wide, "m_segments_s"), bench_number(all, "gb_s"), 100 * bench_number(all, "share"),
-                bench_number(wide, "bytes_a_segment"), bench_number(thin, "bytes_a_segment"));
+                bench_number(wide, "bytes_a_segment"), bench_number(thin, "bytes_a_segment"),
+                bench_number(find_network(p, bench_text(row, "key")), "m_points_s"));
     }
-    fputs("\nclassify, scan and emit, input and output on the device; bytes read and written, against what memcpy of "
-          "as many moves "
-          "on as many threads in the same run; bytes of the mesh, everything included.\n\n",
-          p->to);
+    fprintf(p->to,
+            "\nclassify, scan and emit, input and output on the device; bytes read and written, against memcpy's on as "
+            "many "
+            "threads in the same run (of 16 MB; %.1f GB/s); bytes of the mesh, everything included. Project to emit: "
+            "of points "
+            "of the network, every point kept, at the scene's width, what the host does included.\n\n",
+            bench_number(json_array_get(rows_of(p, "stages"), 0), "memcpy_gb_s"));
 }
 
 /* ---- The rest ---- */

@@ -12,7 +12,7 @@
 
 #include "camber_map.h"
 
-enum { WIDTH_PX = 1280, HEIGHT_PX = 720, WARM_UPS = 10 };
+enum { WARM_UPS = 10 };
 
 static const char *const cities[] = {"porto", "santa_cruz", NULL};
 
@@ -27,6 +27,7 @@ typedef struct flight {
     camber_scene *scene;
     camber_scene_info start;
     size_t frames;
+    uint8_t *picture;
     double *times[PARTS]; /* frames each */
     double draw_calls, points;
 } flight;
@@ -34,10 +35,10 @@ typedef struct flight {
 /* Where the flight is after a share of its way: it circles over the city and goes down to the streets and up again. */
 static camber_view_desc view_at(const flight *f, double share) {
     const double turn = 2 * 3.14159265358979323846 * share;
-    const double degrees_across = WIDTH_PX * 360 / (512 * exp2(f->start.zoom));
+    const double degrees_across = f->b->fly_width * 360.0 / (512 * exp2(f->start.zoom));
     return (camber_view_desc){.kind = CAMBER_VIEW_CENTER,
-                              .width = WIDTH_PX,
-                              .height = HEIGHT_PX,
+                              .width = f->b->fly_width,
+                              .height = f->b->fly_height,
                               .zoom = f->start.zoom + 2 - 2 * cos(turn),
                               .longitude = f->start.longitude + 0.15 * degrees_across * sin(turn),
                               .latitude = f->start.latitude + 0.05 * degrees_across * sin(2 * turn)};
@@ -53,7 +54,9 @@ static camber_status tessellate(const flight *f) {
 }
 
 static bool take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
-    memcpy((uint8_t *)user + 4 * (size_t)WIDTH_PX * first_row, rgba, 4 * (size_t)WIDTH_PX * row_count);
+    const flight *f = user;
+    const size_t row_bytes = 4 * (size_t)f->b->fly_width;
+    memcpy(f->picture + row_bytes * first_row, rgba, row_bytes * row_count);
     return true;
 }
 
@@ -68,7 +71,7 @@ static camber_status fly_frame(flight *f, double share, double times[PARTS]) {
     const double made = camber_now_ms();
     if (status == CAMBER_OK) {
         const camber_frame frame = camber_scene_frame(f->scene, f->b->mesh);
-        status = camber_render(f->b->renderer, &frame, take_rows, f->b->picture, &stats);
+        status = camber_render(f->b->renderer, &frame, take_rows, f, &stats);
     }
     times[PART_FRAME] = camber_now_ms() - begin;
     times[PART_SCENE] = moved - begin;
@@ -99,8 +102,9 @@ static camber_status fly(flight *f) {
 static camber_status open_flight(flight *f, const char *path) {
     bench *b = f->b;
     const camber_source_desc source = {.path = path};
-    const camber_scene_desc whole = {
-        .view = {.width = WIDTH_PX, .height = HEIGHT_PX}, .simplify_px = BENCH_SIMPLIFY_PX, .on_device = true};
+    const camber_scene_desc whole = {.view = {.width = f->b->fly_width, .height = f->b->fly_height},
+                                     .simplify_px = BENCH_SIMPLIFY_PX,
+                                     .on_device = true};
     camber_status status = camber_style_builtin(b->context, CAMBER_THEME_LIGHT, &f->style);
     if (status == CAMBER_OK)
         status = camber_features_create(b->context, f->style, &f->features);
@@ -110,6 +114,9 @@ static camber_status open_flight(flight *f, const char *path) {
         status = camber_scene_create(f->features, &whole, &f->scene);
     if (status == CAMBER_OK)
         f->start = camber_scene_get_view(f->scene);
+    f->picture = calloc((size_t)b->fly_width * b->fly_height, 4);
+    if (!f->picture)
+        status = CAMBER_ERROR_MEMORY;
     for (int k = 0; k < PARTS; k++)
         if (!(f->times[k] = calloc(f->frames, sizeof(double))))
             status = CAMBER_ERROR_MEMORY;
@@ -117,6 +124,7 @@ static camber_status open_flight(flight *f, const char *path) {
 }
 
 static void close_flight(flight *f) {
+    free(f->picture);
     for (int k = 0; k < PARTS; k++)
         free(f->times[k]);
     camber_scene_destroy(f->scene);
@@ -125,9 +133,9 @@ static void close_flight(flight *f) {
 }
 
 static void report(flight *f, const char *city, json_t *result) {
-    json_t *row = json_pack("{s:s, s:I, s:I, s:I, s:f, s:f}", "city", city, "width", (json_int_t)WIDTH_PX, "height",
-                            (json_int_t)HEIGHT_PX, "frames", (json_int_t)f->frames, "draw_calls", f->draw_calls,
-                            "points_in_view", f->points);
+    json_t *row = json_pack("{s:s, s:I, s:I, s:I, s:f, s:f}", "city", city, "width", (json_int_t)f->b->fly_width,
+                            "height", (json_int_t)f->b->fly_height, "frames", (json_int_t)f->frames, "draw_calls",
+                            f->draw_calls, "points_in_view", f->points);
     for (int k = 0; k < PARTS; k++) {
         double *times = f->times[k];
         camber_statistics_sort(times, f->frames);

@@ -97,6 +97,17 @@ static void check_frames(const json_t *document) {
     }
 }
 
+static void check_network(const json_t *document) {
+    const json_t *rows = json_object_get(section_of(document, "network"), "rows"), *row;
+    size_t i;
+    assert_int_equal(json_array_size(rows), 2 * 2); /* scenes, tolerances */
+    json_array_foreach(rows, i, row) {
+        assert_true(number_of(row, "project_ms") > 0 && number_of(row, "m_points_s") > 0);
+        assert_true(number_of(row, "all_ms") > number_of(row, "project_ms") + number_of(row, "emit_ms"));
+    }
+    assert_true(number_of(json_array_get(rows, 1), "mesh_bytes") < number_of(json_array_get(rows, 0), "mesh_bytes"));
+}
+
 static void check_mosaic(const json_t *document) {
     const json_t *rows = json_object_get(section_of(document, "mosaic"), "rows"), *row;
     double before = 0;
@@ -120,6 +131,7 @@ static void test_document(void **state) {
     assert_non_null(json_object_get(json_object_get(document, "gl"), "renderer"));
     check_stages(document);
     check_frames(document);
+    check_network(document);
     check_mosaic(document);
     json_decref(document);
 }
@@ -182,6 +194,8 @@ static void test_incomparable(void **state) {
     assert_true(said("another size"));
     assert_int_equal(run("--tiny --section stages --against '" CAMBER_BENCH_OUT "/nothing.json'"), 66);
     assert_int_equal(run("--size 3"), 2);
+    assert_int_equal(run("--fly 1280"), 2);
+    assert_int_equal(run("--fly 8x8"), 2);
 }
 
 /* ---- The README ---- */
@@ -205,6 +219,7 @@ static void test_readme(void **state) {
     assert_true(strncmp(text, "# head\n<!-- measured", 20) == 0 && !strstr(text, "\nold\n"));
     assert_non_null(strstr(text, "| long walks, 8 px | 617 |"));
     assert_non_null(strstr(text, "<!-- /measured -->\n# tail\n"));
+    assert_null(strstr(text, "nan"));
     write_text(README, "# head\n# tail\n");
     assert_int_equal(run("--readme '" MADE "' '" README "'"), 1);
     assert_true(said("lacks one of the lines"));

@@ -174,7 +174,7 @@ int bench_mosaic_child(bench *b, size_t points);
 /* Every section measured, or the one of that name, and what on; each is printed as it comes. */
 json_t *bench_document_make(bench *b, const char *section);
 void bench_document_print(const json_t *document, FILE *to);
-/* SVG of the mosaic's curve; false: gnuplot is not there, which is said. */
+/* SVG of the mosaic's curve; false: there is none, or gnuplot is not there, which is said. */
 bool bench_plot_mosaic(const json_t *document, const char *path);
 /* Measures again what looks like a loss against old. Gives the losses that stay; -1: the two cannot be compared. */
 int bench_compare(bench *b, const json_t *document, const json_t *old, FILE *to);

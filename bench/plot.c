@@ -38,6 +38,8 @@ bool bench_plot_mosaic(const json_t *document, const char *path) {
     const json_t *rows = bench_result_rows(json_object_get(sections, "mosaic"));
     char *script = NULL;
     size_t size = 0;
+    if (json_array_size(rows) == 0)
+        return false; /* of a run of another section */
     FILE *to = open_memstream(&script, &size);
     if (to) {
         put_script(rows, to);

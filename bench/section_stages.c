@@ -120,9 +120,9 @@ static void print(const json_t *result, FILE *to) {
     size_t i;
     const json_t *row;
     fprintf(to,
-            "Tessellation: M points a second, GB/s of bytes read and written, and their share of memcpy's on as many "
-            "threads,\n"
-            "as many threads: %.1f GB/s). B/seg: bytes of the mesh a segment, everything included.\n\n",
+            "Tessellation: M points a second, GB/s of bytes read and written, and their share of memcpy's (of 16 MB, "
+            "on as\n"
+            "many threads: %.1f GB/s). B/seg: bytes of the mesh a segment, everything included.\n\n",
             bench_number(json_array_get(bench_result_rows(result), 0), "memcpy_gb_s"));
     fprintf(to, "%-12s %-6s %3s %9s %6s %8s", "scene", "method", "px", "segments", "B/seg", "M seg/s");
     for (int k = 0; k < STAGES; k++)

@@ -196,6 +196,9 @@ static void print(const json_t *result, FILE *to) {
     json_array_foreach(bench_result_rows(result), i, row) if (*bench_text(row, "name"))
         fprintf(to, "%-30s cold %8.0f   warm %8.0f\n", bench_text(row, "name"), bench_number(row, "cold_ms"),
                 bench_number(row, "warm_ms"));
+    const json_t *last = json_array_get(bench_result_rows(result), json_array_size(bench_result_rows(result)) - 1);
+    if (!*bench_text(last, "reading"))
+        return;
     fprintf(to, "\nReading, from the file to points in world coordinates and their attributes; beside it OGR's own "
                 "copy of the file's lines\n"
                 "to FlatGeobuf in memory.\n\n");

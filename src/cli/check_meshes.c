@@ -101,6 +101,9 @@ static void mixed(camber_stroke *stroke, size_t row, size_t number) {
     stroke->cap = (camber_cap)((row / 3 + 2 * number) % 3);
 }
 
+/* What a device takes at least: camber_device_desc. */
+enum { LEAST_BUFFER_BYTES = 4096 };
+
 /* A limit that the largest polyline fits in and the whole mesh does not. 0: there is none. */
 static uint64_t part_bytes(const camber_sight *whole, size_t stroke_count) {
     const camber_point_stages *points = whole->stages.points;
@@ -108,6 +111,7 @@ static uint64_t part_bytes(const camber_sight *whole, size_t stroke_count) {
     const uint64_t record_bytes = info->record_count * sizeof(camber_record), index_bytes = info->bytes - record_bytes;
     const uint64_t mesh_bytes = record_bytes > index_bytes ? record_bytes : index_bytes;
     uint64_t largest = 32 * (stroke_count + 1), from = 0;
+    largest = largest > LEAST_BUFFER_BYTES ? largest : LEAST_BUFFER_BYTES;
     for (size_t i = 0; i < whole->stages.point_count; i++) {
         const bool last = i + 1 == whole->stages.point_count;
         if (!last && points[i + 1].polyline == points[i].polyline)

@@ -1,10 +1,12 @@
 /* What the vertex shader makes of records, on the host: each vertex by itself, and indices that number them.
- * stroke.vert says the same in GLSL. */
+ * stroke.vert says the same in GLSL. What a device leaves is not trusted: records and corners that contradict each
+ * other make a wrong mesh, which a proof finds, and read nothing that is not there. */
 #include "tess/tess.h"
 
 #include "kernels/join.h"
 
 #include <math.h>
+#include <string.h>
 
 #define CORNER_MASK ((1u << CAMBER_CORNER_BITS) - 1u)
 
@@ -41,29 +43,40 @@ static camber_vertex make_edge(const camber_record *records, size_t at, size_t o
 
 /* ---- Strips ---- */
 
-static camber_vertex strip_vertex(const camber_record *records, size_t record, bool right) {
+/* The record beside another, which is itself where there is none. */
+static size_t beside(size_t record, size_t count, bool behind) {
+    if (behind)
+        return record + 1 < count ? record + 1 : record;
+    return record > 0 ? record - 1 : record;
+}
+
+static camber_vertex strip_vertex(const camber_record *records, size_t count, size_t record, bool right) {
     const camber_record *r = records + record;
     const float side = right ? -1.0f : 1.0f;
     const bool out = camber_record_starts(r->last) && !camber_edge_is_shared(r->join, r->last, side);
-    return make_edge(records, record, out ? record + 1 : record - 1, out, side, CAMBER_STRIP);
+    return make_edge(records, record, beside(record, count, out), out, side, CAMBER_STRIP);
 }
 
 /* Two indices a record: of breaks restarts, of others its vertices in the order of records. A start at a tight join has
  * one vertex of its own: the outer one is the end's, two records before. */
 static void expand_strip(camber_mesh_data *data) {
+    const size_t room = data->info.vertex_count;
     uint32_t count = 0;
     for (size_t i = 0; i < data->info.index_count; i++) {
         const camber_record *record = data->records + i / 2;
         const bool right = i % 2, restarts = record->last & CAMBER_RECORD_START;
         if (record->last & CAMBER_RECORD_BREAK) {
             data->indices[i] = CAMBER_RESTART_INDEX;
-        } else if (restarts && camber_edge_is_shared(record->join, record->last, right ? -1.0f : 1.0f)) {
+        } else if (restarts && i >= 4 && camber_edge_is_shared(record->join, record->last, right ? -1.0f : 1.0f)) {
             data->indices[i] = data->indices[i - 4];
-        } else {
-            data->vertices[count] = strip_vertex(data->records, i / 2, right);
+        } else if (count < room) {
+            data->vertices[count] = strip_vertex(data->records, data->info.record_count, i / 2, right);
             data->indices[i] = count++;
+        } else {
+            data->indices[i] = CAMBER_RESTART_INDEX;
         }
     }
+    memset(data->vertices + count, 0, (room - count) * sizeof *data->vertices);
 }
 
 /* ---- Corners ---- */
@@ -82,15 +95,16 @@ static void set_join_corner(camber_vertex *vertex, camber_u32 corner, float q, c
     }
 }
 
-static camber_vertex corner_vertex(const camber_record *records, uint32_t index, camber_u32 method,
-                                   const camber_row *rows) {
+static camber_vertex corner_vertex(const camber_mesh_data *data, uint32_t index, const camber_row *rows) {
+    const camber_record *records = data->records;
     const size_t at = index >> CAMBER_CORNER_BITS;
     const camber_u32 corner = index & CORNER_MASK, join = records[at].join;
     const bool out = corner == CAMBER_CORNER_CENTRE || corner == CAMBER_CORNER_OUT_LEFT ||
                      corner == CAMBER_CORNER_OUT_RIGHT || corner == CAMBER_CORNER_OUT_TIP;
-    const size_t other = camber_join_kind(join) == CAMBER_KIND_DOT ? at : out ? at + 1 : at - 1;
+    const bool dot = camber_join_kind(join) == CAMBER_KIND_DOT;
+    const size_t other = dot ? at : beside(at, data->info.record_count, out);
     if (corner >= CAMBER_CORNER_IN_LEFT && corner <= CAMBER_CORNER_OUT_RIGHT)
-        return make_edge(records, at, other, out, (corner & 1u) ? 1.0f : -1.0f, method);
+        return make_edge(records, at, other, out, (corner & 1u) ? 1.0f : -1.0f, (camber_u32)data->info.method);
     camber_vertex vertex = make_vertex(records, at, other, out);
     set_join_corner(&vertex, corner, camber_turn_unpack(join), rows + vertex.row);
     return vertex;
@@ -108,7 +122,7 @@ static unsigned count_below(const corner_set *set, camber_u32 corner) {
 }
 
 /* Which corners each record has, and how many vertices the records before have. */
-static camber_status find_corners(camber_context *context, const camber_mesh_data *data, corner_set **sets,
+static camber_status find_corners(camber_context *context, camber_mesh_data *data, corner_set **sets,
                                   uint32_t **first_vertices) {
     const size_t records = data->info.record_count;
     corner_set *found = camber_alloc_zero(context, records + 1, sizeof *found);
@@ -119,6 +133,8 @@ static camber_status find_corners(camber_context *context, const camber_mesh_dat
     }
     for (size_t i = 0; i < data->info.index_count; i++) {
         const camber_u32 corner = data->corners[i] & CORNER_MASK;
+        if (data->corners[i] >> CAMBER_CORNER_BITS >= records)
+            data->corners[i] = 0;
         found[data->corners[i] >> CAMBER_CORNER_BITS].bits[corner / 64] |= 1ull << (corner & 63u);
     }
     first[0] = 0;
@@ -130,7 +146,7 @@ static camber_status find_corners(camber_context *context, const camber_mesh_dat
     return CAMBER_OK;
 }
 
-camber_status camber_corners_count(camber_context *context, const camber_mesh_data *data, uint32_t **first_vertices) {
+camber_status camber_corners_count(camber_context *context, camber_mesh_data *data, uint32_t **first_vertices) {
     corner_set *sets;
     const camber_status status = find_corners(context, data, &sets, first_vertices);
     if (status == CAMBER_OK)
@@ -140,7 +156,6 @@ camber_status camber_corners_count(camber_context *context, const camber_mesh_da
 
 /* Vertices in the order of records, and of corners within a record. */
 static camber_status expand_corners(camber_context *context, const camber_row *rows, camber_mesh_data *data) {
-    const camber_u32 method = (camber_u32)data->info.method;
     corner_set *sets;
     uint32_t *first;
     camber_status status = find_corners(context, data, &sets, &first);
@@ -153,7 +168,7 @@ static camber_status expand_corners(camber_context *context, const camber_row *r
         const uint32_t index = data->corners[i];
         const size_t r = index >> CAMBER_CORNER_BITS;
         data->indices[i] = first[r] + count_below(sets + r, index & CORNER_MASK);
-        data->vertices[data->indices[i]] = corner_vertex(data->records, index, method, rows);
+        data->vertices[data->indices[i]] = corner_vertex(data, index, rows);
     }
     camber_free(context, first);
     camber_free(context, sets);

@@ -196,7 +196,7 @@ camber_status camber_fail_records(camber_context *context, camber_method method)
 /* expand.c: makes vertices and indices of a mesh's records and corners. */
 camber_status camber_mesh_expand(camber_context *context, const camber_row *rows, camber_mesh_data *data);
 /* How many vertices the records before each have, of kite and fan: record_count + 1, freed with camber_free. */
-camber_status camber_corners_count(camber_context *context, const camber_mesh_data *data, uint32_t **first_vertices);
+camber_status camber_corners_count(camber_context *context, camber_mesh_data *data, uint32_t **first_vertices);
 
 /* Adds a point's join word to the counts of a mesh's info. */
 void camber_mesh_info_count(camber_mesh_info *info, uint32_t join, uint32_t point);

@@ -217,7 +217,7 @@ static void walk(twin *t) {
 
 /* Of kite and fan the walk notes the record that a point's vertices belong to: which of its corners are vertices is
  * known when all triangles are there. */
-static camber_status number_vertices(camber_context *context, const camber_mesh_data *data, camber_stages *stages) {
+static camber_status number_vertices(camber_context *context, camber_mesh_data *data, camber_stages *stages) {
     uint32_t *first_vertices;
     const camber_status status = camber_corners_count(context, data, &first_vertices);
     for (size_t i = 0; status == CAMBER_OK && i < stages->point_count; i++)

@@ -3,6 +3,8 @@
 
 #include "camber_map.h"
 
+#include <math.h>
+
 static const camber_view_desc CROSSING = {CAMBER_VIEW_CENTER, .longitude = -122.0268, .latitude = 36.9735, .zoom = 15.8,
                                           .width = 300,       .height = 200,          .ratio = 1.25};
 
@@ -70,11 +72,54 @@ static void test_dark(void **state) {
     draw_crossing(state, "santa-cruz-dark", CAMBER_THEME_DARK);
 }
 
+static size_t polylines_of(camber_scene *map, camber_mesh *mesh) {
+    const camber_frame frame = camber_scene_frame(map, mesh);
+    size_t count = 0;
+    for (size_t i = 0; i < frame.pass_count; i++)
+        count += frame.passes[i].polyline_count;
+    return count;
+}
+
+/* A view that moves and zooms while filters draw the same keeps its network, which the mesh then still holds. */
+static void test_moves(void **state) {
+    const studio *s = *state;
+    camber_style *style = NULL;
+    camber_features *features = NULL;
+    camber_scene *map = load(s->context, CAMBER_THEME_LIGHT, &style, &features);
+    camber_mesh *mesh = NULL;
+    assert_int_equal(camber_mesh_create(s->device, NULL, &mesh), CAMBER_OK);
+    const size_t pieces = polylines_of(map, mesh);
+    assert_int_equal(camber_scene_tessellate(map, mesh, CAMBER_METHOD_STRIP), CAMBER_OK);
+    const size_t entries = polylines_of(map, mesh);
+    assert_true(entries > pieces); /* by entries, seen or not */
+    camber_view_desc view = CROSSING;
+    view.longitude += 1e-4;
+    view.zoom += 0.05;
+    view.bearing_deg = 3;
+    assert_int_equal(camber_scene_move(map, &view), CAMBER_OK);
+    assert_int_equal(polylines_of(map, mesh), entries);
+    view.zoom = 6;
+    assert_int_equal(camber_scene_move(map, &view), CAMBER_OK);
+    assert_int_equal(polylines_of(map, mesh), entries);
+    view.longitude = 180; /* copies of the world need another network; nothing is seen of it */
+    assert_int_equal(camber_scene_move(map, &view), CAMBER_OK);
+    assert_int_equal(polylines_of(map, mesh), 0);
+    view.zoom = 100;
+    assert_int_equal(camber_scene_move(map, &view), CAMBER_ERROR_ARGUMENT);
+    assert_true(fabs(camber_scene_get_view(map).zoom - 6) < 1e-9); /* as before */
+    assert_int_equal(camber_scene_tessellate(map, mesh, CAMBER_METHOD_STRIP), CAMBER_OK);
+    camber_mesh_destroy(mesh);
+    camber_scene_destroy(map);
+    camber_features_destroy(features);
+    camber_style_destroy(style);
+}
+
 int main(void) {
     char cache[64];
     if (!studio_begin(cache))
         return 77;
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_light), cmocka_unit_test(test_dark)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_light), cmocka_unit_test(test_dark),
+                                       cmocka_unit_test(test_moves)};
     const int failed = cmocka_run_group_tests(tests, studio_set_up, studio_tear_down);
     folder_remove(cache);
     return failed;

@@ -90,7 +90,8 @@ static camber_status list_set(const camber_features *features, const camber_plan
             continue;
         for (double shift = first; shift <= last; shift += 1.0) {
             if (!camber_grow(features->context, &list->entries, &list->capacity, list->count + 1,
-                             sizeof *list->entries))
+                             sizeof *list->entries) ||
+                !list->entries)
                 return CAMBER_ERROR_MEMORY;
             list->entries[list->count++] = (camber_network_entry){entry.polyline, entry.pair, shift};
         }

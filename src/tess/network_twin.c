@@ -170,7 +170,7 @@ camber_status camber_network_lines(const camber_network *network, const camber_c
     camber_context *context = network->context;
     camber_polylines *slots = NULL;
     camber_status status = camber_network_project(network, camera, desc, &slots);
-    if (status != CAMBER_OK)
+    if (status != CAMBER_OK || !slots)
         return status;
     size_t count = 0;
     for (size_t i = 0; i < slots->slot_count; i++)

@@ -6,9 +6,9 @@
 
 enum { PEERS_MAX = 8 };
 /* A peer whose picture is farther from camber's than this draws something else, and counts for nothing: mean
- * difference, 255ths, over the pixels that either draws on. What draws line over line and what unites lines differ by
- * up to half of it on the densest scene. */
-#define DIFFERENCE_MAX 40.0
+ * difference, 255ths, over the pixels that either draws on. On Porto those that draw line over line come to 1.3, those
+ * that unite all lines to 3.9; an empty picture comes to some 200. */
+#define DIFFERENCE_MAX 20.0
 
 typedef struct trial {
     bench *b;

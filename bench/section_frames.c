@@ -7,7 +7,7 @@
 enum { PEERS_MAX = 8 };
 /* A peer whose picture is farther from camber's than this draws something else, and counts for nothing: mean
  * difference, 255ths, over the pixels that either draws on. On Porto those that draw line over line come to 1.3, those
- * that unite all lines to 3.9; an empty picture comes to some 200. */
+ * that unite all lines to 3.9; an empty picture, of lines 2 px wide or more, comes to more than 100. */
 #define DIFFERENCE_MAX 20.0
 
 typedef struct trial {

@@ -13,6 +13,10 @@
 
 #include "layout.h"
 
+/* Of half the turn: a join that turns by less, 0.011 degrees, has no triangles of its own in kite and fan. Their
+ * corners would fall on each other, and it is the rasteriser's rounding that says which way they wind. */
+#define CAMBER_STRAIGHT_SINE 1e-4f
+
 typedef struct camber_turn {
     float c, s;         /* cosine (>= 0) and sine (signed) of half the turn */
     float dot;          /* cosine of the turn */
@@ -138,7 +142,7 @@ CAMBER_FN camber_u32 camber_join_word(camber_turn turn, CAMBER_GLOBAL const camb
     camber_u32 triangles = 0;
     if (method == CAMBER_STRIP) {
         end = split || tight ? (miter ? 7u : bevel ? 6u : 5u) : end;
-    } else if (sine > 0.0f) {
+    } else if (sine > CAMBER_STRAIGHT_SINE) {
         /* Past 120 degrees the kite's tip runs away: two kites of half the angle. */
         const camber_u32 kites = !miter && sine > 1.7320508f * turn.c ? 4u : 2u;
         triangles = method == CAMBER_FAN && row->join == 0u ? camber_fan_triangles(turn.dot, row->fan_cos, row->fan_sin)
@@ -212,11 +216,11 @@ CAMBER_FN camber_u32 camber_record_join(camber_u32 join, float half_shorter) {
     return camber_join_kind(join) == CAMBER_KIND_TIGHT ? bare | camber_limit_pack(half_shorter) : bare;
 }
 
-/* The corner that a body begins with on a side. Cut bodies of kites have the inner one in common with the end before.
- */
+/* The corner that a body begins with on a side. Cut bodies have it in common with the end before: those of kites the
+ * inner one, and straight ones both. */
 CAMBER_FN camber_u32 camber_start_corner(camber_u32 join, float side, camber_u32 method) {
-    const camber_u32 shared =
-        method == CAMBER_KITE && camber_join_kind(join) == CAMBER_KIND_CUT && side * camber_turn_unpack(join) > 0.0f;
+    const camber_u32 inner = method == CAMBER_KITE && side * camber_turn_unpack(join) > 0.0f;
+    const camber_u32 shared = camber_join_kind(join) == CAMBER_KIND_CUT && (inner || camber_join_triangles(join) == 0u);
     return (shared ? CAMBER_CORNER_IN_LEFT : CAMBER_CORNER_OUT_LEFT) + (side > 0.0f ? 0u : 1u);
 }
 
@@ -227,8 +231,9 @@ CAMBER_FN camber_u32 camber_join_corner(camber_u32 i, camber_u32 triangles, camb
 
 /* How many vertices and indices a point emits, vertices | indices << 16. Vertices are distinct ones:
  *   strip       L, R of each start and end, but for the outer one that they have in common at a tight join
- *   kite, fan   in L, R | join's own | P where there is a join | out L, R, unless the polyline ends; a kite's cut
- * bodies have their inner one in common Indices of a strip are two a record, kept or not. */
+ *   kite, fan   in L, R | join's own | P where there is a join | out L, R, unless the polyline ends, and but for those
+ *               that camber_start_corner has in common
+ * Indices of a strip are two a record, kept or not. */
 CAMBER_FN camber_u32 camber_join_counts(camber_u32 join, camber_u32 before, camber_u32 info, camber_u32 method) {
     const camber_u32 kind = camber_join_kind(join);
     if (method == CAMBER_STRIP) {
@@ -248,7 +253,8 @@ CAMBER_FN camber_u32 camber_join_counts(camber_u32 join, camber_u32 before, camb
     const camber_u32 triangles = camber_join_triangles(join);
     const camber_u32 joined = kind != CAMBER_KIND_CAP ? 1u : 0u;
     const camber_u32 centred = joined + (camber_join_kind(before) != CAMBER_KIND_CAP ? 1u : 0u);
-    const camber_u32 shared = method == CAMBER_KITE && kind == CAMBER_KIND_CUT ? 1u : 0u;
+    const camber_u32 inner = triangles == 0u ? 2u : method == CAMBER_KITE ? 1u : 0u;
+    const camber_u32 shared = kind == CAMBER_KIND_CUT ? inner : 0u;
     const camber_u32 out = info & CAMBER_POINT_LAST ? (triangles ? 1u : 0u) : 2u - shared;
     const camber_u32 vertices = 2u + joined * (1u + (triangles ? triangles - 1u : 0u) + out);
     return vertices | (3u * (2u + centred) + 3u * triangles) << 16;

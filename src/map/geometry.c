@@ -101,20 +101,21 @@ static camber_status list_set(const camber_features *features, const camber_plan
 
 static camber_status make_network(const camber_features *features, const entry_list *list, camber_geometry *geometry) {
     static const size_t none[1] = {0};
-    const camber_network_entry nothing = {0};
+    static const camber_network_entry nothing;
+    const camber_network_entry *entries = list->entries ? list->entries : &nothing;
     const camber_network_desc desc = {.points = features->points,
                                       .offsets = features->offsets ? features->offsets : none,
                                       .polyline_count = features->polyline_count,
                                       .importance = features->importance,
-                                      .entries = list->entries ? list->entries : &nothing,
+                                      .entries = entries,
                                       .entry_count = list->count};
     camber_context *context = geometry->context;
     if (!(geometry->polylines = camber_alloc(context, list->count, sizeof *geometry->polylines)) ||
         !(geometry->pairs = camber_alloc(context, list->count, sizeof *geometry->pairs)))
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < list->count; i++) {
-        geometry->polylines[i] = list->entries[i].polyline;
-        geometry->pairs[i] = list->entries[i].row;
+        geometry->polylines[i] = entries[i].polyline;
+        geometry->pairs[i] = entries[i].row;
     }
     return camber_network_create(geometry->context, &desc, &geometry->network);
 }

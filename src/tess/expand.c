@@ -65,15 +65,14 @@ static void expand_strip(camber_mesh_data *data) {
     for (size_t i = 0; i < data->info.index_count; i++) {
         const camber_record *record = data->records + i / 2;
         const bool right = i % 2, restarts = record->last & CAMBER_RECORD_START;
-        if (record->last & CAMBER_RECORD_BREAK) {
-            data->indices[i] = CAMBER_RESTART_INDEX;
-        } else if (restarts && i >= 4 && camber_edge_is_shared(record->join, record->last, right ? -1.0f : 1.0f)) {
+        data->indices[i] = CAMBER_RESTART_INDEX;
+        if (record->last & CAMBER_RECORD_BREAK)
+            continue;
+        if (restarts && i >= 4 && camber_edge_is_shared(record->join, record->last, right ? -1.0f : 1.0f)) {
             data->indices[i] = data->indices[i - 4];
         } else if (count < room) {
             data->vertices[count] = strip_vertex(data->records, data->info.record_count, i / 2, right);
             data->indices[i] = count++;
-        } else {
-            data->indices[i] = CAMBER_RESTART_INDEX;
         }
     }
     memset(data->vertices + count, 0, (room - count) * sizeof *data->vertices);

@@ -142,6 +142,9 @@ extern const bench_section bench_section_stages, bench_section_network, bench_se
     bench_section_mosaic, bench_section_fly, bench_section_start;
 
 json_t *bench_result_new(void);
+typedef camber_status bench_scene_fn(bench *b, const bench_scene *scene, void *user, json_t *result);
+/* Each scene, or the one that only names, into one result. NULL: a scene failed, and the log has told. */
+json_t *bench_measure_scenes(bench *b, const char *only, bench_scene_fn *measure, void *user);
 /* Takes row. */
 void bench_result_add_row(json_t *result, json_t *row);
 json_t *bench_result_rows(const json_t *result);

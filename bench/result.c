@@ -8,6 +8,18 @@ json_t *bench_result_new(void) {
     return json_pack("{s:[], s:[]}", "rows", "figures");
 }
 
+json_t *bench_measure_scenes(bench *b, const char *only, bench_scene_fn *measure, void *user) {
+    json_t *result = bench_result_new();
+    camber_status status = CAMBER_OK;
+    for (size_t i = 0; i < b->scene_count && status == CAMBER_OK; i++)
+        if (!only || strcmp(only, b->scenes[i].key) == 0)
+            status = measure(b, b->scenes + i, user, result);
+    if (status == CAMBER_OK)
+        return result;
+    json_decref(result);
+    return NULL;
+}
+
 void bench_result_add_row(json_t *result, json_t *row) {
     json_array_append_new(json_object_get(result, "rows"), row);
 }

@@ -101,26 +101,23 @@ static void report(const trial *t, json_t *result) {
     bench_result_add_row(result, row);
 }
 
-static json_t *measure(bench *b, const char *only) {
-    json_t *result = bench_result_new();
-    camber_status status = CAMBER_OK;
-    for (size_t i = 0; i < b->scene_count && status == CAMBER_OK; i++) {
-        trial t = {.b = b, .scene = b->scenes + i};
-        if (only && strcmp(only, t.scene->key) != 0)
-            continue;
-        status = bench_network_of_lines(b, &t.scene->lines, &t.network);
-        /* In turn, so that a machine whose speed drifts is fair to all. */
-        for (size_t run = 0; run < b->warm_ups + b->runs && status == CAMBER_OK; run++) {
-            status = draw_ours(&t, run >= b->warm_ups);
-            draw_peers(&t, run >= b->warm_ups);
-        }
-        camber_network_destroy(t.network);
-        report(&t, result);
+static camber_status measure_scene(bench *b, const bench_scene *scene, void *user, json_t *result) {
+    (void)user;
+    trial t = {.b = b, .scene = scene};
+    camber_status status = bench_network_of_lines(b, &scene->lines, &t.network);
+    /* In turn, so that a machine whose speed drifts is fair to all. */
+    for (size_t run = 0; run < b->warm_ups + b->runs && status == CAMBER_OK; run++) {
+        status = draw_ours(&t, run >= b->warm_ups);
+        draw_peers(&t, run >= b->warm_ups);
     }
+    camber_network_destroy(t.network);
     if (status == CAMBER_OK)
-        return result;
-    json_decref(result);
-    return NULL;
+        report(&t, result);
+    return status;
+}
+
+static json_t *measure(bench *b, const char *only) {
+    return bench_measure_scenes(b, only, measure_scene, NULL);
 }
 
 static void print_ratio(double peer_ms, double ours_ms, bool alike, FILE *to) {

@@ -62,8 +62,8 @@ static void report(trial *t, double simplify_px, json_t *result) {
     bench_result_add_row(result, row);
 }
 
-static camber_status measure_scene(bench *b, const bench_scene *scene, double copied_gb_s, json_t *result) {
-    trial t = {.b = b, .scene = scene, .copied_gb_s = copied_gb_s};
+static camber_status measure_scene(bench *b, const bench_scene *scene, void *copied_gb_s, json_t *result) {
+    trial t = {.b = b, .scene = scene, .copied_gb_s = *(const double *)copied_gb_s};
     camber_status status = bench_network_of_lines(b, &scene->lines, &t.network);
     for (int i = 0; i < TOLERANCES && status == CAMBER_OK; i++) {
         t.all.count = 0;
@@ -78,16 +78,8 @@ static camber_status measure_scene(bench *b, const bench_scene *scene, double co
 }
 
 static json_t *measure(bench *b, const char *only) {
-    json_t *result = bench_result_new();
-    const double copied_gb_s = bench_copy_gb_s(b);
-    camber_status status = CAMBER_OK;
-    for (size_t i = 0; i < b->scene_count && status == CAMBER_OK; i++)
-        if (!only || strcmp(only, b->scenes[i].key) == 0)
-            status = measure_scene(b, b->scenes + i, copied_gb_s, result);
-    if (status == CAMBER_OK)
-        return result;
-    json_decref(result);
-    return NULL;
+    double copied_gb_s = bench_copy_gb_s(b);
+    return bench_measure_scenes(b, only, measure_scene, &copied_gb_s);
 }
 
 static void print(const json_t *result, FILE *to) {

@@ -72,11 +72,14 @@ static void warn_of_property(parser *p, const char *name, const char *prefix) {
 
 /* ---- Layers ---- */
 
+static bool fail_memory(camber_compiler *c) {
+    c->status = CAMBER_ERROR_MEMORY;
+    return false;
+}
+
 static bool copy_string(camber_compiler *c, const json_t *json, char **copy) {
     *copy = camber_copy_string(c->context, json_string_value(json));
-    if (!*copy)
-        c->status = CAMBER_ERROR_MEMORY;
-    return *copy != NULL;
+    return *copy || fail_memory(c);
 }
 
 /* A string of the layer, left NULL where it is missing. */
@@ -260,6 +263,13 @@ static bool read_filter(camber_compiler *c, const json_t *json, camber_style_lay
     return true;
 }
 
+static uint32_t find_source(const camber_style *style, const char *name) {
+    for (size_t i = 0; name && i < style->source_count; i++)
+        if (strcmp(style->sources[i].name, name) == 0)
+            return (uint32_t)i;
+    return CAMBER_NO_SOURCE;
+}
+
 static bool read_layer(parser *p, const json_t *json, camber_style_layer *layer) {
     camber_compiler *c = &p->compiler;
     layer->visible = true;
@@ -271,6 +281,7 @@ static bool read_layer(parser *p, const json_t *json, camber_style_layer *layer)
         !read_string(c, json, "source-layer", &layer->source_layer) ||
         !read_zoom(c, json, "minzoom", &layer->min_zoom) || !read_zoom(c, json, "maxzoom", &layer->max_zoom))
         return false;
+    layer->source_index = find_source(c->style, layer->source);
     return read_filter(c, json, layer) && read_properties(p, json, "layout", read_layout_property, layer) &&
            read_properties(p, json, "paint", read_paint_property, layer);
 }
@@ -367,23 +378,55 @@ static bool read_layers(parser *p, const json_t *layers) {
     return unique;
 }
 
+static bool read_source(parser *p, const char *name, json_t *json) {
+    camber_compiler *c = &p->compiler;
+    const json_t *type = json_object_get(json, "type");
+    if (!json_is_object(json))
+        return camber_compiler_fail(c, "expected a source, an object, found %s; write {\"type\": \"vector\", ...}",
+                                    camber_json_name(json));
+    if (!json_is_string(type))
+        return camber_compiler_fail(c, "the source has no \"type\" that is a string; write e.g. \"type\": \"geojson\"");
+    camber_style_source *source = &c->style->sources[c->style->source_count++];
+    source->json = json_incref(json);
+    source->name = camber_copy_string(c->context, name);
+    return (source->name || fail_memory(c)) && copy_string(c, type, &source->type);
+}
+
+/* Before the layers, which name them. */
+static bool read_sources(parser *p, json_t *sources) {
+    camber_compiler *c = &p->compiler;
+    const char *name;
+    json_t *json;
+    if (!sources)
+        return true;
+    camber_compiler_enter_key(c, "sources");
+    if (!json_is_object(sources))
+        return camber_compiler_fail(c, "expected an object, found %s; write {\"name\": {...}, ...}",
+                                    camber_json_name(sources));
+    c->style->sources = camber_alloc_zero(c->context, json_object_size(sources), sizeof *c->style->sources);
+    if (!c->style->sources)
+        return fail_memory(c);
+    json_object_foreach(sources, name, json) {
+        camber_compiler_enter_key(c, name);
+        if (!read_source(p, name, json))
+            return false;
+        camber_compiler_leave(c);
+    }
+    camber_compiler_leave(c);
+    return true;
+}
+
 static bool read_document(parser *p) {
     camber_compiler *c = &p->compiler;
     if (!json_is_object(p->root))
         return camber_compiler_fail(c, "expected a style document, an object, found %s; pass a MapLibre style",
                                     camber_json_name(p->root));
     const json_t *version = json_object_get(p->root, "version");
-    const json_t *sources = json_object_get(p->root, "sources");
     camber_compiler_enter_key(c, "version");
     if (!json_is_number(version) || json_number_value(version) < 8.0 || json_number_value(version) > 8.0)
         return camber_compiler_fail(c, "expected the number 8; write \"version\": 8");
     camber_compiler_leave(c);
-    if (sources && !json_is_object(sources)) {
-        camber_compiler_enter_key(c, "sources");
-        return camber_compiler_fail(c, "expected an object, found %s; write {\"name\": {...}, ...}",
-                                    camber_json_name(sources));
-    }
-    return read_layers(p, json_object_get(p->root, "layers"));
+    return read_sources(p, json_object_get(p->root, "sources")) && read_layers(p, json_object_get(p->root, "layers"));
 }
 
 static camber_status fail_json(camber_context *context, const char *name, const json_error_t *error) {
@@ -441,8 +484,14 @@ void camber_style_destroy(camber_style *style) {
         camber_free(context, layer->source);
         camber_free(context, layer->id);
     }
+    for (size_t i = 0; i < style->source_count; i++) {
+        camber_free(context, style->sources[i].name);
+        camber_free(context, style->sources[i].type);
+        json_decref(style->sources[i].json);
+    }
     for (size_t i = 0; i < style->property_count; i++)
         camber_free(context, style->properties[i]);
+    camber_free(context, style->sources);
     camber_free(context, style->properties);
     camber_free(context, style->layers);
     camber_free(context, style);

@@ -5,6 +5,8 @@
 #include "base/base.h"
 #include "camber_map.h"
 
+#include <jansson.h>
+
 typedef enum camber_value_type {
     CAMBER_VALUE_NULL = 0, /* also: the feature does not have the property */
     CAMBER_VALUE_BOOL,
@@ -41,7 +43,8 @@ typedef enum camber_layer_kind {
 typedef struct camber_style_layer {
     char *id;
     camber_layer_kind kind;
-    char *source;              /* name in the style's sources. NULL: any input */
+    char *source;              /* its name. NULL: any input */
+    uint32_t source_index;     /* into the style's sources; CAMBER_NO_SOURCE where they do not have it */
     char *source_layer;        /* NULL: any */
     char *filter_key;          /* the filter as compact JSON, "" for none: equal keys draw equal features */
     double min_zoom, max_zoom; /* drawn where min <= zoom < max; 0 and 24 by default; 24: no end */
@@ -53,10 +56,21 @@ typedef struct camber_style_layer {
     camber_expression *color, *opacity, *width; /* NULL: the specification's default */
 } camber_style_layer;
 
+/* What no layer names: any input. */
+#define CAMBER_NO_SOURCE UINT32_MAX
+
+typedef struct camber_style_source {
+    char *name;
+    char *type;   /* "geojson", "vector", ... */
+    json_t *json; /* a reference to the source as it stands in the document */
+} camber_style_source;
+
 struct camber_style {
     camber_context *context;
     camber_style_layer *layers; /* in drawing order */
     size_t layer_count;
+    camber_style_source *sources; /* in the document's order */
+    size_t source_count;
     char **properties; /* feature properties that any expression reads, each once */
     size_t property_count;
     bool directed; /* a line layer names what follows its lines' direction: dashes, offsets, gradients, patterns */

@@ -93,13 +93,20 @@ static void test_classes(void **state) {
     assert_int_equal(camber_features_find_class(it->features, layer, CAMBER_GEOMETRY_POLYGON, variants[0], &two),
                      CAMBER_OK);
     assert_int_equal(two, count);
+    it->features->source = 0;
+    assert_int_equal(camber_features_find_class(it->features, layer, CAMBER_GEOMETRY_LINE, variants[0], &two),
+                     CAMBER_OK);
+    assert_int_equal(two, count + 1);
+    assert_int_equal(it->features->classes[0].source, CAMBER_NO_SOURCE);
+    assert_int_equal(it->features->classes[two].source, 0);
+    it->features->source = CAMBER_NO_SOURCE;
     /* Thousands, so that the table grows. */
     for (int round = 0; round < 2; round++) {
         for (uint32_t i = 0; i < 3000; i++) {
             const camber_value values[2] = {{.type = CAMBER_VALUE_NUMBER, .number = 100.0 + i}};
             assert_int_equal(camber_features_find_class(it->features, layer, CAMBER_GEOMETRY_LINE, values, &one),
                              CAMBER_OK);
-            assert_int_equal(one, count + 1 + i);
+            assert_int_equal(one, count + 2 + i);
             const camber_feature_class *made = &it->features->classes[one];
             assert_true(it->features->values[made->first_value].number == 100.0 + i);
         }

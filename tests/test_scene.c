@@ -77,7 +77,7 @@ static void close_town(town *t) {
 
 static uint32_t add_class(town *t, const char *kind, uint32_t layer) {
     const size_t width = t->style->property_count, c = t->features.class_count++;
-    t->classes[c] = (camber_feature_class){.layer = layer, .first_value = c * width};
+    t->classes[c] = (camber_feature_class){.source = CAMBER_NO_SOURCE, .layer = layer, .first_value = c * width};
     assert_true((c + 1) * width <= sizeof t->values / sizeof *t->values);
     if (kind_index(t) < width)
         t->values[c * width + kind_index(t)] = (camber_value){.type = CAMBER_VALUE_STRING, .string = kind};

@@ -20,6 +20,7 @@ camber_status camber_features_create(camber_context *context, const camber_style
         goto failed;
     made->context = context;
     made->style = style;
+    made->source = CAMBER_NO_SOURCE;
     made->interned = set;
     if (!(set->strings = camber_alloc_zero(context, FIRST_SLOTS, sizeof *set->strings)) ||
         !(set->classes = camber_alloc_zero(context, FIRST_SLOTS, sizeof *set->classes)))
@@ -154,8 +155,8 @@ static bool equal_values(const camber_value *a, const camber_value *b, size_t co
     return true;
 }
 
-static uint64_t hash_class(uint32_t layer, camber_geometry_kind geometry, const camber_value *values, size_t count) {
-    uint64_t hash = camber_mix(camber_mix(0, layer), (uint64_t)geometry);
+static uint64_t hash_class(const camber_feature_class *one, const camber_value *values, size_t count) {
+    uint64_t hash = camber_mix(camber_mix(one->source, one->layer), (uint64_t)one->geometry);
     for (size_t i = 0; i < count; i++) {
         uint64_t word = 0;
         if (values[i].type == CAMBER_VALUE_BOOL)
@@ -181,8 +182,7 @@ static bool grow_classes(camber_features *features) {
         return false;
     for (size_t i = 0; i < features->class_count; i++) {
         const camber_feature_class *one = &features->classes[i];
-        const uint64_t hash =
-            hash_class(one->layer, one->geometry, values_of(features, one), features->style->property_count);
+        const uint64_t hash = hash_class(one, values_of(features, one), features->style->property_count);
         size_t slot = slot_of(hash, slots);
         while (classes[slot])
             slot = (slot + 1) & (slots - 1);
@@ -194,8 +194,7 @@ static bool grow_classes(camber_features *features) {
     return true;
 }
 
-static camber_status add_class(camber_features *features, uint32_t layer, camber_geometry_kind geometry,
-                               const camber_value *values) {
+static camber_status add_class(camber_features *features, const camber_feature_class *one, const camber_value *values) {
     const size_t count = features->style->property_count;
     if (features->class_count >= UINT32_MAX - 1)
         return camber_fail(features->context, CAMBER_ERROR_LIMIT,
@@ -205,7 +204,7 @@ static camber_status add_class(camber_features *features, uint32_t layer, camber
         !camber_grow(features->context, &features->values, &features->value_capacity, features->value_count + count,
                      sizeof *features->values))
         return CAMBER_ERROR_MEMORY;
-    features->classes[features->class_count] = (camber_feature_class){layer, geometry, features->value_count};
+    features->classes[features->class_count] = *one;
     if (count)
         memcpy(features->values + features->value_count, values, count * sizeof *values);
     features->value_count += count;
@@ -217,17 +216,19 @@ camber_status camber_features_find_class(camber_features *features, uint32_t lay
                                          const camber_value *values, uint32_t *class_index) {
     interner *set = features->interned;
     const size_t count = features->style->property_count;
+    const camber_feature_class wanted = {features->source, layer, geometry, features->value_count};
     if (features->class_count >= set->class_slots / 2 && !grow_classes(features))
         return CAMBER_ERROR_MEMORY;
-    size_t slot = slot_of(hash_class(layer, geometry, values, count), set->class_slots);
+    size_t slot = slot_of(hash_class(&wanted, values, count), set->class_slots);
     for (; set->classes[slot]; slot = (slot + 1) & (set->class_slots - 1)) {
         const camber_feature_class *one = &features->classes[set->classes[slot] - 1];
-        if (one->layer == layer && one->geometry == geometry && equal_values(values_of(features, one), values, count)) {
+        if (one->source == wanted.source && one->layer == layer && one->geometry == geometry &&
+            equal_values(values_of(features, one), values, count)) {
             *class_index = set->classes[slot] - 1;
             return CAMBER_OK;
         }
     }
-    const camber_status status = add_class(features, layer, geometry, values);
+    const camber_status status = add_class(features, &wanted, values);
     if (status != CAMBER_OK)
         return status;
     set->classes[slot] = (uint32_t)features->class_count;

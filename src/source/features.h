@@ -14,8 +14,12 @@ typedef enum camber_geometry_kind {
     CAMBER_GEOMETRY_POLYGON, /* its outline */
 } camber_geometry_kind;
 
+/* The source of features that come from a file named as input: every layer of a style draws them. */
+#define CAMBER_NO_SOURCE UINT32_MAX
+
 typedef struct camber_feature_class {
-    uint32_t layer; /* index into layer_names */
+    uint32_t source; /* index into the style's sources, or CAMBER_NO_SOURCE */
+    uint32_t layer;  /* index into layer_names */
     camber_geometry_kind geometry;
     size_t first_value; /* into values: style->property_count of them, in the style's order */
 } camber_feature_class;
@@ -48,6 +52,7 @@ struct camber_features {
     char **layer_names; /* source layers, in the order they were met */
     size_t layer_count, layer_capacity;
 
+    uint32_t source; /* of the classes found now; CAMBER_NO_SOURCE at first */
     bool is_osm;
     camber_features_stats stats;
     camber_features_times times;

@@ -70,9 +70,8 @@ static bool evaluate(fixture *f, double zoom, const json_t *properties, camber_e
     assert_true(f->style.property_count <= 16);
     for (size_t i = 0; i < f->style.property_count; i++)
         values[i] = to_value(json_object_get(properties, f->style.properties[i]));
-    const camber_feature_view feature = {values, "LineString"};
-    evaluation->zoom = zoom;
-    evaluation->feature = &feature;
+    const camber_feature_view feature = {.values = values, .geometry_type = "LineString"};
+    camber_evaluation_begin(evaluation, zoom, &feature);
     return camber_expression_evaluate(f->expression, evaluation, value);
 }
 
@@ -108,7 +107,7 @@ typedef struct sample {
 } sample;
 
 static bool compile(fixture *f, json_t *json, camber_type type) {
-    const camber_property property = {"p", type, true, true, -HUGE_VAL, HUGE_VAL};
+    const camber_property property = {.name = "p", .type = type, .interpolated = true, .data_driven = true};
     if (type == CAMBER_TYPE_BOOL)
         return camber_compile_filter(&f->compiler, json, &f->expression);
     return camber_compile_property(&f->compiler, json, &property, &f->expression);
@@ -521,7 +520,8 @@ static bool run_specification_test(const char *path, const char *name) {
     fixture f;
     setup(&f);
     const json_t *specification = json_object_get(test, "propertySpec");
-    const camber_property property = {"some-property", type_named(specification), true, true, -HUGE_VAL, HUGE_VAL};
+    const camber_property property = {
+        .name = "some-property", .type = type_named(specification), .interpolated = true, .data_driven = true};
     const bool ok = strcmp(result, "success") == 0;
     /* A constant of any type is a matter of properties, which have one. */
     const char *type = json_string_value(json_object_get(specification, "type"));

@@ -104,7 +104,7 @@ static void set_values(const camber_style *style, const feature *road, camber_va
 static void check_road(const camber_style *style, const feature *road, const char *expected) {
     camber_value values[PROPERTY_LIMIT];
     set_values(style, road, values);
-    const camber_feature_view view = {values, "LineString"};
+    const camber_feature_view view = {.values = values, .geometry_type = "LineString"};
     const char *name = road->highway ? road->highway : road->type ? road->type : road->mtfcc ? road->mtfcc : "-";
     for (double zoom = 0.0; zoom <= 24.0; zoom += 0.5) {
         size_t matches = 0;
@@ -209,7 +209,7 @@ static void check_roads(const camber_style *style) {
 
 static camber_layer_paint paint_of(const camber_style *style, const char *id, double zoom) {
     camber_value values[PROPERTY_LIMIT] = {{.type = CAMBER_VALUE_NULL}};
-    const camber_feature_view view = {values, "LineString"};
+    const camber_feature_view view = {.values = values, .geometry_type = "LineString"};
     for (size_t i = 0; i < style->layer_count; i++)
         if (strcmp(style->layers[i].id, id) == 0)
             return camber_style_layer_paint(&style->layers[i], zoom, &view);
@@ -312,7 +312,7 @@ static void test_layer(void **state) {
     const size_t highway = strcmp(f.style->properties[0], "highway") == 0 ? 0 : 1;
     values[highway] = (camber_value){.type = CAMBER_VALUE_STRING, .string = "primary"};
     values[1 - highway] = (camber_value){.type = CAMBER_VALUE_NUMBER, .number = 7.0};
-    const camber_feature_view view = {values, "LineString"};
+    const camber_feature_view view = {.values = values, .geometry_type = "LineString"};
     assert_true(camber_style_layer_matches(roads, 3.0, &view));
     assert_true(camber_style_layer_matches(roads, 15.4, &view));
     assert_false(camber_style_layer_matches(roads, 2.9, &view));
@@ -488,7 +488,7 @@ static void test_many(void **state) {
     append(&t, "]}}]}");
     assert_int_equal(parse(&f, t.bytes), CAMBER_OK);
     const camber_value value = {.type = CAMBER_VALUE_NUMBER, .number = 654321.25};
-    const camber_feature_view view = {&value, "LineString"};
+    const camber_feature_view view = {.values = &value, .geometry_type = "LineString"};
     assert_true(fabs(camber_style_layer_paint(f.style->layers, 10.0, &view).width - 1308642.5) < 1e-6);
     free(t.bytes);
     teardown(&f);

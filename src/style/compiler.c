@@ -97,6 +97,8 @@ const char *camber_type_name(camber_type type) {
     case CAMBER_TYPE_STRING: return "a string";
     case CAMBER_TYPE_COLOR: return "a colour";
     case CAMBER_TYPE_ARRAY: return "an array";
+    case CAMBER_TYPE_OBJECT: return "an object";
+    case CAMBER_TYPE_IMAGE: return "an image";
     }
     return "nothing";
 }
@@ -164,6 +166,8 @@ static camber_type type_of(const camber_value *value) {
     case CAMBER_VALUE_NUMBER: return CAMBER_TYPE_NUMBER;
     case CAMBER_VALUE_STRING: return CAMBER_TYPE_STRING;
     case CAMBER_VALUE_COLOR: return CAMBER_TYPE_COLOR;
+    case CAMBER_VALUE_ARRAY: return CAMBER_TYPE_ARRAY;
+    case CAMBER_VALUE_OBJECT: return CAMBER_TYPE_OBJECT;
     }
     return CAMBER_TYPE_NULL;
 }
@@ -372,6 +376,8 @@ bool camber_expression_begin(camber_compiler *c, json_t *json) {
 bool camber_expression_end(camber_compiler *c, bool done, uint32_t root, camber_expression **expression) {
     if (done) {
         c->expression->root = root;
+        c->expression->reads_zoom = c->expression->nodes[root].reads_zoom;
+        c->expression->reads_feature = c->expression->nodes[root].reads_feature;
         *expression = c->expression;
     } else {
         camber_expression_destroy(c->context, c->expression);
@@ -408,7 +414,7 @@ static bool check_property(camber_compiler *c, const camber_property *property, 
     if (node->op != CAMBER_OP_CONSTANT || property->type != CAMBER_TYPE_NUMBER)
         return true;
     const double number = node->value.number;
-    if (!(number >= property->low && number <= property->high))
+    if ((property->low < 0.0 || property->high > 0.0) && !(number >= property->low && number <= property->high))
         return camber_compiler_fail(c, "%g is out of range; use %g to %g", number, property->low, property->high);
     return true;
 }

@@ -19,10 +19,17 @@ typedef struct camber_path_step {
 /* A property's type in the specification. */
 typedef struct camber_property {
     const char *name;
-    camber_type type;
-    bool interpolated; /* older functions on zoom are curves; else steps */
-    bool data_driven;  /* may read the feature */
-    double low, high;  /* range of a number */
+    camber_type type;          /* bool, number, string, color, array or image */
+    camber_type item;          /* of an array */
+    uint32_t length;           /* of an array. 0: any */
+    const char *const *values; /* an enum: what a string may be, NULL at the end. NULL: anything */
+    const char *fallback;      /* the default as JSON, "1" or "\"butt\"". NULL: none */
+    bool interpolated;         /* curves on zoom are allowed, and what older functions are without a type */
+    bool data_driven;          /* may read the feature */
+    bool without_zoom;         /* may not read the zoom */
+    bool line_progress;        /* may read the line's progress */
+    bool tokens;               /* "{name}" in strings of older functions stands for a property */
+    double low, high;          /* range of a number or of an array's items. Both 0: any */
 } camber_property;
 
 typedef struct camber_compiler {

@@ -39,7 +39,9 @@ static bool has_type(const camber_value *value, camber_type type) {
     case CAMBER_TYPE_NUMBER: return value->type == CAMBER_VALUE_NUMBER;
     case CAMBER_TYPE_STRING: return value->type == CAMBER_VALUE_STRING;
     case CAMBER_TYPE_COLOR: return value->type == CAMBER_VALUE_COLOR;
-    case CAMBER_TYPE_ARRAY: return false;
+    case CAMBER_TYPE_ARRAY:
+    case CAMBER_TYPE_OBJECT:
+    case CAMBER_TYPE_IMAGE: return false;
     }
     return false;
 }
@@ -75,7 +77,9 @@ static bool to_number(const camber_value *value, double *number) {
     case CAMBER_VALUE_BOOL: *number = value->boolean ? 1.0 : 0.0; return true;
     case CAMBER_VALUE_NUMBER: *number = value->number; return !isnan(value->number);
     case CAMBER_VALUE_STRING: return string_to_number(value->string, number);
-    case CAMBER_VALUE_COLOR: return false;
+    case CAMBER_VALUE_COLOR:
+    case CAMBER_VALUE_ARRAY:
+    case CAMBER_VALUE_OBJECT: return false;
     }
     return false;
 }
@@ -93,6 +97,8 @@ static const char *to_text(const camber_value *value, char scratch[CAMBER_SCRATC
         snprintf(scratch, CAMBER_SCRATCH_SIZE, "rgba(%.0f,%.0f,%.0f,%s)", round((double)value->color.r * 255.0),
                  round((double)value->color.g * 255.0), round((double)value->color.b * 255.0), number);
         return scratch;
+    case CAMBER_VALUE_ARRAY:
+    case CAMBER_VALUE_OBJECT: break;
     }
     return "";
 }
@@ -103,7 +109,9 @@ static bool to_bool(const camber_value *value) {
     case CAMBER_VALUE_BOOL: return value->boolean;
     case CAMBER_VALUE_NUMBER: return value->number < 0.0 || value->number > 0.0;
     case CAMBER_VALUE_STRING: return value->string[0] != 0;
-    case CAMBER_VALUE_COLOR: return true;
+    case CAMBER_VALUE_COLOR:
+    case CAMBER_VALUE_ARRAY:
+    case CAMBER_VALUE_OBJECT: return true;
     }
     return false;
 }
@@ -150,7 +158,9 @@ static bool equal(const camber_value *a, const camber_value *b) {
     case CAMBER_VALUE_BOOL: return a->boolean == b->boolean;
     case CAMBER_VALUE_NUMBER: return numbers_equal(a->number, b->number);
     case CAMBER_VALUE_STRING: return strcmp(a->string, b->string) == 0;
-    case CAMBER_VALUE_COLOR: return false; /* the compiler refuses it */
+    case CAMBER_VALUE_COLOR: /* the compiler refuses these */
+    case CAMBER_VALUE_ARRAY:
+    case CAMBER_VALUE_OBJECT: return false;
     }
     return false;
 }
@@ -454,6 +464,17 @@ static bool evaluate(camber_evaluation *e, const camber_node *node, camber_value
     case CAMBER_OP_DIVIDE: return evaluate_arithmetic(e, node, value);
     }
     return fail(e, "an operator is not known");
+}
+
+void camber_evaluation_begin(camber_evaluation *evaluation, double zoom, const camber_feature_view *feature) {
+    evaluation->zoom = zoom;
+    evaluation->line_progress = 0.0;
+    evaluation->feature = feature;
+    evaluation->cause = NULL;
+}
+
+void camber_evaluation_end(camber_evaluation *evaluation) {
+    (void)evaluation;
 }
 
 bool camber_expression_evaluate_node(const camber_expression *expression, uint32_t node, camber_evaluation *evaluation,

@@ -20,7 +20,9 @@ typedef enum camber_type {
     CAMBER_TYPE_NUMBER,
     CAMBER_TYPE_STRING,
     CAMBER_TYPE_COLOR,
-    CAMBER_TYPE_ARRAY, /* literal arrays, the right side of "in" only */
+    CAMBER_TYPE_ARRAY,
+    CAMBER_TYPE_OBJECT,
+    CAMBER_TYPE_IMAGE, /* a string that names one */
 } camber_type;
 
 typedef enum camber_op {
@@ -85,6 +87,7 @@ struct camber_expression {
     size_t label_count, label_capacity;
     size_t text_count, text_capacity;
     uint32_t root;
+    bool reads_zoom, reads_feature, reads_line_progress; /* what it depends on; none of them: a constant */
     uint32_t scratch_count; /* texts that an evaluation may write, up to CAMBER_SCRATCH_COUNT */
 };
 
@@ -93,13 +96,16 @@ struct camber_expression {
 #define CAMBER_SCRATCH_SIZE 64
 
 typedef struct camber_evaluation {
-    double zoom;
+    double zoom, line_progress;
     const camber_feature_view *feature;  /* NULL: none, and what reads it fails */
     const char *cause;                   /* why it failed, a phrase */
     const camber_expression *expression; /* from here on set by the evaluation */
     char scratch[CAMBER_SCRATCH_COUNT][CAMBER_SCRATCH_SIZE];
 } camber_evaluation;
 
+/* feature may be NULL. What a value points to lives until the end. */
+void camber_evaluation_begin(camber_evaluation *evaluation, double zoom, const camber_feature_view *feature);
+void camber_evaluation_end(camber_evaluation *evaluation);
 /* false: the value cannot be computed, as when a string stands where a number must. A string result lives as
  * long as the expression, the feature and the evaluation. Cost: no allocation, linear in the nodes visited. */
 bool camber_expression_evaluate(const camber_expression *expression, camber_evaluation *evaluation,

@@ -117,7 +117,9 @@ static bool is_comparable(camber_type type, bool order) {
     case CAMBER_TYPE_BOOL:
     case CAMBER_TYPE_NULL: return !order;
     case CAMBER_TYPE_COLOR:
-    case CAMBER_TYPE_ARRAY: break;
+    case CAMBER_TYPE_ARRAY:
+    case CAMBER_TYPE_OBJECT:
+    case CAMBER_TYPE_IMAGE: break;
     }
     return false;
 }

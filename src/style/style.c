@@ -19,14 +19,20 @@ typedef struct parser {
     size_t warned_count;
 } parser;
 
-static const camber_property line_color = {"line-color", CAMBER_TYPE_COLOR, true, true, 0.0, 0.0};
-static const camber_property line_opacity = {"line-opacity", CAMBER_TYPE_NUMBER, true, true, 0.0, 1.0};
-static const camber_property line_width = {"line-width", CAMBER_TYPE_NUMBER, true, true, 0.0, HUGE_VAL};
-static const camber_property line_cap = {"line-cap", CAMBER_TYPE_STRING, false, false, 0.0, 0.0};
-static const camber_property line_join = {"line-join", CAMBER_TYPE_STRING, false, true, 0.0, 0.0};
-static const camber_property line_miter_limit = {"line-miter-limit", CAMBER_TYPE_NUMBER, true, false, 0.0, HUGE_VAL};
-static const camber_property background_color = {"background-color", CAMBER_TYPE_COLOR, true, false, 0.0, 0.0};
-static const camber_property background_opacity = {"background-opacity", CAMBER_TYPE_NUMBER, true, false, 0.0, 1.0};
+static const camber_property line_color = {
+    .name = "line-color", .type = CAMBER_TYPE_COLOR, .interpolated = true, .data_driven = true};
+static const camber_property line_opacity = {
+    .name = "line-opacity", .type = CAMBER_TYPE_NUMBER, .interpolated = true, .data_driven = true, .high = 1.0};
+static const camber_property line_width = {
+    .name = "line-width", .type = CAMBER_TYPE_NUMBER, .interpolated = true, .data_driven = true, .high = HUGE_VAL};
+static const camber_property line_cap = {.name = "line-cap", .type = CAMBER_TYPE_STRING};
+static const camber_property line_join = {.name = "line-join", .type = CAMBER_TYPE_STRING, .data_driven = true};
+static const camber_property line_miter_limit = {
+    .name = "line-miter-limit", .type = CAMBER_TYPE_NUMBER, .interpolated = true, .high = HUGE_VAL};
+static const camber_property background_color = {
+    .name = "background-color", .type = CAMBER_TYPE_COLOR, .interpolated = true};
+static const camber_property background_opacity = {
+    .name = "background-opacity", .type = CAMBER_TYPE_NUMBER, .interpolated = true, .high = 1.0};
 
 /* ---- Warnings ---- */
 
@@ -124,7 +130,8 @@ static bool read_constant(parser *p, json_t *json, const camber_property *proper
     if (!camber_compile_property(&p->compiler, json, property, expression))
         return false;
     const camber_expression *made = *expression;
-    camber_evaluation evaluation = {.zoom = USUAL_ZOOM};
+    camber_evaluation evaluation;
+    camber_evaluation_begin(&evaluation, USUAL_ZOOM, NULL);
     if (!camber_expression_evaluate(made, &evaluation, value))
         *value = (camber_value){.type = CAMBER_VALUE_NULL};
     if (made->nodes[made->root].op != CAMBER_OP_CONSTANT && first_time(p, property->name))
@@ -506,11 +513,12 @@ bool camber_style_layer_matches(const camber_style_layer *layer, double zoom, co
     if (!layer->filter)
         return true;
     camber_evaluation evaluation;
-    evaluation.zoom = zoom;
-    evaluation.feature = feature;
+    camber_evaluation_begin(&evaluation, zoom, feature);
     camber_value value;
-    return camber_expression_evaluate(layer->filter, &evaluation, &value) && value.type == CAMBER_VALUE_BOOL &&
-           value.boolean;
+    const bool matches = camber_expression_evaluate(layer->filter, &evaluation, &value) &&
+                         value.type == CAMBER_VALUE_BOOL && value.boolean;
+    camber_evaluation_end(&evaluation);
+    return matches;
 }
 
 static double evaluate_number(const camber_expression *expression, camber_evaluation *evaluation, double fallback) {
@@ -524,8 +532,7 @@ static double evaluate_number(const camber_expression *expression, camber_evalua
 camber_layer_paint camber_style_layer_paint(const camber_style_layer *layer, double zoom,
                                             const camber_feature_view *feature) {
     camber_evaluation evaluation;
-    evaluation.zoom = zoom;
-    evaluation.feature = feature;
+    camber_evaluation_begin(&evaluation, zoom, feature);
     camber_layer_paint paint = {.color = {0.0f, 0.0f, 0.0f, 1.0f}};
     camber_value value;
     if (layer->color && camber_expression_evaluate(layer->color, &evaluation, &value) &&
@@ -533,5 +540,6 @@ camber_layer_paint camber_style_layer_paint(const camber_style_layer *layer, dou
         paint.color = value.color;
     paint.color.a *= (float)fmin(fmax(evaluate_number(layer->opacity, &evaluation, 1.0), 0.0), 1.0);
     paint.width = fmax(evaluate_number(layer->width, &evaluation, 1.0), 0.0);
+    camber_evaluation_end(&evaluation);
     return paint;
 }

@@ -4,24 +4,9 @@
 
 #include "base/base.h"
 #include "camber_map.h"
+#include "style/value.h"
 
 #include <jansson.h>
-
-typedef enum camber_value_type {
-    CAMBER_VALUE_NULL = 0, /* also: the feature does not have the property */
-    CAMBER_VALUE_BOOL,
-    CAMBER_VALUE_NUMBER,
-    CAMBER_VALUE_STRING,
-    CAMBER_VALUE_COLOR, /* from expressions; never from features */
-} camber_value_type;
-
-typedef struct camber_value {
-    camber_value_type type;
-    bool boolean;
-    double number;
-    const char *string; /* UTF-8, owned by whoever made the value */
-    camber_color color;
-} camber_value;
 
 /* The style's pseudo property that a source sets to true on every feature of a layer whose schema has none of
  * the other properties that the style names, and leaves null elsewhere: such lines cannot be classified. */
@@ -31,6 +16,8 @@ typedef struct camber_value {
 typedef struct camber_feature_view {
     const camber_value *values; /* style->property_count, in the order of style->properties */
     const char *geometry_type;  /* "LineString" or "Polygon" */
+    camber_value id;            /* where the style wants it; null: none */
+    const camber_value *all;    /* an object of all properties, where the style wants them. NULL: none */
 } camber_feature_view;
 
 typedef struct camber_expression camber_expression; /* expression.h */
@@ -73,6 +60,8 @@ struct camber_style {
     size_t source_count;
     char **properties; /* feature properties that any expression reads, each once */
     size_t property_count;
+    bool wants_id;             /* an expression reads the feature's id */
+    bool wants_all_properties; /* an expression reads properties that it does not name */
     bool directed; /* a line layer names what follows its lines' direction: dashes, offsets, gradients, patterns */
     bool wants_polygons; /* a line layer's filter asks for outlines: it names the geometry type Polygon */
 };

@@ -32,6 +32,16 @@ CAMBER_API camber_status camber_style_parse(camber_context *context, const char 
 CAMBER_API camber_status camber_style_builtin(camber_context *context, camber_theme theme, camber_style **style);
 CAMBER_API void camber_style_destroy(camber_style *style);
 
+/* Compiles one expression or older function and evaluates it over inputs. json is {"expression": ..., "propertySpec":
+ * {...}, "inputs": [[{"zoom": ...}, {"properties": {...}, "id": ..., "geometry": ...}], ...], "globalState": {...}}, as
+ * the specification's own tests have it; all but the expression may be missing. The sink gets {"compiled": {"result":
+ * "success", "type": ..., "isFeatureConstant": ..., "isZoomConstant": ...}, "outputs": [...]} with {"error": ...} for
+ * an input over which it cannot be evaluated, or {"compiled": {"result": "error", "errors": [{"key": ..., "error":
+ * ...}]}}. Returns CAMBER_ERROR_INPUT (not such JSON), CAMBER_ERROR_IO (the sink refuses), CAMBER_ERROR_MEMORY; an
+ * expression that does not compile is no error. */
+CAMBER_API camber_status camber_style_evaluate(camber_context *context, const char *json, size_t size_bytes,
+                                               const char *name, camber_sink sink);
+
 /* ---- Features: lines and the attributes that a style names --------------------------------------- */
 
 typedef struct camber_source_desc {

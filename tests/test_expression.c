@@ -42,7 +42,7 @@ static void teardown(fixture *f) {
     for (size_t i = 0; i < f->style.property_count; i++)
         camber_free(f->context, f->style.properties[i]);
     camber_free(f->context, f->style.properties);
-    camber_free(f->context, f->compiler.operands);
+    camber_compiler_end(&f->compiler);
     camber_context_destroy(f->context);
 }
 

@@ -10,8 +10,7 @@
 
 /* ---- Polylines in pixels ---- */
 
-/* The whole file or standard input; *bytes is freed with free. */
-static int read_all(camber_report *report, const char *path, char **bytes, size_t *size_bytes) {
+int camber_input_read_all(camber_report *report, const char *path, char **bytes, size_t *size_bytes) {
     const bool standard = strcmp(path, "-") == 0;
     FILE *file = standard ? stdin : fopen(path, "rb");
     if (!file)
@@ -51,7 +50,7 @@ static int open_polylines(camber_input *input) {
     const char *path = session->options->polylines;
     char *bytes = NULL;
     size_t size_bytes = 0;
-    const int status = read_all(session->report, path, &bytes, &size_bytes);
+    const int status = camber_input_read_all(session->report, path, &bytes, &size_bytes);
     if (status != CAMBER_EXIT_DONE)
         return status;
     const camber_status parsed = camber_lines_parse(session->context, bytes, size_bytes,
@@ -112,7 +111,7 @@ static int open_style(camber_input *input) {
     }
     char *bytes = NULL;
     size_t size_bytes = 0;
-    const int status = read_all(session->report, options->style, &bytes, &size_bytes);
+    const int status = camber_input_read_all(session->report, options->style, &bytes, &size_bytes);
     if (status != CAMBER_EXIT_DONE)
         return status;
     const char *name = strcmp(options->style, "-") == 0 ? "standard input" : options->style;

@@ -47,4 +47,7 @@ bool camber_input_opaque(const camber_input *input);
 /* Tessellates with the method of the options. */
 camber_status camber_input_tessellate(const camber_input *input, camber_mesh *mesh);
 
+/* The whole file or standard input; *bytes is freed with free. Returns an exit status, its line printed. */
+int camber_input_read_all(camber_report *report, const char *path, char **bytes, size_t *size_bytes);
+
 #endif

@@ -9,9 +9,11 @@ static int run(camber_session *session) {
 #ifdef CAMBER_MAP
     case CAMBER_VERB_RENDER: return camber_verb_render(session);
     case CAMBER_VERB_TESSELLATE: return camber_verb_tessellate(session);
+    case CAMBER_VERB_STYLE: return camber_verb_style(session);
 #else
     case CAMBER_VERB_RENDER:
-    case CAMBER_VERB_TESSELLATE: break; /* no word for them in this build */
+    case CAMBER_VERB_TESSELLATE:
+    case CAMBER_VERB_STYLE: break; /* no word for them in this build */
 #endif
     case CAMBER_VERB_COMPARE: return camber_verb_compare(session);
     case CAMBER_VERB_VALIDATE: return camber_verb_validate(session);

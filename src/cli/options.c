@@ -18,6 +18,8 @@ enum {
     WRITING = RENDER | TESSELLATE | BENCH,
     READING = RENDER | TESSELLATE | COMPARE | VALIDATE | BENCH,
     EVERY = READING | INFO,
+    STYLE = 1 << CAMBER_VERB_STYLE,
+    TALKING = EVERY | STYLE,
 #ifdef CAMBER_MAP
     MAPS = READING,
 #else
@@ -42,6 +44,7 @@ static const verb_spec verbs[] = {
     {"validate", CAMBER_VERB_VALIDATE, "[INPUT... | --polylines FILE]",
      "checks kernels and pixels on every device here"},
     {"bench", CAMBER_VERB_BENCH, "INPUT... | --polylines FILE", "times every stage"},
+    {"style", CAMBER_VERB_STYLE, "eval FILE", "evaluates an expression of a style over inputs"},
 #else
     {"compare", CAMBER_VERB_COMPARE, "--polylines FILE", "the paper's experiment: fan, kite, strip side by side"},
     {"validate", CAMBER_VERB_VALIDATE, "[--polylines FILE]", "checks kernels and pixels on every device here"},
@@ -117,11 +120,11 @@ static const option_spec specs[] = {
     {"pictures", 0, KIND_TEXT, VALIDATE, FIELD(pictures), "FOLDER", "write PNGs of what differs", 0, 0},
     {"windows", 0, KIND_COUNT, VALIDATE, FIELD(windows), "N", "of each picture, held against the oracle (24)", 8,
      100000},
-    {"json", 0, KIND_FLAG, EVERY, FIELD(json), NULL, "one JSON object on standard output", 0, 0},
-    {"quiet", 'q', KIND_FLAG, EVERY, FIELD(quiet), NULL, "errors only", 0, 0},
-    {"verbose", 'v', KIND_FLAG, EVERY, FIELD(verbose), NULL, "say what is chosen and how long it takes", 0, 0},
-    {"help", 'h', KIND_FLAG, EVERY, FIELD(help), NULL, "this text", 0, 0},
-    {"version", 0, KIND_FLAG, EVERY, FIELD(version), NULL, "the version", 0, 0},
+    {"json", 0, KIND_FLAG, TALKING, FIELD(json), NULL, "one JSON object on standard output", 0, 0},
+    {"quiet", 'q', KIND_FLAG, TALKING, FIELD(quiet), NULL, "errors only", 0, 0},
+    {"verbose", 'v', KIND_FLAG, TALKING, FIELD(verbose), NULL, "say what is chosen and how long it takes", 0, 0},
+    {"help", 'h', KIND_FLAG, TALKING, FIELD(help), NULL, "this text", 0, 0},
+    {"version", 0, KIND_FLAG, TALKING, FIELD(version), NULL, "the version", 0, 0},
 };
 
 #define SPEC_COUNT (sizeof specs / sizeof *specs)
@@ -158,7 +161,7 @@ void camber_options_help(camber_verb verb, FILE *file) {
     fputs("\nINPUT: what OGR reads (OSM PBF and XML, GeoJSON, Shapefile, GeoPackage, ...); -: standard input.\n", file);
 #endif
     fputs("\nOptions of the verbs (`camber VERB --help` lists a verb's own):\n", file);
-    print_options(EVERY, file);
+    print_options(TALKING, file);
     fputs("\nExit status: 0 done, 1 a check failed, 2 usage, 65 bad data, 66 no such input, 69 no device,\n"
           "70 internal error, 73 OUT exists or cannot be created, 74 input or output error, 130 SIGINT, 143 SIGTERM.\n",
           file);

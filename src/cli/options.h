@@ -28,6 +28,7 @@ typedef enum camber_verb {
     CAMBER_VERB_VALIDATE,
     CAMBER_VERB_BENCH,
     CAMBER_VERB_INFO,
+    CAMBER_VERB_STYLE,
 } camber_verb;
 
 /* Choices hold the value's place in the list that --help shows, which is that of the enum in camber.h;

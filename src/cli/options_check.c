@@ -108,6 +108,19 @@ static int check_inputs(const checked *p) {
     return CAMBER_EXIT_DONE;
 }
 
+/* style SUBCOMMAND FILE. */
+static int check_style(const checked *p) {
+    const camber_options *options = p->options;
+    if (options->input_count == 0 || strcmp(options->inputs[0], "eval") != 0)
+        return usage(p, "style: %s%swhat to do with a file; write camber style eval FILE",
+                     options->input_count ? options->inputs[0] : "", options->input_count ? ": not " : "say ");
+    if (options->input_count == 1)
+        return usage(p, "style %s: no file; give one, or - for standard input", options->inputs[0]);
+    if (options->input_count > 2)
+        return usage(p, "%s: style %s takes one file; leave out the others", options->inputs[2], options->inputs[0]);
+    return CAMBER_EXIT_DONE;
+}
+
 static int check_plot(const checked *p) {
     const char *plot = p->options->plot;
     if (plot && !has_extension(plot, ".svg") && !has_extension(plot, ".png"))
@@ -121,6 +134,8 @@ int camber_options_check(camber_options *options, const char *verb, char *messag
                         options->verb == CAMBER_VERB_BENCH;
     if (options->verb == CAMBER_VERB_NONE)
         return usage(p, "no verb given; `camber --help` lists them");
+    if (options->verb == CAMBER_VERB_STYLE)
+        return check_style(p);
     int status = check_inputs(p);
     if (status == CAMBER_EXIT_DONE)
         status = check_view(p);

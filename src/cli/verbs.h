@@ -10,5 +10,6 @@ int camber_verb_compare(camber_session *session);
 int camber_verb_validate(camber_session *session);
 int camber_verb_bench(camber_session *session);
 int camber_verb_info(camber_session *session);
+int camber_verb_style(camber_session *session);
 
 #endif

@@ -22,6 +22,12 @@ void camber_compiler_leave(camber_compiler *c) {
     c->path_length--;
 }
 
+void camber_compiler_end(camber_compiler *c) {
+    camber_free(c->context, c->operands);
+    c->operands = NULL;
+    c->operand_capacity = 0;
+}
+
 enum { POINTER_SIZE = 512 };
 
 /* RFC 6901; cut off where it is too long to be read anyway. */
@@ -47,8 +53,12 @@ static void write_pointer(const camber_compiler *c, char pointer[POINTER_SIZE]) 
 
 static void say(camber_compiler *c, camber_log_level level, const char *format, va_list list) {
     char pointer[POINTER_SIZE], message[512];
-    write_pointer(c, pointer);
     vsnprintf(message, sizeof message, format, list);
+    if (c->report) {
+        c->report(c->report_user, c, level, message);
+        return;
+    }
+    write_pointer(c, pointer);
     camber_log(c->context, level, "%s: %s%s%s", c->name, pointer, pointer[0] ? ": " : "", message);
 }
 
@@ -72,20 +82,6 @@ void camber_compiler_warn(camber_compiler *c, const char *format, ...) {
 static bool fail_memory(camber_compiler *c) {
     c->status = CAMBER_ERROR_MEMORY;
     return false;
-}
-
-const char *camber_json_name(const json_t *json) {
-    switch (json_typeof(json)) {
-    case JSON_OBJECT: return "an object";
-    case JSON_ARRAY: return "an array";
-    case JSON_STRING: return "a string";
-    case JSON_INTEGER:
-    case JSON_REAL: return "a number";
-    case JSON_TRUE:
-    case JSON_FALSE: return "a boolean";
-    case JSON_NULL: return "null";
-    }
-    return "nothing";
 }
 
 const char *camber_type_name(camber_type type) {

@@ -3,6 +3,7 @@
 #define CAMBER_COMPILER_H
 
 #include "style/expression.h"
+#include "style/json.h"
 
 /* Deepest nesting of an expression: compilation and evaluation recurse that far. */
 #define CAMBER_EXPRESSION_DEPTH 200
@@ -32,7 +33,9 @@ typedef struct camber_property {
     double low, high;          /* range of a number or of an array's items. Both 0: any */
 } camber_property;
 
-typedef struct camber_compiler {
+typedef struct camber_compiler camber_compiler;
+
+struct camber_compiler {
     camber_context *context;
     camber_style *style; /* gets the properties that are read */
     const char *name;    /* of the document */
@@ -43,7 +46,12 @@ typedef struct camber_compiler {
     size_t depth;
     uint32_t *operands; /* a stack: those of the nodes under construction */
     size_t operand_count, operand_capacity;
-} camber_compiler;
+    const json_t *state; /* an object of what "global-state" reads. NULL: nothing */
+    bool state_defaults; /* its members are {"default": value}, as a style's are */
+    /* Takes what is wrong instead of the log; the place is in path. NULL: the log */
+    void (*report)(void *user, const camber_compiler *c, camber_log_level level, const char *message);
+    void *report_user;
+};
 
 /* How an operand of unknown type becomes one of the expected type. */
 typedef enum camber_annotation {
@@ -56,11 +64,11 @@ typedef enum camber_annotation {
 void camber_compiler_enter_key(camber_compiler *c, const char *key);
 void camber_compiler_enter_index(camber_compiler *c, size_t index);
 void camber_compiler_leave(camber_compiler *c);
+/* Frees what the compiler has of its own. */
+void camber_compiler_end(camber_compiler *c);
 /* Logs "NAME: /pointer: " and the message, and sets the status. Returns false. */
 bool camber_compiler_fail(camber_compiler *c, const char *format, ...) CAMBER_PRINTF(2, 3);
 void camber_compiler_warn(camber_compiler *c, const char *format, ...) CAMBER_PRINTF(2, 3);
-/* "a string": what the JSON value is. */
-const char *camber_json_name(const json_t *json);
 
 /* A value of a property: a constant, an expression or an older function. NULL in *expression on failure. */
 bool camber_compile_property(camber_compiler *c, json_t *json, const camber_property *property,

@@ -4,7 +4,6 @@
 #include "base/embedded.h"
 #include "style/compiler.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -436,36 +435,20 @@ static bool read_document(parser *p) {
     return read_sources(p, json_object_get(p->root, "sources")) && read_layers(p, json_object_get(p->root, "layers"));
 }
 
-static camber_status fail_json(camber_context *context, const char *name, const json_error_t *error) {
-    /* jansson takes what it has no memory for to be a wrong character, mostly. */
-    if (json_error_code(error) == json_error_out_of_memory || errno == ENOMEM)
-        return camber_fail(context, CAMBER_ERROR_MEMORY, "%s: out of memory; make the document shorter", name);
-    return camber_fail(context, CAMBER_ERROR_INPUT, "%s: line %d, column %d: %s; correct the JSON there", name,
-                       error->line, error->column, error->text);
-}
-
 camber_status camber_style_parse(camber_context *context, const char *json, size_t size_bytes, const char *name,
                                  camber_style **style) {
-    json_error_t error;
     parser p = {.compiler = {.context = context, .name = name}};
     camber_compiler *c = &p.compiler;
-    if (size_bytes >= 3 && memcmp(json, "\xef\xbb\xbf", 3) == 0) {
-        json += 3;
-        size_bytes -= 3;
-    }
     c->style = camber_alloc_zero(context, 1, sizeof *c->style);
     if (!c->style)
         return CAMBER_ERROR_MEMORY;
     c->style->context = context;
-    errno = 0;
-    p.root = json_loadb(json, size_bytes, JSON_DECODE_ANY | JSON_DECODE_INT_AS_REAL, &error);
-    if (!p.root)
-        c->status = fail_json(context, name, &error);
-    else if (read_document(&p))
+    c->status = camber_json_read(context, json, size_bytes, name, &p.root);
+    if (c->status == CAMBER_OK && read_document(&p))
         *style = c->style;
     if (c->status != CAMBER_OK)
         camber_style_destroy(c->style);
-    camber_free(context, c->operands);
+    camber_compiler_end(c);
     json_decref(p.root);
     return c->status;
 }

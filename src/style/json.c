@@ -1,0 +1,98 @@
+#include "style/json.h"
+
+#include <errno.h>
+#include <stdlib.h>
+
+static camber_status fail(camber_context *context, const char *name, const json_error_t *error) {
+    /* jansson takes what it has no memory for to be a wrong character, mostly. */
+    if (json_error_code(error) == json_error_out_of_memory || errno == ENOMEM)
+        return camber_fail(context, CAMBER_ERROR_MEMORY, "%s: out of memory; make the document shorter", name);
+    return camber_fail(context, CAMBER_ERROR_INPUT, "%s: line %d, column %d: %s; correct the JSON there", name,
+                       error->line, error->column, error->text);
+}
+
+camber_status camber_json_read(camber_context *context, const char *bytes, size_t size_bytes, const char *name,
+                               json_t **json) {
+    json_error_t error;
+    if (size_bytes >= 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0) {
+        bytes += 3;
+        size_bytes -= 3;
+    }
+    errno = 0;
+    *json = json_loadb(bytes, size_bytes, JSON_DECODE_ANY | JSON_DECODE_INT_AS_REAL, &error);
+    return *json ? CAMBER_OK : fail(context, name, &error);
+}
+
+const char *camber_json_name(const json_t *json) {
+    if (!json)
+        return "nothing";
+    switch (json_typeof(json)) {
+    case JSON_OBJECT: return "an object";
+    case JSON_ARRAY: return "an array";
+    case JSON_STRING: return "a string";
+    case JSON_INTEGER:
+    case JSON_REAL: return "a number";
+    case JSON_TRUE:
+    case JSON_FALSE: return "a boolean";
+    case JSON_NULL: break;
+    }
+    return "null";
+}
+
+static int compare_members(const void *left, const void *right) {
+    return strcmp(((const camber_member *)left)->key, ((const camber_member *)right)->key);
+}
+
+static bool read_value(camber_arena *arena, const json_t *json, unsigned depth, camber_value *value);
+
+static bool read_array(camber_arena *arena, const json_t *json, unsigned depth, camber_value *value) {
+    const size_t count = json_array_size(json);
+    camber_value *items = camber_arena_alloc(arena, count * sizeof *items);
+    if (!items || count > UINT32_MAX)
+        return false;
+    for (size_t i = 0; i < count; i++)
+        if (!read_value(arena, json_array_get(json, i), depth, &items[i]))
+            return false;
+    *value = (camber_value){.type = CAMBER_VALUE_ARRAY, .count = (uint32_t)count, .items = items};
+    return true;
+}
+
+static bool read_object(camber_arena *arena, const json_t *json, unsigned depth, camber_value *value) {
+    const size_t count = json_object_size(json);
+    camber_member *members = camber_arena_alloc(arena, count * sizeof *members);
+    if (!members || count > UINT32_MAX)
+        return false;
+    uint32_t place = 0;
+    const char *key;
+    json_t *item;
+    json_object_foreach((json_t *)(uintptr_t)json, key, item) {
+        members[place] = (camber_member){.key = key, .place = place};
+        if (!read_value(arena, item, depth, &members[place].value))
+            return false;
+        place++;
+    }
+    qsort(members, count, sizeof *members, compare_members);
+    *value = (camber_value){.type = CAMBER_VALUE_OBJECT, .count = (uint32_t)count, .members = members};
+    return true;
+}
+
+static bool read_value(camber_arena *arena, const json_t *json, unsigned depth, camber_value *value) {
+    *value = (camber_value){.type = CAMBER_VALUE_NULL, .boolean = true};
+    if (json_is_boolean(json))
+        *value = (camber_value){.type = CAMBER_VALUE_BOOL, .boolean = json_is_true(json)};
+    else if (json_is_number(json))
+        *value = (camber_value){.type = CAMBER_VALUE_NUMBER, .number = json_number_value(json)};
+    else if (json_is_string(json))
+        *value = (camber_value){.type = CAMBER_VALUE_STRING, .string = json_string_value(json)};
+    else if (depth >= CAMBER_VALUE_DEPTH)
+        return json_is_null(json);
+    else if (json_is_array(json))
+        return read_array(arena, json, depth + 1, value);
+    else if (json_is_object(json))
+        return read_object(arena, json, depth + 1, value);
+    return true;
+}
+
+bool camber_json_to_value(camber_arena *arena, const json_t *json, camber_value *value) {
+    return read_value(arena, json, 0, value);
+}

@@ -448,6 +448,7 @@ typedef struct camber_camera {
     double bearing_deg;     /* clockwise: the direction that is up in the picture */
     uint32_t width, height; /* of the picture, px */
     double simplify_px;     /* points of less importance than this are left out. 0: none */
+    double translate_px;    /* farthest that a paint translates what is drawn: so far around the picture it is seen */
 } camber_camera;
 
 /* Tessellates what the camera sees of a network. The device projects, leaves out, cuts and compacts; of this the host
@@ -525,8 +526,11 @@ typedef struct camber_color {
 
 /* How a row is drawn in one pass. */
 typedef struct camber_paint {
-    float width_px; /* 0: nothing is drawn; at most the stroke's width */
+    float width_px; /* 0: nothing is drawn. gap_px + 2 width_px with a gap, else this, is at most the stroke's width */
     camber_color color;
+    float gap_px;                         /* 0: none; else the room between two bands of this width each */
+    float blur_px;                        /* 0: none; else edges fade over so much more than a pixel, inwards */
+    float translate_x_px, translate_y_px; /* where it is drawn, from where its polyline lies */
 } camber_paint;
 
 typedef enum camber_overlap {

@@ -156,7 +156,7 @@ bool golden_judge(const char *name, const picture *drawn) {
 size_t golden_row(golden *g, camber_stroke stroke) {
     assert_true(g->stroke_count < GOLDEN_ROWS);
     g->strokes[g->stroke_count] = stroke;
-    g->paints[0][g->stroke_count] = (camber_paint){stroke.width_px, {0, 0, 0, 1}};
+    g->paints[0][g->stroke_count] = (camber_paint){.width_px = stroke.width_px, .color = {0, 0, 0, 1}};
     return g->stroke_count++;
 }
 

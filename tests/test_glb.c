@@ -255,7 +255,8 @@ static void make_strokes(camber_stroke *strokes, camber_paint *paints) {
             (camber_stroke){0.7f + 3.0f * (float)i, (camber_join)(i % 3), (camber_cap)(i / 3), (float)(i % 2) * 4};
         if (i == 7)
             strokes[i].miter_limit = INFINITY; /* which JSON does not have */
-        paints[i] = (camber_paint){strokes[i].width_px, {0.5f, (float)i / 8, 1.0f, i == 4 ? 0.5f : 1.0f}};
+        paints[i] =
+            (camber_paint){.width_px = strokes[i].width_px, .color = {0.5f, (float)i / 8, 1.0f, i == 4 ? 0.5f : 1.0f}};
     }
 }
 
@@ -338,7 +339,7 @@ static void test_outline_by_hand(void **state) {
     const camber_polylines_desc lines = {.points = points, .point_count = 3, .offsets = offsets, .polyline_count = 1};
     for (int square = 0; square < 2; square++) {
         const camber_stroke stroke = {10, CAMBER_JOIN_MITER, square ? CAMBER_CAP_SQUARE : CAMBER_CAP_BUTT, 2};
-        const camber_paint paint = {10, {1.0f, 0.5f, 0.0f, 1.0f}};
+        const camber_paint paint = {.width_px = 10, .color = {1.0f, 0.5f, 0.0f, 1.0f}};
         camber_mesh_data mesh = tessellate(f, &lines, &stroke, 1, CAMBER_METHOD_STRIP);
         file bytes = {0};
         assert_int_equal(

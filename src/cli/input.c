@@ -65,7 +65,7 @@ static int open_polylines(camber_input *input) {
     }
     const double width_px = session->options->width_px > 0 ? session->options->width_px : WIDTH_PX;
     input->stroke = (camber_stroke){(float)width_px, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0};
-    input->paint = (camber_paint){(float)width_px, {0, 0, 0, 1}};
+    input->paint = (camber_paint){.width_px = (float)width_px, .color = {0, 0, 0, 1}};
     return CAMBER_EXIT_DONE;
 }
 

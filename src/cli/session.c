@@ -54,7 +54,7 @@ static void warm_up(const camber_session *session, camber_context *context) {
     const camber_network_desc lines = {.points = points, .offsets = offsets, .polyline_count = 1};
     const camber_camera camera = {.x = 8, .y = 8, .scale_px = 1, .width = 16, .height = 16};
     const camber_stroke stroke = {.width_px = 3};
-    const camber_paint paint = {3, {0, 0, 0, 1}};
+    const camber_paint paint = {.width_px = 3, .color = {0, 0, 0, 1}};
     const camber_tessellation_desc tessellation = {
         .strokes = &stroke, .stroke_count = 1, .method = camber_session_method(session)};
     camber_network *network = NULL;

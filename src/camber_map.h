@@ -45,9 +45,11 @@ CAMBER_API camber_status camber_style_evaluate(camber_context *context, const ch
 /* ---- Features: lines and the attributes that a style names --------------------------------------- */
 
 typedef struct camber_source_desc {
-    const char *path;  /* anything OGR opens, "/vsigzip/..." included; a .gz is opened through it */
+    /* Anything OGR opens, "/vsigzip/..." included; a .gz is opened through it. Vector tiles in MBTiles and PMTiles, by
+     * their endings, are read without GDAL, those of the highest zoom, unless there is a filter. */
+    const char *path;
     const char *layer; /* NULL: OSM's "lines"; a vector tile set's road layer; else every layer with lines */
-    const char *where; /* OGR attribute filter. NULL: none */
+    const char *where; /* OGR attribute filter; PMTiles have none. NULL: none */
     /* Leaves all lines apart. By default lines that the style cannot tell apart become one where two of them, and no
      * third, meet end to end; against their direction too, but for a style that names line-dasharray, line-offset,
      * line-gradient or line-pattern. */
@@ -91,6 +93,8 @@ CAMBER_API camber_features_times camber_features_get_times(const camber_features
 /* Whether any of the data is OpenStreetMap's, whose licence asks for attribution. */
 CAMBER_API bool camber_features_is_osm(const camber_features *features);
 
+/* Whether camber_features_read of such a file needs GDAL. */
+CAMBER_API bool camber_source_needs_gdal(const camber_source_desc *desc);
 /* Loads GDAL, which the first file that is read does else. It is half as long again once drivers have threads, so a
  * program that opens a device or a surface first may want it before. Returns CAMBER_ERROR_IO where GDAL or camber's
  * module for it is missing. Cost: 35 ms once a process; nothing in the static library, where GDAL is linked. */

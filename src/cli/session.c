@@ -86,12 +86,23 @@ static void *open_beside(void *user) {
     return NULL;
 }
 
+#ifdef CAMBER_MAP
+static bool needs_gdal(const camber_options *options) {
+    for (size_t i = 0; i < options->input_count; i++) {
+        const camber_source_desc desc = {.path = options->inputs[i], .where = options->where};
+        if (camber_source_needs_gdal(&desc))
+            return true;
+    }
+    return false;
+}
+#endif
+
 void camber_session_start(camber_session *session) {
     if (prepare(session) != CAMBER_OK)
         return;
 #ifdef CAMBER_MAP
     /* Before there are threads, which the loader would wait for. */
-    if (session->options->polylines == NULL && camber_gdal_load(session->context) != CAMBER_OK)
+    if (needs_gdal(session->options) && camber_gdal_load(session->context) != CAMBER_OK)
         return;
 #endif
     camber_opener *opener = calloc(1, sizeof *opener);

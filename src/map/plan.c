@@ -17,6 +17,8 @@ static camber_feature_view view_of(const camber_features *features, const camber
     return (camber_feature_view){
         .values = features->values ? features->values + class->first_value : NULL,
         .geometry_type = class->geometry == CAMBER_GEOMETRY_POLYGON ? "Polygon" : "LineString",
+        .id = class->id,
+        .all = class->all,
     };
 }
 

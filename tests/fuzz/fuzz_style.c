@@ -1,7 +1,7 @@
 /* Style documents: parsed, their layers evaluated over features with values of every kind, and drawn to a scene. */
 #include "fuzz_scene.h"
 
-#include "source/source.h"
+#include "source/fill.h"
 #include "style/style.h"
 
 #include <math.h>

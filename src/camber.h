@@ -557,6 +557,7 @@ typedef struct camber_pass {
     const camber_paint *paints; /* paint_count; a row at or past it is not drawn */
     size_t paint_count;
     camber_overlap overlap;
+    float opacity; /* of all that is drawn, put onto the picture as one layer. 0: 1, and no layer */
 } camber_pass;
 
 typedef struct camber_frame {

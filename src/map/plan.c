@@ -134,7 +134,7 @@ static float whole_width(const camber_paint *paint) {
 
 static camber_paint paint_of(const camber_plan_layer *layer, const camber_layer_paint *paint, double ratio) {
     const double widest_px = paint->gap_width > 0.0 ? WIDEST_PX / 3.0 : WIDEST_PX; /* of a band */
-    if (!(paint->width * ratio > 0.0 && paint->color.a > 0.0f))
+    if (!(paint->width * ratio > 0.0 && paint->color.a > 0.0f && (float)paint->layer_opacity > 0.0f))
         return (camber_paint){0};
     return (camber_paint){.width_px = (float)fmin(paint->width * ratio, widest_px),
                           .color = paint->color,

@@ -70,6 +70,7 @@ typedef struct layer_run {
     size_t first_layer, end_layer; /* of the plan */
     size_t first_polyline, end_polyline;
     size_t end_paint;
+    float opacity; /* of the layer; 1: of runs of several */
     bool opaque;
 } layer_run;
 
@@ -100,6 +101,8 @@ static size_t find_runs(const numbering *n, layer_run *runs, size_t *layer_count
             continue;
         ++*layer_count;
         const camber_plan_set *set = plan->sets + plan->layers[i].set;
+        const float opacity = (float)plan->layers[i].look.paint.layer_opacity;
+        opaque = opaque && opacity >= 1.0f;
         const size_t first = n->first_polylines[plan->layers[i].set], end = n->first_polylines[plan->layers[i].set + 1];
         layer_run *last = count ? runs + count - 1 : NULL;
         if (last && last->opaque && opaque && last->end_polyline == first) {
@@ -107,7 +110,7 @@ static size_t find_runs(const numbering *n, layer_run *runs, size_t *layer_count
             last->end_polyline = end;
             last->end_paint = end_of(n, set);
         } else {
-            runs[count++] = (layer_run){i, i + 1, first, end, end_of(n, set), opaque};
+            runs[count++] = (layer_run){i, i + 1, first, end, end_of(n, set), opacity, opaque};
         }
     }
     return count;
@@ -145,7 +148,8 @@ static camber_status make_passes(camber_context *context, const numbering *n, si
         list->passes[i] = (camber_pass){.first_polyline = runs[i].first_polyline,
                                         .polyline_count = runs[i].end_polyline - runs[i].first_polyline,
                                         .paints = paints,
-                                        .paint_count = runs[i].end_paint};
+                                        .paint_count = runs[i].end_paint,
+                                        .opacity = runs[i].opacity};
         paints += runs[i].end_paint;
     }
     list->count = count;

@@ -99,7 +99,17 @@ static bool read_source(camber_document *d, const char *name, json_t *json) {
     camber_style_source *source = &c->style->sources[c->style->source_count++];
     source->json = json_incref(json);
     source->name = camber_copy_string(c->context, name);
-    return (source->name || camber_document_fail_memory(d)) && camber_document_copy_string(d, type, &source->type);
+    if (!source->name)
+        return camber_document_fail_memory(d);
+    if (!camber_document_copy_string(d, type, &source->type))
+        return false;
+    json_t *filter = json_object_get(json, "filter");
+    if (!filter || strcmp(source->type, "geojson") != 0)
+        return true;
+    camber_compiler_enter_key(c, "filter");
+    const bool compiled = camber_compile_filter(c, filter, &source->filter);
+    camber_compiler_leave(c);
+    return compiled;
 }
 
 /* Before the layers, which name them. */
@@ -293,6 +303,7 @@ void camber_style_destroy(camber_style *style) {
         camber_free(context, style->sources[i].name);
         camber_free(context, style->sources[i].type);
         json_decref(style->sources[i].json);
+        camber_expression_destroy(context, style->sources[i].filter);
     }
     for (size_t i = 0; i < style->sprite_count; i++) {
         camber_free(context, style->sprites[i].id);

@@ -3,19 +3,27 @@
 
 #include <math.h>
 
-bool camber_style_layer_matches(const camber_style_layer *layer, double zoom, const camber_feature_view *feature) {
-    /* 24 is the largest limit that a style can name, and stands for none. */
-    if (!layer->visible || zoom < layer->min_zoom || (zoom >= layer->max_zoom && layer->max_zoom < 24.0))
-        return false;
-    if (!layer->filter)
+static bool passes(const camber_expression *filter, double zoom, const camber_feature_view *feature) {
+    if (!filter)
         return true;
     camber_evaluation evaluation;
     camber_evaluation_begin(&evaluation, zoom, feature);
     camber_value value;
-    const bool matches = camber_expression_evaluate(layer->filter, &evaluation, &value) &&
-                         value.type == CAMBER_VALUE_BOOL && value.boolean;
+    const bool matches =
+        camber_expression_evaluate(filter, &evaluation, &value) && value.type == CAMBER_VALUE_BOOL && value.boolean;
     camber_evaluation_end(&evaluation);
     return matches;
+}
+
+bool camber_style_layer_matches(const camber_style_layer *layer, double zoom, const camber_feature_view *feature) {
+    /* 24 is the largest limit that a style can name, and stands for none. */
+    if (!layer->visible || zoom < layer->min_zoom || (zoom >= layer->max_zoom && layer->max_zoom < 24.0))
+        return false;
+    return passes(layer->filter, zoom, feature);
+}
+
+bool camber_style_source_matches(const camber_style_source *source, const camber_feature_view *feature) {
+    return passes(source->filter, 0.0, feature);
 }
 
 static bool store_number(const camber_property_row *row, const camber_value *value, double *number) {

@@ -74,8 +74,9 @@ typedef struct camber_style_layer {
 
 typedef struct camber_style_source {
     char *name;
-    char *type;   /* "geojson", "vector", ... */
-    json_t *json; /* a reference to the source as it stands in the document */
+    char *type;                /* "geojson", "vector", ... */
+    json_t *json;              /* a reference to the source as it stands in the document */
+    camber_expression *filter; /* GeoJSON: of the features that there are at all. NULL: everything */
 } camber_style_source;
 
 /* A sprite of the style: pictures for patterns. */
@@ -107,6 +108,9 @@ struct camber_style {
     bool directed; /* a line layer names what follows its lines' direction: dashes, offsets, gradients, patterns */
     bool wants_polygons; /* a line layer's filter asks for outlines: it names the geometry type Polygon */
 };
+
+/* Whether the source's filter lets the feature pass; one that fails to evaluate is false. */
+bool camber_style_source_matches(const camber_style_source *source, const camber_feature_view *feature);
 
 /* Whether the layer draws features of this class at this zoom (visible, zoom range, filter). A filter that
  * fails to evaluate is false. */

@@ -156,7 +156,8 @@ void main() {
     bool is_seam = (here.last & RING) != 0u && kind == CUT, is_outer = kind == TIGHT && right == (turn_of(here.join) > 0.0);
     bool is_shared = (here.last & FIRST) != 0u ? is_seam : is_outer;
     bool goes_out = (here.last & (FIRST | START)) != 0u && !is_shared;
-    Record other = record_at(goes_out ? i + 1 : i - 1);
+    bool is_again = (here.last & START) != 0u; // the end lies between
+    Record other = record_at(goes_out ? i + 1 : is_again ? i - 2 : i - 1);
 #else
     int table = u_table, i = gl_VertexID >> 7;
     uint corner = uint(gl_VertexID) & 127u;

@@ -481,10 +481,16 @@ typedef struct camber_mesh_data {
     camber_record *records;
     uint32_t *corners;
     /* What is drawn by it: info.vertex_count, and info.index_count. Of strips these are two indices a record, both
-     * CAMBER_RESTART_INDEX where it lies between two strips. */
+     * CAMBER_RESTART_INDEX where it lies between two strips. At a tight join two records follow each other that have
+     * one index in common: of the two triangles between them one has no area, the other winds the other way and is
+     * culled. */
     camber_vertex *vertices;
     uint32_t *indices;
 } camber_mesh_data;
+
+/* Whether the three indices from one on are a triangle that is drawn. Of strips every index begins three, and the
+ * triangles at odd ones have their first two corners in the other order. */
+CAMBER_API bool camber_mesh_data_draws(const camber_mesh_data *data, size_t first_index);
 
 CAMBER_API camber_status camber_mesh_read(camber_mesh *mesh, camber_mesh_data *data);
 /* The CPU twin: the same bytes as camber_tessellate where the device rounds correctly. Needs no device. */
@@ -591,7 +597,7 @@ CAMBER_API camber_status camber_render(camber_renderer *renderer, const camber_f
 /* ---- Overdraw: what the GPU does for a mesh, counted on it ---- */
 
 /* Consecutive indices of a mesh, as camber_mesh_read numbers them: of triangles whole triangles, of strips a part of
- * one or several whole ones. */
+ * one or several whole ones, from an even index on. */
 typedef struct camber_index_range {
     uint64_t first_index, index_count;
 } camber_index_range;

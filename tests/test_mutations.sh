@@ -144,6 +144,7 @@ mutant kite shaders/stroke.vert "kites cut on the outer side" 'is_cut && inner ?
 mutant fan shaders/stroke.vert "a fan that turns back" 'vec2(sin(angle), outer * cos(angle))' 'vec2(-sin(angle), outer * cos(angle))'
 mutant strip shaders/stroke.vert "a segment from its end to its start" 'goes_out ? other.p - here.p' 'goes_out ? here.p - other.p'
 mutant strip shaders/stroke.vert "breaks that are drawn" 'right = !right;' ''
+mutant strip shaders/stroke.vert "a tight start placed by the end of no length" 'is_again ? i - 2' 'is_again ? i - 1'
 mutant strip shaders/stroke.vert "no pad" 'PAD_PX = 0.75' 'PAD_PX = 0.0'
 mutant strip shaders/edge.glsl "the slope of an edge" '1.0 / p,' '0.8 / p,'
 mutant strip shaders/stroke.frag "the corner of a pixel" 'corner * corner * edge.w' 'corner * edge.w'

@@ -275,8 +275,8 @@ static void test_ranges(void **state) {
                      made[0].sum.drawn_pixels + made[1].sum.drawn_pixels + made[2].sum.drawn_pixels);
 
     camber_overdraw sum = {1, 2, 3};
-    const camber_index_range outside[] = {{0, data.info.index_count + 1}, {UINT64_MAX, 3}, {3, UINT64_MAX}};
-    for (size_t i = 0; i < 3; i++) {
+    const camber_index_range outside[] = {{0, data.info.index_count + 1}, {UINT64_MAX, 3}, {4, UINT64_MAX}, {3, 4}};
+    for (size_t i = 0; i < 4; i++) {
         desc.ranges = outside + i;
         desc.range_count = 1;
         assert_int_equal(camber_overdraw_count(studio_any(s), &desc, &sum), CAMBER_ERROR_ARGUMENT);

@@ -23,6 +23,8 @@ void camber_renderer_use_shader(camber_renderer *renderer, const camber_shader *
     const GLfloat x = (GLfloat)piece->x, y = (GLfloat)piece->y, w = (GLfloat)piece->width, h = (GLfloat)piece->height;
     const GLfloat guard_x = (GLfloat)camber_renderer_guard(renderer, 0, (GLsizei)piece->width),
                   guard_y = (GLfloat)camber_renderer_guard(renderer, 1, (GLsizei)piece->height);
+    /* What winds the other way in a strip lies between the two records of a tight join. */
+    (mesh->mesh_info.strips ? gl->Enable : gl->Disable)(GL_CULL_FACE);
     gl->UseProgram(shader->program);
     gl->Uniform2f(shader->origin, x, y);
     gl->Uniform2f(shader->corner, x - guard_x, y - guard_y);

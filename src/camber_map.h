@@ -172,6 +172,9 @@ CAMBER_API void camber_scene_destroy(camber_scene *scene);
 CAMBER_API camber_status camber_scene_move(camber_scene *scene, const camber_view_desc *view);
 /* camber_tessellate_network of what the view sees. */
 CAMBER_API camber_status camber_scene_tessellate(const camber_scene *scene, camber_mesh *mesh, camber_method method);
+/* What that tessellates: the network, and into camera and desc what it is seen with; until the scene moves or goes. */
+CAMBER_API camber_network *camber_scene_network(const camber_scene *scene, camber_camera *camera,
+                                                camber_tessellation_desc *desc);
 
 /* Where the view is and whether its background is opaque; counts are 0. Makes nothing. */
 CAMBER_API camber_scene_info camber_scene_get_view(const camber_scene *scene);

@@ -405,7 +405,9 @@ head -c 4 "$lines" >"$tmp/in/short.bin"
 expect 0 "validate" validate --method strip --windows 8 --junit built-in.xml --pictures pictures
 passes 100
 has "$tmp/stdout" ': as the CPU twin, on ' ': the same bytes from run to run, on ' ': the same bytes in work-groups of 64, on ' \
-    ': the same bytes in parts, on ' ': pixels, on ' '^# .* pixels: mean '
+    ': the same bytes in parts, on ' ': pixels, on ' '^# .* pixels: mean ' ': network, zoomed out: strip: as the CPU twin, on ' \
+    ': network, cut: strip: the same bytes in parts, on ' ': network, within a segment: no point far outside the picture' \
+    ': network, simplified, turned: strip, as styled: pixels, on '
 is_xml built-in.xml
 has built-in.xml '<testsuites ' '<testsuite ' '<testcase ' 'failures="0"'
 [ "$(grep -c '<testcase ' built-in.xml)" = "$(sed -n 's/^1\.\.//p' "$tmp/stdout")" ] || fail "other cases than checks"
@@ -428,7 +430,8 @@ has "$tmp/stdout" '"checks": [1-9]' '"failed": 0' '"skipped": [0-9]' '"failures"
 cmp -s built-in.xml "$tmp/in/built-in.xml" && fail "the file has not changed"
 rm -f built-in.xml
 expect 0 "validate a map" validate "$tiger" --method kite --size 200x200 --backend osmesa
-passes 12
+passes 40
+has "$tmp/stdout" ': network, zoomed in: kite: as the CPU twin, on '
 lacks "$tmp/stdout" 'EGL'
 name="odd names"
 odd=$tmp/in/$'a#b\\<c>&"d\'\xff\n\x01.bin'

@@ -250,6 +250,17 @@ const camber_stroke *camber_input_strokes(const camber_input *input, size_t *cou
     return &input->stroke;
 }
 
+camber_network *camber_input_network(const camber_input *input, camber_camera *camera, camber_tessellation_desc *desc) {
+#ifdef CAMBER_MAP
+    if (input->scene)
+        return camber_scene_network(input->scene, camera, desc);
+#endif
+    (void)input;
+    (void)camera;
+    (void)desc;
+    return NULL;
+}
+
 camber_frame camber_input_frame(camber_input *input, camber_mesh *mesh) {
     camber_frame frame;
 #ifdef CAMBER_MAP

@@ -332,6 +332,12 @@ camber_status camber_scene_tessellate(const camber_scene *scene, camber_mesh *me
     return camber_tessellate_network(mesh, scene->geometry.network, &camera, &desc);
 }
 
+camber_network *camber_scene_network(const camber_scene *scene, camber_camera *camera, camber_tessellation_desc *desc) {
+    *camera = camera_of(scene);
+    *desc = desc_of(scene, CAMBER_METHOD_STRIP);
+    return scene->geometry.network;
+}
+
 void camber_scene_destroy(camber_scene *scene) {
     if (!scene)
         return;

@@ -42,6 +42,43 @@ CAMBER_API void camber_style_destroy(camber_style *style);
 CAMBER_API camber_status camber_style_evaluate(camber_context *context, const char *json, size_t size_bytes,
                                                const char *name, camber_sink sink);
 
+/* ---- What is wrong with a style, and what is drawn of it ---- */
+
+typedef struct camber_style_finding {
+    bool error; /* against the specification; else something that is not drawn, or not as a reader may expect */
+    const char *pointer; /* where, as a JSON pointer; "": the whole document */
+    const char *message; /* what, and the cure */
+} camber_style_finding;
+
+/* The layers of one type. */
+typedef struct camber_style_type {
+    const char *type;
+    size_t layers;
+    bool drawn;
+} camber_style_type;
+
+typedef struct camber_style_origin {
+    const char *name, *type;
+    size_t layers;       /* line layers that name it */
+    const char *trouble; /* why it cannot be read, with the cure. NULL: nothing is seen from here; it is not opened */
+} camber_style_origin;
+
+typedef struct camber_style_report {
+    const camber_style_finding *findings; /* in the order of the document, mostly */
+    size_t finding_count, error_count;
+    const camber_style_type *types; /* in the order they are met */
+    size_t type_count;
+    const camber_style_origin *sources;
+    size_t source_count;
+} camber_style_report;
+
+/* Reads a style document to its end whatever is wrong with it. Of an expression the first error is told, and of what is
+ * not drawn each kind once. Returns CAMBER_OK also for what is no style, which is a finding, and CAMBER_ERROR_MEMORY.
+ */
+CAMBER_API camber_status camber_style_check(camber_context *context, const char *json, size_t size_bytes,
+                                            const char *name, camber_style_report **report);
+CAMBER_API void camber_style_report_destroy(camber_style_report *report);
+
 /* ---- Features: lines and the attributes that a style names --------------------------------------- */
 
 typedef struct camber_source_desc {

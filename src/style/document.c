@@ -32,8 +32,11 @@ bool camber_document_copy_string(camber_document *d, const json_t *json, char **
 }
 
 bool camber_document_goes_on(camber_document *d, size_t path_length) {
+    if (!d->reads_on || d->compiler.status != CAMBER_ERROR_INPUT)
+        return false;
     d->compiler.path_length = path_length;
-    return false;
+    d->compiler.status = CAMBER_OK;
+    return true;
 }
 
 bool camber_document_read_string(camber_document *d, const json_t *object, const char *key, char **string) {
@@ -97,6 +100,8 @@ static bool read_source(camber_document *d, const char *name, json_t *json) {
     if (!json_is_string(type))
         return camber_compiler_fail(c, "the source has no \"type\" that is a string; write e.g. \"type\": \"geojson\"");
     camber_style_source *source = &c->style->sources[c->style->source_count++];
+    if (json_object_set_new(d->source_indices, name, json_integer((json_int_t)c->style->source_count - 1)) != 0)
+        return camber_document_fail_memory(d);
     source->json = json_incref(json);
     source->name = camber_copy_string(c->context, name);
     if (!source->name)
@@ -126,7 +131,8 @@ static bool read_sources(camber_document *d, json_t *sources) {
                                     camber_json_name(sources)) ||
                camber_document_goes_on(d, depth - 1);
     c->style->sources = camber_alloc_zero(c->context, json_object_size(sources), sizeof *c->style->sources);
-    if (!c->style->sources)
+    d->source_indices = json_object();
+    if (!c->style->sources || !d->source_indices)
         return camber_document_fail_memory(d);
     json_object_foreach(sources, name, json) {
         camber_compiler_enter_key(c, name);
@@ -179,8 +185,9 @@ static bool read_version(camber_document *d) {
     const size_t depth = c->path_length;
     camber_compiler_enter_key(c, "version");
     if (!json_is_number(version) || json_number_value(version) < 8.0 || json_number_value(version) > 8.0)
-        return camber_compiler_fail(c, "expected the number 8; write \"version\": 8") ||
-               camber_document_goes_on(d, depth);
+        if (!camber_compiler_fail(c, "expected the number 8; write \"version\": 8") &&
+            !camber_document_goes_on(d, depth))
+            return false;
     c->path_length = depth;
     if (!json_object_get(d->root, "constants"))
         return true;
@@ -230,6 +237,8 @@ static bool read_state(camber_document *d) {
         return camber_compiler_fail(c, "expected values with a default; write {\"name\": {\"default\": 1}, ...}") ||
                camber_document_goes_on(d, depth);
     c->style->state = json_incref(state);
+    c->state = state;
+    c->state_defaults = true;
     camber_compiler_leave(c);
     return true;
 }
@@ -253,38 +262,50 @@ static bool read_document(camber_document *d) {
            camber_document_read_layers(d, json_object_get(d->root, "layers"));
 }
 
-static camber_status fail_json(camber_context *context, const char *name, const json_error_t *error) {
+static bool fail_json(camber_document *d, const json_error_t *error) {
+    camber_compiler *c = &d->compiler;
     /* jansson takes what it has no memory for to be a wrong character, mostly. */
-    if (json_error_code(error) == json_error_out_of_memory || errno == ENOMEM)
-        return camber_fail(context, CAMBER_ERROR_MEMORY, "%s: out of memory; make the document shorter", name);
-    return camber_fail(context, CAMBER_ERROR_INPUT, "%s: line %d, column %d: %s; correct the JSON there", name,
-                       error->line, error->column, error->text);
+    if (json_error_code(error) != json_error_out_of_memory && errno != ENOMEM)
+        return camber_compiler_fail(c, "line %d, column %d: %s; correct the JSON there", error->line, error->column,
+                                    error->text);
+    c->status = camber_fail(c->context, CAMBER_ERROR_MEMORY, "%s: out of memory; make the document shorter", c->name);
+    return false;
 }
 
-camber_status camber_style_parse(camber_context *context, const char *json, size_t size_bytes, const char *name,
-                                 camber_style **style) {
+camber_status camber_document_read(camber_document *d, const char *json, size_t size_bytes) {
     json_error_t error;
-    camber_document d = {.compiler = {.context = context, .name = name}};
-    camber_compiler *c = &d.compiler;
     if (size_bytes >= 3 && memcmp(json, "\xef\xbb\xbf", 3) == 0) {
         json += 3;
         size_bytes -= 3;
     }
-    c->style = camber_alloc_zero(context, 1, sizeof *c->style);
-    if (!c->style)
-        return CAMBER_ERROR_MEMORY;
-    c->style->context = context;
     errno = 0;
-    d.root = json_loadb(json, size_bytes, JSON_DECODE_ANY | JSON_DECODE_INT_AS_REAL, &error);
-    if (!d.root)
-        c->status = fail_json(context, name, &error);
-    else if (read_document(&d))
-        *style = c->style;
-    if (c->status != CAMBER_OK)
-        camber_style_destroy(c->style);
-    camber_free(context, c->operands);
-    json_decref(d.root);
-    return c->status;
+    d->root = json_loadb(json, size_bytes, JSON_DECODE_ANY | JSON_DECODE_INT_AS_REAL, &error);
+    const bool done = d->root ? read_document(d) : fail_json(d, &error);
+    (void)(done || camber_document_goes_on(d, 0));
+    return d->compiler.status;
+}
+
+void camber_document_end(camber_document *d) {
+    camber_compiler_end(&d->compiler);
+    json_decref(d->source_indices);
+    json_decref(d->by_id);
+    json_decref(d->root);
+}
+
+camber_status camber_style_parse(camber_context *context, const char *json, size_t size_bytes, const char *name,
+                                 camber_style **style) {
+    camber_document d = {.compiler = {.context = context, .name = name}};
+    d.compiler.style = camber_alloc_zero(context, 1, sizeof *d.compiler.style);
+    if (!d.compiler.style)
+        return CAMBER_ERROR_MEMORY;
+    d.compiler.style->context = context;
+    const camber_status status = camber_document_read(&d, json, size_bytes);
+    if (status == CAMBER_OK)
+        *style = d.compiler.style;
+    else
+        camber_style_destroy(d.compiler.style);
+    camber_document_end(&d);
+    return status;
 }
 
 camber_status camber_style_builtin(camber_context *context, camber_theme theme, camber_style **style) {

@@ -12,7 +12,16 @@ typedef struct camber_document {
     json_t *root;
     const char *warned[CAMBER_WARNING_LIMIT]; /* what was warned of; the document's strings */
     size_t warned_count;
+    json_t *by_id;          /* layers by id, which others may refer to */
+    json_t *source_indices; /* by name */
+    bool reads_on;          /* past what is wrong: all of it is wanted */
 } camber_document;
+
+/* Reads the bytes into the compiler's style, which is there and empty; the root stays. Returns the compiler's status,
+ * where it reads on CAMBER_OK whatever is wrong. */
+camber_status camber_document_read(camber_document *d, const char *json, size_t size_bytes);
+/* What reading took; not the style. */
+void camber_document_end(camber_document *d);
 
 /* Whether this is the first time, and then it counts as said. */
 bool camber_document_first_time(camber_document *d, const char *what);

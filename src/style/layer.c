@@ -154,10 +154,8 @@ static bool find_source(camber_document *d, camber_style_layer *layer) {
     camber_compiler *c = &d->compiler;
     const camber_style *style = c->style;
     const size_t depth = c->path_length;
-    layer->source_index = CAMBER_NO_SOURCE;
-    for (size_t i = 0; layer->source && i < style->source_count; i++)
-        if (strcmp(style->sources[i].name, layer->source) == 0)
-            layer->source_index = (uint32_t)i;
+    const json_t *index = layer->source ? json_object_get(d->source_indices, layer->source) : NULL;
+    layer->source_index = index ? (uint32_t)json_integer_value(index) : CAMBER_NO_SOURCE;
     /* A style without sources is for files that are given beside it. */
     if (!layer->source || layer->source_index != CAMBER_NO_SOURCE || style->source_count == 0)
         return true;
@@ -200,7 +198,7 @@ static bool is_known_type(const char *type) {
 }
 
 /* A layer with a "ref" takes from that layer all that is not paint. *resolved is a new reference. */
-static bool resolve(camber_document *d, json_t *json, const json_t *layers, json_t **resolved) {
+static bool resolve(camber_document *d, json_t *json, json_t **resolved) {
     static const char *const taken[] = {"type", "source", "source-layer", "minzoom", "maxzoom", "filter", "layout"};
     camber_compiler *c = &d->compiler;
     const json_t *ref = json_object_get(json, "ref");
@@ -208,20 +206,14 @@ static bool resolve(camber_document *d, json_t *json, const json_t *layers, json
     if (!ref)
         return true;
     camber_compiler_enter_key(c, "ref");
-    const json_t *parent = NULL, *layer;
-    size_t i;
-    json_array_foreach(layers, i, layer) {
-        const char *id = json_string_value(json_object_get(layer, "id"));
-        if (id && json_is_string(ref) && strcmp(id, json_string_value(ref)) == 0)
-            parent = layer;
-    }
+    const json_t *parent = json_is_string(ref) ? json_object_get(d->by_id, json_string_value(ref)) : NULL;
     if (!parent || json_object_get(parent, "ref"))
         return camber_compiler_fail(c, !parent ? "no layer has this id; name one that has"
                                                : "the layer refers to another one itself; refer to that");
     camber_compiler_leave(c);
     json_t *made = json_copy(json);
     bool done = made != NULL;
-    for (i = 0; i < sizeof taken / sizeof *taken && done; i++) {
+    for (size_t i = 0; i < sizeof taken / sizeof *taken && done; i++) {
         json_t *value = json_object_get(parent, taken[i]);
         done = !value || json_object_set(made, taken[i], value) == 0;
     }
@@ -251,7 +243,7 @@ static bool read_resolved(camber_document *d, const json_t *json) {
     return read_layer(d, json, layer);
 }
 
-static bool read_any_layer(camber_document *d, json_t *json, const json_t *layers) {
+static bool read_any_layer(camber_document *d, json_t *json) {
     static const char *const known[] = {"id",     "type",   "metadata", "source", "source-layer", "minzoom", "maxzoom",
                                         "filter", "layout", "paint",    "ref",    "interactive",  NULL};
     camber_compiler *c = &d->compiler;
@@ -261,7 +253,7 @@ static bool read_any_layer(camber_document *d, json_t *json, const json_t *layer
     if (!json_is_string(json_object_get(json, "id")))
         return camber_compiler_fail(c, "the layer has no \"id\" that is a string; name it");
     camber_document_warn_unknown(d, json, known, "layer");
-    const bool done = resolve(d, json, layers, &resolved) && read_resolved(d, resolved);
+    const bool done = resolve(d, json, &resolved) && read_resolved(d, resolved);
     json_decref(resolved);
     return done;
 }
@@ -305,6 +297,18 @@ static bool check_ids(camber_document *d, const json_t *layers) {
     return goes_on;
 }
 
+static bool index_layers(camber_document *d, const json_t *layers) {
+    json_t *layer;
+    size_t i;
+    d->by_id = json_object();
+    bool done = d->by_id != NULL;
+    json_array_foreach(layers, i, layer) {
+        const char *id = json_string_value(json_object_get(layer, "id"));
+        done = done && (!id || json_object_set(d->by_id, id, layer) == 0);
+    }
+    return done || camber_document_fail_memory(d);
+}
+
 bool camber_document_read_layers(camber_document *d, const json_t *layers) {
     camber_compiler *c = &d->compiler;
     camber_compiler_enter_key(c, "layers");
@@ -314,9 +318,11 @@ bool camber_document_read_layers(camber_document *d, const json_t *layers) {
     c->style->layers = camber_alloc_zero(c->context, json_array_size(layers), sizeof *c->style->layers);
     if (!c->style->layers)
         return camber_document_fail_memory(d);
+    if (!index_layers(d, layers))
+        return false;
     for (size_t i = 0; i < json_array_size(layers); i++) {
         camber_compiler_enter_index(c, i);
-        if (read_any_layer(d, json_array_get(layers, i), layers))
+        if (read_any_layer(d, json_array_get(layers, i)))
             camber_compiler_leave(c);
         else if (!camber_document_goes_on(d, depth))
             return false;

@@ -21,11 +21,13 @@ static bool add_block(camber_arena *arena, size_t size_bytes) {
 void *camber_arena_alloc(camber_arena *arena, size_t size_bytes) {
     if (size_bytes > arena->limit)
         return NULL;
-    const size_t rounded = (size_bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+    const size_t rounded = size_bytes ? (size_bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT : ALIGNMENT;
     if (rounded > arena->limit || arena->used > arena->limit - rounded)
         return NULL;
-    if (rounded > arena->left && !add_block(arena, rounded))
+    if (rounded > arena->left && !add_block(arena, rounded)) {
+        arena->starved = true;
         return NULL;
+    }
     char *taken = arena->at;
     arena->at += rounded;
     arena->left -= rounded;

@@ -10,6 +10,7 @@ typedef struct camber_arena {
     size_t left;
     void *blocks; /* each begins with a pointer to the one before */
     size_t used, limit;
+    bool starved; /* memory ran out, not the limit */
 } camber_arena;
 
 /* Aligned to 8. NULL where the limit is reached or memory ran out, without a message. */

@@ -1,8 +1,11 @@
+/* Places and errors, nodes, types, constants. */
 #include "style/compiler.h"
+
+#include "style/evaluation.h"
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
+#include <stdlib.h>
 
 /* ---- Where we are, and what is wrong there ---- */
 
@@ -24,19 +27,26 @@ void camber_compiler_leave(camber_compiler *c) {
 
 void camber_compiler_end(camber_compiler *c) {
     camber_free(c->context, c->operands);
-    c->operands = NULL;
-    c->operand_capacity = 0;
+    camber_free(c->context, c->bindings);
+    camber_free(c->context, c->binding_heads);
+    camber_free(c->context, c->property_slots);
+    c->operands = c->binding_heads = c->property_slots = NULL;
+    c->bindings = NULL;
+    c->operand_capacity = c->binding_capacity = 0;
 }
 
-void camber_compiler_write_pointer(const camber_compiler *c, char pointer[CAMBER_POINTER_SIZE]) {
+enum { POINTER_SIZE = 512 };
+
+/* RFC 6901; cut off where it is too long to be read anyway. */
+static void write_pointer(const camber_compiler *c, char pointer[POINTER_SIZE]) {
     size_t used = 0;
     for (size_t i = 0; i < c->path_length && i < CAMBER_PATH_DEPTH; i++) {
         char number[24];
         snprintf(number, sizeof number, "%zu", c->path[i].index);
         const char *step = c->path[i].key ? c->path[i].key : number;
-        if (used + 1 < CAMBER_POINTER_SIZE)
+        if (used + 1 < POINTER_SIZE)
             pointer[used++] = '/';
-        for (; *step && used + 3 < CAMBER_POINTER_SIZE; step++) {
+        for (; *step && used + 3 < POINTER_SIZE; step++) {
             if (*step == '~' || *step == '/') {
                 pointer[used++] = '~';
                 pointer[used++] = *step == '~' ? '0' : '1';
@@ -49,13 +59,13 @@ void camber_compiler_write_pointer(const camber_compiler *c, char pointer[CAMBER
 }
 
 static void say(camber_compiler *c, camber_log_level level, const char *format, va_list list) {
-    char pointer[CAMBER_POINTER_SIZE], message[512];
+    char pointer[POINTER_SIZE], message[512];
     vsnprintf(message, sizeof message, format, list);
     if (c->report) {
         c->report(c->report_user, c, level, message);
         return;
     }
-    camber_compiler_write_pointer(c, pointer);
+    write_pointer(c, pointer);
     camber_log(c->context, level, "%s: %s%s%s", c->name, pointer, pointer[0] ? ": " : "", message);
 }
 
@@ -75,25 +85,16 @@ void camber_compiler_warn(camber_compiler *c, const char *format, ...) {
     va_end(list);
 }
 
-/* camber_grow has told the log. */
+/* camber_alloc has told of it. */
 static bool fail_memory(camber_compiler *c) {
     c->status = CAMBER_ERROR_MEMORY;
     return false;
 }
 
-const char *camber_type_name(camber_type type) {
-    switch (type) {
-    case CAMBER_TYPE_VALUE: return "any value";
-    case CAMBER_TYPE_NULL: return "null";
-    case CAMBER_TYPE_BOOL: return "a boolean";
-    case CAMBER_TYPE_NUMBER: return "a number";
-    case CAMBER_TYPE_STRING: return "a string";
-    case CAMBER_TYPE_COLOR: return "a colour";
-    case CAMBER_TYPE_ARRAY: return "an array";
-    case CAMBER_TYPE_OBJECT: return "an object";
-    case CAMBER_TYPE_IMAGE: return "an image";
-    }
-    return "nothing";
+bool camber_compiler_fail_memory(camber_compiler *c) {
+    c->status =
+        camber_fail(c->context, CAMBER_ERROR_MEMORY, "%s: out of memory; make the expressions shorter", c->name);
+    return false;
 }
 
 /* ---- Nodes ---- */
@@ -131,6 +132,27 @@ bool camber_push_label(camber_compiler *c, const camber_label *label) {
     return true;
 }
 
+static int compare_labels(const void *left, const void *right) {
+    const camber_label *a = left, *b = right;
+    if (a->string)
+        return strcmp(a->string, b->string);
+    return a->number < b->number ? -1 : a->number > b->number;
+}
+
+bool camber_sort_labels(camber_compiler *c, size_t first, bool unique) {
+    const size_t count = c->expression->label_count - first;
+    if (count < 2)
+        return true;
+    camber_label *labels = &c->expression->labels[first];
+    qsort(labels, count, sizeof *labels, compare_labels);
+    for (size_t i = 1; i < count && unique; i++)
+        if (compare_labels(&labels[i - 1], &labels[i]) == 0)
+            return labels[i].string
+                       ? camber_compiler_fail(c, "the label \"%.64s\" occurs twice; take one out", labels[i].string)
+                       : camber_compiler_fail(c, "the label %.17g occurs twice; take one out", labels[i].number);
+    return true;
+}
+
 bool camber_make_node(camber_compiler *c, const camber_node *prototype, size_t first_operand, uint32_t *node) {
     camber_expression *e = c->expression;
     const size_t count = c->operand_count - first_operand;
@@ -142,55 +164,85 @@ bool camber_make_node(camber_compiler *c, const camber_node *prototype, size_t f
     made.count = (uint32_t)count;
     for (size_t i = 0; i < count; i++) {
         const uint32_t operand = c->operands[first_operand + i];
+        const camber_node *from = &e->nodes[operand];
         e->links[e->link_count++] = operand;
-        made.reads_zoom |= e->nodes[operand].reads_zoom;
-        made.reads_feature |= e->nodes[operand].reads_feature;
+        made.reads_zoom |= from->reads_zoom;
+        made.reads_feature |= from->reads_feature;
+        made.reads_line_progress |= from->reads_line_progress;
+        if (from->height >= made.height)
+            made.height = (uint16_t)(from->height + 1);
     }
     c->operand_count = first_operand;
+    if (made.height > CAMBER_NODE_HEIGHT)
+        return camber_compiler_fail(c, "variables lead more than %d levels deep; bind fewer in each other",
+                                    CAMBER_NODE_HEIGHT);
     *node = (uint32_t)e->node_count;
     e->nodes[e->node_count++] = made;
     return true;
 }
 
-static camber_type type_of(const camber_value *value) {
-    switch (value->type) {
-    case CAMBER_VALUE_NULL: return CAMBER_TYPE_NULL;
-    case CAMBER_VALUE_BOOL: return CAMBER_TYPE_BOOL;
-    case CAMBER_VALUE_NUMBER: return CAMBER_TYPE_NUMBER;
-    case CAMBER_VALUE_STRING: return CAMBER_TYPE_STRING;
-    case CAMBER_VALUE_COLOR: return CAMBER_TYPE_COLOR;
-    case CAMBER_VALUE_ARRAY: return CAMBER_TYPE_ARRAY;
-    case CAMBER_VALUE_OBJECT: return CAMBER_TYPE_OBJECT;
-    }
-    return CAMBER_TYPE_NULL;
+bool camber_wrap_node(camber_compiler *c, camber_op op, camber_typing type, uint32_t *node) {
+    const size_t first_operand = c->operand_count;
+    return camber_push_operand(c, *node) &&
+           camber_make_node(c, &(camber_node){.op = op, .type = type}, first_operand, node);
 }
 
-bool camber_make_constant(camber_compiler *c, const camber_value *value, uint32_t *node) {
-    return camber_make_node(c, &(camber_node){.op = CAMBER_OP_CONSTANT, .type = type_of(value), .value = *value},
+bool camber_make_constant(camber_compiler *c, const camber_value *value, camber_typing type, uint32_t *node) {
+    return camber_make_node(c, &(camber_node){.op = CAMBER_OP_CONSTANT, .type = type, .value = *value},
                             c->operand_count, node);
 }
 
 bool camber_make_json_constant(camber_compiler *c, const json_t *json, uint32_t *node) {
-    camber_value value = {.type = CAMBER_VALUE_NULL};
-    if (json_is_boolean(json))
-        value = (camber_value){.type = CAMBER_VALUE_BOOL, .boolean = json_is_true(json)};
-    else if (json_is_number(json))
-        value = (camber_value){.type = CAMBER_VALUE_NUMBER, .number = json_number_value(json)};
-    else if (json_is_string(json))
-        value = (camber_value){.type = CAMBER_VALUE_STRING, .string = json_string_value(json)};
-    else if (!json_is_null(json))
-        return camber_compiler_fail(c, "expected a string, number, boolean or null, found %s; take it out",
-                                    camber_json_name(json));
-    return camber_make_constant(c, &value, node);
+    camber_value value;
+    if (!camber_json_to_value(&c->expression->arena, json, &value))
+        return camber_compiler_fail_memory(c);
+    return camber_make_constant(c, &value, camber_typing_of_value(&value), node);
+}
+
+bool camber_make_reader(camber_compiler *c, camber_op op, camber_type type, uint32_t *node) {
+    const bool zoom = op == CAMBER_OP_ZOOM, progress = op == CAMBER_OP_LINE_PROGRESS;
+    const camber_node prototype = {.op = op,
+                                   .type = camber_typing_of(type),
+                                   .reads_zoom = zoom,
+                                   .reads_line_progress = progress,
+                                   .reads_feature = !zoom && !progress};
+    c->style->wants_id |= op == CAMBER_OP_ID || op == CAMBER_OP_HAS_ID;
+    c->style->wants_all_properties |= op == CAMBER_OP_PROPERTIES;
+    return camber_make_node(c, &prototype, c->operand_count, node);
+}
+
+/* ---- Properties of features ---- */
+
+/* Four slots a property keep probes short. */
+enum { PROPERTY_SLOTS = 4 * CAMBER_PROPERTY_LIMIT };
+
+static size_t property_slot(const camber_compiler *c, const char *name) {
+    const uint64_t hash = camber_hash(CAMBER_HASH_START, name, strlen(name));
+    size_t slot = (size_t)(hash ^ hash >> 32) % PROPERTY_SLOTS;
+    while (c->property_slots[slot] && strcmp(c->style->properties[c->property_slots[slot] - 1], name) != 0)
+        slot = (slot + 1) % PROPERTY_SLOTS;
+    return slot;
+}
+
+/* A style may have properties of an earlier compiler. */
+static bool hash_properties(camber_compiler *c) {
+    if (c->property_slots)
+        return true;
+    c->property_slots = camber_alloc_zero(c->context, PROPERTY_SLOTS, sizeof *c->property_slots);
+    if (!c->property_slots)
+        return fail_memory(c);
+    for (size_t i = 0; i < c->style->property_count; i++)
+        c->property_slots[property_slot(c, c->style->properties[i])] = (uint32_t)i + 1;
+    return true;
 }
 
 bool camber_make_property(camber_compiler *c, camber_op op, const char *name, uint32_t *node) {
     camber_style *style = c->style;
-    size_t index = 0;
-    while (index < style->property_count && strcmp(style->properties[index], name) != 0)
-        index++;
-    if (index == style->property_count) {
-        if (index >= CAMBER_PROPERTY_LIMIT)
+    if (!hash_properties(c))
+        return false;
+    const size_t slot = property_slot(c, name);
+    if (!c->property_slots[slot]) {
+        if (style->property_count >= CAMBER_PROPERTY_LIMIT)
             return camber_compiler_fail(c, "more than %d feature properties are read; use fewer",
                                         CAMBER_PROPERTY_LIMIT);
         /* The limit is small, so the array has its full size from the beginning and needs no capacity. */
@@ -200,145 +252,171 @@ bool camber_make_property(camber_compiler *c, camber_op op, const char *name, ui
         if (!copy)
             return fail_memory(c);
         style->properties[style->property_count++] = copy;
+        c->property_slots[slot] = (uint32_t)style->property_count;
     }
-    return camber_make_node(c,
-                            &(camber_node){.op = op,
-                                           .type = op == CAMBER_OP_HAS ? CAMBER_TYPE_BOOL : CAMBER_TYPE_VALUE,
-                                           .index = (uint32_t)index,
-                                           .reads_feature = true},
-                            c->operand_count, node);
+    const camber_node prototype = {.op = op,
+                                   .type = camber_typing_of(op == CAMBER_OP_HAS ? CAMBER_TYPE_BOOL : CAMBER_TYPE_VALUE),
+                                   .index = c->property_slots[slot] - 1,
+                                   .reads_feature = true};
+    return camber_make_node(c, &prototype, c->operand_count, node);
 }
 
-/* ---- Types ---- */
+/* ---- Variables ---- */
 
-static bool wrap(camber_compiler *c, const camber_node *prototype, uint32_t *node) {
-    const size_t first_operand = c->operand_count;
-    return camber_push_operand(c, *node) && camber_make_node(c, prototype, first_operand, node);
+static size_t binding_head(const char *name) {
+    const uint64_t hash = camber_hash(CAMBER_HASH_START, name, strlen(name));
+    return (size_t)(hash ^ hash >> 32) % CAMBER_BINDING_HEADS;
 }
 
-bool camber_make_to_string(camber_compiler *c, uint32_t *node) {
-    camber_node prototype = {.op = CAMBER_OP_TO_STRING, .type = CAMBER_TYPE_STRING};
-    if (c->expression->scratch_count == CAMBER_SCRATCH_COUNT)
-        return camber_compiler_fail(c, "more than %d conversions to strings in one expression; use fewer",
-                                    CAMBER_SCRATCH_COUNT);
-    prototype.index = c->expression->scratch_count++;
-    return wrap(c, &prototype, node);
-}
-
-bool camber_annotate(camber_compiler *c, camber_type expected, camber_annotation annotation, uint32_t *node) {
-    const camber_type actual = camber_node_at(c, *node)->type;
-    const bool omit = annotation == CAMBER_ANNOTATE_OMIT;
-    if (expected == CAMBER_TYPE_VALUE || actual == expected)
-        return true;
-    const bool scalar =
-        expected == CAMBER_TYPE_NUMBER || expected == CAMBER_TYPE_STRING || expected == CAMBER_TYPE_BOOL;
-    if (scalar && actual == CAMBER_TYPE_VALUE) {
-        if (omit)
-            return true;
-        if (annotation == CAMBER_ANNOTATE_COERCE && expected == CAMBER_TYPE_STRING)
-            return camber_make_to_string(c, node);
-        return wrap(c, &(camber_node){.op = CAMBER_OP_ASSERT, .type = expected}, node);
+bool camber_bind(camber_compiler *c, const char *name, uint32_t node) {
+    if (!c->binding_heads) {
+        c->binding_heads = camber_alloc(c->context, CAMBER_BINDING_HEADS, sizeof *c->binding_heads);
+        if (!c->binding_heads)
+            return fail_memory(c);
+        for (size_t i = 0; i < CAMBER_BINDING_HEADS; i++)
+            c->binding_heads[i] = CAMBER_BINDING_LIMIT;
     }
-    if (expected == CAMBER_TYPE_COLOR && (actual == CAMBER_TYPE_VALUE || actual == CAMBER_TYPE_STRING))
-        return omit || wrap(c, &(camber_node){.op = CAMBER_OP_TO_COLOR, .type = expected}, node);
-    return camber_compiler_fail(c, "expected %s, found %s; change the value or convert it", camber_type_name(expected),
-                                camber_type_name(actual));
+    if (c->expression->slot_count >= CAMBER_BINDING_LIMIT)
+        return camber_compiler_fail(c, "more than %d variables are bound in one expression; bind fewer",
+                                    CAMBER_BINDING_LIMIT);
+    if (!grow(c, &c->bindings, &c->binding_capacity, c->binding_count, sizeof *c->bindings))
+        return false;
+    uint32_t *head = &c->binding_heads[binding_head(name)];
+    c->bindings[c->binding_count] = (camber_binding){name, node, c->expression->slot_count++, *head};
+    *head = (uint32_t)c->binding_count++;
+    return true;
+}
+
+void camber_unbind(camber_compiler *c, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        const camber_binding *last = &c->bindings[--c->binding_count];
+        c->binding_heads[binding_head(last->name)] = last->next;
+    }
+}
+
+const camber_binding *camber_find_binding(const camber_compiler *c, const char *name) {
+    uint32_t at = c->binding_heads ? c->binding_heads[binding_head(name)] : CAMBER_BINDING_LIMIT;
+    while (at != CAMBER_BINDING_LIMIT && strcmp(c->bindings[at].name, name) != 0)
+        at = c->bindings[at].next;
+    return at == CAMBER_BINDING_LIMIT ? NULL : &c->bindings[at];
 }
 
 /* ---- Folding ---- */
 
-typedef struct mark {
-    size_t nodes, links, stops, labels;
-    uint32_t scratch;
-} mark;
-
-static mark set_mark(const camber_expression *e) {
-    return (mark){e->node_count, e->link_count, e->stop_count, e->label_count, e->scratch_count};
-}
-
 static bool is_foldable(const camber_expression *e, const camber_node *node) {
-    switch (node->op) {
-    case CAMBER_OP_CONSTANT:
-    case CAMBER_OP_ARRAY:
-    case CAMBER_OP_GET:
-    case CAMBER_OP_HAS:
-    case CAMBER_OP_ZOOM:
-    case CAMBER_OP_GEOMETRY_TYPE: return false;
-    default: break;
-    }
-    for (uint32_t i = 0; i < node->count; i++) {
-        const camber_op op = e->nodes[e->links[node->first + i]].op;
-        if (op != CAMBER_OP_CONSTANT && op != CAMBER_OP_ARRAY)
-            return false;
-    }
-    return true;
-}
-
-/* The text of a folded constant must outlive the evaluation that made it. */
-static bool keep_text(camber_compiler *c, camber_value *value) {
-    camber_expression *e = c->expression;
-    if (!grow(c, &e->texts, &e->text_capacity, e->text_count, sizeof *e->texts))
+    if (node->op <= CAMBER_OP_HAS_NAMED || node->op == CAMBER_OP_VAR || node->op == CAMBER_OP_ERROR ||
+        node->op == CAMBER_OP_COLLATOR || (node->op >= CAMBER_OP_PROPERTIES && node->op <= CAMBER_OP_LINE_PROGRESS))
         return false;
-    char *copy = camber_copy_string(c->context, value->string);
-    if (!copy)
-        return fail_memory(c);
-    e->texts[e->text_count++] = copy;
-    value->string = copy;
+    for (uint32_t i = 0; i < node->count; i++)
+        if (e->nodes[e->links[node->first + i]].op != CAMBER_OP_CONSTANT)
+            return false;
     return true;
 }
 
-/* Replaces a node all of whose operands are constants by its value, and drops what was made since the mark. */
-static bool fold(camber_compiler *c, mark before, uint32_t *node) {
+/* Replaces a node all of whose operands are constants by its value, which lives in the expression's memory. */
+static bool fold(camber_compiler *c, uint32_t *node) {
     camber_expression *e = c->expression;
     if (!is_foldable(e, &e->nodes[*node]))
         return true;
-    camber_evaluation evaluation = {.zoom = 0.0};
+    camber_evaluation evaluation;
     camber_value value;
-    const bool makes_text = e->nodes[*node].op == CAMBER_OP_TO_STRING;
-    const camber_type type = e->nodes[*node].type;
-    if (!camber_expression_evaluate_node(e, *node, &evaluation, &value))
-        return camber_compiler_fail(c, "cannot be evaluated: %s; correct the value", evaluation.cause);
-    if (makes_text && !keep_text(c, &value))
-        return false;
-    e->node_count = before.nodes;
-    e->link_count = before.links;
-    e->stop_count = before.stops;
-    e->label_count = before.labels;
-    e->scratch_count = before.scratch;
-    if (!camber_make_constant(c, &value, node))
-        return false;
-    /* Branches of several types have no one type, whichever of them was taken. */
-    if (type == CAMBER_TYPE_VALUE && value.type != CAMBER_VALUE_NULL)
-        e->nodes[*node].type = type_of(&value);
-    return true;
+    camber_evaluation_begin(&evaluation, 0.0, NULL);
+    evaluation.expression = e;
+    evaluation.arena = &e->arena;
+    evaluation.slots = NULL;
+    evaluation.work = 0;
+    const size_t used = e->arena.used, left = CAMBER_FOLD_LIMIT - c->folded_bytes;
+    e->arena.limit = used + (left < CAMBER_EVALUATION_LIMIT ? left : CAMBER_EVALUATION_LIMIT);
+    const bool done = camber_evaluate_node(&evaluation, *node, &value);
+    e->arena.limit = SIZE_MAX;
+    c->folded_bytes += e->arena.used - used;
+    c->folded_work += evaluation.work;
+    if (!done && e->arena.starved)
+        return camber_compiler_fail_memory(c);
+    if (!done)
+        return camber_compiler_fail(c, "cannot be evaluated: %.200s; correct the value", evaluation.cause);
+    if (c->folded_work > CAMBER_FOLD_WORK_LIMIT)
+        return camber_compiler_fail(c, "the style's constants take too long to be evaluated; write out what they are");
+    const camber_typing type = e->nodes[*node].type;
+    return camber_make_constant(c, &value, type, node);
+}
+
+/* ---- Types ---- */
+
+bool camber_annotate(camber_compiler *c, camber_typing expected, camber_annotation annotation, uint32_t *node) {
+    const camber_typing actual = camber_node_at(c, *node)->type;
+    const bool unknown = actual.type == CAMBER_TYPE_VALUE, omit = annotation == CAMBER_ANNOTATE_OMIT;
+    char wanted[CAMBER_TYPING_TEXT_SIZE], found[CAMBER_TYPING_TEXT_SIZE];
+    switch (expected.type) {
+    case CAMBER_TYPE_BOOL:
+    case CAMBER_TYPE_NUMBER:
+    case CAMBER_TYPE_STRING:
+    case CAMBER_TYPE_ARRAY:
+    case CAMBER_TYPE_OBJECT:
+        if (!unknown)
+            break;
+        return omit || (camber_wrap_node(c,
+                                         annotation == CAMBER_ANNOTATE_COERCE && expected.type == CAMBER_TYPE_STRING
+                                             ? CAMBER_OP_TO_STRING
+                                             : CAMBER_OP_ASSERT,
+                                         expected, node) &&
+                        fold(c, node));
+    case CAMBER_TYPE_COLOR:
+    case CAMBER_TYPE_IMAGE:
+        if (!unknown && actual.type != CAMBER_TYPE_STRING)
+            break;
+        return omit ||
+               (camber_wrap_node(c, expected.type == CAMBER_TYPE_COLOR ? CAMBER_OP_TO_COLOR : CAMBER_OP_TO_STRING,
+                                 expected, node) &&
+                fold(c, node));
+    case CAMBER_TYPE_VALUE:
+    case CAMBER_TYPE_NULL:
+    case CAMBER_TYPE_COLLATOR:
+    case CAMBER_TYPE_ERROR: break;
+    }
+    return camber_typing_fits(expected, actual) ||
+           camber_compiler_fail(c, "expected %s, found %s; change the value or convert it",
+                                camber_typing_name(expected, wanted), camber_typing_name(actual, found));
 }
 
 /* ---- Compilation ---- */
 
-static bool compile_as(camber_compiler *c, json_t *json, camber_type expected, camber_annotation annotation,
+/* What a constant was made of is not needed once it is one. */
+static bool drop_since(camber_compiler *c, const camber_expression *before, uint32_t *node) {
+    camber_expression *e = c->expression;
+    const camber_node constant = e->nodes[*node];
+    if (constant.op != CAMBER_OP_CONSTANT)
+        return true;
+    e->node_count = before->node_count;
+    e->link_count = before->link_count;
+    e->stop_count = before->stop_count;
+    e->label_count = before->label_count;
+    return camber_make_constant(c, &constant.value, constant.type, node);
+}
+
+bool camber_compile_as(camber_compiler *c, json_t *json, camber_typing expected, camber_annotation annotation,
                        uint32_t *node) {
     if (c->depth >= CAMBER_EXPRESSION_DEPTH)
         return camber_compiler_fail(c, "nested deeper than %d levels; flatten the expression", CAMBER_EXPRESSION_DEPTH);
-    const mark before = set_mark(c->expression);
+    const camber_expression before = *c->expression;
     c->depth++;
     bool done;
     if (json_is_array(json))
-        done = camber_compile_operator(c, json, expected, node);
+        done = camber_compile_operator(c, json, expected, node) && fold(c, node) && drop_since(c, &before, node);
     else if (json_is_object(json))
-        done = camber_compiler_fail(c, "an object is not an expression; write a constant or an array [operator, ...]");
+        done = camber_compiler_fail(c, "an object is not an expression; write [\"literal\", {...}]");
     else
         done = camber_make_json_constant(c, json, node);
-    /* Folded before annotation too, so that the types of constants are known. */
-    done = done && fold(c, before, node) && camber_annotate(c, expected, annotation, node) && fold(c, before, node);
+    done = done && camber_annotate(c, expected, annotation, node);
     c->depth--;
     return done;
 }
 
-bool camber_compile(camber_compiler *c, json_t *json, camber_type expected, uint32_t *node) {
-    return compile_as(c, json, expected, CAMBER_ANNOTATE_ASSERT, node);
+bool camber_compile(camber_compiler *c, json_t *json, camber_typing expected, uint32_t *node) {
+    return camber_compile_as(c, json, expected, CAMBER_ANNOTATE_ASSERT, node);
 }
 
-bool camber_compile_element(camber_compiler *c, const json_t *array, size_t index, camber_type expected,
+bool camber_compile_element(camber_compiler *c, const json_t *array, size_t index, camber_typing expected,
                             uint32_t *node) {
     camber_compiler_enter_index(c, index);
     if (!camber_compile(c, json_array_get(array, index), expected, node))
@@ -347,93 +425,54 @@ bool camber_compile_element(camber_compiler *c, const json_t *array, size_t inde
     return true;
 }
 
-bool camber_compile_loose_element(camber_compiler *c, const json_t *array, size_t index, camber_type expected,
-                                  uint32_t *node) {
+bool camber_compile_operand(camber_compiler *c, const json_t *array, size_t index, camber_typing expected) {
+    uint32_t node;
+    return camber_compile_element(c, array, index, expected, &node) && camber_push_operand(c, node);
+}
+
+bool camber_compile_loose_operand(camber_compiler *c, const json_t *array, size_t index, camber_typing expected) {
+    uint32_t node;
     camber_compiler_enter_index(c, index);
-    if (!compile_as(c, json_array_get(array, index), expected, CAMBER_ANNOTATE_OMIT, node))
+    if (!camber_compile_as(c, json_array_get(array, index), expected, CAMBER_ANNOTATE_OMIT, &node))
         return false;
     camber_compiler_leave(c);
-    return true;
+    return camber_push_operand(c, node);
+}
+
+/* ---- Whole expressions ---- */
+
+bool camber_expression_keep(camber_compiler *c, json_t *json) {
+    return json_array_append(c->expression->documents, json) == 0 || camber_compiler_fail_memory(c);
 }
 
 bool camber_expression_begin(camber_compiler *c, json_t *json) {
+    c->depth = 0;
+    c->operand_count = 0;
+    camber_unbind(c, c->binding_count);
     c->expression = camber_alloc_zero(c->context, 1, sizeof *c->expression);
     if (!c->expression)
         return fail_memory(c);
-    c->expression->document = json_incref(json);
-    c->depth = 0;
-    c->operand_count = 0;
-    return true;
+    c->expression->context = c->context;
+    c->expression->arena = (camber_arena){.context = c->context, .limit = SIZE_MAX};
+    c->expression->documents = json_array();
+    if (c->expression->documents && camber_expression_keep(c, json))
+        return true;
+    camber_expression_destroy(c->context, c->expression);
+    c->expression = NULL;
+    return c->status == CAMBER_ERROR_MEMORY ? false : camber_compiler_fail_memory(c);
 }
 
 bool camber_expression_end(camber_compiler *c, bool done, uint32_t root, camber_expression **expression) {
-    if (done) {
-        c->expression->root = root;
-        c->expression->reads_zoom = c->expression->nodes[root].reads_zoom;
-        c->expression->reads_feature = c->expression->nodes[root].reads_feature;
-        *expression = c->expression;
-    } else {
-        camber_expression_destroy(c->context, c->expression);
-    }
+    camber_expression *e = c->expression;
     c->expression = NULL;
-    return done;
-}
-
-/* The specification: zoom is read by one step or interpolate at the top, or in a coalesce there. */
-static bool zoom_is_at_top(const camber_expression *e, uint32_t index) {
-    const camber_node *node = &e->nodes[index];
-    uint32_t readers = 0;
-    for (uint32_t i = 0; i < node->count; i++)
-        readers += e->nodes[e->links[node->first + i]].reads_zoom;
-    if (readers != 1)
-        return readers == 0 && node->op != CAMBER_OP_ZOOM;
-    if (node->op == CAMBER_OP_STEP || node->op == CAMBER_OP_INTERPOLATE)
-        return e->nodes[e->links[node->first]].op == CAMBER_OP_ZOOM;
-    if (node->op != CAMBER_OP_COALESCE)
+    if (!done) {
+        camber_expression_destroy(c->context, e);
         return false;
-    uint32_t i = 0;
-    while (!e->nodes[e->links[node->first + i]].reads_zoom)
-        i++;
-    return zoom_is_at_top(e, e->links[node->first + i]);
-}
-
-static bool check_property(camber_compiler *c, const camber_property *property, uint32_t root) {
-    const camber_node *node = camber_node_at(c, root);
-    if (!zoom_is_at_top(c->expression, root))
-        return camber_compiler_fail(c, "\"zoom\" may only be the input of one \"step\" or \"interpolate\" at the top; "
-                                       "move that curve outwards");
-    if (node->reads_feature && !property->data_driven)
-        return camber_compiler_fail(c, "%s cannot depend on features; use a constant or zoom", property->name);
-    if (node->op != CAMBER_OP_CONSTANT || property->type != CAMBER_TYPE_NUMBER)
-        return true;
-    const double number = node->value.number;
-    if ((property->low < 0.0 || property->high > 0.0) && !(number >= property->low && number <= property->high))
-        return camber_compiler_fail(c, "%g is out of range; use %g to %g", number, property->low, property->high);
+    }
+    e->root = root;
+    e->reads_zoom = e->nodes[root].reads_zoom;
+    e->reads_feature = e->nodes[root].reads_feature;
+    e->reads_line_progress = e->nodes[root].reads_line_progress;
+    *expression = e;
     return true;
-}
-
-static bool compile_property(camber_compiler *c, json_t *json, const camber_property *property, uint32_t *root) {
-    if (json_is_object(json))
-        return camber_compile_function(c, json, property, root) && check_property(c, property, *root);
-    const bool fits = json_is_array(json) || (property->type == CAMBER_TYPE_NUMBER ? json_is_number(json)
-                                              : property->type == CAMBER_TYPE_BOOL ? json_is_boolean(json)
-                                                                                   : json_is_string(json));
-    if (!fits)
-        return camber_compiler_fail(c, "expected %s or an expression, found %s; write e.g. %s",
-                                    camber_type_name(property->type), camber_json_name(json),
-                                    property->type == CAMBER_TYPE_NUMBER  ? "2"
-                                    : property->type == CAMBER_TYPE_COLOR ? "\"#a0c4ff\""
-                                                                          : "\"round\"");
-    const camber_annotation annotation =
-        property->type == CAMBER_TYPE_STRING ? CAMBER_ANNOTATE_COERCE : CAMBER_ANNOTATE_ASSERT;
-    return compile_as(c, json, property->type, annotation, root) && check_property(c, property, *root);
-}
-
-bool camber_compile_property(camber_compiler *c, json_t *json, const camber_property *property,
-                             camber_expression **expression) {
-    uint32_t root = 0;
-    if (!camber_expression_begin(c, json))
-        return false;
-    const bool done = compile_property(c, json, property, &root);
-    return camber_expression_end(c, done, root, expression);
 }

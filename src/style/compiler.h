@@ -5,12 +5,19 @@
 #include "style/expression.h"
 #include "style/json.h"
 
-/* Deepest nesting of an expression: compilation and evaluation recurse that far. */
+/* Deepest nesting of an expression: compilation recurses that far. */
 #define CAMBER_EXPRESSION_DEPTH 200
+/* Most nodes on a way down through an expression and its variables: evaluation recurses that far. */
+#define CAMBER_NODE_HEIGHT 1000
 /* "/layers/3/paint/line-width", and an expression's path behind it. */
 #define CAMBER_PATH_DEPTH (CAMBER_EXPRESSION_DEPTH + 16)
-/* Most feature properties that a style may read; they are looked up one by one. */
+/* Most feature properties that a style may read. */
 #define CAMBER_PROPERTY_LIMIT 1024
+/* Most variables that an expression may bind. */
+#define CAMBER_BINDING_LIMIT 4096
+/* Memory and work that the constants of all expressions of a compiler may take to be folded. */
+#define CAMBER_FOLD_LIMIT ((size_t)64 << 20)
+#define CAMBER_FOLD_WORK_LIMIT (10u * CAMBER_WORK_LIMIT)
 
 typedef struct camber_path_step {
     const char *key; /* NULL: index */
@@ -33,6 +40,14 @@ typedef struct camber_property {
     double low, high;          /* range of a number or of an array's items. Both 0: any */
 } camber_property;
 
+typedef struct camber_binding {
+    const char *name;
+    uint32_t node, slot;
+    uint32_t next; /* another with the same hash, bound before; CAMBER_BINDING_LIMIT: none */
+} camber_binding;
+
+#define CAMBER_BINDING_HEADS 512
+
 typedef struct camber_compiler camber_compiler;
 
 struct camber_compiler {
@@ -46,8 +61,15 @@ struct camber_compiler {
     size_t depth;
     uint32_t *operands; /* a stack: those of the nodes under construction */
     size_t operand_count, operand_capacity;
+    camber_binding *bindings; /* a stack: the variables in scope */
+    uint32_t *binding_heads;  /* CAMBER_BINDING_HEADS */
+    size_t binding_count, binding_capacity;
+    uint32_t *property_slots; /* a hash of the style's properties: index + 1 */
+    size_t folded_bytes;
+    uint32_t folded_work;
     const json_t *state; /* an object of what "global-state" reads. NULL: nothing */
     bool state_defaults; /* its members are {"default": value}, as a style's are */
+    bool strict;         /* what stands for a property is an expression or a function: no list, no enum's names */
     /* Takes what is wrong instead of the log; the place is in path. NULL: the log */
     void (*report)(void *user, const camber_compiler *c, camber_log_level level, const char *message);
     void *report_user;
@@ -66,11 +88,9 @@ void camber_compiler_enter_index(camber_compiler *c, size_t index);
 void camber_compiler_leave(camber_compiler *c);
 /* Frees what the compiler has of its own. */
 void camber_compiler_end(camber_compiler *c);
-/* Where that is, by RFC 6901; cut off where it is too long to be read anyway. */
-#define CAMBER_POINTER_SIZE 512
-void camber_compiler_write_pointer(const camber_compiler *c, char pointer[CAMBER_POINTER_SIZE]);
 /* Logs "NAME: /pointer: " and the message, and sets the status. Returns false. */
 bool camber_compiler_fail(camber_compiler *c, const char *format, ...) CAMBER_PRINTF(2, 3);
+bool camber_compiler_fail_memory(camber_compiler *c);
 void camber_compiler_warn(camber_compiler *c, const char *format, ...) CAMBER_PRINTF(2, 3);
 
 /* A value of a property: a constant, an expression or an older function. NULL in *expression on failure. */
@@ -81,40 +101,54 @@ bool camber_compile_filter(camber_compiler *c, json_t *json, camber_expression *
 /* Whether the filter picks polygons by their geometry type. Call it on filters that compile. */
 bool camber_filter_asks_polygons(const json_t *json);
 
-/* ---- For operators.c, filter.c and function.c ---- */
+/* ---- For operators*.c, filter.c, function.c and property.c ---- */
 
 /* An empty expression to compile into; afterwards camber_expression_end hands it over or frees it. */
 bool camber_expression_begin(camber_compiler *c, json_t *json);
 bool camber_expression_end(camber_compiler *c, bool done, uint32_t root, camber_expression **expression);
+/* Keeps a document whose strings constants point to. */
+bool camber_expression_keep(camber_compiler *c, json_t *json);
 
-bool camber_compile(camber_compiler *c, json_t *json, camber_type expected, uint32_t *node);
+bool camber_compile_as(camber_compiler *c, json_t *json, camber_typing expected, camber_annotation annotation,
+                       uint32_t *node);
+bool camber_compile(camber_compiler *c, json_t *json, camber_typing expected, uint32_t *node);
 /* Element index of array, annotated, with the path in step. */
-bool camber_compile_element(camber_compiler *c, const json_t *array, size_t index, camber_type expected,
+bool camber_compile_element(camber_compiler *c, const json_t *array, size_t index, camber_typing expected,
                             uint32_t *node);
+/* The same, pushed as an operand. */
+bool camber_compile_operand(camber_compiler *c, const json_t *array, size_t index, camber_typing expected);
 /* The same, but an element of unknown type stays so: an operator around it will see to that. */
-bool camber_compile_loose_element(camber_compiler *c, const json_t *array, size_t index, camber_type expected,
-                                  uint32_t *node);
-/* Wraps node so that it has the expected type, or fails. */
-bool camber_annotate(camber_compiler *c, camber_type expected, camber_annotation annotation, uint32_t *node);
+bool camber_compile_loose_operand(camber_compiler *c, const json_t *array, size_t index, camber_typing expected);
+/* Wraps node so that it has the expected type, or fails; constants stay constants. */
+bool camber_annotate(camber_compiler *c, camber_typing expected, camber_annotation annotation, uint32_t *node);
 
 bool camber_push_operand(camber_compiler *c, uint32_t node);
 /* Makes a node of the operands past the first_operand-th, and pops them. */
 bool camber_make_node(camber_compiler *c, const camber_node *prototype, size_t first_operand, uint32_t *node);
-bool camber_make_constant(camber_compiler *c, const camber_value *value, uint32_t *node);
-/* Scalars only. */
+/* A node of one operand, node itself. */
+bool camber_wrap_node(camber_compiler *c, camber_op op, camber_typing type, uint32_t *node);
+bool camber_make_constant(camber_compiler *c, const camber_value *value, camber_typing type, uint32_t *node);
 bool camber_make_json_constant(camber_compiler *c, const json_t *json, uint32_t *node);
-/* Wraps node in a conversion to text. */
-bool camber_make_to_string(camber_compiler *c, uint32_t *node);
 /* A node of a property of the feature, which the style then collects. op: get or has. */
 bool camber_make_property(camber_compiler *c, camber_op op, const char *name, uint32_t *node);
+/* A node without operands that reads what reads says. */
+bool camber_make_reader(camber_compiler *c, camber_op op, camber_type type, uint32_t *node);
 bool camber_push_stop(camber_compiler *c, double stop);
 bool camber_push_label(camber_compiler *c, const camber_label *label);
+/* Sorts the labels from the first-th on; fails where one occurs twice and each must be one. */
+bool camber_sort_labels(camber_compiler *c, size_t first, bool unique);
 camber_node *camber_node_at(camber_compiler *c, uint32_t node);
-const char *camber_type_name(camber_type type);
 
-/* operators.c: the expression [operator, operand, ...]. */
-bool camber_compile_operator(camber_compiler *c, json_t *array, camber_type expected, uint32_t *node);
-/* function.c: {"stops": [[zoom, value], ...], "base": number, "type": string}. */
+/* The variables in scope. */
+bool camber_bind(camber_compiler *c, const char *name, uint32_t node);
+void camber_unbind(camber_compiler *c, size_t count);
+const camber_binding *camber_find_binding(const camber_compiler *c, const char *name);
+
+/* The expression [operator, operand, ...]. */
+bool camber_compile_operator(camber_compiler *c, json_t *array, camber_typing expected, uint32_t *node);
+/* function.c: {"stops": ..., "property": ..., "base": ..., "type": ..., "default": ..., "colorSpace": ...}. */
 bool camber_compile_function(camber_compiler *c, json_t *object, const camber_property *property, uint32_t *node);
+/* property.c */
+camber_typing camber_property_typing(const camber_property *property);
 
 #endif

@@ -1,7 +1,9 @@
 /* Filters: expressions, and the older form ["==", "highway", "primary"], told apart as the specification does. */
-#include "style/compiler.h"
+#include "style/operators.h"
 
 #include <string.h>
+
+static const camber_typing boolean = {.type = CAMBER_TYPE_BOOL};
 
 static bool compile_filter(camber_compiler *c, json_t *json, size_t depth, uint32_t *node);
 
@@ -30,35 +32,41 @@ static bool is_expression(const json_t *json) {
     return true;
 }
 
-static bool make_operand(camber_compiler *c, camber_op op, uint32_t *node) {
-    const size_t first_operand = c->operand_count;
-    return camber_push_operand(c, *node) &&
-           camber_make_node(c, &(camber_node){.op = op, .type = CAMBER_TYPE_BOOL}, first_operand, node);
-}
-
-/* The key of an older filter: a property's name or $type. */
+/* The key of an older filter: a property's name, $type or $id. */
 static bool compile_key(camber_compiler *c, const json_t *array, camber_op op, uint32_t *node) {
     const char *key = json_string_value(json_array_get(array, 1));
-    camber_compiler_enter_index(c, 1);
-    if (!key)
+    const camber_value yes = {.type = CAMBER_VALUE_BOOL, .boolean = true};
+    if (!key) {
+        camber_compiler_enter_index(c, 1);
         return camber_compiler_fail(c, "expected a property's name; write e.g. [\"==\", \"highway\", \"primary\"]");
+    }
     if (strcmp(key, "$id") == 0)
-        return camber_compiler_fail(c, "\"$id\" is not supported; filter on a property");
-    camber_compiler_leave(c);
+        return op == CAMBER_OP_HAS ? camber_make_reader(c, CAMBER_OP_HAS_ID, CAMBER_TYPE_BOOL, node)
+                                   : camber_make_reader(c, CAMBER_OP_ID, CAMBER_TYPE_VALUE, node);
     if (strcmp(key, "$type") != 0)
         return camber_make_property(c, op, key, node);
-    if (op == CAMBER_OP_HAS)
-        return camber_make_constant(c, &(camber_value){.type = CAMBER_VALUE_BOOL, .boolean = true}, node);
-    const camber_node type = {.op = CAMBER_OP_GEOMETRY_TYPE, .type = CAMBER_TYPE_STRING, .reads_feature = true};
-    return camber_make_node(c, &type, c->operand_count, node);
+    return op == CAMBER_OP_HAS ? camber_make_constant(c, &yes, boolean, node)
+                               : camber_make_reader(c, CAMBER_OP_GEOMETRY_TYPE, CAMBER_TYPE_STRING, node);
 }
 
 static bool compile_value(camber_compiler *c, const json_t *array, size_t index, uint32_t *node) {
+    const json_t *json = json_array_get(array, index);
     camber_compiler_enter_index(c, index);
-    if (!camber_make_json_constant(c, json_array_get(array, index), node) || !camber_push_operand(c, *node))
+    if (json_is_array(json) || json_is_object(json))
+        return camber_compiler_fail(c, "expected a string, number, boolean or null, found %s; take it out",
+                                    camber_json_name(json));
+    if (!camber_make_json_constant(c, json, node))
         return false;
     camber_compiler_leave(c);
     return true;
+}
+
+/* A feature that does not have the property is not one that has null. */
+static bool require_key(camber_compiler *c, const json_t *array, uint32_t *node) {
+    const size_t first_operand = c->operand_count;
+    uint32_t has;
+    return compile_key(c, array, CAMBER_OP_HAS, &has) && camber_push_operand(c, has) && camber_push_operand(c, *node) &&
+           camber_make_node(c, &(camber_node){.op = CAMBER_OP_ALL, .type = boolean}, first_operand, node);
 }
 
 /* [op, key, value]; values of different types do not compare, and then it is false. */
@@ -66,31 +74,61 @@ static bool compile_comparison(camber_compiler *c, const json_t *array, const ch
     static const struct {
         const char *name;
         camber_op op;
-    } ops[] = {{"==", CAMBER_OP_EQUAL},      {"!=", CAMBER_OP_NOT_EQUAL}, {"<", CAMBER_OP_LESS},
-               {"<=", CAMBER_OP_LESS_EQUAL}, {">", CAMBER_OP_GREATER},    {">=", CAMBER_OP_GREATER_EQUAL}};
+    } ops[] = {{"==", CAMBER_OP_EQUAL},      {"!=", CAMBER_OP_EQUAL},  {"<", CAMBER_OP_LESS},
+               {"<=", CAMBER_OP_LESS_EQUAL}, {">", CAMBER_OP_GREATER}, {">=", CAMBER_OP_GREATER_EQUAL}};
     const size_t first_operand = c->operand_count;
+    if (json_array_size(array) == 3 && json_is_null(json_array_get(array, 2)) && !(is(op, "==") || is(op, "!=")))
+        return camber_compiler_fail(c, "null has no order; compare with a number or a string");
     if (!compile_key(c, array, CAMBER_OP_GET, node) || !camber_push_operand(c, *node) ||
-        !compile_value(c, array, 2, node))
+        !compile_value(c, array, 2, node) || !camber_push_operand(c, *node))
         return false;
-    camber_node prototype = {.type = CAMBER_TYPE_BOOL};
+    camber_node prototype = {.type = boolean};
     for (size_t i = 0; i < sizeof ops / sizeof *ops; i++)
         if (strcmp(ops[i].name, op) == 0)
             prototype.op = ops[i].op;
-    return camber_make_node(c, &prototype, first_operand, node) && make_operand(c, CAMBER_OP_QUIET, node);
+    if (!camber_make_node(c, &prototype, first_operand, node) || !camber_wrap_node(c, CAMBER_OP_QUIET, boolean, node))
+        return false;
+    if (json_is_null(json_array_get(array, 2)) && !require_key(c, array, node))
+        return false;
+    return !is(op, "!=") || camber_wrap_node(c, CAMBER_OP_NOT, boolean, node);
+}
+
+/* Whether all values are strings, or all are integers: labels, then. */
+static bool are_labels(const json_t *array) {
+    for (size_t i = 2; i < json_array_size(array); i++) {
+        const json_t *json = json_array_get(array, i);
+        if (json_is_string(json) != json_is_string(json_array_get(array, 2)) ||
+            !(json_is_string(json) || json_is_number(json)))
+            return false;
+    }
+    return true;
 }
 
 /* ["in", key, value, ...] and !in. */
 static bool compile_in(camber_compiler *c, const json_t *array, bool negated, uint32_t *node) {
-    const size_t first_operand = c->operand_count;
+    const size_t first_operand = c->operand_count, first = c->expression->label_count;
+    const bool labels = are_labels(array);
+    uint32_t value;
     if (!compile_key(c, array, CAMBER_OP_GET, node) || !camber_push_operand(c, *node))
         return false;
-    for (size_t i = 2; i < json_array_size(array); i++)
-        if (!compile_value(c, array, i, node))
+    for (size_t i = 2; i < json_array_size(array); i++) {
+        const json_t *json = json_array_get(array, i);
+        if (labels ? !camber_push_label(
+                         c, &(camber_label){.string = json_string_value(json), .number = json_number_value(json)})
+                   : !compile_value(c, array, i, &value) || !camber_push_operand(c, value))
             return false;
-    const camber_node list = {.op = CAMBER_OP_ARRAY, .type = CAMBER_TYPE_ARRAY};
-    const camber_node in = {.op = CAMBER_OP_IN, .type = CAMBER_TYPE_BOOL};
-    return camber_make_node(c, &list, first_operand + 1, node) && camber_push_operand(c, *node) &&
-           camber_make_node(c, &in, first_operand, node) && (!negated || make_operand(c, CAMBER_OP_NOT, node));
+    }
+    const camber_node among = {.op = CAMBER_OP_AMONG,
+                               .type = boolean,
+                               .index = (uint32_t)first,
+                               .index_count = (uint32_t)(c->expression->label_count - first)};
+    const camber_node list = {.op = CAMBER_OP_LIST, .type = camber_typing_of(CAMBER_TYPE_ARRAY)};
+    const camber_node in = {.op = CAMBER_OP_IN, .type = boolean};
+    const bool made = labels ? camber_sort_labels(c, first, false) && camber_make_node(c, &among, first_operand, node)
+                             : camber_make_node(c, &list, first_operand + 1, node) && camber_push_operand(c, *node) &&
+                                   camber_make_node(c, &in, first_operand, node);
+    return made && camber_wrap_node(c, CAMBER_OP_QUIET, boolean, node) &&
+           (!negated || camber_wrap_node(c, CAMBER_OP_NOT, boolean, node));
 }
 
 /* all, any and none. */
@@ -102,9 +140,9 @@ static bool compile_junction(camber_compiler *c, const json_t *array, const char
             return false;
         camber_compiler_leave(c);
     }
-    const camber_node junction = {.op = is(op, "all") ? CAMBER_OP_ALL : CAMBER_OP_ANY, .type = CAMBER_TYPE_BOOL};
+    const camber_node junction = {.op = is(op, "all") ? CAMBER_OP_ALL : CAMBER_OP_ANY, .type = boolean};
     return camber_make_node(c, &junction, first_operand, node) &&
-           (!is(op, "none") || make_operand(c, CAMBER_OP_NOT, node));
+           (!is(op, "none") || camber_wrap_node(c, CAMBER_OP_NOT, boolean, node));
 }
 
 static bool compile_filter(camber_compiler *c, json_t *json, size_t depth, uint32_t *node) {
@@ -118,10 +156,10 @@ static bool compile_filter(camber_compiler *c, json_t *json, size_t depth, uint3
     if (is(op, "all") || is(op, "any") || is(op, "none"))
         return compile_junction(c, json, op, depth, node);
     if (json_is_array(json) && json_array_size(json) == 0)
-        return camber_make_constant(c, &(camber_value){.type = CAMBER_VALUE_BOOL, .boolean = true}, node);
+        return camber_make_constant(c, &(camber_value){.type = CAMBER_VALUE_BOOL, .boolean = true}, boolean, node);
     if (json_is_boolean(json) || is_expression(json)) {
         c->depth = depth;
-        return camber_compile(c, json, CAMBER_TYPE_BOOL, node);
+        return camber_compile(c, json, boolean, node);
     }
     if (json_array_size(json) < 2)
         return camber_compiler_fail(
@@ -129,7 +167,7 @@ static bool compile_filter(camber_compiler *c, json_t *json, size_t depth, uint3
     if (is(op, "has"))
         return compile_key(c, json, CAMBER_OP_HAS, node);
     if (is(op, "!has"))
-        return compile_key(c, json, CAMBER_OP_HAS, node) && make_operand(c, CAMBER_OP_NOT, node);
+        return compile_key(c, json, CAMBER_OP_HAS, node) && camber_wrap_node(c, CAMBER_OP_NOT, boolean, node);
     if (is(op, "in") || is(op, "!in"))
         return compile_in(c, json, op[0] == '!', node);
     return compile_comparison(c, json, op, node);

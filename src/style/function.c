@@ -1,98 +1,433 @@
-/* Functions of zoom as styles had them before expressions. */
-#include "style/compiler.h"
+/* Functions as styles had them before expressions: of zoom, of a feature's property, or of both. What they become is
+ * what the specification's own conversion makes of them. */
+#include "style/operators.h"
 
 #include <math.h>
-#include <string.h>
 
 typedef enum shape {
     SHAPE_EXPONENTIAL,
     SHAPE_INTERVAL,
+    SHAPE_CATEGORICAL,
+    SHAPE_IDENTITY,
 } shape;
 
-static bool read_shape(camber_compiler *c, const json_t *object, const camber_property *property, shape *made) {
-    *made = property->interpolated ? SHAPE_EXPONENTIAL : SHAPE_INTERVAL;
-    if (json_object_get(object, "property"))
-        return camber_compiler_fail(c, "functions of a feature's property are not supported; write the expression "
-                                       "[\"interpolate\", ...], [\"step\", ...] or [\"match\", ...]");
-    const json_t *type = json_object_get(object, "type");
+typedef struct function {
+    camber_compiler *c;
+    const camber_property *property;
+    camber_typing type;
+    const json_t *object, *stops;
+    json_t *otherwise; /* NULL: none */
+    const char *key;   /* of the feature. NULL: a function of zoom */
+    bool composite;    /* of zoom and key */
+    shape shape;
+    double base;
+    camber_color_space space;
+} function;
+
+static const camber_typing number = {.type = CAMBER_TYPE_NUMBER}, boolean = {.type = CAMBER_TYPE_BOOL},
+                           string = {.type = CAMBER_TYPE_STRING};
+
+/* ---- What it says ---- */
+
+static bool read_shape(function *f) {
+    static const char *const names[] = {"exponential", "interval", "categorical", "identity"};
+    const json_t *type = json_object_get(f->object, "type");
+    f->shape = !f->stops ? SHAPE_IDENTITY : f->property->interpolated ? SHAPE_EXPONENTIAL : SHAPE_INTERVAL;
     if (!type)
         return true;
     const char *name = json_is_string(type) ? json_string_value(type) : "";
-    if (strcmp(name, "interval") == 0)
-        *made = SHAPE_INTERVAL;
-    else if (strcmp(name, "exponential") != 0 || !property->interpolated)
-        return camber_compiler_fail(c, "the function's type is wrong for %s; use %s\"interval\" with stops on zoom",
-                                    property->name, property->interpolated ? "\"exponential\" or " : "");
+    size_t found = 0;
+    while (found < 4 && strcmp(names[found], name) != 0)
+        found++;
+    camber_compiler_enter_key(f->c, "type");
+    if (found == 4)
+        return camber_compiler_fail(f->c, "the function's type is not known; use \"exponential\", \"interval\", "
+                                          "\"categorical\" or \"identity\"");
+    const bool needs_key = found >= SHAPE_CATEGORICAL && !f->key;
+    if (needs_key || (found == SHAPE_EXPONENTIAL && !f->property->interpolated))
+        return camber_compiler_fail(f->c, "the function's type is wrong for %s; use %s\"interval\" with stops on zoom",
+                                    f->property->name, f->property->interpolated ? "\"exponential\" or " : "");
+    if (found != SHAPE_IDENTITY && !f->stops)
+        return camber_compiler_fail(f->c, "a function of this type has stops; write \"stops\": [[10, 1], [16, 8]]");
+    f->shape = f->stops ? (shape)found : SHAPE_IDENTITY;
+    camber_compiler_leave(f->c);
     return true;
 }
 
-static bool read_base(camber_compiler *c, const json_t *object, double *base) {
-    const json_t *json = json_object_get(object, "base");
-    *base = 1.0;
+static bool read_base(function *f) {
+    const json_t *json = json_object_get(f->object, "base");
+    f->base = 1.0;
     if (!json)
         return true;
     if (!json_is_number(json) || !(json_number_value(json) > 0.0))
-        return camber_compiler_fail(c, "base: expected a number above 0; write e.g. 1.5");
-    *base = json_number_value(json);
+        return camber_compiler_fail(f->c, "base: expected a number above 0; write e.g. 1.5");
+    f->base = json_number_value(json);
     return true;
 }
 
-/* Reads [zoom, value] into *node and *zoom, which was that of the stop before. */
-static bool compile_stop(camber_compiler *c, const json_t *stop, camber_type type, double *zoom, uint32_t *node) {
-    if (!json_is_array(stop) || json_array_size(stop) != 2 || !json_is_number(json_array_get(stop, 0)))
-        return camber_compiler_fail(c, "expected a stop [zoom, value], found %s; correct it", camber_json_name(stop));
-    const double at = json_number_value(json_array_get(stop, 0));
-    if (at < *zoom)
-        return camber_compiler_fail(c, "the stop's zoom %g is below the one before; sort the stops", at);
-    *zoom = at;
-    const json_t *value = json_array_get(stop, 1);
-    if (json_is_array(value) || json_is_object(value))
-        return camber_compiler_fail(c, "a function's value must be a constant, found %s; use an expression instead",
-                                    camber_json_name(value));
-    return camber_compile_element(c, stop, 1, type, node);
+static bool read_space(function *f) {
+    const json_t *json = json_object_get(f->object, "colorSpace");
+    const char *name = json ? json_string_value(json) : "rgb";
+    if (name && strcmp(name, "hcl") == 0)
+        f->space = CAMBER_SPACE_HCL;
+    else if (name && strcmp(name, "lab") == 0)
+        f->space = CAMBER_SPACE_LAB;
+    else if (!name || strcmp(name, "rgb") != 0)
+        return camber_compiler_fail(f->c, "colorSpace: expected \"rgb\", \"hcl\" or \"lab\"; write one of them");
+    if (f->space != CAMBER_SPACE_RGB && f->shape == SHAPE_EXPONENTIAL && f->property->type != CAMBER_TYPE_COLOR)
+        return camber_compiler_fail(f->c, "colorSpace: %s is no colour; leave it out", f->property->name);
+    return true;
 }
 
-/* Pushes the stops and the nodes of their values. Of stops at the same zoom the first counts, as ever. */
-static bool compile_stops(camber_compiler *c, const json_t *stops, camber_type type, bool step) {
-    double zoom = -HUGE_VAL;
-    camber_compiler_enter_key(c, "stops");
-    for (size_t i = 0; i < json_array_size(stops); i++) {
-        const double before = zoom;
-        uint32_t node = 0;
-        camber_compiler_enter_index(c, i);
-        if (!compile_stop(c, json_array_get(stops, i), type, &zoom, &node))
-            return false;
-        camber_compiler_leave(c);
-        if (!(zoom > before))
+static bool read_function(function *f) {
+    const json_t *key = json_object_get(f->object, "property");
+    f->key = json_string_value(key);
+    f->stops = json_object_get(f->object, "stops");
+    f->otherwise = json_object_get(f->object, "default");
+    if (key && !f->key)
+        return camber_compiler_fail(f->c, "property: expected a property's name, a string; write it out");
+    if (f->stops ? json_array_size(f->stops) == 0 : !f->key)
+        return camber_compiler_fail(f->c, "expected a constant, an expression, or a function with a list of stops; "
+                                          "write e.g. {\"stops\": [[10, 1], [16, 8]]}");
+    f->composite = json_is_object(json_array_get(json_array_get(f->stops, 0), 0));
+    if (f->composite && !f->key)
+        return camber_compiler_fail(f->c, "stops of zoom and value, and no property; name the one that has the values");
+    return read_shape(f) && read_base(f) && read_space(f);
+}
+
+/* ---- Values ---- */
+
+static bool compile_get(function *f, uint32_t *node) {
+    return camber_make_property(f->c, CAMBER_OP_GET, f->key, node);
+}
+
+/* The text from start on, before the next token; its copy lives as long as the expression. */
+static bool push_text(function *f, const char *start, size_t length) {
+    uint32_t node;
+    if (length == 0)
+        return true;
+    const char *text = camber_arena_text(&f->c->expression->arena, start, length);
+    const camber_value value = {.type = CAMBER_VALUE_STRING, .string = text};
+    if (!text)
+        return camber_compiler_fail_memory(f->c);
+    return camber_make_constant(f->c, &value, string, &node) && camber_push_operand(f->c, node);
+}
+
+/* "a {name}": the value of the property stands for the token. */
+static bool compile_tokens(function *f, const char *text, uint32_t *node) {
+    camber_compiler *c = f->c;
+    const size_t first_operand = c->operand_count;
+    const char *rest = text;
+    for (const char *open = strchr(text, '{'); open; open = strchr(open + 1, '{')) {
+        const size_t length = strcspn(open + 1, "{}");
+        if (length == 0 || open[1 + length] != '}')
             continue;
-        /* Below its first stop a step has the first stop's value. */
-        if (!camber_push_operand(c, node) || ((i > 0 || !step) && !camber_push_stop(c, zoom)))
+        const char *name = camber_arena_text(&c->expression->arena, open + 1, length);
+        if (!name)
+            return camber_compiler_fail_memory(c);
+        if (!push_text(f, rest, (size_t)(open - rest)) || !camber_make_property(c, CAMBER_OP_GET, name, node) ||
+            !camber_push_operand(c, *node))
             return false;
+        rest = open + length + 2;
+    }
+    return push_text(f, rest, strlen(rest)) &&
+           camber_make_node(c, &(camber_node){.op = CAMBER_OP_CONCAT, .type = string}, first_operand, node);
+}
+
+/* A value of the function, a constant. */
+static bool compile_value(function *f, const json_t *json, uint32_t *node) {
+    camber_compiler *c = f->c;
+    const bool tokens = f->property->tokens && !f->key && json_is_string(json) && strchr(json_string_value(json), '{');
+    if (json_is_array(json) && json_is_string(json_array_get(json, 0)) && f->property->item != CAMBER_TYPE_STRING)
+        return camber_compiler_fail(c, "a function's value must be a constant, found %s; use an expression instead",
+                                    camber_json_name(json));
+    if (!(tokens ? compile_tokens(f, json_string_value(json), node) : camber_make_json_constant(c, json, node)))
+        return false;
+    return camber_annotate(c, f->type, CAMBER_ANNOTATE_ASSERT, node);
+}
+
+static bool push_value(function *f, const json_t *json) {
+    uint32_t node;
+    return compile_value(f, json, &node) && camber_push_operand(f->c, node);
+}
+
+/* The function's default, or that of the specification. */
+static bool push_otherwise(function *f) {
+    camber_compiler *c = f->c;
+    if (f->otherwise)
+        return push_value(f, f->otherwise);
+    json_t *json = f->property->fallback ? json_loads(f->property->fallback, JSON_DECODE_ANY, NULL) : NULL;
+    if (json) {
+        const bool done = camber_expression_keep(c, json) && push_value(f, json);
+        json_decref(json);
+        return done;
+    }
+    if (c->strict)
+        return camber_compiler_fail(c, "features that no stop fits have no value; give a \"default\"");
+    uint32_t node;
+    const camber_value cause = {.type = CAMBER_VALUE_STRING, .string = "no stop fits the feature"};
+    return camber_make_constant(c, &cause, string, &node) &&
+           camber_wrap_node(c, CAMBER_OP_ERROR, camber_typing_of(CAMBER_TYPE_ERROR), &node) &&
+           camber_push_operand(c, node);
+}
+
+/* ---- Stops ---- */
+
+/* Checks [input, value], and of zoom and property [{"zoom": number, "value": input}, value]. */
+static bool read_stop(function *f, size_t index, const json_t **input, double *zoom) {
+    const json_t *stop = json_array_get(f->stops, index);
+    *input = json_array_get(stop, 0);
+    if (json_array_size(stop) != 2 || f->composite != json_is_object(*input))
+        return camber_compiler_fail(f->c, "expected a stop [%s, value], found %s; correct it",
+                                    f->composite ? "{\"zoom\": number, \"value\": input}"
+                                    : f->key     ? "input"
+                                                 : "zoom",
+                                    camber_json_name(stop));
+    if (f->composite) {
+        const json_t *at = json_object_get(*input, "zoom");
+        if (!json_is_number(at) || json_number_value(at) < *zoom)
+            return camber_compiler_fail(f->c, "the stop's zoom is no number or below the one before; sort the stops");
+        *zoom = json_number_value(at);
+        *input = json_object_get(*input, "value");
+    }
+    if (f->shape <= SHAPE_INTERVAL && !json_is_number(*input))
+        return camber_compiler_fail(f->c,
+                                    "expected a stop at a number, found %s; correct it, or write \"type\": "
+                                    "\"categorical\"",
+                                    camber_json_name(*input));
+    return true;
+}
+
+/* One dimension's stops, those from first up to last. */
+typedef struct span {
+    size_t first, last;
+} span;
+
+/* Pushes the stops and their values. Of stops at the same place the first counts, as ever; below its first stop a step
+ * has that stop's value. */
+static bool push_stops(function *f, span stops) {
+    camber_compiler *c = f->c;
+    const bool step = f->shape == SHAPE_INTERVAL;
+    double before = -HUGE_VAL, pushed = -HUGE_VAL, zoom = -HUGE_VAL;
+    camber_compiler_enter_key(c, "stops");
+    for (size_t i = stops.first; i < stops.last; i++) {
+        const json_t *input;
+        camber_compiler_enter_index(c, i);
+        if (!read_stop(f, i, &input, &zoom))
+            return false;
+        const double at = json_number_value(input);
+        if (at < before)
+            return camber_compiler_fail(c, "the stop %g is below the one before; sort the stops", at);
+        before = at;
+        const bool first = i == stops.first;
+        if (first || at > pushed) {
+            camber_compiler_enter_index(c, 1);
+            if (!push_value(f, json_array_get(json_array_get(f->stops, i), 1)) ||
+                ((!first || !step) && !camber_push_stop(c, at)))
+                return false;
+            camber_compiler_leave(c);
+            pushed = first && step ? pushed : at;
+        }
+        camber_compiler_leave(c);
     }
     camber_compiler_leave(c);
     return true;
 }
 
-bool camber_compile_function(camber_compiler *c, json_t *object, const camber_property *property, uint32_t *node) {
-    shape made;
-    double base;
-    if (!read_shape(c, object, property, &made) || !read_base(c, object, &base))
-        return false;
-    const json_t *stops = json_object_get(object, "stops");
-    if (!json_is_array(stops) || json_array_size(stops) == 0)
-        return camber_compiler_fail(c, "expected a constant, an expression, or a function with a list of stops; write "
-                                       "e.g. {\"stops\": [[10, 1], [16, 8]]}");
-    const bool step = made == SHAPE_INTERVAL;
+/* A curve over input, node itself. */
+static bool make_curve(function *f, span stops, double base, uint32_t *node) {
+    camber_compiler *c = f->c;
     const size_t first_operand = c->operand_count;
-    const camber_node input = {.op = CAMBER_OP_ZOOM, .type = CAMBER_TYPE_NUMBER, .reads_zoom = true};
-    if (!camber_make_node(c, &input, first_operand, node) || !camber_push_operand(c, *node))
-        return false;
-    camber_node prototype = {.op = step ? CAMBER_OP_STEP : CAMBER_OP_INTERPOLATE,
-                             .type = property->type,
+    camber_node prototype = {.op = f->shape == SHAPE_INTERVAL ? CAMBER_OP_STEP : CAMBER_OP_INTERPOLATE,
+                             .type = f->type,
+                             .space = (uint8_t)f->space,
                              .index = (uint32_t)c->expression->stop_count,
                              .value = {.type = CAMBER_VALUE_NUMBER, .number = base}};
-    if (!compile_stops(c, stops, property->type, step))
+    if (!camber_push_operand(c, *node) || !push_stops(f, stops))
         return false;
     prototype.index_count = (uint32_t)c->expression->stop_count - prototype.index;
+    if (f->type.type == CAMBER_TYPE_VALUE)
+        prototype.type = camber_node_at(c, c->operands[first_operand + 1])->type;
     return camber_make_node(c, &prototype, first_operand, node);
+}
+
+/* The curve where the property is a number, else the default, if there is one. */
+static bool compile_property_curve(function *f, span stops, double base, uint32_t *node) {
+    camber_compiler *c = f->c;
+    const size_t first_operand = c->operand_count;
+    uint32_t type, name;
+    const camber_value text = {.type = CAMBER_VALUE_STRING, .string = "number"};
+    if (f->otherwise) {
+        const size_t comparison = c->operand_count;
+        if (!compile_get(f, &type) || !camber_wrap_node(c, CAMBER_OP_TYPEOF, string, &type) ||
+            !camber_make_constant(c, &text, string, &name) || !camber_push_operand(c, type) ||
+            !camber_push_operand(c, name) ||
+            !camber_make_node(c, &(camber_node){.op = CAMBER_OP_EQUAL, .type = boolean}, comparison, &type) ||
+            !camber_push_operand(c, type))
+            return false;
+    }
+    if (!compile_get(f, node) || !camber_wrap_node(c, CAMBER_OP_ASSERT, number, node) ||
+        !make_curve(f, stops, base, node))
+        return false;
+    if (!f->otherwise)
+        return true;
+    const camber_typing curve_type = camber_node_at(c, *node)->type;
+    return camber_push_operand(c, *node) && push_otherwise(f) &&
+           camber_make_node(c, &(camber_node){.op = CAMBER_OP_CASE, .type = curve_type}, first_operand, node);
+}
+
+/* ---- Categories ---- */
+
+static bool same_input(const json_t *a, const json_t *b) {
+    return a && json_equal(a, b);
+}
+
+/* Pushes a stop's condition, of a boolean, or its label. */
+static bool push_category(function *f, const json_t *input, uint32_t output, camber_type *type) {
+    camber_compiler *c = f->c;
+    uint32_t node;
+    if (*type != CAMBER_TYPE_BOOL)
+        return camber_compile_label(c, input, output, type);
+    const size_t first_operand = c->operand_count;
+    return compile_get(f, &node) && camber_push_operand(c, node) && camber_make_json_constant(c, input, &node) &&
+           camber_push_operand(c, node) &&
+           camber_make_node(c, &(camber_node){.op = CAMBER_OP_EQUAL, .type = boolean}, first_operand, &node) &&
+           camber_push_operand(c, node);
+}
+
+/* Conditions of booleans, or a match of strings or numbers. */
+static bool compile_categories(function *f, span stops, uint32_t *node) {
+    camber_compiler *c = f->c;
+    const size_t first_operand = c->operand_count, first_label = c->expression->label_count;
+    const json_t *input = NULL, *before = NULL;
+    double zoom = -HUGE_VAL;
+    if (!read_stop(f, stops.first, &input, &zoom))
+        return false;
+    camber_type type = json_is_boolean(input) ? CAMBER_TYPE_BOOL : CAMBER_TYPE_VALUE;
+    const camber_op op = type == CAMBER_TYPE_BOOL ? CAMBER_OP_CASE : CAMBER_OP_MATCH;
+    if (op == CAMBER_OP_MATCH && (!compile_get(f, node) || !camber_push_operand(c, *node)))
+        return false;
+    camber_compiler_enter_key(c, "stops");
+    for (size_t i = stops.first; i < stops.last; i++, before = input) {
+        camber_compiler_enter_index(c, i);
+        if (!read_stop(f, i, &input, &zoom))
+            return false;
+        if (!same_input(before, input) &&
+            (!push_category(f, input, (uint32_t)(c->operand_count - first_operand), &type) ||
+             !push_value(f, json_array_get(json_array_get(f->stops, i), 1))))
+            return false;
+        camber_compiler_leave(c);
+    }
+    camber_compiler_leave(c);
+    const camber_typing found = camber_node_at(c, c->operands[first_operand + 1])->type;
+    const camber_node prototype = {.op = op,
+                                   .type = f->type.type == CAMBER_TYPE_VALUE ? found : f->type,
+                                   .index = (uint32_t)first_label,
+                                   .index_count = (uint32_t)(c->expression->label_count - first_label)};
+    return camber_sort_labels(c, first_label, true) && push_otherwise(f) &&
+           camber_make_node(c, &prototype, first_operand, node);
+}
+
+/* ---- Kinds ---- */
+
+/* A default stands in for values of another type, or that an enum does not have. */
+static bool compile_identity(function *f, uint32_t *node) {
+    camber_compiler *c = f->c;
+    const size_t first_operand = c->operand_count, first_label = c->expression->label_count;
+    const camber_type type = f->property->type;
+    if (!compile_get(f, node))
+        return false;
+    if (!f->otherwise)
+        return camber_annotate(c, f->type, CAMBER_ANNOTATE_ASSERT, node);
+    if (!camber_push_operand(c, *node))
+        return false;
+    if (f->property->values) {
+        for (size_t i = 0; f->property->values[i]; i++)
+            if (!camber_push_label(c, &(camber_label){.string = f->property->values[i], .output = 1}))
+                return false;
+        const camber_node prototype = {.op = CAMBER_OP_MATCH,
+                                       .type = string,
+                                       .index = (uint32_t)first_label,
+                                       .index_count = (uint32_t)(c->expression->label_count - first_label)};
+        return camber_sort_labels(c, first_label, true) && compile_get(f, node) &&
+               camber_annotate(c, string, CAMBER_ANNOTATE_ASSERT, node) && camber_push_operand(c, *node) &&
+               push_otherwise(f) && camber_make_node(c, &prototype, first_operand, node);
+    }
+    const camber_node prototype = {.op = type == CAMBER_TYPE_COLOR   ? CAMBER_OP_TO_COLOR
+                                         : type == CAMBER_TYPE_IMAGE ? CAMBER_OP_TO_STRING
+                                         : type == CAMBER_TYPE_VALUE ? CAMBER_OP_COALESCE
+                                                                     : CAMBER_OP_ASSERT,
+                                   .type = f->type};
+    return push_otherwise(f) && camber_make_node(c, &prototype, first_operand, node);
+}
+
+static bool compile_dimension(function *f, span stops, double base, uint32_t *node) {
+    return f->shape == SHAPE_CATEGORICAL ? compile_categories(f, stops, node)
+                                         : compile_property_curve(f, stops, base, node);
+}
+
+/* A curve over zoom of functions of the property, each with the stops of one zoom. */
+static bool compile_composite(function *f, uint32_t *node) {
+    camber_compiler *c = f->c;
+    const size_t count = json_array_size(f->stops), first_operand = c->operand_count;
+    const bool step = !f->property->interpolated;
+    if (!camber_make_reader(c, CAMBER_OP_ZOOM, CAMBER_TYPE_NUMBER, node) || !camber_push_operand(c, *node))
+        return false;
+    double *zooms = camber_alloc(c->context, count, sizeof *zooms);
+    size_t zoom_count = 0;
+    bool done = zooms != NULL;
+    for (size_t i = 0; done && i < count;) {
+        const double at = json_number_value(json_object_get(json_array_get(json_array_get(f->stops, i), 0), "zoom"));
+        span stops = {i, i + 1};
+        while (stops.last < count && !(json_number_value(json_object_get(
+                                           json_array_get(json_array_get(f->stops, stops.last), 0), "zoom")) > at))
+            stops.last++;
+        if (zoom_count > 0 && at < zooms[zoom_count - 1])
+            done = camber_compiler_fail(c, "stops: the zoom %g is below the one before; sort the stops", at);
+        zooms[zoom_count++] = at;
+        done = done && compile_dimension(f, stops, 1.0, node) && camber_push_operand(c, *node);
+        i = stops.last;
+    }
+    camber_node prototype = {.op = step ? CAMBER_OP_STEP : CAMBER_OP_INTERPOLATE,
+                             .type = f->type,
+                             .space = (uint8_t)f->space,
+                             .index = (uint32_t)c->expression->stop_count,
+                             .value = {.type = CAMBER_VALUE_NUMBER, .number = c->strict ? 1.0 : f->base}};
+    for (size_t i = step; done && i < zoom_count; i++)
+        done = camber_push_stop(c, zooms[i]);
+    prototype.index_count = (uint32_t)c->expression->stop_count - prototype.index;
+    if (!zooms)
+        c->status = CAMBER_ERROR_MEMORY;
+    camber_free(c->context, zooms);
+    return done && camber_make_node(c, &prototype, first_operand, node);
+}
+
+static bool is_interpolated(const camber_node *node) {
+    const camber_typing type = node->type;
+    return type.type == CAMBER_TYPE_NUMBER || type.type == CAMBER_TYPE_COLOR ||
+           (type.depth == 1 && type.item == CAMBER_TYPE_NUMBER && type.lengths[0] != CAMBER_ANY_LENGTH);
+}
+
+static bool compile_stops(function *f, uint32_t *node) {
+    const span all = {0, json_array_size(f->stops)};
+    if (f->composite)
+        return compile_composite(f, node);
+    if (f->key)
+        return compile_dimension(f, all, f->base, node);
+    return camber_make_reader(f->c, CAMBER_OP_ZOOM, CAMBER_TYPE_NUMBER, node) && make_curve(f, all, f->base, node);
+}
+
+bool camber_compile_function(camber_compiler *c, json_t *object, const camber_property *property, uint32_t *node) {
+    function f = {.c = c, .property = property, .type = camber_property_typing(property), .object = object};
+    const size_t first_node = c->expression->node_count;
+    if (!read_function(&f))
+        return false;
+    if (f.shape == SHAPE_IDENTITY)
+        return compile_identity(&f, node);
+    if (!compile_stops(&f, node))
+        return false;
+    for (size_t i = first_node; i < c->expression->node_count; i++)
+        if (c->expression->nodes[i].op == CAMBER_OP_INTERPOLATE && !is_interpolated(&c->expression->nodes[i]))
+            return camber_compiler_fail(c, "%s is not interpolated; write \"type\": \"interval\"", property->name);
+    return true;
 }

@@ -1,0 +1,163 @@
+/* What stands for a property: a constant, an expression or a function, and what it may depend on. */
+#include "style/compiler.h"
+
+#include <math.h>
+#include <stdio.h>
+
+camber_typing camber_property_typing(const camber_property *property) {
+    if (property->type != CAMBER_TYPE_ARRAY)
+        return camber_typing_of(property->type);
+    return camber_typing_array(camber_typing_of(property->item),
+                               property->length ? property->length : CAMBER_ANY_LENGTH);
+}
+
+/* ---- Zoom ---- */
+
+/* What of a node's zoom curves is known: its curve, none, or that the rule is broken. */
+typedef struct curve {
+    uint32_t node;
+    enum { CURVE_NONE, CURVE_ONE, CURVE_NESTED, CURVE_SEVERAL } kind;
+} curve;
+
+static bool same_curve(curve a, curve b) {
+    return a.kind == b.kind && a.node == b.node;
+}
+
+/* The specification: zoom is read by one step or interpolate at the top, or in a let or a coalesce there. Operands
+ * without zoom have no curve, so that only the way to zoom is walked. */
+static curve find_curve(const camber_expression *e, uint32_t index) {
+    const camber_node *node = &e->nodes[index];
+    const curve own = {index, CURVE_ONE};
+    const bool is_curve = node->op == CAMBER_OP_STEP || node->op == CAMBER_OP_INTERPOLATE;
+    curve result = {0, CURVE_NONE};
+    if (is_curve && e->nodes[e->links[node->first]].op == CAMBER_OP_ZOOM)
+        result = own;
+    else if (node->op == CAMBER_OP_LET)
+        result = find_curve(e, e->links[node->first + node->count - 1]);
+    for (uint32_t i = 0; i < node->count && result.kind <= CURVE_ONE; i++) {
+        const uint32_t operand = e->links[node->first + i];
+        if (!e->nodes[operand].reads_zoom || (node->op == CAMBER_OP_LET && i + 1 == node->count))
+            continue;
+        const curve found = find_curve(e, operand);
+        if (found.kind == CURVE_NONE)
+            continue;
+        if (found.kind > CURVE_ONE || (result.kind == CURVE_NONE && node->op == CAMBER_OP_COALESCE))
+            result = found;
+        else if (result.kind == CURVE_NONE)
+            result.kind = CURVE_NESTED;
+        else if (!same_curve(result, found))
+            result.kind = CURVE_SEVERAL;
+    }
+    return result;
+}
+
+static bool check_zoom(camber_compiler *c, const camber_property *property, uint32_t root) {
+    const camber_expression *e = c->expression;
+    if (!e->nodes[root].reads_zoom)
+        return true;
+    if (property->without_zoom)
+        return camber_compiler_fail(c, "%s cannot depend on zoom; use a constant", property->name);
+    const curve found = find_curve(e, root);
+    if (found.kind == CURVE_SEVERAL)
+        return camber_compiler_fail(c, "\"zoom\" is the input of more than one \"step\" or \"interpolate\"; join them");
+    if (found.kind != CURVE_ONE)
+        return camber_compiler_fail(c, "\"zoom\" may only be the input of one \"step\" or \"interpolate\" at the top; "
+                                       "move that curve outwards");
+    if (!property->interpolated && e->nodes[found.node].op == CAMBER_OP_INTERPOLATE)
+        return camber_compiler_fail(c, "%s is not interpolated; use \"step\"", property->name);
+    return true;
+}
+
+/* ---- Constants ---- */
+
+static bool check_name(camber_compiler *c, const camber_property *property, const char *name) {
+    char names[256] = "";
+    size_t used = 0;
+    for (size_t i = 0; property->values[i]; i++) {
+        if (strcmp(property->values[i], name) == 0)
+            return true;
+        if (used < sizeof names)
+            used += (size_t)snprintf(names + used, sizeof names - used, "%s\"%s\"", i ? ", " : "", property->values[i]);
+    }
+    return camber_compiler_fail(c, "\"%.64s\" is not a value of %s; use one of %s", name, property->name, names);
+}
+
+static bool check_range(camber_compiler *c, const camber_property *property, const camber_value *value) {
+    const bool ranged = property->low < 0.0 || property->high > 0.0;
+    if (!ranged || value->type != CAMBER_VALUE_NUMBER ||
+        (value->number >= property->low && value->number <= property->high))
+        return true;
+    return camber_compiler_fail(c, "%g is out of range; use %g to %g", value->number, property->low, property->high);
+}
+
+static bool check_constant(camber_compiler *c, const camber_property *property, const camber_value *value) {
+    if (value->type == CAMBER_VALUE_STRING && property->values)
+        return check_name(c, property, value->string);
+    for (uint32_t i = 0; value->type == CAMBER_VALUE_ARRAY && i < value->count; i++)
+        if (!check_range(c, property, &value->items[i]))
+            return false;
+    return check_range(c, property, value);
+}
+
+static bool check_property(camber_compiler *c, const camber_property *property, uint32_t root) {
+    const camber_node *node = camber_node_at(c, root);
+    if (node->reads_feature && !property->data_driven)
+        return camber_compiler_fail(c, "%s cannot depend on features; use a constant%s", property->name,
+                                    property->without_zoom ? "" : " or zoom");
+    if (node->reads_line_progress && !property->line_progress && !c->strict)
+        return camber_compiler_fail(c, "%s cannot depend on \"line-progress\"; use it in line-gradient",
+                                    property->name);
+    return check_zoom(c, property, root) && (node->op != CAMBER_OP_CONSTANT || c->strict ||
+                                             check_constant(c, property, &camber_node_at(c, root)->value));
+}
+
+/* ---- Values ---- */
+
+/* A list that is no expression. */
+static bool is_list(const json_t *json) {
+    return json_is_array(json) && !json_is_string(json_array_get(json, 0));
+}
+
+static bool compile_list(camber_compiler *c, const json_t *json, const camber_property *property, uint32_t *root) {
+    return camber_make_json_constant(c, json, root) &&
+           camber_annotate(c, camber_property_typing(property), CAMBER_ANNOTATE_ASSERT, root);
+}
+
+static const char *example_of(const camber_property *property) {
+    switch (property->type) {
+    case CAMBER_TYPE_NUMBER: return "2";
+    case CAMBER_TYPE_COLOR: return "\"#a0c4ff\"";
+    case CAMBER_TYPE_BOOL: return "true";
+    case CAMBER_TYPE_ARRAY: return "[2, 4]";
+    default: return "\"round\"";
+    }
+}
+
+static bool compile_value(camber_compiler *c, json_t *json, const camber_property *property, uint32_t *root) {
+    if (json_is_object(json))
+        return camber_compile_function(c, json, property, root);
+    if (is_list(json) && property->type == CAMBER_TYPE_ARRAY && !c->strict)
+        return compile_list(c, json, property, root);
+    const bool fits = json_is_array(json) || (property->type == CAMBER_TYPE_NUMBER  ? json_is_number(json)
+                                              : property->type == CAMBER_TYPE_BOOL  ? json_is_boolean(json)
+                                              : property->type == CAMBER_TYPE_ARRAY ? false
+                                                                                    : json_is_string(json));
+    if (!fits && !c->strict) {
+        char name[CAMBER_TYPING_TEXT_SIZE];
+        return camber_compiler_fail(c, "expected %s or an expression, found %s; write e.g. %s",
+                                    camber_typing_name(camber_property_typing(property), name), camber_json_name(json),
+                                    example_of(property));
+    }
+    const bool coerced = property->type == CAMBER_TYPE_STRING && !property->values;
+    return camber_compile_as(c, json, camber_property_typing(property),
+                             coerced ? CAMBER_ANNOTATE_COERCE : CAMBER_ANNOTATE_ASSERT, root);
+}
+
+bool camber_compile_property(camber_compiler *c, json_t *json, const camber_property *property,
+                             camber_expression **expression) {
+    uint32_t root = 0;
+    if (!camber_expression_begin(c, json))
+        return false;
+    const bool done = compile_value(c, json, property, &root) && check_property(c, property, root);
+    return camber_expression_end(c, done, root, expression);
+}

@@ -1,0 +1,10 @@
+/* Colours between two, in the spaces that people see as even. */
+#ifndef CAMBER_SPACES_H
+#define CAMBER_SPACES_H
+
+#include "style/expression.h"
+
+/* The colour at t from a (0) to b (1). */
+camber_color camber_color_mix(camber_color a, camber_color b, double t, camber_color_space space);
+
+#endif

@@ -1,0 +1,52 @@
+/* The types that expressions have before they are evaluated. */
+#ifndef CAMBER_TYPING_H
+#define CAMBER_TYPING_H
+
+#include "style/value.h"
+
+typedef enum camber_type {
+    CAMBER_TYPE_VALUE = 0, /* known only when evaluated */
+    CAMBER_TYPE_NULL,
+    CAMBER_TYPE_BOOL,
+    CAMBER_TYPE_NUMBER,
+    CAMBER_TYPE_STRING,
+    CAMBER_TYPE_COLOR,
+    CAMBER_TYPE_ARRAY,
+    CAMBER_TYPE_OBJECT,
+    CAMBER_TYPE_IMAGE,    /* a string that names one */
+    CAMBER_TYPE_COLLATOR, /* how strings are compared; its value is a number */
+    CAMBER_TYPE_ERROR,    /* has no value, so it fits anywhere */
+} camber_type;
+
+/* Arrays that are nested deeper are arrays of values. */
+#define CAMBER_ARRAY_DEPTH 3
+#define CAMBER_ANY_LENGTH UINT32_MAX
+
+typedef struct camber_typing {
+    camber_type type;                     /* an array where depth is not 0 */
+    camber_type item;                     /* of the innermost array */
+    uint32_t depth;                       /* of arrays in arrays */
+    uint32_t lengths[CAMBER_ARRAY_DEPTH]; /* the outermost first */
+} camber_typing;
+
+static inline camber_typing camber_typing_of(camber_type type) {
+    return (camber_typing){.type = type};
+}
+camber_typing camber_typing_array(camber_typing item, uint32_t length);
+/* Of an array's items. */
+camber_typing camber_typing_item(camber_typing array);
+/* What an evaluated value is. */
+camber_typing camber_typing_of_value(const camber_value *value);
+
+/* The type of items of these two types, seen one after the other: one type, or any value. Two arrays are never one. */
+camber_typing camber_typing_merge(camber_typing a, camber_typing b);
+/* Whether what is actual may stand where expected is wanted. */
+bool camber_typing_fits(camber_typing expected, camber_typing actual);
+
+/* "array<number, 2>": the specification's name. */
+#define CAMBER_TYPING_TEXT_SIZE 96
+const char *camber_typing_write(camber_typing typing, char text[CAMBER_TYPING_TEXT_SIZE]);
+/* "a number", "an array<number, 2>". */
+const char *camber_typing_name(camber_typing typing, char text[CAMBER_TYPING_TEXT_SIZE]);
+
+#endif

@@ -51,7 +51,7 @@ static bool take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint3
 }
 
 static camber_status draw_mesh(bench *b, const bench_frame_desc *desc, camber_frame_stats *stats) {
-    const camber_paint paint = {desc->width_px, {0, 0, 0, 1}};
+    const camber_paint paint = {.width_px = desc->width_px, .color = {0, 0, 0, 1}};
     const camber_pass pass = {.mesh = b->mesh, .paints = &paint, .paint_count = 1, .overlap = desc->overlap};
     const camber_frame frame = {
         .width = BENCH_SIDE_PX, .height = BENCH_SIDE_PX, .background = {1, 1, 1, 1}, .passes = &pass, .pass_count = 1};

@@ -22,12 +22,14 @@ kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK, 1, 1))) void emit(
     const size_t k = ((size_t)bases[2 * get_group_id(0) + 1] + (offsets[i - 1] >> 16)) / 2; /* two indices a record */
     const camber_u32 begins = point & CAMBER_POINT_FIRST ? 1u : 0u;
     put_record(records, k + begins, x[i], y[i], join, point);
-    const camber_u32 splits = kind > CAMBER_KIND_CUT && !(point & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST));
+    const camber_u32 inside = !(point & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST));
     if (begins) { /* a ring's first segment comes in from a ghost; an open line begins with itself */
         const size_t from = point & CAMBER_POINT_RING ? i - 1 : i;
         put_record(records, k, x[from], y[from], 0, CAMBER_RECORD_BREAK | (point & CAMBER_ROW_BITS));
     }
-    if (splits) {
+    if (kind == CAMBER_KIND_TIGHT && inside)
+        put_record(records, k + 1, x[i], y[i], join, point | CAMBER_RECORD_START);
+    if (kind == CAMBER_KIND_SPLIT && inside) {
         put_record(records, k + 1, x[i - 1], y[i - 1], 0, CAMBER_RECORD_BREAK | (point & CAMBER_ROW_BITS));
         put_record(records, k + 2, x[i], y[i], join, point | CAMBER_RECORD_START);
     }

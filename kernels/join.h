@@ -188,12 +188,14 @@ CAMBER_FN float camber_edge_limit(camber_u32 join, float side) {
  *   break, start        a polyline's first
  *   break, start, end   a dot
  *   end                 the last, and where the strip goes on: a plain cut
- *   end, break, start   where it breaks: at any other join inside a polyline */
+ *   end, start          at a tight join inside a polyline: of the triangles between, one is Ma, C, Mb, which winds
+ *                       the other way, as Mb lies before the line through Ma and C, and is culled; one has no area
+ *   end, break, start   at a split join there */
 CAMBER_FN camber_u32 camber_strip_records(camber_u32 kind, camber_u32 info) {
     const camber_u32 first = info & CAMBER_POINT_FIRST ? 1u : 0u;
-    const camber_u32 inner = info & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST) ? 0u : 2u;
+    const camber_u32 inner = info & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST) ? 0u : 1u;
     const camber_u32 live = kind == CAMBER_KIND_GHOST ? 0u : kind == CAMBER_KIND_DOT ? 3u : 1u + first;
-    return live + (kind > CAMBER_KIND_CUT ? inner : 0u);
+    return live + (kind > CAMBER_KIND_CUT ? inner : 0u) + (kind > CAMBER_KIND_TIGHT ? inner : 0u);
 }
 
 /* Whether a record begins a strip. */
@@ -238,10 +240,8 @@ CAMBER_FN camber_u32 camber_join_counts(camber_u32 join, camber_u32 before, camb
     const camber_u32 kind = camber_join_kind(join);
     if (method == CAMBER_STRIP) {
         const camber_u32 records = camber_strip_records(kind, info);
-        const camber_u32 vertices = kind == CAMBER_KIND_DOT     ? 4u
-                                    : records != 3u             ? 2u
-                                    : kind == CAMBER_KIND_TIGHT ? 3u
-                                                                : 4u;
+        const camber_u32 inside = info & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST) ? 0u : 1u;
+        const camber_u32 vertices = records == 3u ? 4u : inside ? 1u + records : 2u;
         return records == 0u ? 0u : vertices | records << 17;
     }
     if (kind == CAMBER_KIND_GHOST)

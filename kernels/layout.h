@@ -60,7 +60,8 @@ typedef struct camber_row {
 
 /* A record's last word is its point's info, with one of these. The vertices of a start are placed by the segment that
  * goes out of it, but for the edges that it has in common with the end before, which lie where the segment that comes
- * in puts them, to the last bit. That segment begins where the break before the start says. */
+ * in puts them, to the last bit. That segment begins where the break before the start says, or at a tight join the
+ * record before the end. */
 #define CAMBER_RECORD_BREAK 16u /* between two strips: both its vertices are the neighbours' */
 #define CAMBER_RECORD_START 32u /* of a strip inside a polyline, where the one before has ended */
 

@@ -4,7 +4,7 @@
 // runs every branch. For the same reason stroke.vert computes what is constant over a segment. With COUNT it adds 1 of
 // 255 in place of the colour, and fragments without coverage leave nothing, in the stencil neither. With UNION it leaves,
 // to be summed over all fragments of a pixel, the edge's normal times a (1 - a) and the area a, and a once more, to be
-// gathered one over the other: flatten.frag makes the union of them.
+// gathered one over the other: flatten.frag makes the union of them. GAP: strokes that may be two bands; BLUR: that may fade.
 precision highp float;
 
 flat in vec4 v_segment; // A in the piece, direction
@@ -19,6 +19,9 @@ flat in vec2 v_tips; // at A and B: where the round cap of a thin line ends, px 
 flat in highp uint v_kinds; // camber_end at A, at B
 #endif
 flat in mediump vec4 v_color;
+#if GAP || BLUR
+flat in vec2 v_band; // half the gap between two bands, below 0 where there is none; blur; px
+#endif
 
 layout(location = 0) out mediump vec4 o_color;
 
@@ -44,20 +47,30 @@ float inside_both(float a, float b, float cosine) {
     return mix(product, cosine > 0.0 ? smaller : least, abs(cosine));
 }
 
-float cut_join(float area, uint kind, float past, vec2 turn, float y, vec2 u, float half_width) {
+// The second line across the join, by its normal in the segment's frame (along, across): a bevel's looks along the bisector,
+// a miter's is the neighbour's edge, a whole turn away. inside: px from it, on the stroke's side.
+struct Second {
+    vec2 normal;
+    float inside, outer;
+    bool applies;
+};
+
+Second second_line(uint kind, float past, vec2 turn, float y, float half_width) {
     float outer = turn.y > 0.0 ? -1.0 : 1.0, sine = abs(turn.y);
-    // The second line across the join, by its normal in the segment's frame (along, across): a bevel's looks along the
-    // bisector, a miter's is the neighbour's edge, a whole turn away.
     bool bevel = kind == BEVEL || kind == SPLIT_BEVEL;
     vec2 normal = bevel ? vec2(sine, outer * turn.x)
                         : vec2(2.0 * sine * turn.x, outer * (turn.x * turn.x - sine * sine));
     float inside = (bevel ? half_width * turn.x : half_width) - dot(vec2(past, y), normal);
     bool miter = kind == MITER || kind == SPLIT_MITER;
-    bool applies = bevel || (miter && past > -1.0 && y * outer > 0.0);
+    return Second(normal, inside, outer, bevel || (miter && past > -1.0 && y * outer > 0.0));
+}
+
+float cut_join(float area, uint kind, float past, vec2 turn, float y, vec2 u, float half_width) {
+    Second line = second_line(kind, past, turn, y, half_width);
     // The frame of an end looks out of it; the pixel's own axes are a rotation away, mirrored at A.
-    vec2 seen = vec2(normal.x * u.x - normal.y * u.y, normal.x * u.y + normal.y * u.x);
-    float second = covered(inside, edge_of(seen));
-    return applies ? inside_both(area, second, outer * normal.y) : area;
+    vec2 seen = vec2(line.normal.x * u.x - line.normal.y * u.y, line.normal.x * u.y + line.normal.y * u.x);
+    float second = covered(line.inside, edge_of(seen));
+    return line.applies ? inside_both(area, second, line.outer * line.normal.y) : area;
 }
 #endif
 
@@ -111,6 +124,25 @@ void main() {
     area = cut_join(area, v_kinds & 7u, past.x, v_turns.xy, y, vec2(-u.x, u.y), half_width);
     area = cut_join(area, v_kinds >> 3, past.y, v_turns.zw, y, u, half_width);
 #endif
+#if GAP
+    float gap = max(covered(v_band.x - d, v_edge) + covered(v_band.x + d, v_edge) - 1.0, 0.0);
+#if SHARP_JOINS
+    gap = cut_join(gap, v_kinds & 7u, past.x, v_turns.xy, y, vec2(-u.x, u.y), v_band.x);
+    gap = cut_join(gap, v_kinds >> 3, past.y, v_turns.zw, y, u, v_band.x);
+#endif
+    area = v_band.x > 0.0 ? max(area - gap, 0.0) : area;
+#endif
+#if BLUR
+    // A ramp from half a pixel outside inwards, and into the gap.
+    float rim = half_width - d;
+#if SHARP_JOINS
+    Second at_a = second_line(v_kinds & 7u, past.x, v_turns.xy, y, half_width);
+    Second at_b = second_line(v_kinds >> 3, past.y, v_turns.zw, y, half_width);
+    rim = min(rim, min(at_a.applies ? at_a.inside : rim, at_b.applies ? at_b.inside : rim));
+#endif
+    float fade = v_band.y + 1.0, inner = v_band.x > 0.0 ? d - v_band.x + v_band.y : rim;
+    area = v_band.y > 0.0 ? clamp((min(rim, inner) + 0.5) / fade, 0.0, 1.0) : area;
+#endif
 #if FLAT_CAPS
     vec2 cap = v_shape.zw - past;
     area *= max(covered(cap.x, v_edge) + covered(cap.y, v_edge) - 1.0, 0.0);
@@ -119,6 +151,10 @@ void main() {
     // draw, so that neither leaves a hole.
     float tie = 4e-5 * half_width + 4e-5;
     bool foreign = (beyond.x > tie && past.x > v_limits.x) || (beyond.y > tie && past.y > v_limits.y);
+#if (GAP || BLUR) && METHOD == 2
+    // Bodies of fans overlap on the inner side of a join: what one leaves open the other must not fill.
+    foreign = foreign || (beyond.x > tie && y * v_turns.y > 0.0) || (beyond.y > tie && y * v_turns.w > 0.0);
+#endif
 #if COUNT
     if (foreign || area <= 0.0)
         discard;

@@ -5,7 +5,8 @@ precision highp float;
 precision highp int;
 
 layout(binding = 1) uniform highp usamplerBuffer u_records; // all other samplers are at unit 0
-uniform highp sampler2D u_rows; // two texels a row: half width px, -1 where not drawn, fan's step; premultiplied colour
+uniform highp sampler2D u_rows; // three texels a row: half width px, -1 where not drawn, fan's step, translation px;
+                                // premultiplied colour; half the gap, below 0 where there is none, blur, px
 uniform vec2 u_origin;          // of this piece in the picture, px
 uniform vec2 u_corner;          // of the viewport in the picture, px: it reaches past the piece
 uniform int u_table;            // of the rows; of strips the bits of gl_VertexID below the table's number
@@ -21,6 +22,9 @@ flat out vec4 v_limits;
 flat out vec2 v_tips;
 flat out highp uint v_kinds;
 flat out mediump vec4 v_color;
+#if GAP || BLUR
+flat out vec2 v_band;
+#endif
 
 const float PAD_PX = 0.75, NO_LIMIT_PX = 3.0e38;
 const uint FIRST = 2u, RING = 8u, BREAK = 16u, START = 32u; // of a record
@@ -37,6 +41,10 @@ struct Record {
 Record record_at(int i) {
     uvec4 words = texelFetch(u_records, i);
     return Record(uintBitsToFloat(words.xy), words.z, words.w);
+}
+
+vec4 row_texel(int i) {
+    return texelFetch(u_rows, ivec2(i & 2047, i >> 11), 0);
 }
 
 float turn_of(uint join) {
@@ -148,7 +156,8 @@ void main() {
     bool is_seam = (here.last & RING) != 0u && kind == CUT, is_outer = kind == TIGHT && right == (turn_of(here.join) > 0.0);
     bool is_shared = (here.last & FIRST) != 0u ? is_seam : is_outer;
     bool goes_out = (here.last & (FIRST | START)) != 0u && !is_shared;
-    Record other = record_at(goes_out ? i + 1 : i - 1);
+    bool is_again = (here.last & START) != 0u; // the end lies between
+    Record other = record_at(goes_out ? i + 1 : is_again ? i - 2 : i - 1);
 #else
     int table = u_table, i = gl_VertexID >> 7;
     uint corner = uint(gl_VertexID) & 127u;
@@ -157,11 +166,13 @@ void main() {
     Record other = record_at(kind_of(here.join) == DOT ? i : goes_out ? i + 1 : i - 1);
 #endif
 
-    int texel = 2 * (table * u_table_rows + int(here.last >> 8u));
-    ivec2 at = ivec2(texel & 2047, texel >> 11);
-    vec2 row = texelFetch(u_rows, at, 0).xy;
+    int texel = 3 * (table * u_table_rows + int(here.last >> 8u));
+    vec4 row = row_texel(texel);
     float half_width = row.x;
-    v_color = texelFetch(u_rows, at + ivec2(1, 0), 0);
+    v_color = row_texel(texel + 1);
+#if GAP || BLUR
+    v_band = row_texel(texel + 2).xy;
+#endif
 
 #if METHOD == 0
     Extrusion e = edge_at(here.join, goes_out ? -1.0 : 1.0, right ? -1.0 : 1.0);
@@ -178,9 +189,9 @@ void main() {
     float len = length(segment);
     vec2 u = len > 0.0 ? segment / len : vec2(1.0, 0.0);
     float reach = half_width + PAD_PX;
-    vec2 place = here.p + u * clamp(e.along * reach, -e.limit, e.limit) + vec2(-u.y, u.x) * (e.across * reach);
+    vec2 place = here.p + row.zw + u * clamp(e.along * reach, -e.limit, e.limit) + vec2(-u.y, u.x) * (e.across * reach);
 
-    hand_over(a, u, len, half_width, join_a, join_b);
+    hand_over(a + row.zw, u, len, half_width, join_a, join_b);
     // A row that is not drawn leaves no area; what lies outside the viewport would be clipped at some cost.
     gl_Position = vec4(half_width < 0.0 ? vec2(0.0) : (place - u_corner) * u_scale - 1.0, 0.0, 1.0);
 }

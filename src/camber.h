@@ -448,6 +448,7 @@ typedef struct camber_camera {
     double bearing_deg;     /* clockwise: the direction that is up in the picture */
     uint32_t width, height; /* of the picture, px */
     double simplify_px;     /* points of less importance than this are left out. 0: none */
+    double translate_px;    /* farthest that a paint translates what is drawn: so far around the picture it is seen */
 } camber_camera;
 
 /* Tessellates what the camera sees of a network. The device projects, leaves out, cuts and compacts; of this the host
@@ -480,10 +481,16 @@ typedef struct camber_mesh_data {
     camber_record *records;
     uint32_t *corners;
     /* What is drawn by it: info.vertex_count, and info.index_count. Of strips these are two indices a record, both
-     * CAMBER_RESTART_INDEX where it lies between two strips. */
+     * CAMBER_RESTART_INDEX where it lies between two strips. At a tight join two records follow each other that have
+     * one index in common: of the two triangles between them one has no area, the other winds the other way and is
+     * culled. */
     camber_vertex *vertices;
     uint32_t *indices;
 } camber_mesh_data;
+
+/* Whether the three indices from one on are a triangle that is drawn. Of strips every index begins three, and the
+ * triangles at odd ones have their first two corners in the other order. */
+CAMBER_API bool camber_mesh_data_draws(const camber_mesh_data *data, size_t first_index);
 
 CAMBER_API camber_status camber_mesh_read(camber_mesh *mesh, camber_mesh_data *data);
 /* The CPU twin: the same bytes as camber_tessellate where the device rounds correctly. Needs no device. */
@@ -525,8 +532,11 @@ typedef struct camber_color {
 
 /* How a row is drawn in one pass. */
 typedef struct camber_paint {
-    float width_px; /* 0: nothing is drawn; at most the stroke's width */
+    float width_px; /* 0: nothing is drawn. gap_px + 2 width_px with a gap, else this, is at most the stroke's width */
     camber_color color;
+    float gap_px;                         /* 0: none; else the room between two bands of this width each */
+    float blur_px;                        /* 0: none; else edges fade over so much more than a pixel, inwards */
+    float translate_x_px, translate_y_px; /* where it is drawn, from where its polyline lies */
 } camber_paint;
 
 typedef enum camber_overlap {
@@ -553,6 +563,7 @@ typedef struct camber_pass {
     const camber_paint *paints; /* paint_count; a row at or past it is not drawn */
     size_t paint_count;
     camber_overlap overlap;
+    float opacity; /* of all that is drawn, put onto the picture as one layer. 0: 1, and no layer */
 } camber_pass;
 
 typedef struct camber_frame {
@@ -586,7 +597,7 @@ CAMBER_API camber_status camber_render(camber_renderer *renderer, const camber_f
 /* ---- Overdraw: what the GPU does for a mesh, counted on it ---- */
 
 /* Consecutive indices of a mesh, as camber_mesh_read numbers them: of triangles whole triangles, of strips a part of
- * one or several whole ones. */
+ * one or several whole ones, from an even index on. */
 typedef struct camber_index_range {
     uint64_t first_index, index_count;
 } camber_index_range;

@@ -42,12 +42,51 @@ CAMBER_API void camber_style_destroy(camber_style *style);
 CAMBER_API camber_status camber_style_evaluate(camber_context *context, const char *json, size_t size_bytes,
                                                const char *name, camber_sink sink);
 
+/* ---- What is wrong with a style, and what is drawn of it ---- */
+
+typedef struct camber_style_finding {
+    bool error; /* against the specification; else something that is not drawn, or not as a reader may expect */
+    const char *pointer; /* where, as a JSON pointer; "": the whole document */
+    const char *message; /* what, and the cure */
+} camber_style_finding;
+
+/* The layers of one type. */
+typedef struct camber_style_type {
+    const char *type;
+    size_t layers;
+    bool drawn;
+} camber_style_type;
+
+typedef struct camber_style_origin {
+    const char *name, *type;
+    size_t layers;       /* line layers that name it */
+    const char *trouble; /* why it cannot be read, with the cure. NULL: nothing is seen from here; it is not opened */
+} camber_style_origin;
+
+typedef struct camber_style_report {
+    const camber_style_finding *findings; /* in the order of the document, mostly */
+    size_t finding_count, error_count;
+    const camber_style_type *types; /* in the order they are met */
+    size_t type_count;
+    const camber_style_origin *sources;
+    size_t source_count;
+} camber_style_report;
+
+/* Reads a style document to its end whatever is wrong with it. Of an expression the first error is told, and of what is
+ * not drawn each kind once. Returns CAMBER_OK also for what is no style, which is a finding, and CAMBER_ERROR_MEMORY.
+ */
+CAMBER_API camber_status camber_style_check(camber_context *context, const char *json, size_t size_bytes,
+                                            const char *name, camber_style_report **report);
+CAMBER_API void camber_style_report_destroy(camber_style_report *report);
+
 /* ---- Features: lines and the attributes that a style names --------------------------------------- */
 
 typedef struct camber_source_desc {
-    const char *path;  /* anything OGR opens, "/vsigzip/..." included; a .gz is opened through it */
+    /* Anything OGR opens, "/vsigzip/..." included; a .gz is opened through it. Vector tiles in MBTiles and PMTiles, by
+     * their endings, are read without GDAL, those of the highest zoom, unless there is a filter. */
+    const char *path;
     const char *layer; /* NULL: OSM's "lines"; a vector tile set's road layer; else every layer with lines */
-    const char *where; /* OGR attribute filter. NULL: none */
+    const char *where; /* OGR attribute filter; PMTiles have none. NULL: none */
     /* Leaves all lines apart. By default lines that the style cannot tell apart become one where two of them, and no
      * third, meet end to end; against their direction too, but for a style that names line-dasharray, line-offset,
      * line-gradient or line-pattern. */
@@ -91,6 +130,8 @@ CAMBER_API camber_features_times camber_features_get_times(const camber_features
 /* Whether any of the data is OpenStreetMap's, whose licence asks for attribution. */
 CAMBER_API bool camber_features_is_osm(const camber_features *features);
 
+/* Whether camber_features_read of such a file needs GDAL. */
+CAMBER_API bool camber_source_needs_gdal(const camber_source_desc *desc);
 /* Loads GDAL, which the first file that is read does else. It is half as long again once drivers have threads, so a
  * program that opens a device or a surface first may want it before. Returns CAMBER_ERROR_IO where GDAL or camber's
  * module for it is missing. Cost: 35 ms once a process; nothing in the static library, where GDAL is linked. */
@@ -118,6 +159,19 @@ typedef struct camber_view_desc {
     uint32_t width, height;          /* CSS px. 0: 1024 */
     double ratio;                    /* device px a CSS px. 0: 1 */
 } camber_view_desc;
+
+/* ---- Sources: what a style itself names ----------------------------------------------------------- */
+
+/* Reads the sources that the style's line layers name, in place of files. Those of type vector (tiles or url: files by
+ * a template, TileJSON, MBTiles, PMTiles) give the tiles that the view sees, at the zoom that its zoom asks for (tiles
+ * are 512 CSS px wide) within the source's; those of type geojson are read whole. Paths are relative to the folder of
+ * base_path, the style's file; NULL: to the working folder. Lines stay apart. For another view read into another set.
+ * A view that fits is that of the sources' bounds, or the whole world where none is known.
+ * Returns CAMBER_ERROR_ARGUMENT (the view), CAMBER_ERROR_NOT_FOUND, CAMBER_ERROR_INPUT (a source on the network, a file
+ * that does not read), CAMBER_ERROR_IO, CAMBER_ERROR_LIMIT (more than 65536 tiles), CAMBER_ERROR_MEMORY. A tile that is
+ * missing is empty; damage is counted and warned of. */
+CAMBER_API camber_status camber_features_read_sources(camber_features *features, const camber_view_desc *view,
+                                                      const char *base_path);
 
 /* ---- Scene: a view of features in a style, ready to tessellate and draw --------------------------- */
 
@@ -155,6 +209,9 @@ CAMBER_API void camber_scene_destroy(camber_scene *scene);
 CAMBER_API camber_status camber_scene_move(camber_scene *scene, const camber_view_desc *view);
 /* camber_tessellate_network of what the view sees. */
 CAMBER_API camber_status camber_scene_tessellate(const camber_scene *scene, camber_mesh *mesh, camber_method method);
+/* What that tessellates: the network, and into camera and desc what it is seen with; until the scene moves or goes. */
+CAMBER_API camber_network *camber_scene_network(const camber_scene *scene, camber_camera *camera,
+                                                camber_tessellation_desc *desc);
 
 /* Where the view is and whether its background is opaque; counts are 0. Makes nothing. */
 CAMBER_API camber_scene_info camber_scene_get_view(const camber_scene *scene);

@@ -156,7 +156,7 @@ bool golden_judge(const char *name, const picture *drawn) {
 size_t golden_row(golden *g, camber_stroke stroke) {
     assert_true(g->stroke_count < GOLDEN_ROWS);
     g->strokes[g->stroke_count] = stroke;
-    g->paints[0][g->stroke_count] = (camber_paint){stroke.width_px, {0, 0, 0, 1}};
+    g->paints[0][g->stroke_count] = (camber_paint){.width_px = stroke.width_px, .color = {0, 0, 0, 1}};
     return g->stroke_count++;
 }
 
@@ -189,8 +189,12 @@ static picture draw(const studio *s, camber_renderer *renderer, const golden *g)
     assert_int_equal(camber_mesh_create(s->device, renderer, &mesh), CAMBER_OK);
     assert_int_equal(camber_tessellate(mesh, polylines, &desc), CAMBER_OK);
     for (size_t i = 0; i < g->pass_count; i++)
-        passes[i] = (camber_pass){mesh,         g->first_polyline[i], g->polyline_count[i],
-                                  g->paints[i], g->stroke_count,      g->overlap[i]};
+        passes[i] = (camber_pass){.mesh = mesh,
+                                  .first_polyline = g->first_polyline[i],
+                                  .polyline_count = g->polyline_count[i],
+                                  .paints = g->paints[i],
+                                  .paint_count = g->stroke_count,
+                                  .overlap = g->overlap[i]};
     const camber_frame frame = {.width = g->width,
                                 .height = g->height,
                                 .background = g->background,

@@ -123,7 +123,7 @@ static bool keep_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint3
 
 static bool draw(const core *c, const network *n, double width_px, camber_overlap overlap, uint8_t *levels) {
     const camber_stroke stroke = {(float)width_px, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0};
-    const camber_paint paint = {(float)width_px, {0, 0, 0, 1}};
+    const camber_paint paint = {.width_px = (float)width_px, .color = {0, 0, 0, 1}};
     const camber_polylines_desc desc = {n->points, n->point_count, n->offsets, n->line_count, NULL, true};
     const camber_tessellation_desc tessellation = {&stroke, 1, CAMBER_METHOD_STRIP, 0};
     camber_polylines *polylines = NULL;

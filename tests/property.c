@@ -135,14 +135,13 @@ camber_mesh_data property_mesh(camber_context *context, const property_case *c) 
 size_t property_triangles(const camber_mesh_data *data, uint32_t (**triangles)[3]) {
     uint32_t(*list)[3] = malloc((data->info.index_count + 1) * sizeof *list);
     assert_non_null(list);
-    size_t count = 0, run = 0;
+    size_t count = 0;
     for (size_t i = 0; i < data->info.index_count; i++) {
         const uint32_t *at = data->indices + i;
-        run = at[0] == CAMBER_RESTART_INDEX ? 0 : run + 1;
-        if (data->info.strips ? run < 3 : run % 3 != 0)
+        if (!camber_mesh_data_draws(data, i))
             continue;
-        const bool odd = data->info.strips && run % 2 == 0;
-        list[count][0] = at[odd ? -1 : -2], list[count][1] = at[odd ? -2 : -1], list[count][2] = at[0];
+        const bool odd = data->info.strips && i % 2;
+        list[count][0] = at[odd ? 1 : 0], list[count][1] = at[odd ? 0 : 1], list[count][2] = at[2];
         count++;
     }
     *triangles = list;

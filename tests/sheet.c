@@ -143,7 +143,7 @@ static camber_status draw(sheet *s) {
     const camber_tessellation_desc tessellation = {s->strokes, s->figure_count, s->method, 0};
     camber_polylines *polylines = NULL;
     for (size_t i = 0; i < s->figure_count; i++)
-        s->paints[i] = (camber_paint){s->strokes[i].width_px, {ink, ink, ink, 1}};
+        s->paints[i] = (camber_paint){.width_px = s->strokes[i].width_px, .color = {ink, ink, ink, 1}};
     camber_status status = camber_polylines_create(s->context, &desc, &polylines);
     if (status == CAMBER_OK)
         status = camber_tessellate(s->mesh, polylines, &tessellation);

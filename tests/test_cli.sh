@@ -405,7 +405,9 @@ head -c 4 "$lines" >"$tmp/in/short.bin"
 expect 0 "validate" validate --method strip --windows 8 --junit built-in.xml --pictures pictures
 passes 100
 has "$tmp/stdout" ': as the CPU twin, on ' ': the same bytes from run to run, on ' ': the same bytes in work-groups of 64, on ' \
-    ': the same bytes in parts, on ' ': pixels, on ' '^# .* pixels: mean '
+    ': the same bytes in parts, on ' ': pixels, on ' '^# .* pixels: mean ' ': network, zoomed out: strip: as the CPU twin, on ' \
+    ': network, cut: strip: the same bytes in parts, on ' ': network, within a segment: no point far outside the picture' \
+    ': network, simplified, turned: strip, as styled: pixels, on '
 is_xml built-in.xml
 has built-in.xml '<testsuites ' '<testsuite ' '<testcase ' 'failures="0"'
 [ "$(grep -c '<testcase ' built-in.xml)" = "$(sed -n 's/^1\.\.//p' "$tmp/stdout")" ] || fail "other cases than checks"
@@ -428,7 +430,8 @@ has "$tmp/stdout" '"checks": [1-9]' '"failed": 0' '"skipped": [0-9]' '"failures"
 cmp -s built-in.xml "$tmp/in/built-in.xml" && fail "the file has not changed"
 rm -f built-in.xml
 expect 0 "validate a map" validate "$tiger" --method kite --size 200x200 --backend osmesa
-passes 12
+passes 40
+has "$tmp/stdout" ': network, zoomed in: kite: as the CPU twin, on '
 lacks "$tmp/stdout" 'EGL'
 name="odd names"
 odd=$tmp/in/$'a#b\\<c>&"d\'\xff\n\x01.bin'
@@ -494,6 +497,12 @@ echo '{"version": 8, "sources": {}, "layers": [{"id": "a", "type": "line", "sour
 expect 66 "no such style" render "$osm" -o a.png --style "$tmp/in/none.json"
 expect 65 "style that is not JSON" render "$osm" -o a.png --style "$tmp/in/cut.json"
 says 'cut.json'
+expect 65 "all that is wrong with a style" style check "$tmp/in/type.json"
+says '/layers/0/paint/line-width'
+says '1 error; correct it'
+echo '{"version": 8, "layers": [{"id": "a", "type": "fill"}, {"id": "b", "type": "line"}]}' >"$tmp/in/fill.json"
+expect 0 "a style that is right" style check "$tmp/in/fill.json"
+says '1 layer of type fill: not drawn'
 expect 65 "width of a wrong type" render "$osm" -o a.png --style "$tmp/in/type.json"
 says '/layers/0/paint/line-width'
 expect 65 "colour of a wrong type" render "$osm" -o a.png --style "$tmp/in/color.json"

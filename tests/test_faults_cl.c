@@ -479,7 +479,8 @@ static void test_drawing(void **state) {
         easel e = {.sharing = sharings[k % 3]};
         open_set(&s, parts, CAMBER_METHOD_STRIP);
         for (int i = 0; i < SCENE_ROWS; i++)
-            paints[i] = (camber_paint){fminf(s.strokes[i].width_px, 2), {1, 0.5f, (float)i / SCENE_ROWS, 1}};
+            paints[i] = (camber_paint){.width_px = fminf(s.strokes[i].width_px, 2),
+                                       .color = {1, 0.5f, (float)i / SCENE_ROWS, 1}};
         const camber_surface_desc surface_desc = {BACKEND[k / 3]};
         const camber_renderer_desc renderer_desc = {e.sharing};
         if (camber_surface_create(s.context, &surface_desc, &e.surface) == CAMBER_OK &&

@@ -57,9 +57,15 @@ static camber_status count(easel *e, const camber_paint *paints) {
 
 /* Whatever is missing is made; a mesh that was tessellated is whole. Pictures are held against the first. */
 static camber_status draw(easel *e) {
-    static const camber_paint solid[ROWS] = {{9, {1, 0, 0, 1}}, {9, {0, 1, 0, 1}}, {9, {0, 0, 1, 1}}};
-    static const camber_paint veil[ROWS] = {{7, {0, 0, 0, 0.5f}}, {7, {0, 0, 0, 0.5f}}, {7, {0, 0, 0, 0.5f}}};
-    static const camber_paint mixed[ROWS] = {{5, {1, 1, 0, 0.4f}}, {5, {0, 1, 1, 0.4f}}, {5, {1, 0, 1, 0.7f}}};
+    static const camber_paint solid[ROWS] = {{.width_px = 9, .color = {1, 0, 0, 1}},
+                                             {.width_px = 9, .color = {0, 1, 0, 1}},
+                                             {.width_px = 9, .color = {0, 0, 1, 1}}};
+    static const camber_paint veil[ROWS] = {{.width_px = 7, .color = {0, 0, 0, 0.5f}},
+                                            {.width_px = 7, .color = {0, 0, 0, 0.5f}},
+                                            {.width_px = 7, .color = {0, 0, 0, 0.5f}}};
+    static const camber_paint mixed[ROWS] = {{.width_px = 5, .color = {1, 1, 0, 0.4f}},
+                                             {.width_px = 5, .color = {0, 1, 1, 0.4f}},
+                                             {.width_px = 5, .color = {1, 0, 1, 0.7f}}};
     camber_status status = CAMBER_OK;
     if (!e->renderer)
         status = camber_renderer_create(e->device, e->surface, &(camber_renderer_desc){e->sharing}, &e->renderer);

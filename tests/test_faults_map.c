@@ -192,7 +192,7 @@ static camber_status write_glb(camber_context *context, desk *d, byte_list *file
     camber_paint *paints = calloc(count, sizeof *paints);
     assert_non_null(paints);
     for (size_t i = 0; i < count; i++)
-        paints[i] = (camber_paint){strokes[i].width_px, {0.1f, 0.2f, 0.3f, 0.5f}};
+        paints[i] = (camber_paint){.width_px = strokes[i].width_px, .color = {0.1f, 0.2f, 0.3f, 0.5f}};
     const camber_glb_desc desc = {strokes, paints, count, "\xc2\xa9 nobody"};
     const camber_status status = camber_glb_write(context, &d->mesh, &desc, (camber_sink){byte_list_write, file});
     free(paints);

@@ -161,8 +161,12 @@ static bool take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint3
 }
 
 static camber_status draw(camber_renderer *renderer, camber_mesh *mesh, desk *d) {
-    static const camber_paint solid[ROWS] = {{9, {1, 0, 0, 1}}, {6, {0, 1, 0, 1}}, {4, {0, 0, 1, 1}}};
-    static const camber_paint mixed[ROWS] = {{5, {1, 1, 0, 0.4f}}, {5, {0, 1, 1, 0.4f}}, {4, {1, 0, 1, 0.7f}}};
+    static const camber_paint solid[ROWS] = {{.width_px = 9, .color = {1, 0, 0, 1}},
+                                             {.width_px = 6, .color = {0, 1, 0, 1}},
+                                             {.width_px = 4, .color = {0, 0, 1, 1}}};
+    static const camber_paint mixed[ROWS] = {{.width_px = 5, .color = {1, 1, 0, 0.4f}},
+                                             {.width_px = 5, .color = {0, 1, 1, 0.4f}},
+                                             {.width_px = 4, .color = {1, 0, 1, 0.7f}}};
     const camber_pass passes[] = {
         {.mesh = mesh, .paints = solid, .paint_count = ROWS},
         {.mesh = mesh, .paints = mixed, .paint_count = ROWS},

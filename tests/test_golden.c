@@ -180,8 +180,8 @@ static void test_translucent(void **state) {
     add_crossings(&g, 120);
     g.pass_count = 2;
     for (int i = 0; i < 2; i++) {
-        g.paints[i][0] = (camber_paint){14, {0.1f, 0.3f, 0.7f, 0.5f}};
-        g.paints[i][1] = (camber_paint){12, {0.7f, 0.2f, 0.1f, 0.5f}};
+        g.paints[i][0] = (camber_paint){.width_px = 14, .color = {0.1f, 0.3f, 0.7f, 0.5f}};
+        g.paints[i][1] = (camber_paint){.width_px = 12, .color = {0.7f, 0.2f, 0.1f, 0.5f}};
         g.first_polyline[i] = 4 * (size_t)i;
         g.polyline_count[i] = 4;
         g.overlap[i] = i ? CAMBER_OVERLAP_FLATTEN : CAMBER_OVERLAP_ACCUMULATE;
@@ -194,7 +194,7 @@ static void test_hairpins(void **state) {
     for (int i = 0; i < 12; i++) {
         const size_t style = golden_row(&g, (camber_stroke){16, (camber_join)(i % 3), (camber_cap)(i / 4), 3});
         const double left = 18 + 48 * (i % 6), top = 14 + 92 * (i / 6), gap = 0.2 * pow(2.1, i % 6);
-        g.paints[0][style] = (camber_paint){16, {0, 0.35f, 0.3f, 0.5f}};
+        g.paints[0][style] = (camber_paint){.width_px = 16, .color = {0, 0.35f, 0.3f, 0.5f}};
         add_point(&g, left, top);
         add_point(&g, left + 5, top + 62);
         if (i < 6)
@@ -216,8 +216,8 @@ static void test_casing(void **state) {
     for (int i = 0; i < 3; i++) {
         const float width = i == 0 ? 20 : 14;
         const size_t style = golden_row(&g, (camber_stroke){width, CAMBER_JOIN_ROUND, CAMBER_CAP_ROUND, 0});
-        g.paints[0][style] = (camber_paint){width, {0.75f, 0.55f, 0.3f, 1}};
-        g.paints[1][style] = (camber_paint){width - 5, {1, 0.93f, 0.7f, 1}};
+        g.paints[0][style] = (camber_paint){.width_px = width, .color = {0.75f, 0.55f, 0.3f, 1}};
+        g.paints[1][style] = (camber_paint){.width_px = width - 5, .color = {1, 0.93f, 0.7f, 1}};
         for (int k = 0; k < 4; k++)
             add_point(&g, streets[i][k][0], streets[i][k][1]);
         scene_end(&g.lines, style);
@@ -232,7 +232,7 @@ static void test_rows(void **state) {
         const float width = 0.5f + 0.11f * (float)i;
         const size_t style = golden_row(&g, (camber_stroke){width, (camber_join)(i % 3), CAMBER_CAP_ROUND, 0});
         const float red = (float)(i % 10) / 9, green = (float)(i / 10) / 9;
-        g.paints[0][style] = (camber_paint){width, {red, green, 1 - red, i % 5 ? 1 : 0.5f}};
+        g.paints[0][style] = (camber_paint){.width_px = width, .color = {red, green, 1 - red, i % 5 ? 1 : 0.5f}};
         const double x = 15 + 30 * (i % 10), y = 8 + 21 * (i / 10.0);
         add_point(&g, x - 12, y + 4);
         add_point(&g, x, y - 5 + i % 7);
@@ -253,9 +253,9 @@ static void test_torture(void **state) {
     for (size_t i = 0; i < set.count; i++) {
         const size_t style = golden_row(
             &g, (camber_stroke){(float)set.figures[i].width_px, (camber_join)(i % 3), (camber_cap)(i / 3 % 3), 2});
-        g.paints[0][style] = (camber_paint){g.strokes[style].width_px, {0.3f, 0.3f, 0.3f, 0.5f}};
+        g.paints[0][style] = (camber_paint){.width_px = g.strokes[style].width_px, .color = {0.3f, 0.3f, 0.3f, 0.5f}};
         const uint32_t points = set.lines.offsets[i + 1] - set.lines.offsets[i];
-        g.paints[1][style] = (camber_paint){points < 40 ? 0.6f : 0, {0, 0, 0, 1}};
+        g.paints[1][style] = (camber_paint){.width_px = points < 40 ? 0.6f : 0, .color = {0, 0, 0, 1}};
     }
     g.pass_count = 2;
     g.lines = set.lines;

@@ -32,10 +32,9 @@ static void forget(camber_context *context, found *f) {
 static size_t segments_in(const camber_mesh_data *mesh, camber_index_range range) {
     size_t count = 0;
     float end_x = 0, end_y = 0;
-    for (uint64_t i = range.first_index + 2; i < range.first_index + range.index_count;
-         i += mesh->info.strips ? 1 : 3) {
+    for (uint64_t i = range.first_index + 2; i < range.first_index + range.index_count; i++) {
         const uint32_t *k = mesh->indices + i;
-        if (k[-2] == CAMBER_RESTART_INDEX || k[-1] == CAMBER_RESTART_INDEX || k[0] == CAMBER_RESTART_INDEX)
+        if (!camber_mesh_data_draws(mesh, i - 2))
             continue;
         const camber_vertex *v = mesh->vertices + k[0];
         const float far = v->flags >> 6 & 1 ? 0.0f : 1.0f;

@@ -219,8 +219,9 @@ static camber_status draw(camber_context *context, camber_renderer *renderer, ca
     static const uint32_t pieces[] = {0, 96, 61, 128, 33};
     camber_paint solid[ROWS], layered[ROWS];
     for (size_t i = 0; i < ROWS; i++) {
-        solid[i] = (camber_paint){STROKES[i].width_px, {1, (float)i / ROWS, 0, 1}};
-        layered[i] = (camber_paint){STROKES[i].width_px, {0, 0, n % 2 ? (float)i / ROWS : 1.0f, i < 2 ? 0.5f : 0.3f}};
+        solid[i] = (camber_paint){.width_px = STROKES[i].width_px, .color = {1, (float)i / ROWS, 0, 1}};
+        layered[i] = (camber_paint){.width_px = STROKES[i].width_px,
+                                    .color = {0, 0, n % 2 ? (float)i / ROWS : 1.0f, i < 2 ? 0.5f : 0.3f}};
     }
     camber_polylines *polylines = scene_polylines(context, a->scenes + n % SCENES);
     const camber_tessellation_desc desc = {STROKES, ROWS, (camber_method)(n % 3), 0};

@@ -25,7 +25,7 @@ static picture draw_anew(const char *cache_dir, camber_backend backend, size_t *
     const float points[] = {4, 4, 40, 30, 60, 8};
     const uint32_t offsets[] = {0, 3};
     const camber_stroke stroke = {6, CAMBER_JOIN_ROUND, CAMBER_CAP_ROUND, 0};
-    const camber_paint paint = {6, {0.2f, 0.4f, 0.6f, 0.5f}};
+    const camber_paint paint = {.width_px = 6, .color = {0.2f, 0.4f, 0.6f, 0.5f}};
     assert_int_equal(
         camber_polylines_create(context, &(camber_polylines_desc){points, 3, offsets, 1, NULL, false}, &polylines),
         CAMBER_OK);

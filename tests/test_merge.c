@@ -2,7 +2,7 @@
  * GEOS where it is there. */
 #include "core.h"
 
-#include "source/source.h"
+#include "source/fill.h"
 
 #include <math.h>
 

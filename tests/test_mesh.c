@@ -62,13 +62,11 @@ static size_t each_triangle(const camber_mesh_data *mesh, triangle_fn *fn, void 
             fn(mesh, mesh->indices + i, user);
         return count;
     }
-    size_t run = 0;
     for (size_t i = 0; i < mesh->info.index_count; i++) {
         const uint32_t *at = mesh->indices + i;
-        run = *at == CAMBER_RESTART_INDEX ? 0 : run + 1;
-        if (run < 3)
+        if (!camber_mesh_data_draws(mesh, i))
             continue;
-        const uint32_t triangle[3] = {run % 2 ? at[-2] : at[-1], run % 2 ? at[-1] : at[-2], at[0]};
+        const uint32_t triangle[3] = {at[i % 2], at[1 - i % 2], at[2]};
         fn(mesh, triangle, user);
         count++;
     }

@@ -1,7 +1,7 @@
 #!/bin/bash
 # Breaks kernels, shaders and join maths on purpose, one line at a time, and runs `camber validate` on each build: it
 # must end with 1 and name a check that failed. test_mutations.sh SOURCES [PART OF A ROW'S FILE OR WORDS]
-# kernels/join.h is compiled into kernels and CPU twin alike, so that pixels alone tell.
+# kernels/join.h and kernels/network.h are compiled into kernels and CPU twin alike, so that pixels and the window tell.
 set -u
 sources=$1
 only=${2:-}
@@ -135,6 +135,34 @@ mutant strip kernels/join.h "a miter past its limit" 'turn.c * row->miter_limit 
 mutant strip kernels/join.h "round and square caps swapped" 'cap == 1u ? 0u : cap == 2u ? 2u' 'cap == 1u ? 2u : cap == 2u ? 0u'
 mutant fan kernels/join.h "fans of one triangle" 'x > turn_cos && y > 0.0f' 'x < turn_cos && y > 0.0f'
 
+# ---- Networks: the twin tells of survey and project, pixels and the window of what they share with it ----
+
+mutant strip kernels/survey.cl "chunks that are not counted" 'counts[item] = w.at' 'counts[item] = chunk % 7u == 5u ? 0u : w.at'
+mutant strip kernels/project.cl "slots one off" 'bases[item] + 1u, 0, 0, 0}' 'bases[item], 0, 0, 0}'
+mutant strip kernels/project.cl "x in the place of y" '{x, y, importance, slot_x' '{y, x, importance, slot_x'
+mutant strip kernels/project.cl "chunks that skip where there is something" 'bases[item + 1u] > bases[item]' \
+    'bases[item + 1u] > bases[item] + 1u'
+mutant strip kernels/network.h "a side of the window" 'x > p->window_x1 + grown ? 2u' 'x > p->window_x1 + grown ? 1u'
+mutant strip kernels/network.h "the farther side of the window" 'return tx < ty ? tx : ty' 'return tx > ty ? tx : ty'
+mutant strip kernels/network.h "a corner of the window that is cut off" '> 1.0f)))' '> 1.5f)))'
+mutant strip kernels/network.h "important points that go" 'count += w->importance[i] >= p->tolerance' \
+    'count += w->importance[i] > p->tolerance'
+mutant strip kernels/network.h "segments to points that are left out" 'if (!(w->importance[i] >= p->tolerance))' \
+    'if (!(w->importance[i] >= 0.0f))'
+mutant strip kernels/network.h "ends that are not pulled" 'if (out == 0u)' 'if (out < 16u)'
+mutant strip kernels/network.h "ends pulled past the window" 'if (mid_out & out) {' 'if (mid_out) {'
+mutant strip kernels/network.h "a seam that is an end" 'begins == has_next ? CAMBER_POINT_RING' 'begins != has_next ? CAMBER_POINT_RING'
+mutant strip kernels/network.h "the ghost behind in the place of the one before" 'camber_put_ghost(w, p, 1u, a)' \
+    'camber_put_ghost(w, p, 0u, a)'
+mutant strip kernels/network.h "a ghost on the seam" 'other.point > w->first && camber_same_pixel(other, seam)' \
+    'other.point > w->first && !camber_same_pixel(other, seam)'
+mutant strip kernels/network.h "pieces that do not begin" 'camber_put_cut(w, p, to, from, real | CAMBER_POINT_FIRST)' \
+    'camber_put_cut(w, p, to, from, real)'
+mutant strip kernels/network.h "pieces that end where they began" 'camber_put_cut(w, p, from, to, real | CAMBER_POINT_LAST)' \
+    'camber_put_cut(w, p, from, from, real | CAMBER_POINT_LAST)'
+mutant strip kernels/network.h "runs that are not seen" 'run->x1 < p->seen_x0' 'run->x0 < p->seen_x0'
+mutant strip kernels/network.h "pixels turned the other way" 'p->down_x + p->at_x' '-p->down_x + p->at_x'
+
 # ---- Shaders ----
 
 mutant strip shaders/stroke.vert "cuts at the tangent of another angle" 'return 2.0 * q / ' 'return q / '
@@ -144,6 +172,7 @@ mutant kite shaders/stroke.vert "kites cut on the outer side" 'is_cut && inner ?
 mutant fan shaders/stroke.vert "a fan that turns back" 'vec2(sin(angle), outer * cos(angle))' 'vec2(-sin(angle), outer * cos(angle))'
 mutant strip shaders/stroke.vert "a segment from its end to its start" 'goes_out ? other.p - here.p' 'goes_out ? here.p - other.p'
 mutant strip shaders/stroke.vert "breaks that are drawn" 'right = !right;' ''
+mutant strip shaders/stroke.vert "a tight start placed by the end of no length" 'is_again ? i - 2' 'is_again ? i - 1'
 mutant strip shaders/stroke.vert "no pad" 'PAD_PX = 0.75' 'PAD_PX = 0.0'
 mutant strip shaders/edge.glsl "the slope of an edge" '1.0 / p,' '0.8 / p,'
 mutant strip shaders/stroke.frag "the corner of a pixel" 'corner * corner * edge.w' 'corner * edge.w'
@@ -156,6 +185,18 @@ mutant strip shaders/stroke.vert "square caps of a whole width" 'SQUARE ? half_w
 mutant strip shaders/stroke.frag "bevels that reach too far" 'bevel ? half_width * turn.x' 'bevel ? half_width'
 mutant strip shaders/stroke.frag "a bend to the wrong side" 'y - (bend(beyond.x' 'y + (bend(beyond.x'
 mutant strip shaders/stroke.vert "caps of thin lines" '0.5 + reach : NEVER_PX' '0.5 : NEVER_PX'
+mutant strip shaders/stroke.vert "a seam that starts at its first segment" '? is_seam : is_outer' '? false : is_outer'
+mutant strip shaders/stroke.vert "a tight join's outer side that starts at the next segment" '? is_seam : is_outer' '? is_seam : false'
+mutant strip shaders/stroke.frag "united lines: no edge between whole and part" '* (area * (1.0 - area)), area, area)' \
+    '* area, area, area)'
+mutant strip shaders/stroke.frag "united lines: both sides face the same way" 'vec2 off = vec2(arc.y - arc.x, y)' \
+    'vec2 off = vec2(arc.y - arc.x, abs(y))'
+mutant strip shaders/stroke.frag "united lines: areas that are not summed" 'area * (1.0 - area)), area, area)' \
+    'area * (1.0 - area)), 0.0, area)'
+mutant strip shaders/flatten.frag "united lines: edges that face alike are added up" 'cosine < 0.0 ? min(sum, 1.0)' \
+    'cosine > 0.0 ? min(sum, 1.0)'
+mutant strip shaders/flatten.frag "united lines: every two edges face alike" 'abs(cosine))' '1.0)'
+mutant strip shaders/flatten.frag "united lines: one over the other" 'abs(cosine))' '0.0)'
 
 echo "$caught caught, $failures failures"
 [ "$failures" = 0 ]

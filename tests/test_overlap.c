@@ -215,7 +215,7 @@ static bool write_file(void *user, const void *bytes, size_t size_bytes) {
 
 static void show(camber_context *context, const drawing *d, const overlap *o, const char *name) {
     char path[4096];
-    const camber_paint paint = {d->width_px, {0.75f, 0.75f, 0.75f, 1}};
+    const camber_paint paint = {.width_px = d->width_px, .color = {0.75f, 0.75f, 0.75f, 1}};
     const camber_pass pass = {.mesh = d->mesh, .paints = &paint, .paint_count = 1};
     const camber_frame frame = {
         .width = SIDE_PX, .height = SIDE_PX, .background = {1, 1, 1, 1}, .passes = &pass, .pass_count = 1};

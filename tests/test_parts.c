@@ -531,7 +531,8 @@ static bool draw(uint64_t limit, camber_backend backend, camber_sharing sharing,
         scene_strokes(strokes);
         for (int i = 0; i < SCENE_ROWS; i++) {
             const float hue = (float)i / SCENE_ROWS;
-            paints[i] = (camber_paint){fminf(strokes[i].width_px, 1), {hue, 1 - hue, 0.5f, i == 4 ? 0.3f : 0.6f}};
+            paints[i] = (camber_paint){.width_px = fminf(strokes[i].width_px, 1),
+                                       .color = {hue, 1 - hue, 0.5f, i == 4 ? 0.3f : 0.6f}};
         }
         camber_paint opaque[SCENE_ROWS];
         memcpy(opaque, paints, sizeof opaque);

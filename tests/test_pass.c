@@ -63,7 +63,7 @@ static void test_rectangles(void **state) {
                 else
                     line(&lines, 0, from, middle, to, middle);
                 const camber_stroke stroke = {(float)widths[w], CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0};
-                const camber_paint paint = {(float)widths[w], {1, 0, 0.5f, 1}};
+                const camber_paint paint = {.width_px = (float)widths[w], .color = {1, 0, 0.5f, 1}};
                 camber_mesh *mesh = make_mesh(s, &lines, &stroke, 1, (camber_method)method);
                 const camber_pass pass = {.mesh = mesh, .paints = &paint, .paint_count = 1};
                 picture p = draw(s, &pass, 1);
@@ -92,7 +92,7 @@ static void test_coverages(void **state) {
     line(&lines, 0, 10, 12, 52, 45);
     const double length = hypot(42, 33), width = 7;
     const camber_stroke stroke = {(float)width, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0};
-    const camber_paint paint = {(float)width, {1, 1, 1, 1}};
+    const camber_paint paint = {.width_px = (float)width, .color = {1, 1, 1, 1}};
     camber_mesh *mesh = make_mesh(s, &lines, &stroke, 1, CAMBER_METHOD_STRIP);
     const camber_pass pass = {.mesh = mesh, .paints = &paint, .paint_count = 1};
     picture pictures[2];
@@ -135,8 +135,9 @@ static scene crossing_scene(void) {
 static void test_flatten_is_even(void **state) {
     studio *s = *state;
     scene lines = crossing_scene();
-    const camber_paint paint = {8, {1, 0.5f, 0, 0.4f}};
-    picture opaque = draw_lines(s, &lines, &(camber_paint){8, {1, 0.5f, 0, 1}}, 1, CAMBER_OVERLAP_FLATTEN);
+    const camber_paint paint = {.width_px = 8, .color = {1, 0.5f, 0, 0.4f}};
+    picture opaque =
+        draw_lines(s, &lines, &(camber_paint){.width_px = 8, .color = {1, 0.5f, 0, 1}}, 1, CAMBER_OVERLAP_FLATTEN);
     picture p = draw_lines(s, &lines, &paint, 1, CAMBER_OVERLAP_FLATTEN);
     for (uint32_t y = 0; y < 64; y++) { /* everywhere the opaque picture times the alpha, once */
         for (uint32_t x = 0; x < 64; x++)
@@ -175,7 +176,7 @@ static void test_united_edges(void **state) {
     for (int i = 0; i < 3; i++) {
         static const camber_overlap overlaps[] = {CAMBER_OVERLAP_UNITE, CAMBER_OVERLAP_FLATTEN, CAMBER_OVERLAP_FLATTEN};
         const float alpha = i == 1 ? 0.5f : 1.0f; /* opaque, FLATTEN draws line over line */
-        picture p = draw_lines(s, &lines, &(camber_paint){10, {1, 1, 1, alpha}}, 1, overlaps[i]);
+        picture p = draw_lines(s, &lines, &(camber_paint){.width_px = 10, .color = {1, 1, 1, alpha}}, 1, overlaps[i]);
         assert_value(&p, 55, 25, 3, i == 2 ? 0.75 : (double)alpha);
         assert_value(&p, 30, 35, 3, i == 2 ? 0.75 : 0.5 * (double)alpha);
         assert_value(&p, 55, 35, 3, 0.5 * (double)alpha);
@@ -198,7 +199,8 @@ static void test_without_half_floats(void **state) {
     assert_int_equal(camber_renderer_create(s->device, surface, NULL, &renderer), CAMBER_OK);
     const int which = s->renderer[0] ? 0 : 1;
     s->renderer[which] = renderer;
-    picture p = draw_lines(s, &lines, &(camber_paint){10, {1, 1, 1, 0.5f}}, 1, CAMBER_OVERLAP_FLATTEN);
+    picture p =
+        draw_lines(s, &lines, &(camber_paint){.width_px = 10, .color = {1, 1, 1, 0.5f}}, 1, CAMBER_OVERLAP_FLATTEN);
     assert_value(&p, 30, 25, 3, 0.375);
     assert_value(&p, 30, 20, 3, 0.5);
     picture_free(&p);
@@ -213,7 +215,8 @@ static void test_colors_of_one_run(void **state) {
     scene lines = {0};
     line(&lines, 0, 4, 32, 60, 32);
     line(&lines, 1, 32, 4, 32, 60);
-    const camber_paint paints[] = {{8, {1, 0, 0, 0.5f}}, {8, {0, 0, 1, 0.5f}}};
+    const camber_paint paints[] = {{.width_px = 8, .color = {1, 0, 0, 0.5f}},
+                                   {.width_px = 8, .color = {0, 0, 1, 0.5f}}};
     picture p = draw_lines(s, &lines, paints, 2, CAMBER_OVERLAP_FLATTEN);
     const double left[] = {0.5, 0, 0, 0.5}, below[] = {0, 0, 0.5, 0.5};
     for (int c = 0; c < 4; c++) {
@@ -238,7 +241,9 @@ static void test_alphas_keep_order(void **state) {
     line(&lines, 1, 4, 48, 60, 48); /* green, opaque */
     line(&lines, 2, 16, 4, 16, 60); /* blue, a quarter: over both */
     line(&lines, 0, 48, 4, 48, 60); /* red, half again, a run of its own: over green */
-    const camber_paint paints[] = {{8, {1, 0, 0, 0.5f}}, {8, {0, 1, 0, 1}}, {8, {0, 0, 1, 0.25f}}};
+    const camber_paint paints[] = {{.width_px = 8, .color = {1, 0, 0, 0.5f}},
+                                   {.width_px = 8, .color = {0, 1, 0, 1}},
+                                   {.width_px = 8, .color = {0, 0, 1, 0.25f}}};
     picture p = draw_lines(s, &lines, paints, 3, CAMBER_OVERLAP_FLATTEN);
     const struct {
         uint32_t x, y;
@@ -262,7 +267,7 @@ static void test_paints_that_draw_nothing(void **state) {
     scene lines = crossing_scene();
     const camber_stroke strokes[] = {{8, CAMBER_JOIN_ROUND, CAMBER_CAP_SQUARE, 0}};
     camber_mesh *mesh = make_mesh(s, &lines, strokes, 1, CAMBER_METHOD_STRIP);
-    const camber_paint nothing[] = {{0, {1, 1, 1, 1}}, {8, {1, 1, 1, 0}}};
+    const camber_paint nothing[] = {{.width_px = 0, .color = {1, 1, 1, 1}}, {.width_px = 8, .color = {1, 1, 1, 0}}};
     camber_pass passes[4];
     for (int i = 0; i < 4; i++)
         passes[i] = (camber_pass){.mesh = mesh,
@@ -285,7 +290,7 @@ static void test_row_past_the_paints(void **state) {
         line(&lines, i % 2, 4, 10 + 20 * (double)i, 60, 10 + 20 * (double)i);
     const camber_stroke strokes[] = {{8, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0},
                                      {8, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0}};
-    const camber_paint paints[] = {{8, {1, 0, 0, 1}}, {8, {0, 1, 0, 1}}};
+    const camber_paint paints[] = {{.width_px = 8, .color = {1, 0, 0, 1}}, {.width_px = 8, .color = {0, 1, 0, 1}}};
     camber_mesh *mesh = make_mesh(s, &lines, strokes, 2, CAMBER_METHOD_STRIP);
     for (size_t count = 2; count >= 1; count--) {
         const camber_pass pass = {.mesh = mesh, .paints = paints, .paint_count = count};
@@ -309,7 +314,7 @@ static void test_some_rows(void **state) {
     line(&lines, 0, 4, 48, 60, 48);
     const camber_stroke strokes[] = {{6, 0, 0, 0}, {6, 0, 0, 0}};
     camber_mesh *mesh = make_mesh(s, &lines, strokes, 2, CAMBER_METHOD_STRIP);
-    const camber_paint paints[] = {{6, {1, 1, 1, 0.5f}}, {0, {1, 1, 1, 1}}};
+    const camber_paint paints[] = {{.width_px = 6, .color = {1, 1, 1, 0.5f}}, {.width_px = 0, .color = {1, 1, 1, 1}}};
     const camber_pass pass = {.mesh = mesh, .paints = paints, .paint_count = 2};
     const camber_frame frame = {.width = 64, .height = 64, .passes = &pass, .pass_count = 1};
     picture p = picture_draw(studio_any(s), &frame);
@@ -335,11 +340,11 @@ static void test_thousands_of_rows(void **state) {
     scene lines = {0};
     for (size_t i = 0; i < ROWS; i++) {
         strokes[i].width_px = 4;
-        paints[i] = (camber_paint){4, {0, 1, 0, 1}};
+        paints[i] = (camber_paint){.width_px = 4, .color = {0, 1, 0, 1}};
     }
     for (size_t i = 0; i < 8; i++) {
         line(&lines, rows[i], 4, 4 + 8 * (double)i, 60, 4 + 8 * (double)i);
-        paints[rows[i]] = (camber_paint){4, {(float)i / 7, 0, 1, 1}};
+        paints[rows[i]] = (camber_paint){.width_px = 4, .color = {(float)i / 7, 0, 1, 1}};
     }
     camber_mesh *mesh = make_mesh(s, &lines, strokes, ROWS, CAMBER_METHOD_STRIP);
     const camber_pass pass = {.mesh = mesh, .paints = paints, .paint_count = ROWS};
@@ -371,7 +376,8 @@ static void test_casing_and_fill(void **state) {
                                 narrow = {5, wide.join, wide.cap, 0};
             camber_mesh *both = make_mesh(s, &lines, &wide, 1, (camber_method)method);
             camber_mesh *fill = make_mesh(s, &lines, &narrow, 1, (camber_method)method);
-            const camber_paint casing_paint = {12, {0, 0, 0, 1}}, fill_paint = {5, {1, 1, 1, 1}};
+            const camber_paint casing_paint = {.width_px = 12, .color = {0, 0, 0, 1}},
+                               fill_paint = {.width_px = 5, .color = {1, 1, 1, 1}};
             const camber_pass passes[] = {{.mesh = both, .paints = &casing_paint, .paint_count = 1},
                                           {.mesh = both, .paints = &fill_paint, .paint_count = 1},
                                           {.mesh = fill, .paints = &fill_paint, .paint_count = 1}};
@@ -410,7 +416,7 @@ static void test_polyline_range(void **state) {
         line(&lines, 0, 4, 4 + 8 * i, 60, 4 + 8 * i);
     }
     const camber_stroke stroke = {4, CAMBER_JOIN_ROUND, CAMBER_CAP_ROUND, 0};
-    const camber_paint paint = {4, {1, 1, 1, 1}};
+    const camber_paint paint = {.width_px = 4, .color = {1, 1, 1, 1}};
     for (int method = 0; method < 3; method++) {
         camber_mesh *mesh = make_mesh(s, &lines, &stroke, 1, (camber_method)method);
         for (size_t first = 0; first <= lines.polyline_count + 1; first++) {
@@ -436,7 +442,7 @@ static void test_polyline_range(void **state) {
 /* Re-tessellating a mesh that has been drawn: smaller, larger, with other joins. */
 static void test_mesh_changes(void **state) {
     studio *s = *state;
-    const camber_paint paint = {6, {1, 1, 1, 1}};
+    const camber_paint paint = {.width_px = 6, .color = {1, 1, 1, 1}};
     scene large = {0};
     uint64_t seed = 3;
     for (int i = 0; i < 200; i++) {
@@ -479,7 +485,8 @@ static void test_passes_of_one_mesh(void **state) {
     camber_paint paints[PASSES][ROWS];
     for (int p = 0; p < PASSES; p++)
         for (int r = 0; r < ROWS; r++)
-            paints[p][r] = (camber_paint){(float)(9 - p - r % 2), {(float)p / PASSES, (float)r / ROWS, 1, 1}};
+            paints[p][r] =
+                (camber_paint){.width_px = (float)(9 - p - r % 2), .color = {(float)p / PASSES, (float)r / ROWS, 1, 1}};
     for (int method = 0; method < 3; method++) {
         camber_mesh *meshes[PASSES], *shared = make_mesh(s, &lines, strokes, ROWS, (camber_method)method);
         camber_pass together[PASSES], apart[PASSES];

@@ -2,7 +2,7 @@
  * order, as if it had never been cut. */
 #include "property.h"
 
-#include "source/source.h"
+#include "source/tiles.h"
 
 enum { ZOOM = 2, TILES = 3, TILE = 4096, BUFFER = 128, UNITS_A_PX = 96, POINTS_MAX = 4 * PROPERTY_POINTS };
 
@@ -85,10 +85,9 @@ static content content_of(const line *l, uint32_t column, uint32_t row) {
 
 /* ---- Cut and joined ---- */
 
-static camber_status add_tile(const property_bench *b, camber_tiles *tiles, const line *l, uint32_t tile) {
+static camber_status add_tile(camber_tiles *tiles, const line *l, uint32_t tile) {
     content t = content_of(l, tile % TILES, tile / TILES);
-    const camber_parts parts = {
-        .context = b->context, .points = t.points, .point_count = t.count, .ends = t.ends, .part_count = t.parts};
+    const camber_tile_parts parts = {.points = t.points, .ends = t.ends, .part_count = t.parts};
     const camber_tile_feature feature = {.column = tile % TILES, .row = tile / TILES, .has_id = true, .id = 7};
     return camber_tiles_add(tiles, &feature, &parts);
 }
@@ -166,7 +165,7 @@ static property_outcome check_joined(void *user, const property_case *c, char st
     assert_int_equal(camber_features_find_class(features, 0, CAMBER_GEOMETRY_LINE, &value, &class_index), CAMBER_OK);
     assert_int_equal(camber_tiles_create(b->context, ZOOM, &tiles), CAMBER_OK);
     for (size_t i = 0; i < TILES * TILES; i++)
-        assert_int_equal(add_tile(b, tiles, &l, orders[c->dice % 2][i]), CAMBER_OK);
+        assert_int_equal(add_tile(tiles, &l, orders[c->dice % 2][i]), CAMBER_OK);
     assert_int_equal(camber_tiles_finish(tiles, features), CAMBER_OK);
     const bool same = came_together(features, &l, story);
     camber_tiles_destroy(tiles);

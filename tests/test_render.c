@@ -26,7 +26,7 @@ static map_style make_style(float alpha) {
     for (int i = 0; i < MAP_ROWS; i++) {
         const float f = (float)i / (MAP_ROWS - 1);
         style.strokes[i] = (camber_stroke){widths[i], (camber_join)(i % 3), (camber_cap)(i / 3), 0};
-        style.paints[i] = (camber_paint){widths[i], {f, 1 - f, 0.5f, alpha}};
+        style.paints[i] = (camber_paint){.width_px = widths[i], .color = {f, 1 - f, 0.5f, alpha}};
     }
     return style;
 }

@@ -232,8 +232,8 @@ static void check_order(const camber_style *style) {
                 char id[64];
                 snprintf(id, sizeof id, "%s-%s-%s", levels[l], classes[i], parts[p]);
                 assert_string_equal(style->layers[at].id, id);
-                assert_int_equal(style->layers[at].join, CAMBER_JOIN_ROUND);
-                assert_int_equal(style->layers[at].cap, l == 2 && p == 0 ? CAMBER_CAP_BUTT : CAMBER_CAP_ROUND);
+                assert_int_equal(paint_of(style, id, 14.0).join, CAMBER_JOIN_ROUND);
+                assert_int_equal(paint_of(style, id, 14.0).cap, l == 2 && p == 0 ? CAMBER_CAP_BUTT : CAMBER_CAP_ROUND);
                 if (p == 0) {
                     const camber_style_layer *casing = &style->layers[at], *fill = &style->layers[at + 10];
                     assert_string_equal(casing->filter_key, fill->filter_key);
@@ -304,9 +304,6 @@ static void test_layer(void **state) {
     assert_string_equal(roads->source, "city");
     assert_string_equal(roads->source_layer, "transport");
     assert_string_equal(roads->filter_key, "[\"==\",\"highway\",\"primary\"]");
-    assert_int_equal(roads->cap, CAMBER_CAP_SQUARE);
-    assert_int_equal(roads->join, CAMBER_JOIN_BEVEL);
-    assert_true(fabsf(roads->miter_limit - 5.0f) < 1e-6f);
     assert_int_equal(f.style->property_count, 2);
     camber_value values[2];
     const size_t highway = strcmp(f.style->properties[0], "highway") == 0 ? 0 : 1;
@@ -320,6 +317,9 @@ static void test_layer(void **state) {
     assert_true(camber_style_layer_matches(plain, 24.0, &view));
     assert_false(camber_style_layer_matches(&f.style->layers[3], 10.0, &view));
     camber_layer_paint paint = camber_style_layer_paint(roads, 10.0, &view);
+    assert_int_equal(paint.cap, CAMBER_CAP_SQUARE);
+    assert_int_equal(paint.join, CAMBER_JOIN_BEVEL);
+    assert_true(fabs(paint.miter_limit - 5.0) < 1e-6);
     assert_true(fabs(paint.width - 7.0) < 1e-12 && fabsf(paint.color.a - 0.25f) < 1e-6f && paint.color.b >= 1.0f);
     /* What cannot be evaluated, or is no width, is the specification's default, and below 0 is 0. */
     values[1 - highway] = (camber_value){.type = CAMBER_VALUE_STRING, .string = "wide"};
@@ -330,11 +330,11 @@ static void test_layer(void **state) {
     assert_true(fabs(camber_style_layer_paint(roads, 10.0, &view).width) < 1e-12);
     values[highway].string = "secondary";
     assert_false(camber_style_layer_matches(roads, 10.0, &view));
-    assert_int_equal(plain->cap, CAMBER_CAP_BUTT);
-    assert_int_equal(plain->join, CAMBER_JOIN_MITER);
     assert_null(plain->source);
     assert_string_equal(plain->filter_key, "");
     paint = camber_style_layer_paint(plain, 10.0, &view);
+    assert_int_equal(paint.cap, CAMBER_CAP_BUTT);
+    assert_int_equal(paint.join, CAMBER_JOIN_MITER);
     assert_true(fabs(paint.width - 1.0) < 1e-12 && paint.color.a >= 1.0f && paint.color.r <= 0.0f);
     teardown(&f);
 }
@@ -345,23 +345,24 @@ static void test_warnings(void **state) {
     setup(&f);
     assert_int_equal(parse(&f, "{\"version\": 8, \"layers\": ["
                                "{\"id\": \"a\", \"type\": \"fill\"}, {\"id\": \"b\", \"type\": \"fill\"},"
-                               "{\"id\": \"c\", \"type\": \"line\", \"paint\": {\"line-blur\": 3,"
+                               "{\"id\": \"c\", \"type\": \"line\", \"paint\": {\"line-offset\": 3,"
                                "  \"line-color-transition\": {\"duration\": 1}}},"
-                               "{\"id\": \"d\", \"type\": \"line\", \"paint\": {\"line-blur\": 4}}]}"),
+                               "{\"id\": \"d\", \"type\": \"line\", \"paint\": {\"line-offset\": 4}}]}"),
                      CAMBER_OK);
     assert_int_equal(f.warning_count, 2);
-    assert_string_equal(f.warning, "roads.json: /layers/2/paint/line-blur: this property is not drawn; the layer is "
-                                   "drawn without it");
+    assert_string_equal(f.warning, "roads.json: /layers/2/paint/line-offset: line-offset is not drawn; its lines are "
+                                   "drawn where they are");
     assert_int_equal(f.style->layer_count, 2);
     teardown(&f);
     setup(&f);
     assert_int_equal(parse(&f, "{\"version\": 8, \"layers\": [{\"id\": \"c\", \"type\": \"line\", \"layout\": "
                                "{\"line-cap\": {\"stops\": [[0, \"butt\"], [10, \"round\"]]}, \"frob/ni~cate\": 3}}]}"),
                      CAMBER_OK);
-    assert_int_equal(f.warning_count, 2);
+    assert_int_equal(f.warning_count, 1);
     assert_string_equal(f.warning, "roads.json: /layers/0/layout/frob~1ni~0cate: unknown property; the layer is drawn "
                                    "without it");
-    assert_int_equal(f.style->layers[0].cap, CAMBER_CAP_ROUND);
+    assert_int_equal(camber_style_layer_paint(f.style->layers, 9.9, NULL).cap, CAMBER_CAP_BUTT);
+    assert_int_equal(camber_style_layer_paint(f.style->layers, 10.0, NULL).cap, CAMBER_CAP_ROUND);
     teardown(&f);
 }
 
@@ -577,7 +578,7 @@ static void test_memory(void **state) {
         assert_true(status == CAMBER_OK || f.error_count == 1);
         if (status == CAMBER_OK) {
             assert_in_range(count, 20, 1000);
-            assert_int_equal(f.style->layers[0].cap, CAMBER_CAP_ROUND);
+            assert_int_equal(camber_style_layer_paint(f.style->layers, 0.0, NULL).cap, CAMBER_CAP_ROUND);
         }
         teardown(&f);
     }

@@ -1,5 +1,5 @@
 /* Pieces of vector tiles: cut at the border, joined across it, drawn once. */
-#include "source/source.h"
+#include "source/tiles.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -57,8 +57,7 @@ static void add(fixture *it, uint32_t column, uint32_t row, uint64_t id, bool ou
     for (size_t i = 0; i < 2 * count; i++)
         points[i] = units[i] / WORLD;
     size_t end = count;
-    const camber_parts parts = {
-        .context = it->context, .points = points, .point_count = count, .ends = &end, .part_count = 1};
+    const camber_tile_parts parts = {.points = points, .ends = &end, .part_count = 1};
     const camber_tile_feature feature = {
         .column = column, .row = row, .class_index = it->classes[0], .outline = outline, .has_id = id != 0, .id = id};
     assert_int_equal(camber_tiles_add(it->tiles, &feature, &parts), CAMBER_OK);

@@ -130,7 +130,7 @@ static uint8_t *draw_alpha(const studio *s, camber_renderer *renderer, const tor
     camber_paint *paints = calloc(set->count, sizeof *paints);
     assert_non_null(paints);
     for (size_t i = 0; i < set->count; i++)
-        paints[i] = (camber_paint){desc->strokes[i].width_px, {1, 1, 1, 0.5f}};
+        paints[i] = (camber_paint){.width_px = desc->strokes[i].width_px, .color = {1, 1, 1, 0.5f}};
     assert_int_equal(camber_mesh_create(s->device, renderer, &mesh), CAMBER_OK);
     assert_int_equal(camber_tessellate(mesh, polylines, desc), CAMBER_OK);
     const camber_pass pass = {.mesh = mesh, .paints = paints, .paint_count = set->count};

@@ -12,9 +12,10 @@ static const struct {
 } table[] = {
     {"random walks", {3.5, 0.050, 0.0040}, {0, 0, 0}},  {"roads", {3.1, 0.040, 0.0010}, {0, 0, 0}},
     {"short segments", {35, 0.57, 0.22}, {0, 0, 0}},    {"turns", {2.7, 0.030, 0.0025}, {0, 0, 0}},
-    {"reversals", {50, 0.70, 0.30}, {0, 0, 0}},         {"rings", {3.2, 0.045, 0.0010}, {0, 0, 0}},
+    {"reversals", {50, 0.70, 0.30}, {0, 0, 0}},         {"rings", {3.2, 0.045, 0.0015}, {0, 0, 0}},
     {"repeated points", {12, 0.28, 0.0080}, {0, 0, 0}}, {"invalid points", {2.2, 0.020, 0.0010}, {0, 0, 0}},
-    {"grid", {4.6, 0.070, 0.0040}, {0, 0, 0}},          {NULL, {2.0, 0.030, 0.0020}, {14, 0.40, 0.060}},
+    {"grid", {4.6, 0.070, 0.0040}, {0, 0, 0}},          {"side by side", {2.0, 0.005, 0.0010}, {0, 0, 0}},
+    {"a segment", {3.0, 0.002, 0.0005}, {0, 0, 0}},     {NULL, {2.0, 0.030, 0.0020}, {14, 0.40, 0.060}},
 };
 
 /* A ramp instead of the area is off by more on every edge. */
@@ -27,6 +28,9 @@ static const camber_pixel_bounds backends = {0.25, 0.0020, 0.0005};
 /* How much more the union of all lines may be off: it has their crossings too, and a city in 256 px is crossings all
  * over. */
 static const double UNITED_MORE = 0.25, UNITED_MORE_OF_INPUT = 1.0;
+
+/* And lines that lost points, whose corners are sharper. */
+static const double SIMPLIFIED_MORE = 0.5;
 
 static void add(camber_pixel_bounds *sum, const camber_pixel_bounds *more, double times) {
     sum->mean += times * more->mean;
@@ -52,6 +56,12 @@ camber_pixel_bounds camber_bounds_of_united(const char *scene, camber_pixel_boun
     const camber_pixel_bounds once = over;
     add(&over, &once, scene ? UNITED_MORE : UNITED_MORE_OF_INPUT);
     return over;
+}
+
+camber_pixel_bounds camber_bounds_of_simplified(camber_pixel_bounds whole) {
+    const camber_pixel_bounds once = whole;
+    add(&whole, &once, SIMPLIFIED_MORE);
+    return whole;
 }
 
 camber_pixel_bounds camber_bounds_of_backends(void) {

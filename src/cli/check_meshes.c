@@ -25,6 +25,16 @@ camber_stroke *camber_strokes_styled(const camber_stroke *strokes, size_t count,
     return styled;
 }
 
+camber_status camber_subject_tessellate(const camber_subject *s, camber_mesh *mesh,
+                                        const camber_tessellation_desc *desc) {
+    return s->network ? camber_tessellate_network(mesh, s->network, &s->camera, desc)
+                      : camber_tessellate(mesh, s->polylines, desc);
+}
+
+bool camber_subject_takes(const camber_subject *s, const camber_options *options, camber_method method) {
+    return s->network ? s->method == method : options->method < 0 || options->method == (int)method;
+}
+
 /* ---- What is looked at ---- */
 
 static camber_status see_twin(camber_validation *v, const camber_subject *s, const camber_tessellation_desc *desc,
@@ -37,7 +47,8 @@ static camber_status see_twin(camber_validation *v, const camber_subject *s, con
 
 static camber_status see_mesh(camber_mesh *mesh, const camber_subject *s, const camber_tessellation_desc *desc,
                               bool with_stages, camber_sight *sight) {
-    const camber_status status = camber_tessellate(mesh, s->polylines, desc);
+    const camber_status status = camber_subject_tessellate(s, mesh, desc);
+    sight->of_network = s->network != NULL;
     return status == CAMBER_OK ? camber_sight_read(mesh, with_stages, sight) : status;
 }
 
@@ -68,14 +79,24 @@ static void every_join_and_cap(camber_stroke *stroke, size_t row, size_t number)
     stroke->cap = (camber_cap)(number % 3);
 }
 
-static int check_twin(job *j, size_t number) {
-    camber_stroke *strokes = camber_strokes_styled(j->s->strokes, j->s->stroke_count, every_join_and_cap, number);
-    camber_sight twin = {0};
-    camber_check check =
-        camber_check_start(j->rig->name, NULL, "%s: %s, %s joins, %s caps: as the CPU twin, on %s", j->s->name,
-                           camber_method_name(j->desc.method), camber_join_name((camber_join)(number / 3 % 3)),
-                           camber_cap_name((camber_cap)(number % 3)), j->rig->name);
+/* The strokes of a check that follows; NULL: out of memory. A network's stand: its twin's polylines are made for them.
+ */
+static camber_stroke *style(job *j, camber_style_fn *styled, size_t number) {
+    camber_stroke *strokes =
+        camber_strokes_styled(j->s->strokes, j->s->stroke_count, j->s->network ? camber_style_kept : styled, number);
     j->desc.strokes = strokes;
+    return strokes;
+}
+
+static int check_twin(job *j, size_t number) {
+    camber_stroke *strokes = style(j, every_join_and_cap, number);
+    camber_sight twin = {0};
+    char styled[64] = "";
+    if (!j->s->network)
+        snprintf(styled, sizeof styled, ", %s joins, %s caps", camber_join_name((camber_join)(number / 3 % 3)),
+                 camber_cap_name((camber_cap)(number % 3)));
+    camber_check check = camber_check_start(j->rig->name, NULL, "%s: %s%s: as the CPU twin, on %s", j->s->name,
+                                            camber_method_name(j->desc.method), styled, j->rig->name);
     camber_status made = strokes ? see_twin(j->v, j->s, &j->desc, &twin) : CAMBER_ERROR_MEMORY;
     if (made == CAMBER_OK)
         made = compare_mesh(j, j->rig->mesh, &twin, true, &check);
@@ -95,10 +116,15 @@ static int check_twin(job *j, size_t number) {
 
 /* ---- Against itself ---- */
 
-/* Rows of different joins and caps beside each other. */
-static void mixed(camber_stroke *stroke, size_t row, size_t number) {
+void camber_style_mixed(camber_stroke *stroke, size_t row, size_t number) {
     stroke->join = (camber_join)((row + number) % 3);
     stroke->cap = (camber_cap)((row / 3 + 2 * number) % 3);
+}
+
+void camber_style_kept(camber_stroke *stroke, size_t row, size_t number) {
+    (void)stroke;
+    (void)row;
+    (void)number;
 }
 
 /* What a device takes at least: camber_device_desc. */
@@ -129,21 +155,38 @@ static uint64_t part_bytes(const camber_sight *whole, size_t stroke_count) {
     return wanted < mesh_bytes ? wanted : 0;
 }
 
+/* The same for a network, whose points are the device's too: a polyline may have more of them than anybody sees. */
+static uint64_t network_part_bytes(const camber_subject *s) {
+    const uint64_t wanted = 4 * (uint64_t)camber_network_get_stats(s->network).kept_points / 3;
+    return wanted > LEAST_BUFFER_BYTES ? wanted : 0;
+}
+
 /* In parts, which only a mesh of several polylines has. */
 static camber_status compare_parts(job *j, const camber_sight *whole, camber_check *check) {
     const bool broken = j->rig->broken[j->desc.method];
-    const uint64_t limit = broken ? 0 : part_bytes(whole, j->s->stroke_count);
+    const uint64_t most = broken ? 0 : part_bytes(whole, j->s->stroke_count);
+    const uint64_t network_most = broken || !j->s->network ? 0 : network_part_bytes(j->s);
+    const uint64_t limit = most > network_most ? most : network_most;
     camber_device *device = NULL;
     camber_mesh *mesh = NULL;
     if (limit == 0) {
         check->verdict = CAMBER_VERDICT_SKIPPED;
         snprintf(check->reason, sizeof check->reason, "%s",
-                 broken ? "the mesh is not the CPU twin's" : "one polyline is most of it, and parts are of whole ones");
+                 broken          ? "the mesh is not the CPU twin's"
+                 : j->s->network ? "the network fits the smallest buffer"
+                                 : "one polyline is most of it, and parts are of whole ones");
         return CAMBER_OK;
     }
     camber_status status = camber_rig_open_small(j->rig, j->v->session, limit, &device, &mesh);
     if (status == CAMBER_OK)
         status = compare_mesh(j, mesh, whole, false, check);
+    if (status == CAMBER_ERROR_LIMIT && j->s->network) {
+        camber_report *report = j->v->session->report;
+        check->verdict = CAMBER_VERDICT_SKIPPED;
+        snprintf(check->reason, sizeof check->reason, "%.500s", report->error);
+        report->error[0] = 0;
+        status = CAMBER_OK;
+    }
     camber_mesh_destroy(mesh);
     camber_device_destroy(device);
     return status;
@@ -170,9 +213,8 @@ static int check_way(job *j, int way, const camber_sight *first) {
 }
 
 static int check_ways(job *j) {
-    camber_stroke *strokes = camber_strokes_styled(j->s->strokes, j->s->stroke_count, mixed, (size_t)j->desc.method);
+    camber_stroke *strokes = style(j, camber_style_mixed, (size_t)j->desc.method);
     camber_sight first = {0};
-    j->desc.strokes = strokes;
     const camber_status seen = strokes ? see_mesh(j->rig->mesh, j->s, &j->desc, true, &first) : CAMBER_ERROR_MEMORY;
     int status = camber_report_status(j->v->session->report, seen);
     for (int way = 0; way < WAYS && status == CAMBER_EXIT_DONE; way++)
@@ -183,7 +225,7 @@ static int check_ways(job *j) {
 }
 
 int camber_check_meshes(camber_validation *validation, const camber_subject *subject) {
-    const int wanted = validation->session->options->method;
+    const size_t styles = subject->network ? 1 : 9;
     int status = CAMBER_EXIT_DONE;
     for (size_t r = 0; r < validation->rigs.count; r++)
         for (int method = 0; method < 3 && status == CAMBER_EXIT_DONE; method++) {
@@ -191,10 +233,10 @@ int camber_check_meshes(camber_validation *validation, const camber_subject *sub
                      subject,
                      &validation->rigs.list[r],
                      {.stroke_count = subject->stroke_count, .method = (camber_method)method}};
-            if (wanted >= 0 && wanted != method)
+            if (!camber_subject_takes(subject, validation->session->options, (camber_method)method))
                 continue;
             j.rig->broken[method] = false;
-            for (size_t number = 0; number < 9 && status == CAMBER_EXIT_DONE; number++)
+            for (size_t number = 0; number < styles && status == CAMBER_EXIT_DONE; number++)
                 status = check_twin(&j, number);
             if (status == CAMBER_EXIT_DONE)
                 status = check_ways(&j);

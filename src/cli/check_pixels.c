@@ -36,14 +36,19 @@ static bool is_past(const camber_pixel_bounds *is, const camber_pixel_bounds *mo
     return false;
 }
 
+/* A few straight edges of a ramp can be off by more than many; what a camera sees does not depend on it. */
+static camber_coverage coverage_of(const job *j) {
+    return j->s->network ? CAMBER_COVERAGE_EXACT : (camber_coverage)j->v->session->options->coverage;
+}
+
 static camber_status draw(const job *j, const camber_path *path, camber_overlap overlap, uint8_t *levels) {
     const camber_drawing drawing = {.strokes = j->desc.strokes,
                                     .stroke_count = j->desc.stroke_count,
                                     .width = j->s->width,
                                     .height = j->s->height,
-                                    .coverage = (camber_coverage)j->v->session->options->coverage,
+                                    .coverage = coverage_of(j),
                                     .overlap = overlap};
-    const camber_status status = camber_tessellate(path->mesh, j->s->polylines, &j->desc);
+    const camber_status status = camber_subject_tessellate(j->s, path->mesh, &j->desc);
     return status == CAMBER_OK ? camber_draw_levels(path, &drawing, levels) : status;
 }
 
@@ -201,7 +206,7 @@ static int check_easel(job *j, size_t which) {
     int status = camber_report_status(j->v->session->report, draw(j, &easel->paths[0], CAMBER_OVERLAP_FLATTEN, j->own));
     if (status == CAMBER_EXIT_DONE)
         status = check_truth(j, &check, CAMBER_TRUTH_OVER, j->own);
-    if (status == CAMBER_EXIT_DONE && j->desc.method == CAMBER_METHOD_STRIP)
+    if (status == CAMBER_EXIT_DONE && j->desc.method == CAMBER_METHOD_STRIP && !j->s->network)
         status = check_united(j, easel);
     if (status == CAMBER_EXIT_DONE && which > 0)
         status = check_backend(j, easel);
@@ -228,13 +233,12 @@ static int check_rig(job *j) {
 }
 
 static int check_style(job *j) {
-    const int wanted = j->v->session->options->method;
     int status = CAMBER_EXIT_DONE;
     for (size_t r = 0; r < j->v->rigs.count; r++)
         for (int method = 0; method < 3 && status == CAMBER_EXIT_DONE; method++) {
             j->rig = &j->v->rigs.list[r];
             j->desc.method = (camber_method)method;
-            if (wanted < 0 || wanted == method)
+            if (camber_subject_takes(j->s, j->v->session->options, j->desc.method))
                 status = check_rig(j);
         }
     return status;
@@ -256,12 +260,6 @@ static void set_style(camber_stroke *stroke, size_t row, size_t number) {
     stroke->cap = styles[number].cap;
 }
 
-static void keep_style(camber_stroke *stroke, size_t row, size_t number) {
-    (void)stroke;
-    (void)row;
-    (void)number;
-}
-
 /* With the share of tight and split joins, which the twin tells. */
 static camber_status find_bounds(job *j) {
     camber_context *context = j->v->session->context;
@@ -270,18 +268,21 @@ static camber_status find_bounds(job *j) {
     const double joins = (double)(twin.info.joins ? twin.info.joins : 1);
     const double share = (double)(twin.info.tight_joins + twin.info.split_joins) / joins;
     camber_mesh_data_free(context, &twin);
-    camber_bounds_of_pixels(j->s->scene, share, (camber_coverage)j->v->session->options->coverage, &j->bounds);
+    camber_bounds_of_pixels(j->s->scene, share, coverage_of(j), &j->bounds);
+    if (j->s->network && j->s->camera.simplify_px > 0)
+        j->bounds = camber_bounds_of_simplified(j->bounds);
     return status;
 }
 
 static int check_number(job *j, size_t number) {
     const camber_subject *s = j->s;
+    const bool styled = s->scene && !s->network;
     camber_stroke *strokes =
-        camber_strokes_styled(s->drawn_strokes, s->stroke_count, s->scene ? set_style : keep_style, number);
+        camber_strokes_styled(s->drawn_strokes, s->stroke_count, styled ? set_style : camber_style_kept, number);
     camber_status made = CAMBER_ERROR_MEMORY;
     j->desc.strokes = strokes;
-    j->is_shared = number == 0;
-    if (!s->scene)
+    j->is_shared = number == 0 && !s->network;
+    if (!styled)
         snprintf(j->style, sizeof j->style, "as styled");
     else
         snprintf(j->style, sizeof j->style, "%s joins, %s caps", camber_join_name(styles[number].join),
@@ -309,7 +310,7 @@ int camber_check_pixels(camber_validation *validation, const camber_subject *sub
     j.other = malloc(area);
     if (!j.first || !j.own || !j.other)
         status = camber_report_status(validation->session->report, CAMBER_ERROR_MEMORY);
-    const size_t count = !subject->scene ? 1 : sizeof styles / sizeof *styles;
+    const size_t count = !subject->scene || subject->network ? 1 : sizeof styles / sizeof *styles;
     for (size_t number = 0; number < count && status == CAMBER_EXIT_DONE; number++)
         status = check_number(&j, number);
     free(j.other);

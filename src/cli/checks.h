@@ -17,6 +17,10 @@ typedef struct camber_subject {
     size_t stroke_count;
     const char *scene; /* that is built in. NULL: what a user brought, whose drawn strokes keep their joins and caps */
     uint32_t width, height; /* of the picture, px */
+    /* What of a network a camera sees; polylines are the CPU twin's then. NULL: none. */
+    camber_network *network;
+    camber_camera camera;
+    camber_method method; /* of a network, the one that it is checked with */
 } camber_subject;
 
 typedef struct camber_validation {
@@ -26,12 +30,27 @@ typedef struct camber_validation {
     size_t picture_count; /* of differences, written so far */
 } camber_validation;
 
+/* Tessellates the subject on the device. */
+camber_status camber_subject_tessellate(const camber_subject *subject, camber_mesh *mesh,
+                                        const camber_tessellation_desc *desc);
+/* Whether the subject is checked with a method. */
+bool camber_subject_takes(const camber_subject *subject, const camber_options *options, camber_method method);
+
 /* Each returns an exit status, its line printed: what a check found is no failure of the call. */
 int camber_check_meshes(camber_validation *validation, const camber_subject *subject);
+/* The subject as a network under several cameras. network: the one that the subject is a view of, with its camera and
+ * strokes; NULL: one is made of the subject's lines. */
+int camber_check_networks(camber_validation *validation, const camber_subject *subject, camber_network *network,
+                          const camber_camera *camera, const camber_tessellation_desc *desc);
 int camber_check_pixels(camber_validation *validation, const camber_subject *subject);
+/* Moves a camera to a pixel of its picture. */
+void camber_camera_center(camber_camera *camera, double x, double y);
 
 /* Sets a row's join and cap; number counts through what a subject is checked with. */
 typedef void camber_style_fn(camber_stroke *stroke, size_t row, size_t number);
+/* Rows of different joins and caps beside each other. */
+void camber_style_mixed(camber_stroke *stroke, size_t row, size_t number);
+void camber_style_kept(camber_stroke *stroke, size_t row, size_t number);
 /* The subject's strokes with their joins and caps set, freed with free; NULL: out of memory. */
 camber_stroke *camber_strokes_styled(const camber_stroke *strokes, size_t count, camber_style_fn *style, size_t number);
 const char *camber_join_name(camber_join join);
@@ -42,6 +61,7 @@ const char *camber_cap_name(camber_cap cap);
 /* What can be seen of a tessellation. Valid when zeroed; closed in any case. */
 typedef struct camber_sight {
     bool has_stages; /* else the mesh only */
+    bool of_network;
     camber_mesh_data mesh;
     camber_stages stages;
 } camber_sight;
@@ -66,11 +86,14 @@ int camber_evidence_check(const camber_session *session);
 
 /* ---- Bounds: bounds.c ---- */
 
-/* Of a built-in scene, or NULL for a user's lines, a share of whose joins is tight or split. false: it is not drawn. */
+/* Of a built-in scene or "a segment", or NULL for a user's lines, a share of whose joins is tight or split. false: it
+ * is not drawn. */
 bool camber_bounds_of_pixels(const char *scene, double tight_share, camber_coverage coverage,
                              camber_pixel_bounds *bounds);
 /* The same for lines that are united, from those of lines that are drawn one over the other. */
 camber_pixel_bounds camber_bounds_of_united(const char *scene, camber_pixel_bounds over);
+/* And for lines that a camera leaves points of out. */
+camber_pixel_bounds camber_bounds_of_simplified(camber_pixel_bounds whole);
 /* Of one GL back end's picture against another's. */
 camber_pixel_bounds camber_bounds_of_backends(void);
 

@@ -267,7 +267,7 @@ static int measure_network(camber_comparison *c, size_t i) {
     camber_paint *paints = calloc(network.stroke_count + 1, sizeof *paints);
     camber_status status = paints ? CAMBER_OK : CAMBER_ERROR_MEMORY;
     for (size_t k = 0; k < network.stroke_count && paints; k++)
-        paints[k] = (camber_paint){network.strokes[k].width_px, {0, 0, 0, 1}};
+        paints[k] = (camber_paint){.width_px = network.strokes[k].width_px, .color = {0, 0, 0, 1}};
     for (int method = 0; method < CAMBER_METHODS && status == CAMBER_OK; method++) {
         const trial t = {c, &network, paints, row, method};
         tell(&here, method * 0.5 / CAMBER_METHODS);

@@ -11,7 +11,7 @@ camber_status camber_draw_levels(const camber_path *path, const camber_drawing *
     if (!paints)
         return CAMBER_ERROR_MEMORY;
     for (size_t row = 0; row < count; row++)
-        paints[row] = (camber_paint){drawing->strokes[row].width_px, {1, 1, 1, 1}};
+        paints[row] = (camber_paint){.width_px = drawing->strokes[row].width_px, .color = {1, 1, 1, 1}};
     const camber_pass pass = {.mesh = path->mesh, .paints = paints, .paint_count = count, .overlap = drawing->overlap};
     const camber_frame frame = {.width = drawing->width,
                                 .height = drawing->height,

@@ -111,22 +111,41 @@ static camber_status look_at_indices(camber_context *context, camber_mesh *mesh,
 }
 
 /* Draws nothing where the mesh is not fit for it. */
-static camber_status draw_lines(camber_validation *v, const camber_path *path, const camber_polylines_desc *lines,
-                                const camber_tessellation_desc *desc, uint8_t *levels) {
+static camber_status draw_subject(camber_validation *v, const camber_path *path, const camber_subject *subject,
+                                  const camber_tessellation_desc *desc, uint8_t *levels) {
     const camber_drawing drawing = {.strokes = desc->strokes,
                                     .stroke_count = desc->stroke_count,
                                     .width = SIDE_PX,
                                     .height = SIDE_PX,
                                     .coverage = (camber_coverage)v->session->options->coverage};
-    camber_polylines *polylines = NULL;
-    camber_status status = camber_polylines_create(v->session->context, lines, &polylines);
-    if (status == CAMBER_OK)
-        status = camber_tessellate(path->mesh, polylines, desc);
+    camber_status status = camber_subject_tessellate(subject, path->mesh, desc);
     bool sound = false;
     if (status == CAMBER_OK)
         status = look_at_indices(v->session->context, path->mesh, &sound);
     if (status == CAMBER_OK && sound)
         status = camber_draw_levels(path, &drawing, levels);
+    return status;
+}
+
+/* What the subject looks like in the window: its lines moved there, or the camera. */
+static camber_status draw_shifted(camber_validation *v, const camber_path *path, const camber_subject *subject,
+                                  const camber_tessellation_desc *desc, const camber_finding *finding,
+                                  uint8_t *levels) {
+    const camber_polylines_desc lines = {subject->lines.points,  subject->lines.point_count,
+                                         subject->lines.offsets, subject->lines.polyline_count,
+                                         subject->rows,          subject->keep_open};
+    camber_subject shifted = *subject;
+    camber_polylines *polylines = NULL;
+    camber_status status = CAMBER_OK;
+    if (subject->network) {
+        camber_camera_center(&shifted.camera, floor(finding->x), floor(finding->y));
+        shifted.camera.width = shifted.camera.height = SIDE_PX;
+    } else {
+        status = camber_polylines_create(v->session->context, &lines, &polylines);
+        shifted.polylines = polylines;
+    }
+    if (status == CAMBER_OK)
+        status = draw_subject(v, path, &shifted, desc, levels);
     camber_polylines_destroy(polylines);
     return status;
 }
@@ -134,30 +153,26 @@ static camber_status draw_lines(camber_validation *v, const camber_path *path, c
 int camber_evidence_of_mesh(camber_validation *v, const camber_rig *rig, const camber_subject *subject,
                             const camber_tessellation_desc *desc, camber_finding *finding) {
     static const camber_window window = {0, 0, SIDE_PX, SIDE_PX};
-    camber_lines lines = subject->lines;
-    if (!is_wanted(v) || !rig->easel_count || !finding->has_point)
+    camber_subject shifted = *subject;
+    if (!is_wanted(v) || !rig->easel_count || !finding->has_point || subject->lines.point_count == 0)
         return CAMBER_EXIT_DONE;
     float *truth = calloc(SIDE_PX * SIDE_PX, sizeof *truth);
     uint8_t *levels = calloc(SIDE_PX, SIDE_PX);
-    int status = CAMBER_EXIT_DONE;
     camber_status made = CAMBER_ERROR_MEMORY;
-    if (shift_lines(&subject->lines, finding, &lines.points) && truth && levels) {
-        const camber_truth_desc truths = {.lines = &lines,
+    if (shift_lines(&subject->lines, finding, &shifted.lines.points) && truth && levels) {
+        const camber_truth_desc truths = {.lines = &shifted.lines,
                                           .rows = subject->rows,
                                           .strokes = desc->strokes,
                                           .keep_open = subject->keep_open,
                                           .kind = CAMBER_TRUTH_OVER};
-        const camber_polylines_desc shifted = {lines.points,         lines.point_count, lines.offsets,
-                                               lines.polyline_count, subject->rows,     subject->keep_open};
-        made = camber_truth_make(&truths, window, truth)
-                   ? draw_lines(v, &rig->easels[0].paths[0], &shifted, desc, levels)
-                   : CAMBER_ERROR_MEMORY;
+        if (camber_truth_make(&truths, window, truth))
+            made = draw_shifted(v, &rig->easels[0].paths[0], &shifted, desc, finding, levels);
     }
-    status = camber_report_status(v->session->report, made);
+    int status = camber_report_status(v->session->report, made);
     if (status == CAMBER_EXIT_DONE)
         status = camber_evidence_write(v, window, truth, levels, finding);
     free(levels);
     free(truth);
-    free(lines.points);
+    free(shifted.lines.points);
     return status;
 }

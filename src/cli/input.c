@@ -65,7 +65,7 @@ static int open_polylines(camber_input *input) {
     }
     const double width_px = session->options->width_px > 0 ? session->options->width_px : WIDTH_PX;
     input->stroke = (camber_stroke){(float)width_px, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0};
-    input->paint = (camber_paint){(float)width_px, {0, 0, 0, 1}};
+    input->paint = (camber_paint){.width_px = (float)width_px, .color = {0, 0, 0, 1}};
     return CAMBER_EXIT_DONE;
 }
 
@@ -248,6 +248,17 @@ const camber_stroke *camber_input_strokes(const camber_input *input, size_t *cou
 #endif
     *count = 1;
     return &input->stroke;
+}
+
+camber_network *camber_input_network(const camber_input *input, camber_camera *camera, camber_tessellation_desc *desc) {
+#ifdef CAMBER_MAP
+    if (input->scene)
+        return camber_scene_network(input->scene, camera, desc);
+#endif
+    (void)input;
+    (void)camera;
+    (void)desc;
+    return NULL;
 }
 
 camber_frame camber_input_frame(camber_input *input, camber_mesh *mesh) {

@@ -41,6 +41,8 @@ const camber_lines *camber_input_lines(const camber_input *input);
 /* The row of each polyline; NULL: all 0. */
 const uint32_t *camber_input_rows(const camber_input *input);
 const camber_stroke *camber_input_strokes(const camber_input *input, size_t *count);
+/* The network that the polylines are a view of, with its camera and strokes; NULL: they are none of one. */
+camber_network *camber_input_network(const camber_input *input, camber_camera *camera, camber_tessellation_desc *desc);
 camber_frame camber_input_frame(camber_input *input, camber_mesh *mesh);
 bool camber_input_opaque(const camber_input *input);
 

@@ -44,7 +44,7 @@ static const verb_spec verbs[] = {
     {"validate", CAMBER_VERB_VALIDATE, "[INPUT... | --polylines FILE]",
      "checks kernels and pixels on every device here"},
     {"bench", CAMBER_VERB_BENCH, "INPUT... | --polylines FILE", "times every stage"},
-    {"style", CAMBER_VERB_STYLE, "eval FILE", "evaluates an expression of a style over inputs"},
+    {"style", CAMBER_VERB_STYLE, "check FILE | eval FILE", "checks a style; evaluates an expression over inputs"},
 #else
     {"compare", CAMBER_VERB_COMPARE, "--polylines FILE", "the paper's experiment: fan, kite, strip side by side"},
     {"validate", CAMBER_VERB_VALIDATE, "[--polylines FILE]", "checks kernels and pixels on every device here"},

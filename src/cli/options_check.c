@@ -111,8 +111,9 @@ static int check_inputs(const checked *p) {
 /* style SUBCOMMAND FILE. */
 static int check_style(const checked *p) {
     const camber_options *options = p->options;
-    if (options->input_count == 0 || strcmp(options->inputs[0], "eval") != 0)
-        return usage(p, "style: %s%swhat to do with a file; write camber style eval FILE",
+    if (options->input_count == 0 ||
+        (strcmp(options->inputs[0], "check") != 0 && strcmp(options->inputs[0], "eval") != 0))
+        return usage(p, "style: %s%swhat to do with a file; write camber style check FILE or camber style eval FILE",
                      options->input_count ? options->inputs[0] : "", options->input_count ? ": not " : "say ");
     if (options->input_count == 1)
         return usage(p, "style %s: no file; give one, or - for standard input", options->inputs[0]);

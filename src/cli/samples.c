@@ -26,7 +26,7 @@ static bool window_about(const float *point, const camber_subject *s, camber_win
     return true;
 }
 
-static size_t polyline_of(const camber_lines *lines, size_t point) {
+size_t camber_polyline_of(const camber_lines *lines, size_t point) {
     size_t low = 0, high = lines->polyline_count;
     while (high - low > 1) {
         const size_t middle = low + (high - low) / 2;
@@ -52,7 +52,7 @@ static void choose(const camber_subject *s, size_t count, camber_samples *sample
             taken = memcmp(&samples->list[k].window, &sample->window, sizeof sample->window) == 0;
         if (taken)
             continue;
-        sample->polyline = polyline_of(lines, at);
+        sample->polyline = camber_polyline_of(lines, at);
         sample->point = at - lines->offsets[sample->polyline];
         sample->x = (double)point[0];
         sample->y = (double)point[1];

@@ -22,6 +22,9 @@ camber_status camber_samples_make(const camber_subject *subject, const camber_st
                                   camber_samples *samples);
 void camber_samples_free(camber_samples *samples);
 
+/* The polyline that has a point; the last of those that begin with it. */
+size_t camber_polyline_of(const camber_lines *lines, size_t point);
+
 /* Holds a picture of the subject's size against a kind of the samples' truth. worst: the sample with the largest sum of
  * differences. */
 void camber_samples_compare(const camber_samples *samples, camber_truth_kind kind, const uint8_t *levels, size_t width,

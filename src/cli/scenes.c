@@ -193,6 +193,24 @@ static void grid(camber_builtin *scene) {
     }
 }
 
+/* Pairs of lines of one width, edge to edge or one on the other, at every angle: what united layers are for. */
+static void side_by_side(camber_builtin *scene) {
+    for (size_t i = 0; i < 49; i++) {
+        const double angle = uniform(scene, 0, M_PI), dx = 50 * cos(angle), dy = 50 * sin(angle);
+        double x, y;
+        cell(i, 7, &x, &y);
+        x += uniform(scene, -2, 2);
+        for (size_t line = 0; line < 2; line++) {
+            const double aside = line && i % 2 ? CAMBER_SCENE_WIDTH_PX / 50.0 : 0;
+            for (int k = -1; k <= 1; k++)
+                add_point(scene, x + k * dx - aside * dy, y + k * dy + aside * dx);
+            end_polyline(scene);
+            if (!scene->failed)
+                scene->rows[scene->polyline_count - 1] = CAMBER_SCENE_WIDTH_ROW;
+        }
+    }
+}
+
 /* Longer than a work-group's and a scan's block, so that their borders lie within one line. */
 static void one_long_line(camber_builtin *scene) {
     walk(scene, 20011, (const double[]){0.2, 9}, 1.2);
@@ -213,6 +231,7 @@ static const struct {
     {"invalid points", invalid_points},
     {"extreme coordinates", extreme_coordinates},
     {"grid", grid},
+    {"side by side", side_by_side},
     {"one long line", one_long_line},
 };
 

@@ -5,6 +5,8 @@
 #include "camber.h"
 
 #define CAMBER_SCENE_ROWS 5
+#define CAMBER_SCENE_WIDTH_ROW 2 /* that is drawn CAMBER_SCENE_WIDTH_PX wide */
+#define CAMBER_SCENE_WIDTH_PX 8
 #define CAMBER_SCENE_SIDE_PX 1024 /* of the picture that most scenes are laid out for */
 
 /* Freed with camber_builtin_free. */

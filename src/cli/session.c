@@ -54,7 +54,7 @@ static void warm_up(const camber_session *session, camber_context *context) {
     const camber_network_desc lines = {.points = points, .offsets = offsets, .polyline_count = 1};
     const camber_camera camera = {.x = 8, .y = 8, .scale_px = 1, .width = 16, .height = 16};
     const camber_stroke stroke = {.width_px = 3};
-    const camber_paint paint = {3, {0, 0, 0, 1}};
+    const camber_paint paint = {.width_px = 3, .color = {0, 0, 0, 1}};
     const camber_tessellation_desc tessellation = {
         .strokes = &stroke, .stroke_count = 1, .method = camber_session_method(session)};
     camber_network *network = NULL;
@@ -86,12 +86,23 @@ static void *open_beside(void *user) {
     return NULL;
 }
 
+#ifdef CAMBER_MAP
+static bool needs_gdal(const camber_options *options) {
+    for (size_t i = 0; i < options->input_count; i++) {
+        const camber_source_desc desc = {.path = options->inputs[i], .where = options->where};
+        if (camber_source_needs_gdal(&desc))
+            return true;
+    }
+    return false;
+}
+#endif
+
 void camber_session_start(camber_session *session) {
     if (prepare(session) != CAMBER_OK)
         return;
 #ifdef CAMBER_MAP
     /* Before there are threads, which the loader would wait for. */
-    if (session->options->polylines == NULL && camber_gdal_load(session->context) != CAMBER_OK)
+    if (needs_gdal(session->options) && camber_gdal_load(session->context) != CAMBER_OK)
         return;
 #endif
     camber_opener *opener = calloc(1, sizeof *opener);

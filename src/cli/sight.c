@@ -65,8 +65,8 @@ static void tell_stage(camber_finding *finding, const char *stage, const camber_
              camber_value_print(finding->got).text, camber_value_print(finding->expected).text);
 }
 
-static bool upload_differs(const camber_point_stages *got, const camber_point_stages *expected,
-                           camber_finding *finding) {
+static bool points_differ(const camber_point_stages *got, const camber_point_stages *expected,
+                          camber_finding *finding) {
     const field_pair fields[] = {FIELD(polyline), FIELD(point), FIELD(x), FIELD(y)};
     return take_first(fields, sizeof fields / sizeof *fields, finding);
 }
@@ -83,19 +83,23 @@ static bool scan_differs(const camber_point_stages *got, const camber_point_stag
 }
 
 /* Stage by stage, since what one gets wrong the next ones inherit. */
-static bool stages_differ(const camber_stages *got, const camber_stages *expected, camber_finding *finding) {
-    static const struct {
+static bool stages_differ(const camber_stages *got, const camber_stages *expected, bool of_network,
+                          camber_finding *finding) {
+    const struct {
         const char *name;
         bool (*differs)(const camber_point_stages *got, const camber_point_stages *expected, camber_finding *finding);
-    } stages[] = {{"upload", upload_differs}, {"classify", classify_differs}, {"scan", scan_differs}};
-    if (counts_differ("upload", "points", got->point_count, expected->point_count, finding))
-        return true;
-    for (size_t s = 0; s < sizeof stages / sizeof *stages; s++)
-        for (size_t i = 0; i < expected->point_count; i++)
+    } stages[] = {
+        {of_network ? "project" : "upload", points_differ}, {"classify", classify_differs}, {"scan", scan_differs}};
+    for (size_t s = 0; s < sizeof stages / sizeof *stages; s++) {
+        for (size_t i = 0; i < expected->point_count && i < got->point_count; i++)
             if (stages[s].differs(&got->points[i], &expected->points[i], finding)) {
                 tell_stage(finding, stages[s].name, &expected->points[i]);
                 return true;
             }
+        if (s == 0 &&
+            counts_differ(of_network ? "survey" : "upload", "points", got->point_count, expected->point_count, finding))
+            return true;
+    }
     return false;
 }
 
@@ -187,7 +191,7 @@ bool camber_sights_differ(const camber_sight *got, const camber_sight *expected,
                   {"split joins", a->split_joins, b->split_joins},
                   {"undrawn dots", a->undrawn_dots, b->undrawn_dots}};
     *finding = (camber_finding){0};
-    if ((got->has_stages && stages_differ(&got->stages, &expected->stages, finding)) ||
+    if ((got->has_stages && stages_differ(&got->stages, &expected->stages, got->of_network, finding)) ||
         vertices_differ(got, expected, finding) || indices_differ(got, expected, finding) ||
         records_differ(&got->mesh, &expected->mesh, finding))
         return true;

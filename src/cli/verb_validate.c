@@ -10,8 +10,10 @@
 #include <unistd.h>
 
 static int check_subject(camber_validation *v, const camber_subject *s) {
-    const int status = camber_check_meshes(v, s);
-    return status == CAMBER_EXIT_DONE ? camber_check_pixels(v, s) : status;
+    int status = camber_check_meshes(v, s);
+    if (status == CAMBER_EXIT_DONE)
+        status = camber_check_pixels(v, s);
+    return status;
 }
 
 /* Of all widths at which a kernel or a shader does something else; pictures leave out what would cover all of them. */
@@ -20,9 +22,10 @@ static const camber_stroke builtin_strokes[CAMBER_SCENE_ROWS] = {{.width_px = 0.
                                                                  {.width_px = 9, .miter_limit = 10},
                                                                  {.width_px = 64, .miter_limit = 4},
                                                                  {.width_px = 1, .miter_limit = 2}};
+/* The third is CAMBER_SCENE_WIDTH_ROW. */
 static const camber_stroke builtin_drawn_strokes[CAMBER_SCENE_ROWS] = {{.width_px = 0.4f, .miter_limit = 1},
                                                                        {.width_px = 3, .miter_limit = 0},
-                                                                       {.width_px = 8, .miter_limit = 10},
+                                                                       {CAMBER_SCENE_WIDTH_PX, 0, 0, 10},
                                                                        {.width_px = 20, .miter_limit = 4},
                                                                        {.width_px = 1, .miter_limit = 2}};
 
@@ -53,6 +56,8 @@ static int check_builtin(camber_validation *v, size_t number) {
             .height = CAMBER_SCENE_SIDE_PX,
         };
         status = check_subject(v, &s);
+        if (status == CAMBER_EXIT_DONE)
+            status = camber_check_networks(v, &s, NULL, NULL, NULL);
     }
     camber_polylines_destroy(polylines);
     camber_builtin_free(&scene);
@@ -74,7 +79,13 @@ static int check_input(camber_validation *v, camber_input *input) {
         .height = frame.height,
     };
     s.strokes = s.drawn_strokes = camber_input_strokes(input, &s.stroke_count);
-    return check_subject(v, &s);
+    const int status = check_subject(v, &s);
+    if (status != CAMBER_EXIT_DONE)
+        return status;
+    camber_camera camera;
+    camber_tessellation_desc strokes;
+    camber_network *network = camber_input_network(input, &camera, &strokes);
+    return camber_check_networks(v, &s, network, &camera, &strokes);
 }
 
 static int check_all(camber_validation *v, camber_input *input) {

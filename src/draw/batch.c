@@ -23,6 +23,8 @@ void camber_renderer_use_shader(camber_renderer *renderer, const camber_shader *
     const GLfloat x = (GLfloat)piece->x, y = (GLfloat)piece->y, w = (GLfloat)piece->width, h = (GLfloat)piece->height;
     const GLfloat guard_x = (GLfloat)camber_renderer_guard(renderer, 0, (GLsizei)piece->width),
                   guard_y = (GLfloat)camber_renderer_guard(renderer, 1, (GLsizei)piece->height);
+    /* What winds the other way in a strip lies between the two records of a tight join. */
+    (mesh->mesh_info.strips ? gl->Enable : gl->Disable)(GL_CULL_FACE);
     gl->UseProgram(shader->program);
     gl->Uniform2f(shader->origin, x, y);
     gl->Uniform2f(shader->corner, x - guard_x, y - guard_y);
@@ -87,12 +89,14 @@ camber_status camber_batch_add(camber_renderer *renderer, const camber_run *run,
         camber_renderer_fill_rows(renderer, run, batch->table_count++);
     batch->mesh = mesh;
     batch->pass = run->pass;
+    batch->bands |= run->bands;
     batch->ranges[batch->range_count++] = (camber_batch_range){run->first, run->end, batch->table_count - 1};
     return CAMBER_OK;
 }
 
 void camber_batch_forget(camber_renderer *renderer) {
     renderer->batch.table_count = renderer->batch.range_count = renderer->batch.call_count = 0;
+    renderer->batch.bands = 0;
 }
 
 /* ---- Calls ---- */
@@ -188,6 +192,7 @@ camber_status camber_batch_draw(camber_renderer *renderer, unsigned variant, con
     const camber_shader *shader;
     if (batch->range_count == 0)
         return CAMBER_OK;
+    variant |= batch->bands;
     variant |= piece->coverage == CAMBER_COVERAGE_LINEAR ? CAMBER_VARIANT_LINEAR : 0u;
     camber_status status = camber_renderer_mesh_shader(renderer, mesh, piece->thinnest_px, variant, &shader);
     if (status == CAMBER_OK) {

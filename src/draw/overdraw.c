@@ -17,7 +17,8 @@ enum {
     SIDE_MAX_PX = 65535,
     PIECE_SIDE_PX = 2048,
     FULL = 255,            /* of a channel */
-    INDICES_MAX = 3 << 28, /* a draw call's: a signed 32-bit number, whole triangles */
+    INDICES_MAX = 3 << 28, /* a draw call's: a signed 32-bit number, whole triangles, an even number */
+    INDICES_LEAST = 252,   /* the same, and no pixel is full after them */
     COVERED = 0,
     EVERY = 1, /* the channels that stroke.frag and count.frag add to */
 };
@@ -83,11 +84,12 @@ static camber_status check_ranges(const counting *c) {
     for (size_t i = 0; i < c->range_count; i++) {
         const camber_index_range r = c->ranges[i];
         const bool inside = r.first_index <= info->index_count && r.index_count <= info->index_count - r.first_index;
-        if (!inside || (!info->strips && (r.first_index % 3 || r.index_count % 3)))
+        const bool whole = info->strips ? r.first_index % 2 == 0 : r.first_index % 3 == 0 && r.index_count % 3 == 0;
+        if (!inside || !whole)
             return camber_fail(c->renderer->share.device->context, CAMBER_ERROR_ARGUMENT,
-                               "range %zu: %llu indices from %llu on; the mesh has %zu%s", i,
+                               "range %zu: %llu indices from %llu on; the mesh has %zu, %s", i,
                                (unsigned long long)r.index_count, (unsigned long long)r.first_index, info->index_count,
-                               info->strips ? "" : ", three a triangle");
+                               info->strips ? "and strips begin at even ones" : "three a triangle");
     }
     return CAMBER_OK;
 }
@@ -177,9 +179,9 @@ static camber_status count_fragments(counting *c) {
         const camber_status status = read_counts(c, sums, &highest);
         if (status != CAMBER_OK)
             return status;
-        if (highest == FULL && batch > FULL) {
-            batch = batch / 6 * 3; /* whole triangles */
-            batch = batch < FULL ? FULL : batch;
+        if (highest == FULL && batch > INDICES_LEAST) {
+            batch = batch / 12 * 6;
+            batch = batch < INDICES_LEAST ? INDICES_LEAST : batch;
             continue;
         }
         c->sum.fragments += sums[EVERY];

@@ -18,7 +18,8 @@ float camber_renderer_thinnest(const camber_frame *frame) {
 static camber_flatten_kind kind_of(const camber_renderer *renderer, const camber_run *run) {
     if (!run->layered || !run->one_color)
         return CAMBER_FLATTEN_COLORS;
-    return renderer->share.surface->half_float_targets ? CAMBER_FLATTEN_UNION : CAMBER_FLATTEN_COVERAGE;
+    /* The union is of strokes with one edge on each side. */
+    return renderer->share.surface->half_float_targets && !run->bands ? CAMBER_FLATTEN_UNION : CAMBER_FLATTEN_COVERAGE;
 }
 
 /* How the fragments of a layer come together. Of the union's four, the last gathers one over the other and the first
@@ -30,34 +31,19 @@ static void set_blending(const camber_gl *gl, camber_flatten_kind kind) {
         gl->BlendFunc(GL_ONE, kind == CAMBER_FLATTEN_COVERAGE ? GL_ONE_MINUS_SRC_COLOR : GL_ONE_MINUS_SRC_ALPHA);
 }
 
-static camber_status draw_layered(camber_renderer *renderer, const camber_run *run, const camber_piece *piece) {
+/* Puts a layer over what the piece draws into; color is premultiplied, or of colours the opacity four times. */
+static camber_status flatten(camber_renderer *renderer, int layer, camber_flatten_kind kind, const float color[4],
+                             const camber_piece *piece) {
     const camber_gl *gl = &renderer->share.surface->gl;
-    const GLsizei width = (GLsizei)piece->width, height = (GLsizei)piece->height;
-    const int layer = run->one_color ? CAMBER_TARGET_COVERAGE : CAMBER_TARGET_LAYER;
     const camber_shader *shader;
-    camber_status status = camber_renderer_bind_target(renderer, layer, width, height);
+    camber_status status = camber_renderer_flatten_shader(renderer, kind, &shader);
     if (status == CAMBER_OK)
-        status = camber_batch_add(renderer, run, piece);
+        status = camber_renderer_bind_target(renderer, piece->target, (GLsizei)piece->width, (GLsizei)piece->height);
     if (status != CAMBER_OK)
         return status;
-    gl->ClearColor(0.0f, 0.0f, 0.0f, 0.0f);
-    gl->Clear(GL_COLOR_BUFFER_BIT);
-    set_blending(gl, kind_of(renderer, run));
-    status =
-        camber_batch_draw(renderer, kind_of(renderer, run) == CAMBER_FLATTEN_UNION ? CAMBER_VARIANT_UNION : 0u, piece);
-    if (status == CAMBER_OK)
-        status = camber_renderer_flatten_shader(renderer, kind_of(renderer, run), &shader);
-    if (status == CAMBER_OK)
-        status = camber_renderer_bind_target(renderer, CAMBER_TARGET_PICTURE, width, height);
-    if (status != CAMBER_OK)
-        return status;
-    const float a = run->alpha;
     gl->BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     gl->UseProgram(shader->program);
-    if (run->one_color)
-        gl->Uniform4f(shader->layer_color, run->color.r * a, run->color.g * a, run->color.b * a, a);
-    else
-        gl->Uniform4f(shader->layer_color, a, a, a, a);
+    gl->Uniform4f(shader->layer_color, color[0], color[1], color[2], color[3]);
     gl->BindTexture(GL_TEXTURE_2D, renderer->targets[layer].texture);
     gl->BindVertexArray(renderer->vertex_array);
     gl->DrawArrays(GL_TRIANGLES, 0, 3);
@@ -66,15 +52,51 @@ static camber_status draw_layered(camber_renderer *renderer, const camber_run *r
     return CAMBER_OK;
 }
 
+/* An empty layer to draw into. */
+static camber_status begin_layer(camber_renderer *renderer, int layer, const camber_piece *piece) {
+    const camber_gl *gl = &renderer->share.surface->gl;
+    const camber_status status =
+        camber_renderer_bind_target(renderer, layer, (GLsizei)piece->width, (GLsizei)piece->height);
+    if (status != CAMBER_OK)
+        return status;
+    gl->ClearColor(0.0f, 0.0f, 0.0f, 0.0f);
+    gl->Clear(GL_COLOR_BUFFER_BIT);
+    return CAMBER_OK;
+}
+
+static camber_status draw_layered(camber_renderer *renderer, const camber_run *run, const camber_piece *piece) {
+    const camber_gl *gl = &renderer->share.surface->gl;
+    const int layer = run->one_color ? CAMBER_TARGET_COVERAGE : CAMBER_TARGET_LAYER;
+    const camber_flatten_kind kind = kind_of(renderer, run);
+    camber_status status = begin_layer(renderer, layer, piece);
+    if (status == CAMBER_OK)
+        status = camber_batch_add(renderer, run, piece);
+    if (status != CAMBER_OK)
+        return status;
+    set_blending(gl, kind);
+    status = camber_batch_draw(renderer, kind == CAMBER_FLATTEN_UNION ? CAMBER_VARIANT_UNION : 0u, piece);
+    if (status != CAMBER_OK)
+        return status;
+    const float a = run->alpha * run->opacity;
+    const float color[4] = {run->one_color ? run->color.r * a : a, run->one_color ? run->color.g * a : a,
+                            run->one_color ? run->color.b * a : a, a};
+    return flatten(renderer, layer, kind, color, piece);
+}
+
 static bool same_color(camber_color a, camber_color b) {
     return a.r == b.r && a.g == b.g && a.b == b.b;
+}
+
+static unsigned bands_of(const camber_paint *paint) {
+    return (paint->gap_px > 0.0f ? (unsigned)CAMBER_VARIANT_GAP : 0u) |
+           (paint->blur_px > 0.0f ? (unsigned)CAMBER_VARIANT_BLUR : 0u);
 }
 
 /* The longest run from a polyline on. Rows that are not drawn belong to any run. */
 static camber_run next_run(const camber_pass *pass, size_t first, size_t end) {
     const uint32_t *rows = pass->mesh->polyline_rows;
     const bool layered = pass->overlap != CAMBER_OVERLAP_ACCUMULATE;
-    camber_run run = {.pass = pass, .first = first, .end = first, .alpha = 1.0f, .one_color = true};
+    camber_run run = {.pass = pass, .first = first, .end = first, .alpha = 1.0f, .opacity = 1.0f, .one_color = true};
     bool met = false;
     for (; run.end < end; run.end++) {
         if (!camber_pass_draws(pass, rows[run.end]))
@@ -87,6 +109,7 @@ static camber_run next_run(const camber_pass *pass, size_t first, size_t end) {
             run.color = color;
         }
         run.one_color = run.one_color && same_color(color, run.color);
+        run.bands |= bands_of(pass->paints + rows[run.end]);
         met = true;
     }
     if (!met)
@@ -95,25 +118,55 @@ static camber_run next_run(const camber_pass *pass, size_t first, size_t end) {
     return run;
 }
 
+static camber_status draw_run(camber_renderer *renderer, const camber_run *run, const camber_piece *piece) {
+    if (run->alpha <= 0.0f)
+        return CAMBER_OK;
+    if (!run->layered)
+        return camber_batch_add(renderer, run, piece);
+    const camber_status status = camber_batch_draw(renderer, 0, piece); /* what waits lies below */
+    return status == CAMBER_OK ? draw_layered(renderer, run, piece) : status;
+}
+
+static camber_status draw_runs(camber_renderer *renderer, const camber_pass *pass, size_t end,
+                               const camber_piece *piece) {
+    camber_status status = CAMBER_OK;
+    for (size_t first = pass->first_polyline; first < end && status == CAMBER_OK;) {
+        const camber_run run = next_run(pass, first, end);
+        first = run.end;
+        status = draw_run(renderer, &run, piece);
+    }
+    return status;
+}
+
+/* A pass with an opacity: its one run's layer takes it, or a layer that all its runs are drawn into. */
+static camber_status draw_group(camber_renderer *renderer, const camber_pass *pass, size_t end,
+                                const camber_piece *piece) {
+    camber_run run = next_run(pass, pass->first_polyline, end);
+    if (run.end == end && pass->overlap != CAMBER_OVERLAP_ACCUMULATE) {
+        run.opacity = pass->opacity;
+        run.layered = true;
+        return draw_run(renderer, &run, piece);
+    }
+    camber_piece group = *piece;
+    group.target = CAMBER_TARGET_GROUP;
+    camber_status status = camber_batch_draw(renderer, 0, piece);
+    if (status == CAMBER_OK)
+        status = begin_layer(renderer, group.target, &group);
+    if (status == CAMBER_OK)
+        status = draw_runs(renderer, pass, end, &group);
+    if (status == CAMBER_OK)
+        status = camber_batch_draw(renderer, 0, &group);
+    const float a = pass->opacity, color[4] = {a, a, a, a};
+    return status == CAMBER_OK ? flatten(renderer, group.target, CAMBER_FLATTEN_COLORS, color, piece) : status;
+}
+
 camber_status camber_renderer_draw_pass(camber_renderer *renderer, const camber_pass *pass, const camber_piece *piece) {
     const camber_mesh *mesh = pass->mesh;
     if (mesh->empty)
         return CAMBER_OK;
     size_t end = pass->polyline_count ? pass->first_polyline + pass->polyline_count : mesh->polyline_count;
     end = end < mesh->polyline_count ? end : mesh->polyline_count;
-    camber_status status = CAMBER_OK;
-    for (size_t first = pass->first_polyline; first < end && status == CAMBER_OK;) {
-        const camber_run run = next_run(pass, first, end);
-        first = run.end;
-        if (run.alpha <= 0.0f)
-            continue;
-        if (run.layered) { /* over what waits */
-            status = camber_batch_draw(renderer, 0, piece);
-            if (status == CAMBER_OK)
-                status = draw_layered(renderer, &run, piece);
-        } else {
-            status = camber_batch_add(renderer, &run, piece);
-        }
-    }
-    return status;
+    if (pass->opacity > 0.0f && pass->opacity < 1.0f && pass->first_polyline < end)
+        return draw_group(renderer, pass, end, piece);
+    return draw_runs(renderer, pass, end, piece);
 }

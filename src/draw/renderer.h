@@ -13,7 +13,9 @@ enum {
     CAMBER_VARIANT_UNION = 16,   /* leaves what the union of a layer's strokes is made from */
     CAMBER_VARIANT_THIN = 32,    /* strokes with both edges in a pixel */
     CAMBER_VARIANT_TIPS = 64,    /* round caps that are hardly wider than a pixel */
-    CAMBER_VARIANT_METHOD = 128, /* times camber_method */
+    CAMBER_VARIANT_GAP = 128,    /* strokes that may be two bands */
+    CAMBER_VARIANT_BLUR = 256,   /* strokes that may fade */
+    CAMBER_VARIANT_METHOD = 512, /* times camber_method */
     CAMBER_METHODS = 3,
     CAMBER_VARIANTS = CAMBER_METHODS * CAMBER_VARIANT_METHOD
 };
@@ -38,7 +40,14 @@ typedef struct camber_target {
     GLsizei width, height;
 } camber_target;
 
-enum { CAMBER_TARGET_PICTURE, CAMBER_TARGET_COVERAGE, CAMBER_TARGET_LAYER, CAMBER_TARGET_COUNTS, CAMBER_TARGETS };
+enum {
+    CAMBER_TARGET_PICTURE,
+    CAMBER_TARGET_COVERAGE,
+    CAMBER_TARGET_LAYER,
+    CAMBER_TARGET_GROUP, /* a pass with an opacity of its own */
+    CAMBER_TARGET_COUNTS,
+    CAMBER_TARGETS
+};
 
 /* The texture unit of the records, as stroke.vert has it; all else is at 0. */
 enum { CAMBER_RECORDS_UNIT = 1 };
@@ -47,10 +56,12 @@ enum { CAMBER_RECORDS_UNIT = 1 };
 typedef struct camber_run {
     const camber_pass *pass;
     size_t first, end; /* polylines */
-    float alpha;       /* of the flattened layer; 1: straight onto the picture */
+    float alpha;       /* of its rows; 1: straight onto the picture */
+    float opacity;     /* of its layer, besides */
     bool one_color;    /* its layer holds coverage alone, and color is put over it */
     bool layered;
     camber_color color;
+    unsigned bands; /* CAMBER_VARIANT_GAP and BLUR, where a paint has them */
 } camber_run;
 
 typedef struct camber_batch_range {
@@ -63,6 +74,7 @@ typedef struct camber_batch {
     const camber_mesh *mesh;
     const camber_pass *pass; /* of the last table */
     size_t table_count;
+    unsigned bands; /* of its runs */
     camber_batch_range *ranges;
     size_t range_count, range_capacity;
     GLint *firsts; /* of the strips of a call */
@@ -111,6 +123,7 @@ typedef struct camber_piece {
     uint32_t x, y, width, height; /* in the picture, px */
     camber_coverage coverage;
     float thinnest_px; /* that is drawn in the frame */
+    int target;        /* that runs are drawn into */
     size_t *draw_calls;
 } camber_piece;
 float camber_renderer_thinnest(const camber_frame *frame);

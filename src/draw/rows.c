@@ -1,10 +1,16 @@
-/* The row texture: tables of widths and colours, one a pass that is drawn, of which every row of the mesh has its
- * texels. */
+/* The row texture: tables of widths, places and colours, one a pass that is drawn, of which every row of the mesh has
+ * its texels. */
 #include "draw/renderer.h"
 
+#include <math.h>
 #include <string.h>
 
-enum { ROW_TEXTURE_WIDTH = 2048, TEXELS_A_ROW = 2 }; /* the width: stroke.vert's too */
+enum { ROW_TEXTURE_WIDTH = 2048, TEXELS_A_ROW = 3 }; /* as stroke.vert has them */
+
+/* Of the whole stroke: a gap's bands lie on both sides of it. */
+static float half_width(const camber_paint *paint) {
+    return paint->gap_px > 0.0f ? 0.5f * paint->gap_px + paint->width_px : 0.5f * paint->width_px;
+}
 
 bool camber_renderer_holds_rows(const camber_renderer *renderer, size_t row_count) {
     const size_t texels = (size_t)ROW_TEXTURE_WIDTH * renderer->share.surface->info.largest_target_px;
@@ -23,8 +29,12 @@ void camber_renderer_fill_rows(camber_renderer *renderer, const camber_run *run,
             continue;
         const float alpha = run->layered ? 1.0f : paint->color.a;
         const float color[4] = {paint->color.r * alpha, paint->color.g * alpha, paint->color.b * alpha, alpha};
-        texel[0] = 0.5f * paint->width_px;
+        texel[0] = half_width(paint);
         texel[1] = pass->mesh->host_rows[i].fan_step;
+        texel[2] = paint->translate_x_px;
+        texel[3] = paint->translate_y_px;
+        texel[8] = paint->gap_px > 0.0f ? 0.5f * paint->gap_px : -1.0f;
+        texel[9] = fmaxf(paint->blur_px, 0.0f);
         for (int c = 0; c < 4; c++)
             texel[4 + c] = run->layered && run->one_color ? 1.0f : color[c];
     }
@@ -76,8 +86,8 @@ camber_status camber_renderer_set_widths(camber_renderer *renderer, const camber
         return status;
     memset(renderer->row_texels, 0, 4 * TEXELS_A_ROW * mesh->row_count * sizeof *renderer->row_texels);
     for (size_t i = 0; i < mesh->row_count; i++) {
-        const float width_px = i < paint_count ? paints[i].width_px : 0.0f;
-        renderer->row_texels[4 * TEXELS_A_ROW * i] = width_px > 0.0f ? 0.5f * width_px : -1.0f;
+        const bool drawn = i < paint_count && paints[i].width_px > 0.0f;
+        renderer->row_texels[4 * TEXELS_A_ROW * i] = drawn ? half_width(paints + i) : -1.0f;
         renderer->row_texels[4 * TEXELS_A_ROW * i + 1] = mesh->host_rows[i].fan_step;
     }
     camber_renderer_upload_rows(renderer, mesh->row_count);

@@ -98,13 +98,15 @@ camber_status camber_renderer_stroke_shader(camber_renderer *renderer, unsigned 
     camber_shader *wanted = renderer->strokes + variant;
     if (!wanted->program) {
         char head[256];
-        snprintf(head, sizeof head,
-                 "#define LINEAR %d\n#define SHARP_JOINS %d\n#define FLAT_CAPS %d\n#define COUNT %d\n"
-                 "#define UNION %d\n#define METHOD %u\n#define THIN %d\n#define TIPS %d\n",
-                 (variant & CAMBER_VARIANT_LINEAR) != 0, (variant & CAMBER_VARIANT_SHARP_JOINS) != 0,
-                 (variant & CAMBER_VARIANT_FLAT_CAPS) != 0, (variant & CAMBER_VARIANT_COUNT) != 0,
-                 (variant & CAMBER_VARIANT_UNION) != 0, variant / CAMBER_VARIANT_METHOD,
-                 (variant & CAMBER_VARIANT_THIN) != 0, (variant & CAMBER_VARIANT_TIPS) != 0);
+        snprintf(
+            head, sizeof head,
+            "#define LINEAR %d\n#define SHARP_JOINS %d\n#define FLAT_CAPS %d\n#define COUNT %d\n"
+            "#define UNION %d\n#define METHOD %u\n#define THIN %d\n#define TIPS %d\n#define GAP %d\n#define BLUR %d\n",
+            (variant & CAMBER_VARIANT_LINEAR) != 0, (variant & CAMBER_VARIANT_SHARP_JOINS) != 0,
+            (variant & CAMBER_VARIANT_FLAT_CAPS) != 0, (variant & CAMBER_VARIANT_COUNT) != 0,
+            (variant & CAMBER_VARIANT_UNION) != 0, variant / CAMBER_VARIANT_METHOD,
+            (variant & CAMBER_VARIANT_THIN) != 0, (variant & CAMBER_VARIANT_TIPS) != 0,
+            (variant & CAMBER_VARIANT_GAP) != 0, (variant & CAMBER_VARIANT_BLUR) != 0);
         const camber_status status = build(renderer, head, camber_stroke_vert, camber_stroke_frag, wanted);
         if (status != CAMBER_OK)
             return status;
@@ -132,8 +134,8 @@ camber_status camber_renderer_count_shader(camber_renderer *renderer, camber_met
                                            const camber_shader **shader) {
     camber_shader *wanted = renderer->counts + method;
     if (!wanted->program) {
-        char head[32];
-        snprintf(head, sizeof head, "#define METHOD %d\n", (int)method);
+        char head[64];
+        snprintf(head, sizeof head, "#define METHOD %d\n#define GAP 0\n#define BLUR 0\n", (int)method);
         const camber_status status = build(renderer, head, camber_stroke_vert, camber_count_frag, wanted);
         if (status != CAMBER_OK)
             return status;

@@ -5,19 +5,19 @@
 /* A miter limit without reason must not undo the culling. */
 static const double LARGEST_REACH_PX = 65536.0;
 
-static double reach_of(const camber_plan_set *set) {
-    const double half = 0.5 * (double)set->width_px;
-    double factor = set->layer->cap == CAMBER_CAP_SQUARE ? 1.5 : 1.0; /* a corner lies sqrt(2) away */
-    if (set->layer->join == CAMBER_JOIN_MITER)
-        factor = fmax(factor, (double)set->layer->miter_limit);
+static double reach_of(const camber_stroke *stroke) {
+    const double half = 0.5 * (double)stroke->width_px;
+    double factor = stroke->cap == CAMBER_CAP_SQUARE ? 1.5 : 1.0; /* a corner lies sqrt(2) away */
+    if (stroke->join == CAMBER_JOIN_MITER)
+        factor = fmax(factor, (double)stroke->miter_limit);
     return fmin(half * factor, fmax(half, LARGEST_REACH_PX));
 }
 
 double camber_plan_reach(const camber_plan *plan) {
     double reach = 0.0;
-    for (size_t s = 0; s < plan->set_count; s++)
-        reach = fmax(reach, reach_of(plan->sets + s));
-    return reach;
+    for (size_t row = 0; row < plan->row_count; row++)
+        reach = fmax(reach, reach_of(plan->strokes + row));
+    return reach + (double)plan->translate_px;
 }
 
 /* ---- Copies of the world ---- */

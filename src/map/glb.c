@@ -207,15 +207,31 @@ static void put_index(writer *w, uint32_t index, bool count_only) {
     put_u32(w, index);
 }
 
-/* Strips a, b with a restart between become one: the last index of a and the first of b again, the latter twice
+/* The end of the strip that begins with an index: at a restart, or where a tight join's start follows its end. */
+static size_t strip_end(const camber_mesh_data *mesh, size_t first) {
+    const size_t count = mesh->info.index_count;
+    size_t end = first;
+    if (!mesh->info.strips)
+        return count;
+    for (; end < count && mesh->indices[end] != CAMBER_RESTART_INDEX; end++) {
+        const uint32_t *pair = mesh->indices + end;
+        const bool has_before = end % 2 == 0 && end >= first + 2;
+        if (has_before && (pair[-2] == pair[0] || (end + 1 < count && pair[-1] == pair[1])))
+            break;
+    }
+    return end;
+}
+
+/* Strips a, b with nothing drawn between become one: the last index of a and the first of b again, the latter twice
  * where that keeps b's triangles at even places, so that each keeps its winding. */
 static void put_indices(writer *w, bool count_only) {
     const uint32_t *indices = w->mesh->indices;
     const size_t count = w->mesh->info.index_count;
     uint32_t last = 0; /* written */
     w->index_count = 0;
-    for (size_t first = 0, end; first < count && !w->refused; first = end + 1) {
-        for (end = first; end < count && !(w->mesh->info.strips && indices[end] == CAMBER_RESTART_INDEX);)
+    for (size_t first = 0, end; first < count && !w->refused; first = end) {
+        end = strip_end(w->mesh, first);
+        if (end == first)
             end++;
         if (end - first < 3)
             continue;
@@ -270,7 +286,7 @@ static json_t *style_table(const camber_glb_desc *desc, bool *ok) {
     return rows;
 }
 
-/* Unlit and seen from both sides: tight joins in a strip flip the winding. */
+/* Unlit, and seen from both sides. */
 static json_t *material(const camber_glb_desc *desc, bool *ok) {
     json_t *pbr = json_pack("{s:f, s:f}", "metallicFactor", 0.0, "roughnessFactor", 1.0);
     bool translucent = false;

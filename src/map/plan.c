@@ -1,6 +1,7 @@
 #include "map/plan.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* The widest that a stroke may be: camber.h. */
@@ -16,11 +17,15 @@ static camber_feature_view view_of(const camber_features *features, const camber
     return (camber_feature_view){
         .values = features->values ? features->values + class->first_value : NULL,
         .geometry_type = class->geometry == CAMBER_GEOMETRY_POLYGON ? "Polygon" : "LineString",
+        .id = class->id,
+        .all = class->all,
     };
 }
 
 static bool draws_class(const camber_features *features, const camber_style_layer *layer, double zoom,
                         const camber_feature_class *class) {
+    if (class->source != CAMBER_NO_SOURCE && class->source != layer->source_index)
+        return false;
     if (layer->source_layer && strcmp(layer->source_layer, features->layer_names[class->layer]) != 0)
         return false;
     const camber_feature_view feature = view_of(features, class);
@@ -67,13 +72,23 @@ static bool same_text(const char *a, const char *b) {
     return a == b || (a && b && strcmp(a, b) == 0);
 }
 
-static bool shares_polylines(const camber_style_layer *a, const camber_style_layer *b) {
-    return a->cap == b->cap && a->join == b->join &&
-           (a->join != CAMBER_JOIN_MITER || a->miter_limit == b->miter_limit) &&
-           same_text(a->source_layer, b->source_layer) && same_text(a->filter_key, b->filter_key);
+static bool shares_polylines(const camber_layer_look *a, const camber_layer_look *b) {
+    return a->layer->source_index == b->layer->source_index &&
+           same_text(a->layer->source_layer, b->layer->source_layer) &&
+           same_text(a->layer->filter_key, b->layer->filter_key) && camber_layer_look_shares(a, b);
 }
 
-static camber_status group_layers(camber_plan *plan, const camber_style *style, size_t first, double zoom) {
+/* A map's translation turns with it. */
+static void find_translation(const camber_layer_look *look, const camber_view *view, float translate_px[2]) {
+    const bool turns = look->paint.translate_anchor == CAMBER_TRANSLATE_MAP;
+    const double cosine = turns ? view->cosine : 1.0, sine = turns ? view->sine : 0.0;
+    const double x = look->paint.translate[0] * view->ratio, y = look->paint.translate[1] * view->ratio;
+    translate_px[0] = (float)fmin(fmax(x * cosine + y * sine, -WIDEST_PX), WIDEST_PX);
+    translate_px[1] = (float)fmin(fmax(y * cosine - x * sine, -WIDEST_PX), WIDEST_PX);
+}
+
+static camber_status group_layers(camber_plan *plan, const camber_style *style, size_t first, const camber_view *view) {
+    const double zoom = camber_view_style_zoom(view);
     if (!(plan->layers = camber_alloc(plan->context, style->layer_count, sizeof *plan->layers)) ||
         !(plan->sets = camber_alloc_zero(plan->context, style->layer_count, sizeof *plan->sets)))
         return CAMBER_ERROR_MEMORY;
@@ -81,91 +96,133 @@ static camber_status group_layers(camber_plan *plan, const camber_style *style, 
         const camber_style_layer *layer = style->layers + i;
         if (layer->kind != CAMBER_LAYER_LINE || !is_active(layer, zoom))
             continue;
-        size_t s = 0;
-        while (s < plan->set_count && !shares_polylines(plan->sets[s].layer, layer))
-            s++;
-        if (s == plan->set_count) {
-            plan->sets[s] = (camber_plan_set){.layer = layer, .first_layer = plan->layer_count};
-            plan->set_count++;
-        }
-        plan->layers[plan->layer_count++] = (camber_plan_layer){layer, s, plan->sets[s].layer_count++};
+        camber_plan_layer *made = plan->layers + plan->layer_count;
+        *made = (camber_plan_layer){.look = camber_style_layer_look(layer, zoom)};
+        find_translation(&made->look, view, made->translate_px);
+        while (made->set < plan->set_count &&
+               !shares_polylines(&plan->layers[plan->sets[made->set].first_layer].look, &made->look))
+            made->set++;
+        if (made->set == plan->set_count)
+            plan->sets[plan->set_count++] = (camber_plan_set){.first_layer = plan->layer_count};
+        made->slot = plan->sets[made->set].layer_count++;
+        plan->layer_count++;
     }
     return CAMBER_OK;
 }
 
 /* ---- Rows ---- */
 
-/* The paints of one class in all layers of a set, and a hash of rows to find an equal tuple by. */
+/* The stroke of one class in a set, its paints in all of the set's layers, and a hash of rows to find equal ones by. */
 typedef struct row_table {
+    camber_stroke stroke;
     camber_paint *tuple;
     uint32_t *slots;   /* row + 1; 0: free */
     size_t slot_count; /* a power of two */
 } row_table;
 
-static camber_paint paint_of(const camber_style_layer *layer, const camber_view *view,
-                             const camber_feature_view *feature) {
-    const camber_layer_paint paint = camber_style_layer_paint(layer, camber_view_style_zoom(view), feature);
-    const double width_px = paint.width * view->ratio;
-    if (!(width_px > 0.0 && paint.color.a > 0.0f))
-        return (camber_paint){0};
-    return (camber_paint){(float)fmin(width_px, WIDEST_PX), paint.color};
+/* By set and class: the row, CAMBER_NO_ROW where the set does not draw the class, and the place in a sorted set. */
+typedef struct class_rows {
+    uint32_t *rows;
+    double *keys;
+    row_table table;
+} class_rows;
+
+/* What a paint takes of a stroke. */
+static float whole_width(const camber_paint *paint) {
+    return paint->gap_px > 0.0f ? paint->gap_px + 2.0f * paint->width_px : paint->width_px;
 }
 
-/* The row of the tuple, a new one where no row of the set has these paints. */
+static camber_paint paint_of(const camber_plan_layer *layer, const camber_layer_paint *paint, double ratio) {
+    const double widest_px = paint->gap_width > 0.0 ? WIDEST_PX / 3.0 : WIDEST_PX; /* of a band */
+    if (!(paint->width * ratio > 0.0 && paint->color.a > 0.0f && (float)paint->layer_opacity > 0.0f))
+        return (camber_paint){0};
+    return (camber_paint){.width_px = (float)fmin(paint->width * ratio, widest_px),
+                          .color = paint->color,
+                          .gap_px = (float)fmin(paint->gap_width * ratio, widest_px),
+                          .blur_px = (float)fmin(paint->blur * ratio, WIDEST_PX),
+                          .translate_x_px = layer->translate_px[0],
+                          .translate_y_px = layer->translate_px[1]};
+}
+
+/* A limit of 1 bevels every turn, and so do those below; 0 would mean the default. */
+static camber_stroke stroke_of(const camber_layer_paint *paint) {
+    return (camber_stroke){0.0f, paint->join, paint->cap, (float)fmin(fmax(paint->miter_limit, 1.0), 1e6)};
+}
+
+static bool same_row(const camber_plan *plan, const camber_plan_set *set, const row_table *table, size_t row) {
+    const camber_paint *paints = plan->paints + set->first_paint + (row - set->first_row) * set->layer_count;
+    return memcmp(plan->strokes + row, &table->stroke, sizeof table->stroke) == 0 &&
+           memcmp(paints, table->tuple, set->layer_count * sizeof *table->tuple) == 0;
+}
+
+/* The row of the stroke and the tuple, a new one where no row of the set has them. */
 static uint32_t intern_row(camber_plan *plan, camber_plan_set *set, row_table *table) {
     const size_t size_bytes = set->layer_count * sizeof *table->tuple;
-    const uint64_t hash = camber_hash(CAMBER_HASH_START, table->tuple, size_bytes);
+    uint64_t hash = camber_hash(CAMBER_HASH_START, &table->stroke, sizeof table->stroke);
+    hash = camber_hash(hash, table->tuple, size_bytes);
     size_t at = (size_t)(hash ^ hash >> 32) & (table->slot_count - 1);
-    for (; table->slots[at]; at = (at + 1) & (table->slot_count - 1)) {
-        const uint32_t row = table->slots[at] - 1;
-        const camber_paint *paints = plan->paints + set->first_paint + (row - set->first_row) * set->layer_count;
-        if (memcmp(paints, table->tuple, size_bytes) == 0)
-            return row;
-    }
+    for (; table->slots[at]; at = (at + 1) & (table->slot_count - 1))
+        if (same_row(plan, set, table, table->slots[at] - 1))
+            return table->slots[at] - 1;
     if (!camber_grow(plan->context, &plan->paints, &plan->paint_capacity, plan->paint_count + set->layer_count,
-                     sizeof *plan->paints))
+                     sizeof *plan->paints) ||
+        !camber_grow(plan->context, &plan->strokes, &plan->stroke_capacity, plan->row_count + 1, sizeof *plan->strokes))
         return CAMBER_NO_ROW;
     memcpy(plan->paints + plan->paint_count, table->tuple, size_bytes);
     plan->paint_count += set->layer_count;
-    for (size_t i = 0; i < set->layer_count; i++)
-        set->width_px = fmaxf(set->width_px, table->tuple[i].width_px);
+    plan->strokes[plan->row_count] = table->stroke;
     const uint32_t row = (uint32_t)plan->row_count++;
     set->row_count++;
     table->slots[at] = row + 1;
     return row;
 }
 
-/* Rows of every class in one set: class_rows[class], CAMBER_NO_ROW where the set does not draw the class. */
-static camber_status match_set(const camber_features *features, const camber_view *view, camber_plan *plan,
-                               camber_plan_set *set, uint32_t *class_rows, row_table *table) {
+/* The tuple of a class, and its stroke; false where none of the set's layers draws it. */
+static bool fill_tuple(camber_plan *plan, const camber_plan_set *set, const camber_view *view,
+                       const camber_feature_view *feature, row_table *table, double *key) {
     const size_t index = (size_t)(set - plan->sets);
+    size_t found = 0;
+    table->stroke.width_px = 0.0f;
+    for (size_t i = set->first_layer; found < set->layer_count; i++) {
+        const camber_plan_layer *layer = plan->layers + i;
+        if (layer->set != index)
+            continue;
+        const camber_layer_paint paint = camber_layer_look_paint(&layer->look, feature);
+        camber_paint *made = table->tuple + layer->slot;
+        *made = paint_of(layer, &paint, view->ratio);
+        const float width_px = fmaxf(table->stroke.width_px, whole_width(made));
+        table->stroke = stroke_of(&paint);
+        table->stroke.width_px = width_px;
+        *key = paint.sort_key;
+        if (made->width_px > 0.0f)
+            plan->translate_px = fmaxf(plan->translate_px, hypotf(made->translate_x_px, made->translate_y_px));
+        found++;
+    }
+    return table->stroke.width_px > 0.0f;
+}
+
+/* Rows of every class in one set. */
+static camber_status match_set(const camber_features *features, const camber_view *view, camber_plan *plan,
+                               camber_plan_set *set, class_rows *rows) {
+    const camber_style_layer *first = plan->layers[set->first_layer].look.layer;
+    row_table *table = &rows->table;
     set->first_row = plan->row_count;
     set->first_paint = plan->paint_count;
     memset(table->slots, 0, table->slot_count * sizeof *table->slots);
     for (size_t c = 0; c < features->class_count; c++) {
-        class_rows[c] = CAMBER_NO_ROW;
-        const camber_feature_class *class = features->classes + c;
-        if (!draws_class(features, set->layer, camber_view_style_zoom(view), class))
+        const size_t at = (size_t)(set - plan->sets) * features->class_count + c;
+        rows->rows[at] = CAMBER_NO_ROW;
+        if (!draws_class(features, first, camber_view_style_zoom(view), features->classes + c))
             continue;
-        const camber_feature_view feature = view_of(features, class);
-        bool drawn = false;
-        size_t found = 0;
-        for (size_t i = set->first_layer; found < set->layer_count; i++) {
-            if (plan->layers[i].set != index)
-                continue;
-            const camber_paint paint = paint_of(plan->layers[i].layer, view, &feature);
-            table->tuple[plan->layers[i].slot] = paint;
-            drawn |= paint.width_px > 0.0f;
-            found++;
-        }
-        if (!drawn)
+        const camber_feature_view feature = view_of(features, features->classes + c);
+        if (!fill_tuple(plan, set, view, &feature, table, rows->keys + at))
             continue;
         if (plan->row_count >= MOST_ROWS)
             return camber_fail(plan->context, CAMBER_ERROR_LIMIT,
                                "style: more than %zu different widths and colours; let them depend on fewer properties",
                                MOST_ROWS);
-        class_rows[c] = intern_row(plan, set, table);
-        if (class_rows[c] == CAMBER_NO_ROW)
+        rows->rows[at] = intern_row(plan, set, table);
+        if (rows->rows[at] == CAMBER_NO_ROW)
             return CAMBER_ERROR_MEMORY;
     }
     return CAMBER_OK;
@@ -183,37 +240,48 @@ typedef struct class_sets {
     set_pair *pairs;
 } class_sets;
 
+/* What is sorted is another order of entries for other keys. */
+static void end_set(camber_plan *plan, camber_plan_set *set) {
+    const double *keys = plan->pair_keys + set->first_pair;
+    set->pair_count = plan->pair_count - set->first_pair;
+    for (size_t i = 1; i < set->pair_count; i++)
+        set->sorted = set->sorted || keys[i] < keys[0] || keys[i] > keys[0];
+    if (set->sorted)
+        plan->key = camber_hash(plan->key, keys, set->pair_count * sizeof *keys);
+}
+
 /* Numbers the pairs of sets and classes, by set. */
-static camber_status number_pairs(const camber_features *features, camber_plan *plan, const uint32_t *class_rows) {
+static camber_status number_pairs(const camber_features *features, camber_plan *plan, const class_rows *rows) {
     const size_t class_count = features->class_count;
     size_t total = 0;
     for (size_t i = 0; i < plan->set_count * class_count; i++)
-        total += class_rows[i] != CAMBER_NO_ROW;
+        total += rows->rows[i] != CAMBER_NO_ROW;
     if (total >= MOST_ROWS)
         return camber_fail(plan->context, CAMBER_ERROR_LIMIT,
                            "style: more than %zu combinations of layers and properties; let filters depend on fewer",
                            MOST_ROWS);
-    plan->pair_rows = camber_alloc(plan->context, total, sizeof *plan->pair_rows);
-    if (!plan->pair_rows)
+    if (!(plan->pair_rows = camber_alloc(plan->context, total, sizeof *plan->pair_rows)) ||
+        !(plan->pair_keys = camber_alloc(plan->context, total, sizeof *plan->pair_keys)))
         return CAMBER_ERROR_MEMORY;
     plan->key = camber_hash(CAMBER_HASH_START, &features->polyline_count, sizeof features->polyline_count);
     for (size_t s = 0; s < plan->set_count; s++) {
         plan->sets[s].first_pair = plan->pair_count;
         for (size_t c = 0; c < class_count; c++) {
-            const uint32_t row = class_rows[s * class_count + c];
-            if (row == CAMBER_NO_ROW)
+            const size_t at = s * class_count + c;
+            if (rows->rows[at] == CAMBER_NO_ROW)
                 continue;
             const size_t pair[2] = {s, c};
             plan->key = camber_hash(plan->key, pair, sizeof pair);
-            plan->pair_rows[plan->pair_count++] = row;
+            plan->pair_keys[plan->pair_count] = rows->keys[at];
+            plan->pair_rows[plan->pair_count++] = rows->rows[at];
         }
-        plan->sets[s].pair_count = plan->pair_count - plan->sets[s].first_pair;
+        end_set(plan, plan->sets + s);
     }
     return CAMBER_OK;
 }
 
-static camber_status group_by_class(const camber_features *features, const camber_plan *plan,
-                                    const uint32_t *class_rows, class_sets *by_class) {
+static camber_status group_by_class(const camber_features *features, const camber_plan *plan, const uint32_t *rows,
+                                    class_sets *by_class) {
     const size_t class_count = features->class_count;
     by_class->first = camber_alloc(plan->context, class_count + 1, sizeof *by_class->first);
     if (!by_class->first)
@@ -222,7 +290,7 @@ static camber_status group_by_class(const camber_features *features, const cambe
     for (size_t c = 0; c < class_count; c++) {
         by_class->first[c] = total;
         for (size_t s = 0; s < plan->set_count; s++)
-            total += class_rows[s * class_count + c] != CAMBER_NO_ROW;
+            total += rows[s * class_count + c] != CAMBER_NO_ROW;
     }
     by_class->first[class_count] = total;
     by_class->pairs = camber_alloc(plan->context, total, sizeof *by_class->pairs);
@@ -232,12 +300,53 @@ static camber_status group_by_class(const camber_features *features, const cambe
     uint32_t pair = 0;
     for (size_t s = 0; s < plan->set_count; s++)
         for (size_t c = 0; c < class_count; c++)
-            if (class_rows[s * class_count + c] != CAMBER_NO_ROW)
+            if (rows[s * class_count + c] != CAMBER_NO_ROW)
                 by_class->pairs[by_class->first[c]++] = (set_pair){(uint32_t)s, pair++};
     for (size_t c = class_count; c > 0; c--)
         by_class->first[c] = by_class->first[c - 1];
     by_class->first[0] = 0;
     return CAMBER_OK;
+}
+
+typedef struct keyed_pair {
+    double key;
+    size_t pair;
+} keyed_pair;
+
+static int compare_keys(const void *left, const void *right) {
+    const keyed_pair *a = left, *b = right;
+    return a->key < b->key ? -1 : a->key > b->key;
+}
+
+/* The entries of a set by their features' keys, those of one key as they were. */
+static camber_status sort_entries(camber_plan *plan, const camber_plan_set *set) {
+    camber_plan_entry *entries = plan->entries + set->first_entry;
+    keyed_pair *keyed = camber_alloc(plan->context, set->pair_count, sizeof *keyed);
+    size_t *ranks = camber_alloc(plan->context, set->pair_count, sizeof *ranks);
+    size_t *firsts = camber_alloc_zero(plan->context, set->pair_count + 1, sizeof *firsts);
+    camber_plan_entry *sorted = camber_alloc(plan->context, set->entry_count, sizeof *sorted);
+    const bool held = keyed && ranks && firsts && sorted;
+    if (held) {
+        for (size_t i = 0; i < set->pair_count; i++)
+            keyed[i] = (keyed_pair){plan->pair_keys[set->first_pair + i], i};
+        qsort(keyed, set->pair_count, sizeof *keyed, compare_keys);
+        for (size_t i = 0, rank = 0; i < set->pair_count; i++) {
+            rank += i > 0 && keyed[i].key > keyed[i - 1].key;
+            ranks[keyed[i].pair] = rank;
+        }
+        for (size_t i = 0; i < set->entry_count; i++)
+            firsts[ranks[entries[i].pair - set->first_pair] + 1]++;
+        for (size_t i = 0; i < set->pair_count; i++)
+            firsts[i + 1] += firsts[i];
+        for (size_t i = 0; i < set->entry_count; i++)
+            sorted[firsts[ranks[entries[i].pair - set->first_pair]]++] = entries[i];
+        memcpy(entries, sorted, set->entry_count * sizeof *sorted);
+    }
+    camber_free(plan->context, sorted);
+    camber_free(plan->context, firsts);
+    camber_free(plan->context, ranks);
+    camber_free(plan->context, keyed);
+    return held ? CAMBER_OK : CAMBER_ERROR_MEMORY;
 }
 
 static camber_status list_entries(const camber_features *features, camber_plan *plan, const class_sets *by_class) {
@@ -266,51 +375,58 @@ static camber_status list_entries(const camber_features *features, camber_plan *
                 (camber_plan_entry){(uint32_t)p, by_class->pairs[k].pair};
         }
     }
-    return CAMBER_OK;
+    camber_status status = CAMBER_OK;
+    for (size_t s = 0; s < plan->set_count && status == CAMBER_OK; s++)
+        if (plan->sets[s].sorted)
+            status = sort_entries(plan, plan->sets + s);
+    return status;
 }
 
 camber_status camber_plan_create(const camber_features *features, const camber_view *view, camber_plan *plan) {
     camber_context *context = features->context;
-    const double zoom = camber_view_style_zoom(view);
     *plan = (camber_plan){.context = context};
-    const size_t first = compose_background(plan, features->style, zoom);
-    camber_status status = group_layers(plan, features->style, first, zoom);
+    const size_t first = compose_background(plan, features->style, camber_view_style_zoom(view));
+    camber_status status = group_layers(plan, features->style, first, view);
     if (status != CAMBER_OK)
         return status;
 
-    uint32_t *class_rows = NULL;
     class_sets by_class = {0};
-    row_table table = {.slot_count = 16};
-    while (table.slot_count / 2 < features->class_count)
-        table.slot_count *= 2;
+    class_rows rows = {.table = {.slot_count = 16}};
+    row_table *table = &rows.table;
+    while (table->slot_count / 2 < features->class_count)
+        table->slot_count *= 2;
     status = CAMBER_ERROR_MEMORY;
     /* Of rows one more than needed, so that no element is empty; classes are in memory: their count cannot overflow. */
-    if (!(table.tuple = camber_alloc(context, plan->layer_count, sizeof *table.tuple)) ||
-        !(table.slots = camber_alloc(context, table.slot_count, sizeof *table.slots)) ||
-        !(class_rows = camber_alloc(context, plan->set_count, (features->class_count + 1) * sizeof *class_rows)))
+    const size_t count = features->class_count + 1;
+    if (!(table->tuple = camber_alloc(context, plan->layer_count, sizeof *table->tuple)) ||
+        !(table->slots = camber_alloc(context, table->slot_count, sizeof *table->slots)) ||
+        !(rows.rows = camber_alloc(context, plan->set_count, count * sizeof *rows.rows)) ||
+        !(rows.keys = camber_alloc(context, plan->set_count, count * sizeof *rows.keys)))
         goto done;
-    for (size_t s = 0; s < plan->set_count; s++) {
-        status = match_set(features, view, plan, plan->sets + s, class_rows + s * features->class_count, &table);
-        if (status != CAMBER_OK)
-            goto done;
-    }
-    status = number_pairs(features, plan, class_rows);
+    status = CAMBER_OK;
+    for (size_t s = 0; s < plan->set_count && status == CAMBER_OK; s++)
+        status = match_set(features, view, plan, plan->sets + s, &rows);
     if (status == CAMBER_OK)
-        status = group_by_class(features, plan, class_rows, &by_class);
+        status = number_pairs(features, plan, &rows);
+    if (status == CAMBER_OK)
+        status = group_by_class(features, plan, rows.rows, &by_class);
     if (status == CAMBER_OK)
         status = list_entries(features, plan, &by_class);
 done:
     camber_free(context, by_class.pairs);
     camber_free(context, by_class.first);
-    camber_free(context, class_rows);
-    camber_free(context, table.slots);
-    camber_free(context, table.tuple);
+    camber_free(context, rows.keys);
+    camber_free(context, rows.rows);
+    camber_free(context, table->slots);
+    camber_free(context, table->tuple);
     return status;
 }
 
 void camber_plan_destroy(camber_plan *plan) {
     camber_free(plan->context, plan->entries);
+    camber_free(plan->context, plan->pair_keys);
     camber_free(plan->context, plan->pair_rows);
+    camber_free(plan->context, plan->strokes);
     camber_free(plan->context, plan->paints);
     camber_free(plan->context, plan->sets);
     camber_free(plan->context, plan->layers);

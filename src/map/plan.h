@@ -1,6 +1,7 @@
-/* The plan of a scene: which layers draw here, which of them share polylines, and with which paints.
+/* The plan of a scene: which layers draw here, which of them share polylines, and with which strokes and paints.
  *
- *     layers (in drawing order) -> sets (layers that draw the same polylines) -> rows (distinct paints in a set)
+ *     layers (in drawing order) -> sets (layers that draw the same polylines) -> rows (a stroke and its paints in a
+ * set)
  */
 #ifndef CAMBER_PLAN_H
 #define CAMBER_PLAN_H
@@ -10,19 +11,19 @@
 
 #define CAMBER_NO_ROW UINT32_MAX
 
-/* Layers that agree in source layer, filter, cap and joins: one geometry, cut for the widest of them. */
+/* Layers that agree in source, filter, caps and joins: one geometry, cut for the widest of them. */
 typedef struct camber_plan_set {
-    const camber_style_layer *layer; /* the first of them */
     size_t first_layer, layer_count; /* the plan's index of the first; the others follow it, not at once */
     size_t first_row, row_count;
     size_t first_pair, pair_count;   /* its classes, in order */
     size_t first_paint;              /* into paints: row_count tuples of layer_count */
-    float width_px;                  /* the largest, device px */
+    bool sorted;                     /* entries are in the order of pair_keys */
     size_t first_entry, entry_count; /* into entries */
 } camber_plan_set;
 
 typedef struct camber_plan_layer {
-    const camber_style_layer *layer;
+    camber_layer_look look;
+    float translate_px[2];
     size_t set;
     size_t slot; /* which of the set's layers it is */
 } camber_plan_layer;
@@ -43,8 +44,11 @@ typedef struct camber_plan {
     size_t set_count;
     camber_paint *paints;
     size_t paint_count, paint_capacity;
-    size_t row_count;
+    camber_stroke *strokes; /* by row: the widest of its paints, a gap's bands together */
+    size_t row_count, stroke_capacity;
+    float translate_px;  /* the farthest */
     uint32_t *pair_rows; /* pair_count */
+    double *pair_keys;   /* pair_count: their features' places in a sorted set */
     size_t pair_count;
     uint64_t key; /* of the sets and classes of the pairs: two plans of the same features have equal entries by it */
     camber_plan_entry *entries;

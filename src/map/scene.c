@@ -27,32 +27,18 @@ struct camber_scene {
     camber_seen seen;
     size_t layer_count; /* that draw something */
     camber_polylines *polylines;
-    camber_stroke *strokes;
     pass_list passes;
 };
 
 /* ---- Strokes ---- */
 
-static camber_stroke stroke_of(const camber_plan *plan, const camber_plan_set *set, size_t row) {
-    float width_px = 0.0f;
-    for (size_t slot = 0; slot < set->layer_count; slot++)
-        width_px = fmaxf(width_px, camber_plan_paint(plan, set, row, slot).width_px);
-    /* A limit of 1 bevels every turn, and so do those below; 0 would mean the default. */
-    return (camber_stroke){width_px, set->layer->join, set->layer->cap, fmaxf(set->layer->miter_limit, 1.0f)};
-}
-
 static camber_status make_strokes(camber_scene *scene) {
     const camber_plan *plan = &scene->plan;
-    if (!(scene->strokes = camber_alloc(scene->context, plan->row_count, sizeof *scene->strokes)) ||
-        !(scene->pair_strokes = camber_alloc(scene->context, plan->pair_count, sizeof *scene->pair_strokes)))
+    scene->pair_strokes = camber_alloc(scene->context, plan->pair_count, sizeof *scene->pair_strokes);
+    if (!scene->pair_strokes)
         return CAMBER_ERROR_MEMORY;
-    for (size_t s = 0; s < plan->set_count; s++) {
-        const camber_plan_set *set = plan->sets + s;
-        for (size_t row = set->first_row; row < set->first_row + set->row_count; row++)
-            scene->strokes[row] = stroke_of(plan, set, row);
-        for (size_t pair = set->first_pair; pair < set->first_pair + set->pair_count; pair++)
-            scene->pair_strokes[pair] = scene->strokes[plan->pair_rows[pair]];
-    }
+    for (size_t pair = 0; pair < plan->pair_count; pair++)
+        scene->pair_strokes[pair] = plan->strokes[plan->pair_rows[pair]];
     return CAMBER_OK;
 }
 
@@ -84,6 +70,7 @@ typedef struct layer_run {
     size_t first_layer, end_layer; /* of the plan */
     size_t first_polyline, end_polyline;
     size_t end_paint;
+    float opacity; /* of the layer; 1: of runs of several */
     bool opaque;
 } layer_run;
 
@@ -114,6 +101,8 @@ static size_t find_runs(const numbering *n, layer_run *runs, size_t *layer_count
             continue;
         ++*layer_count;
         const camber_plan_set *set = plan->sets + plan->layers[i].set;
+        const float opacity = (float)plan->layers[i].look.paint.layer_opacity;
+        opaque = opaque && opacity >= 1.0f;
         const size_t first = n->first_polylines[plan->layers[i].set], end = n->first_polylines[plan->layers[i].set + 1];
         layer_run *last = count ? runs + count - 1 : NULL;
         if (last && last->opaque && opaque && last->end_polyline == first) {
@@ -121,7 +110,7 @@ static size_t find_runs(const numbering *n, layer_run *runs, size_t *layer_count
             last->end_polyline = end;
             last->end_paint = end_of(n, set);
         } else {
-            runs[count++] = (layer_run){i, i + 1, first, end, end_of(n, set), opaque};
+            runs[count++] = (layer_run){i, i + 1, first, end, end_of(n, set), opacity, opaque};
         }
     }
     return count;
@@ -159,7 +148,8 @@ static camber_status make_passes(camber_context *context, const numbering *n, si
         list->passes[i] = (camber_pass){.first_polyline = runs[i].first_polyline,
                                         .polyline_count = runs[i].end_polyline - runs[i].first_polyline,
                                         .paints = paints,
-                                        .paint_count = runs[i].end_paint};
+                                        .paint_count = runs[i].end_paint,
+                                        .opacity = runs[i].opacity};
         paints += runs[i].end_paint;
     }
     list->count = count;
@@ -199,7 +189,8 @@ static camber_camera camera_of(const camber_scene *scene) {
                            .bearing_deg = view->bearing_deg,
                            .width = view->width,
                            .height = view->height,
-                           .simplify_px = scene->simplify_px};
+                           .simplify_px = scene->simplify_px,
+                           .translate_px = (double)scene->plan.translate_px};
 }
 
 static camber_tessellation_desc desc_of(const camber_scene *scene, camber_method method) {
@@ -282,7 +273,6 @@ static void empty(camber_scene *scene) {
     forget(scene);
     free_passes(scene->context, &scene->pair_passes);
     camber_free(scene->context, scene->pair_strokes);
-    camber_free(scene->context, scene->strokes);
     camber_geometry_destroy(&scene->geometry);
     camber_plan_destroy(&scene->plan);
 }
@@ -342,6 +332,12 @@ camber_status camber_scene_tessellate(const camber_scene *scene, camber_mesh *me
     return camber_tessellate_network(mesh, scene->geometry.network, &camera, &desc);
 }
 
+camber_network *camber_scene_network(const camber_scene *scene, camber_camera *camera, camber_tessellation_desc *desc) {
+    *camera = camera_of(scene);
+    *desc = desc_of(scene, CAMBER_METHOD_STRIP);
+    return scene->geometry.network;
+}
+
 void camber_scene_destroy(camber_scene *scene) {
     if (!scene)
         return;
@@ -387,7 +383,7 @@ const camber_lines *camber_scene_lines(const camber_scene *scene) {
 
 const camber_stroke *camber_scene_strokes(const camber_scene *scene, size_t *count) {
     *count = scene->plan.row_count;
-    return scene->strokes;
+    return scene->plan.strokes;
 }
 
 camber_frame camber_scene_frame(camber_scene *scene, camber_mesh *mesh) {

@@ -26,11 +26,8 @@ static void put_triangle(batches *b, const uint32_t *corners) {
 size_t camber_batches_count(const camber_mesh_data *mesh, uint32_t vertices_max) {
     batches b = {.vertices_max = vertices_max};
     const uint32_t *indices = mesh->indices;
-    size_t length = 0; /* of the strip so far */
-    for (size_t i = 0; i < mesh->info.index_count; i++) {
-        length = mesh->info.strips && indices[i] == CAMBER_RESTART_INDEX ? 0 : length + 1;
-        if (mesh->info.strips ? length >= 3 : i % 3 == 2)
-            put_triangle(&b, indices + i - 2);
-    }
+    for (size_t i = 0; i + 3 <= mesh->info.index_count; i++)
+        if (camber_mesh_data_draws(mesh, i))
+            put_triangle(&b, indices + i);
     return b.count;
 }

@@ -44,9 +44,7 @@ static bool next_triangle(walk *w, triangle *t) {
     const uint64_t step = mesh->info.strips ? 1 : 3;
     for (; w->next + 3 <= mesh->info.index_count; w->next += step) {
         const uint32_t *i = mesh->indices + w->next;
-        const bool restart =
-            i[0] == CAMBER_RESTART_INDEX || i[1] == CAMBER_RESTART_INDEX || i[2] == CAMBER_RESTART_INDEX;
-        if (restart || i[0] == i[1] || i[1] == i[2] || i[0] == i[2])
+        if (!camber_mesh_data_draws(mesh, w->next) || i[0] == i[1] || i[1] == i[2] || i[0] == i[2])
             continue;
         *t = make_triangle(mesh, w->next);
         w->next += step;

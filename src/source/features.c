@@ -1,17 +1,39 @@
 #include "lines/importance.h"
-#include "source/source.h"
+#include "source/fill.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 /* Open addressing with linear probing; at most half of the slots are in use, so that probes stay short. */
+typedef struct interned {
+    camber_value value; /* of the text as JSON, once it is asked for: an array or an object */
+    char text[];
+} interned;
+
 typedef struct interner {
-    char **strings; /* NULL: free */
+    interned **strings; /* NULL: free */
     size_t string_slots, string_count;
     uint32_t *classes; /* index + 1; 0: free */
     size_t class_slots;
 } interner;
 
 enum { FIRST_SLOTS = 256 };
+
+/* items and members are the set's own blocks. */
+static void free_value(camber_context *context, camber_value *value) {
+    if (value->type == CAMBER_VALUE_ARRAY) {
+        camber_value *items = (camber_value *)(uintptr_t)value->items;
+        for (uint32_t i = 0; i < value->count; i++)
+            free_value(context, &items[i]);
+        camber_free(context, items);
+    } else if (value->type == CAMBER_VALUE_OBJECT) {
+        camber_member *members = (camber_member *)(uintptr_t)value->members;
+        for (uint32_t i = 0; i < value->count; i++)
+            free_value(context, &members[i].value);
+        camber_free(context, members);
+    }
+    *value = (camber_value){0};
+}
 
 camber_status camber_features_create(camber_context *context, const camber_style *style, camber_features **features) {
     camber_features *made = camber_alloc_zero(context, 1, sizeof *made);
@@ -44,8 +66,11 @@ void camber_features_destroy(camber_features *features) {
     camber_context *context = features->context;
     interner *set = features->interned;
     camber_free(context, set->classes);
-    for (size_t i = 0; i < set->string_slots; i++)
+    for (size_t i = 0; i < set->string_slots; i++) {
+        if (set->strings[i])
+            free_value(context, &set->strings[i]->value);
         camber_free(context, set->strings[i]);
+    }
     camber_free(context, set->strings);
     camber_free(context, set);
     for (size_t i = 0; i < features->layer_count; i++)
@@ -79,28 +104,28 @@ static size_t slot_of(uint64_t hash, size_t slots) {
     return (size_t)(hash ^ hash >> 32) & (slots - 1);
 }
 
-static size_t string_slot(char *const *strings, size_t slots, const char *text) {
+static size_t string_slot(interned *const *strings, size_t slots, const char *text) {
     size_t slot = slot_of(camber_hash(CAMBER_HASH_START, text, strlen(text)), slots);
-    while (strings[slot] && strcmp(strings[slot], text) != 0)
+    while (strings[slot] && strcmp(strings[slot]->text, text) != 0)
         slot = (slot + 1) & (slots - 1);
     return slot;
 }
 
 static bool grow_strings(camber_context *context, interner *set) {
     const size_t slots = set->string_slots * 2;
-    char **strings = camber_alloc_zero(context, slots, sizeof *strings);
+    interned **strings = camber_alloc_zero(context, slots, sizeof *strings);
     if (!strings)
         return false;
     for (size_t i = 0; i < set->string_slots; i++)
         if (set->strings[i])
-            strings[string_slot(strings, slots, set->strings[i])] = set->strings[i];
+            strings[string_slot(strings, slots, set->strings[i]->text)] = set->strings[i];
     camber_free(context, set->strings);
     set->strings = strings;
     set->string_slots = slots;
     return true;
 }
 
-camber_status camber_features_intern(camber_features *features, const char *text, const char **interned) {
+static camber_status intern(camber_features *features, const char *text, interned **found) {
     interner *set = features->interned;
     size_t slot = string_slot(set->strings, set->string_slots, text);
     if (!set->strings[slot]) {
@@ -109,14 +134,102 @@ camber_status camber_features_intern(camber_features *features, const char *text
                 return CAMBER_ERROR_MEMORY;
             slot = string_slot(set->strings, set->string_slots, text);
         }
-        char *copy = camber_copy_string(features->context, text);
-        if (!copy)
+        const size_t length = strlen(text);
+        interned *made = camber_alloc(features->context, 1, sizeof *made + length + 1);
+        if (!made)
             return CAMBER_ERROR_MEMORY;
-        set->strings[slot] = copy;
+        made->value = (camber_value){0};
+        memcpy(made->text, text, length + 1);
+        set->strings[slot] = made;
         set->string_count++;
     }
-    *interned = set->strings[slot];
+    *found = set->strings[slot];
     return CAMBER_OK;
+}
+
+camber_status camber_features_intern(camber_features *features, const char *text, const char **interned_text) {
+    interned *found;
+    const camber_status status = intern(features, text, &found);
+    if (status == CAMBER_OK)
+        *interned_text = found->text;
+    return status;
+}
+
+/* ---- Arrays and objects ---- */
+
+static camber_status build(camber_features *features, const json_t *json, camber_value *value);
+
+static camber_status build_array(camber_features *features, const json_t *json, camber_value *value) {
+    const size_t count = json_array_size(json);
+    camber_value *items = camber_alloc_zero(features->context, count, sizeof *items);
+    if (!items)
+        return CAMBER_ERROR_MEMORY;
+    *value = (camber_value){.type = CAMBER_VALUE_ARRAY, .items = items};
+    camber_status status = CAMBER_OK;
+    for (size_t i = 0; i < count && status == CAMBER_OK; i++, value->count++)
+        status = build(features, json_array_get(json, i), &items[i]);
+    return status;
+}
+
+static int compare_members(const void *a, const void *b) {
+    return strcmp(((const camber_member *)a)->key, ((const camber_member *)b)->key);
+}
+
+static camber_status build_object(camber_features *features, const json_t *json, camber_value *value) {
+    camber_member *members = camber_alloc_zero(features->context, json_object_size(json), sizeof *members);
+    if (!members)
+        return CAMBER_ERROR_MEMORY;
+    *value = (camber_value){.type = CAMBER_VALUE_OBJECT, .members = members};
+    camber_status status = CAMBER_OK;
+    const char *key;
+    json_t *member;
+    json_object_foreach((json_t *)(uintptr_t)json, key, member) {
+        camber_member *one = &members[value->count];
+        one->place = value->count++;
+        status = camber_features_intern(features, key, &one->key);
+        if (status == CAMBER_OK)
+            status = build(features, member, &one->value);
+        if (status != CAMBER_OK)
+            return status;
+    }
+    if (value->count)
+        qsort(members, value->count, sizeof *members, compare_members);
+    return CAMBER_OK;
+}
+
+static camber_status build(camber_features *features, const json_t *json, camber_value *value) {
+    *value = (camber_value){0};
+    switch (json_typeof(json)) {
+    case JSON_OBJECT: return build_object(features, json, value);
+    case JSON_ARRAY: return build_array(features, json, value);
+    case JSON_STRING:
+        value->type = CAMBER_VALUE_STRING;
+        return camber_features_intern(features, json_string_value(json), &value->string);
+    case JSON_INTEGER:
+    case JSON_REAL: *value = (camber_value){.type = CAMBER_VALUE_NUMBER, .number = json_number_value(json)}; break;
+    case JSON_TRUE:
+    case JSON_FALSE: *value = (camber_value){.type = CAMBER_VALUE_BOOL, .boolean = json_is_true(json)}; break;
+    case JSON_NULL: value->boolean = true; break;
+    }
+    return CAMBER_OK;
+}
+
+camber_status camber_features_intern_json(camber_features *features, const json_t *json, const camber_value **value) {
+    char *text = json_dumps(json, JSON_COMPACT | JSON_ENCODE_ANY);
+    if (!text)
+        return camber_fail(features->context, CAMBER_ERROR_MEMORY, "out of memory for a property");
+    interned *found;
+    camber_status status = intern(features, text, &found);
+    free(text);
+    if (status != CAMBER_OK)
+        return status;
+    if (found->value.type == CAMBER_VALUE_NULL)
+        status = build(features, json, &found->value);
+    if (status != CAMBER_OK)
+        free_value(features->context, &found->value);
+    else
+        *value = &found->value;
+    return status;
 }
 
 camber_status camber_features_find_layer(camber_features *features, const char *name, uint32_t *layer) {
@@ -139,34 +252,44 @@ camber_status camber_features_find_layer(camber_features *features, const char *
 
 /* ---- Classes ---- */
 
-/* Interned strings are equal where their pointers are. Numbers compare by their bits: a class is a key, and NaN
+/* What an interned value is told by is a pointer. */
+static bool points(const camber_value *value) {
+    return value->type == CAMBER_VALUE_STRING || value->type == CAMBER_VALUE_ARRAY ||
+           value->type == CAMBER_VALUE_OBJECT;
+}
+
+/* Interned values are equal where their pointers are. Numbers compare by their bits: a class is a key, and NaN
  * must equal itself. */
 static bool equal_values(const camber_value *a, const camber_value *b, size_t count) {
     for (size_t i = 0; i < count; i++) {
         if (a[i].type != b[i].type)
             return false;
-        if (a[i].type == CAMBER_VALUE_BOOL && a[i].boolean != b[i].boolean)
+        if (a[i].type <= CAMBER_VALUE_BOOL && a[i].boolean != b[i].boolean)
             return false;
         if (a[i].type == CAMBER_VALUE_NUMBER && memcmp(&a[i].number, &b[i].number, sizeof a[i].number) != 0)
             return false;
-        if (a[i].type == CAMBER_VALUE_STRING && a[i].string != b[i].string)
+        if (points(&a[i]) && a[i].string != b[i].string)
             return false;
     }
     return true;
 }
 
+static uint64_t hash_value(uint64_t hash, const camber_value *value) {
+    uint64_t word = 0;
+    if (value->type <= CAMBER_VALUE_BOOL)
+        word = value->boolean;
+    else if (value->type == CAMBER_VALUE_NUMBER)
+        memcpy(&word, &value->number, sizeof word);
+    else if (points(value))
+        word = (uintptr_t)value->string;
+    return camber_mix(hash, word ^ (uint64_t)value->type << 56);
+}
+
 static uint64_t hash_class(const camber_feature_class *one, const camber_value *values, size_t count) {
     uint64_t hash = camber_mix(camber_mix(one->source, one->layer), (uint64_t)one->geometry);
-    for (size_t i = 0; i < count; i++) {
-        uint64_t word = 0;
-        if (values[i].type == CAMBER_VALUE_BOOL)
-            word = values[i].boolean;
-        else if (values[i].type == CAMBER_VALUE_NUMBER)
-            memcpy(&word, &values[i].number, sizeof word);
-        else if (values[i].type == CAMBER_VALUE_STRING)
-            word = (uintptr_t)values[i].string;
-        hash = camber_mix(hash, word ^ (uint64_t)values[i].type << 56);
-    }
+    hash = camber_mix(hash_value(hash, &one->id), (uintptr_t)one->all);
+    for (size_t i = 0; i < count; i++)
+        hash = hash_value(hash, &values[i]);
     return hash;
 }
 
@@ -212,28 +335,40 @@ static camber_status add_class(camber_features *features, const camber_feature_c
     return CAMBER_OK;
 }
 
-camber_status camber_features_find_class(camber_features *features, uint32_t layer, camber_geometry_kind geometry,
-                                         const camber_value *values, uint32_t *class_index) {
+static bool equal_classes(const camber_feature_class *a, const camber_feature_class *b) {
+    return a->source == b->source && a->layer == b->layer && a->geometry == b->geometry && a->all == b->all &&
+           equal_values(&a->id, &b->id, 1);
+}
+
+camber_status camber_features_find_class_of(camber_features *features, const camber_feature_class *wanted,
+                                            const camber_value *values, uint32_t *class_index) {
     interner *set = features->interned;
     const size_t count = features->style->property_count;
-    const camber_feature_class wanted = {features->source, layer, geometry, features->value_count};
+    camber_feature_class made = *wanted;
+    made.source = features->source;
+    made.first_value = features->value_count;
     if (features->class_count >= set->class_slots / 2 && !grow_classes(features))
         return CAMBER_ERROR_MEMORY;
-    size_t slot = slot_of(hash_class(&wanted, values, count), set->class_slots);
+    size_t slot = slot_of(hash_class(&made, values, count), set->class_slots);
     for (; set->classes[slot]; slot = (slot + 1) & (set->class_slots - 1)) {
         const camber_feature_class *one = &features->classes[set->classes[slot] - 1];
-        if (one->source == wanted.source && one->layer == layer && one->geometry == geometry &&
-            equal_values(values_of(features, one), values, count)) {
+        if (equal_classes(one, &made) && equal_values(values_of(features, one), values, count)) {
             *class_index = set->classes[slot] - 1;
             return CAMBER_OK;
         }
     }
-    const camber_status status = add_class(features, &wanted, values);
+    const camber_status status = add_class(features, &made, values);
     if (status != CAMBER_OK)
         return status;
     set->classes[slot] = (uint32_t)features->class_count;
     *class_index = (uint32_t)features->class_count - 1;
     return CAMBER_OK;
+}
+
+camber_status camber_features_find_class(camber_features *features, uint32_t layer, camber_geometry_kind geometry,
+                                         const camber_value *values, uint32_t *class_index) {
+    const camber_feature_class wanted = {.layer = layer, .geometry = geometry};
+    return camber_features_find_class_of(features, &wanted, values, class_index);
 }
 
 /* ---- Features and polylines ---- */

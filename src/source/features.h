@@ -14,14 +14,13 @@ typedef enum camber_geometry_kind {
     CAMBER_GEOMETRY_POLYGON, /* its outline */
 } camber_geometry_kind;
 
-/* The source of features that come from a file named as input: every layer of a style draws them. */
-#define CAMBER_NO_SOURCE UINT32_MAX
-
 typedef struct camber_feature_class {
-    uint32_t source; /* index into the style's sources, or CAMBER_NO_SOURCE */
+    uint32_t source; /* index into the style's sources; CAMBER_NO_SOURCE: a file named as input */
     uint32_t layer;  /* index into layer_names */
     camber_geometry_kind geometry;
-    size_t first_value; /* into values: style->property_count of them, in the style's order */
+    size_t first_value;      /* into values: style->property_count of them, in the style's order */
+    camber_value id;         /* null where the style does not want it */
+    const camber_value *all; /* an object of all properties, where the style wants them. NULL: none */
 } camber_feature_class;
 
 struct camber_features {

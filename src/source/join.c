@@ -17,6 +17,9 @@ static const double REACH = 4;
 /* The same for pieces with one id, whose lines may cross the border at a flat angle: 1/128 of a tile. */
 static const double ID_REACH = 32;
 
+/* Grids coarser than 1/64 of a tile are no grids of maps. */
+static const double MOST_REACH = 32;
+
 /* Partners that agree to the point are taken first, so that two lines that cross side by side keep apart. */
 static const double EXACT = 0.01;
 
@@ -36,6 +39,7 @@ typedef struct joiner {
 typedef struct join_pass {
     bool by_id; /* else by class: what is left has no id, or one that its tile gave it */
     double reach;
+    bool directed;
 } join_pass;
 
 static const double *end_point(const camber_tiles *tiles, uint32_t end) {
@@ -63,10 +67,13 @@ static bool is_candidate(const joiner *join, uint32_t end, const join_pass *pass
            (!pass->by_id || join->tiles->features[piece->feature].has_id);
 }
 
-static bool may_join(const joiner *join, uint32_t a, uint32_t b, bool by_id) {
+static bool may_join(const joiner *join, uint32_t a, uint32_t b, const join_pass *pass) {
     const camber_tiles *tiles = join->tiles;
     const camber_tile_piece *p = &tiles->pieces[a / 2], *q = &tiles->pieces[b / 2];
+    const bool by_id = pass->by_id;
     if (p == q || join->partner[b] != NONE || group_of(tiles, a, by_id) != group_of(tiles, b, by_id))
+        return false;
+    if (pass->directed && ((a ^ b) & 1) == 0)
         return false;
     /* Two features with ids of their own that end at one point of a border only meet there. */
     if (!by_id && tiles->features[p->feature].has_id && tiles->features[q->feature].has_id &&
@@ -89,7 +96,7 @@ static uint32_t nearest(const joiner *join, uint32_t end, const join_pass *pass)
             for (int i = 0; other != NONE && i < MAX_CANDIDATES; i++, other = join->next[other]) {
                 const double *there = end_point(join->tiles, other);
                 const double dx = there[0] - at[0], dy = there[1] - at[1], distance = dx * dx + dy * dy;
-                if (distance <= best && (found == NONE || distance < best) && may_join(join, end, other, pass->by_id)) {
+                if (distance <= best && (found == NONE || distance < best) && may_join(join, end, other, pass)) {
                     best = distance;
                     found = other;
                 }
@@ -153,12 +160,12 @@ static void drop_repeated_runs(joiner *join) {
 
 /* Where a line passes the corner of four tiles, one of them may hold nothing but a crumb between two cuts, and both
  * ends of it lie within reach of the neighbours. Without it these find each other. */
-static void drop_crumbs(const joiner *join) {
+static void drop_crumbs(const joiner *join, double reach) {
     camber_tiles *tiles = join->tiles;
     for (uint32_t i = 0; i < tiles->piece_count; i++) {
         camber_tile_piece *piece = &tiles->pieces[i];
         const double *p = end_point(tiles, 2 * i);
-        if (piece->count == 2 && piece->cut[0] && piece->cut[1] && hypot(p[2] - p[0], p[3] - p[1]) < REACH / 2)
+        if (piece->count == 2 && piece->cut[0] && piece->cut[1] && hypot(p[2] - p[0], p[3] - p[1]) < reach / 2)
             piece->count = 0;
     }
 }
@@ -265,8 +272,15 @@ camber_status camber_tiles_finish(camber_tiles *tiles, camber_features *features
     for (size_t i = 0; i < 2 * tiles->piece_count; i++)
         join.partner[i] = NONE;
     drop_repeated_runs(&join);
-    drop_crumbs(&join);
-    const join_pass passes[] = {{true, EXACT}, {true, REACH}, {true, ID_REACH}, {false, EXACT}, {false, REACH}};
+    const bool directed = features->style->directed;
+    /* Tiles of a coarser grid than 2048 round as much more. */
+    const double reach = REACH * fmin(fmax(1, tiles->grid / 2), MOST_REACH), id_reach = fmax(ID_REACH, reach);
+    const join_pass passes[] = {{true, EXACT, directed},
+                                {true, reach, directed},
+                                {true, id_reach, directed},
+                                {false, EXACT, directed},
+                                {false, reach, directed}};
+    drop_crumbs(&join, reach);
     for (size_t i = 0; i < sizeof passes / sizeof *passes; i++)
         find_partners(&join, &passes[i]);
     status = emit(&join, features);

@@ -4,13 +4,15 @@
 #define _GNU_SOURCE /* dladdr */
 
 #include "source/load.h"
-#include "source/features.h"
+#include "source/tile_reader.h"
+
+#include <string.h>
+#include <sys/stat.h>
 
 #ifdef CAMBER_GDAL_MODULE
 #include <dlfcn.h>
 #include <limits.h>
 #include <stdio.h>
-#include <string.h>
 
 static const int MODE = RTLD_LAZY | RTLD_LOCAL;
 
@@ -60,7 +62,17 @@ camber_status camber_gdal_load(camber_context *context) {
                        why ? why : "no reason given");
 }
 
+/* GDAL opens tiles one by one, and knows no PMTiles; but it filters by attributes, and reads from within archives. */
+bool camber_source_needs_gdal(const camber_source_desc *desc) {
+    struct stat about;
+    if (!camber_tile_set_knows(desc->path) || strncmp(desc->path, "/vsi", 4) == 0)
+        return true;
+    return desc->where || (stat(desc->path, &about) == 0 && S_ISDIR(about.st_mode));
+}
+
 camber_status camber_features_read(camber_features *features, const camber_source_desc *desc) {
+    if (!camber_source_needs_gdal(desc))
+        return camber_tiles_read_file(features, desc);
     const camber_status status = camber_gdal_load(features->context);
     const camber_gdal_calls *calls = features->context->gdal;
     return status == CAMBER_OK ? calls->read(features, desc) : status;

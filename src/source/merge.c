@@ -3,7 +3,7 @@
  * have fewer ends, which simplification has to keep.
  */
 #include "source/chains.h"
-#include "source/source.h"
+#include "source/fill.h"
 
 #include <string.h>
 

@@ -88,7 +88,8 @@ static camber_status keep(reader *self, OGRFeatureH feature, camber_geometry_kin
         camber_tile_feature tile = {.class_index = index, .outline = kind == CAMBER_GEOMETRY_POLYGON};
         find_tile(self, feature, &tile);
         tile.has_id = camber_columns_id(&self->columns, feature, &tile.id);
-        return camber_tiles_add(self->tiles, &tile, &self->parts);
+        const camber_tile_parts parts = {self->parts.points, self->parts.ends, self->parts.part_count};
+        return camber_tiles_add(self->tiles, &tile, &parts);
     }
     status = camber_features_add_feature(self->features, index);
     size_t first = 0;

@@ -1,28 +1,13 @@
-/* What the files of this layer share: filling a set, geometry of one feature, tile pieces, an open file. */
+/* What the files that need GDAL share: geometry of one feature, an open file, fields. */
 #ifndef CAMBER_SOURCE_H
 #define CAMBER_SOURCE_H
 
-#include "source/features.h"
+#include "source/fill.h"
+#include "source/tiles.h"
 
 #include <gdal.h>
 #include <ogr_api.h>
 #include <ogr_srs_api.h>
-
-/* ---- features.c: filling a set. Failures are logged. ---- */
-
-/* The set's own copy of text, the same pointer for equal texts. */
-camber_status camber_features_intern(camber_features *features, const char *text, const char **interned);
-camber_status camber_features_find_layer(camber_features *features, const char *name, uint32_t *layer);
-/* values: style->property_count of them, strings interned. */
-camber_status camber_features_find_class(camber_features *features, uint32_t layer, camber_geometry_kind geometry,
-                                         const camber_value *values, uint32_t *class_index);
-camber_status camber_features_add_feature(camber_features *features, uint32_t class_index);
-/* A polyline of the feature added last. points: pairs of world coordinates. */
-camber_status camber_features_add_polyline(camber_features *features, const double *points, size_t point_count);
-/* Merges lines of first_polyline and after it; directed: only the end of one with the start of another. */
-camber_status camber_features_merge(camber_features *features, size_t first_polyline, bool directed);
-/* Sets the importance of the points of first_polyline and of those after it. */
-camber_status camber_features_weigh(camber_features *features, size_t first_polyline);
 
 /* ---- geometry.c: a feature's geometry as world polylines ---- */
 
@@ -62,26 +47,6 @@ camber_status camber_parts_set_srs(camber_parts *parts, OGRSpatialReferenceH srs
 /* Collects the lines of a geometry, or the rings of its polygons. */
 camber_status camber_parts_collect(camber_parts *parts, OGRGeometryH geometry, camber_geometry_kind kind);
 void camber_parts_free(camber_parts *parts);
-
-/* ---- tiles.c: pieces of features cut by vector tiles ---- */
-
-typedef struct camber_tiles camber_tiles;
-
-typedef struct camber_tile_feature {
-    uint32_t column, row; /* tile, from the north-west */
-    uint32_t class_index;
-    bool outline; /* of a polygon: what runs along the border is the tile's doing */
-    bool has_id;
-    uint64_t id; /* the same in every tile */
-} camber_tile_feature;
-
-/* zoom: 0 to 30. */
-camber_status camber_tiles_create(camber_context *context, int zoom, camber_tiles **tiles);
-void camber_tiles_destroy(camber_tiles *tiles);
-/* Cuts the parts at the tile's border and keeps what lies inside. */
-camber_status camber_tiles_add(camber_tiles *tiles, const camber_tile_feature *feature, const camber_parts *parts);
-/* Joins the pieces and adds them to the set. */
-camber_status camber_tiles_finish(camber_tiles *tiles, camber_features *features);
 
 /* ---- dataset.c: an open file ---- */
 

@@ -21,6 +21,7 @@ camber_status camber_tiles_create(camber_context *context, int zoom, camber_tile
         return CAMBER_ERROR_MEMORY;
     made->context = context;
     made->units = ldexp(CAMBER_TILE_UNITS, zoom);
+    made->grid = 1;
     *tiles = made;
     return CAMBER_OK;
 }
@@ -262,15 +263,24 @@ static camber_status cut_part(tile_cut *cut, const double *points, size_t count,
     return status;
 }
 
-camber_status camber_tiles_add(camber_tiles *tiles, const camber_tile_feature *feature, const camber_parts *parts) {
+/* A whole tile more where the buffer is kept: what lies beyond is no buffer. */
+static tile_box box_of(const camber_tile_feature *feature) {
+    const double column = feature->column, row = feature->row;
+    const unsigned open = feature->open_sides;
+    return (tile_box){{(column - (open & CAMBER_SIDE_WEST ? 1 : 0)) * CAMBER_TILE_UNITS,
+                       (row - (open & CAMBER_SIDE_NORTH ? 1 : 0)) * CAMBER_TILE_UNITS},
+                      {(column + (open & CAMBER_SIDE_EAST ? 2 : 1)) * CAMBER_TILE_UNITS,
+                       (row + (open & CAMBER_SIDE_SOUTH ? 2 : 1)) * CAMBER_TILE_UNITS}};
+}
+
+camber_status camber_tiles_add(camber_tiles *tiles, const camber_tile_feature *feature,
+                               const camber_tile_parts *parts) {
     uint32_t index = 0;
     camber_status status = find_feature(tiles, feature, &index);
     if (status != CAMBER_OK)
         return status;
-    const double column = feature->column, row = feature->row;
     tile_cut cut = {.tiles = tiles,
-                    .box = {{column * CAMBER_TILE_UNITS, row * CAMBER_TILE_UNITS},
-                            {(column + 1) * CAMBER_TILE_UNITS, (row + 1) * CAMBER_TILE_UNITS}},
+                    .box = box_of(feature),
                     .piece = {.feature = index, .column = feature->column, .row = feature->row}};
     size_t first = 0;
     for (size_t i = 0; i < parts->part_count && status == CAMBER_OK; i++) {

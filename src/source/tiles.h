@@ -1,8 +1,39 @@
-/* Pieces of features, between tiles.c that cuts them and join.c that joins them. */
+/* Features in pieces, cut by vector tiles: tiles.c cuts them at the tiles' borders, join.c joins them again. */
 #ifndef CAMBER_TILES_H
 #define CAMBER_TILES_H
 
-#include "source/source.h"
+#include "source/fill.h"
+
+typedef struct camber_tiles camber_tiles;
+
+/* Sides of a tile: x0, x1 (east), y0, y1 (south). */
+enum { CAMBER_SIDE_WEST = 1, CAMBER_SIDE_EAST = 2, CAMBER_SIDE_NORTH = 4, CAMBER_SIDE_SOUTH = 8 };
+
+typedef struct camber_tile_feature {
+    uint32_t column, row; /* tile, from the north-west; a column beyond the last is one of the next world */
+    uint32_t class_index;
+    bool outline; /* of a polygon: what runs along the border is the tile's doing */
+    bool has_id;
+    uint64_t id;         /* the same in every tile */
+    unsigned open_sides; /* CAMBER_SIDE_*: the neighbour there is not read, and the tile's buffer is kept */
+} camber_tile_feature;
+
+/* Polylines as world coordinates: part i ends before point ends[i]. */
+typedef struct camber_tile_parts {
+    const double *points;
+    const size_t *ends;
+    size_t part_count;
+} camber_tile_parts;
+
+/* zoom: 0 to 30. */
+camber_status camber_tiles_create(camber_context *context, int zoom, camber_tiles **tiles);
+void camber_tiles_destroy(camber_tiles *tiles);
+/* Cuts the parts at the tile's border and keeps what lies inside. */
+camber_status camber_tiles_add(camber_tiles *tiles, const camber_tile_feature *feature, const camber_tile_parts *parts);
+/* Joins the pieces and adds them to the set. Where the style is directed, an end is joined to a start only. */
+camber_status camber_tiles_finish(camber_tiles *tiles, camber_features *features);
+
+/* ---- Between the two ---- */
 
 /* Coordinates of pieces are units of 1/4096 of a tile, from the world's north-west corner: tiles are quantised to
  * this or to half or double as much, and a double holds them exactly at all zooms. */
@@ -27,6 +58,7 @@ typedef struct camber_tile_record {
 struct camber_tiles {
     camber_context *context;
     double units; /* that the world is wide */
+    double grid;  /* of the coarsest tile, in units */
     double *points;
     size_t point_count, point_capacity;
     camber_tile_piece *pieces; /* fewer than 2^31 */

@@ -35,18 +35,15 @@ void camber_compiler_end(camber_compiler *c) {
     c->operand_capacity = c->binding_capacity = 0;
 }
 
-enum { POINTER_SIZE = 512 };
-
-/* RFC 6901; cut off where it is too long to be read anyway. */
-static void write_pointer(const camber_compiler *c, char pointer[POINTER_SIZE]) {
+void camber_compiler_write_pointer(const camber_compiler *c, char pointer[CAMBER_POINTER_SIZE]) {
     size_t used = 0;
     for (size_t i = 0; i < c->path_length && i < CAMBER_PATH_DEPTH; i++) {
         char number[24];
         snprintf(number, sizeof number, "%zu", c->path[i].index);
         const char *step = c->path[i].key ? c->path[i].key : number;
-        if (used + 1 < POINTER_SIZE)
+        if (used + 1 < CAMBER_POINTER_SIZE)
             pointer[used++] = '/';
-        for (; *step && used + 3 < POINTER_SIZE; step++) {
+        for (; *step && used + 3 < CAMBER_POINTER_SIZE; step++) {
             if (*step == '~' || *step == '/') {
                 pointer[used++] = '~';
                 pointer[used++] = *step == '~' ? '0' : '1';
@@ -59,13 +56,13 @@ static void write_pointer(const camber_compiler *c, char pointer[POINTER_SIZE]) 
 }
 
 static void say(camber_compiler *c, camber_log_level level, const char *format, va_list list) {
-    char pointer[POINTER_SIZE], message[512];
+    char pointer[CAMBER_POINTER_SIZE], message[512];
     vsnprintf(message, sizeof message, format, list);
     if (c->report) {
         c->report(c->report_user, c, level, message);
         return;
     }
-    write_pointer(c, pointer);
+    camber_compiler_write_pointer(c, pointer);
     camber_log(c->context, level, "%s: %s%s%s", c->name, pointer, pointer[0] ? ": " : "", message);
 }
 
@@ -454,6 +451,7 @@ bool camber_expression_begin(camber_compiler *c, json_t *json) {
         return fail_memory(c);
     c->expression->context = c->context;
     c->expression->arena = (camber_arena){.context = c->context, .limit = SIZE_MAX};
+    c->expression->document = json;
     c->expression->documents = json_array();
     if (c->expression->documents && camber_expression_keep(c, json))
         return true;

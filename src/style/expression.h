@@ -125,7 +125,8 @@ typedef struct camber_label {
 
 struct camber_expression {
     camber_context *context;
-    json_t *documents; /* references that keep the strings of constants and labels */
+    const json_t *document; /* what it was compiled from; documents keeps it */
+    json_t *documents;      /* references that keep the strings of constants and labels */
     camber_node *nodes;
     uint32_t *links;
     double *stops;

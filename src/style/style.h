@@ -27,6 +27,35 @@ typedef enum camber_layer_kind {
     CAMBER_LAYER_LINE,
 } camber_layer_kind;
 
+/* What a layer may have in its layout and paint, visibility apart; properties.c says what each is. */
+typedef enum camber_property_id {
+    CAMBER_LINE_CAP,
+    CAMBER_LINE_JOIN,
+    CAMBER_LINE_MITER_LIMIT,
+    CAMBER_LINE_ROUND_LIMIT,
+    CAMBER_LINE_OFFSET,
+    CAMBER_LINE_SORT_KEY,
+    CAMBER_LINE_GEOMETRY, /* layers that differ in those before share no polylines */
+    CAMBER_LINE_WIDTH = CAMBER_LINE_GEOMETRY,
+    CAMBER_LINE_GAP_WIDTH,
+    CAMBER_LINE_BLUR,
+    CAMBER_LINE_COLOR,
+    CAMBER_LINE_OPACITY,
+    CAMBER_LINE_LAYER_OPACITY,
+    CAMBER_LINE_TRANSLATE,
+    CAMBER_LINE_TRANSLATE_ANCHOR,
+    CAMBER_LINE_DASHARRAY,
+    CAMBER_LINE_PATTERN,
+    CAMBER_LINE_GRADIENT,
+    CAMBER_LINE_TRIM_OFFSET,
+    CAMBER_LINE_BORDER_COLOR,
+    CAMBER_LINE_BORDER_WIDTH,
+    CAMBER_BACKGROUND_COLOR,
+    CAMBER_BACKGROUND_OPACITY,
+    CAMBER_BACKGROUND_PATTERN,
+    CAMBER_PROPERTIES
+} camber_property_id;
+
 typedef struct camber_style_layer {
     char *id;
     camber_layer_kind kind;
@@ -36,11 +65,8 @@ typedef struct camber_style_layer {
     char *filter_key;          /* the filter as compact JSON, "" for none: equal keys draw equal features */
     double min_zoom, max_zoom; /* drawn where min <= zoom < max; 0 and 24 by default; 24: no end */
     bool visible;
-    camber_expression *filter; /* NULL: everything */
-    camber_cap cap;
-    camber_join join;
-    float miter_limit;
-    camber_expression *color, *opacity, *width; /* NULL: the specification's default */
+    camber_expression *filter;                        /* NULL: everything */
+    camber_expression *properties[CAMBER_PROPERTIES]; /* NULL: the specification's default */
 } camber_style_layer;
 
 /* What no layer names: any input. */
@@ -48,12 +74,29 @@ typedef struct camber_style_layer {
 
 typedef struct camber_style_source {
     char *name;
-    char *type;   /* "geojson", "vector", ... */
-    json_t *json; /* a reference to the source as it stands in the document */
+    char *type;                /* "geojson", "vector", ... */
+    json_t *json;              /* a reference to the source as it stands in the document */
+    camber_expression *filter; /* GeoJSON: of the features that there are at all. NULL: everything */
 } camber_style_source;
+
+/* A sprite of the style: pictures for patterns. */
+typedef struct camber_style_sprite {
+    char *id;  /* before the pictures' names, with a colon; "default": not named */
+    char *url; /* without @2x, .json and .png */
+} camber_style_sprite;
+
+/* Where the document looks from. */
+typedef struct camber_style_camera {
+    double longitude, latitude, zoom, bearing_deg, pitch_deg; /* 0 by default */
+} camber_style_camera;
 
 struct camber_style {
     camber_context *context;
+    char *name; /* the document's own; NULL: none */
+    camber_style_camera camera;
+    json_t *state; /* of ["global-state", key]: objects with a default. NULL: none */
+    camber_style_sprite *sprites;
+    size_t sprite_count;
     camber_style_layer *layers; /* in drawing order */
     size_t layer_count;
     camber_style_source *sources; /* in the document's order */
@@ -66,17 +109,48 @@ struct camber_style {
     bool wants_polygons; /* a line layer's filter asks for outlines: it names the geometry type Polygon */
 };
 
+/* Whether the source's filter lets the feature pass; one that fails to evaluate is false. */
+bool camber_style_source_matches(const camber_style_source *source, const camber_feature_view *feature);
+
 /* Whether the layer draws features of this class at this zoom (visible, zoom range, filter). A filter that
  * fails to evaluate is false. */
 bool camber_style_layer_matches(const camber_style_layer *layer, double zoom, const camber_feature_view *feature);
 
-/* Paint at a zoom. feature may be NULL for a background. Width is in CSS px; the colour's alpha includes the
- * opacity. */
+typedef enum camber_translate_anchor {
+    CAMBER_TRANSLATE_MAP = 0,
+    CAMBER_TRANSLATE_VIEWPORT,
+} camber_translate_anchor;
+
+/* How a layer draws a feature at a zoom, in CSS px. Numbers are finite and within the specification's ranges. */
 typedef struct camber_layer_paint {
-    double width;
-    camber_color color;
+    camber_cap cap;
+    camber_join join;
+    double miter_limit, round_limit;
+    double sort_key;
+    double width, gap_width, offset, blur;
+    camber_color color; /* the alpha includes the opacity */
+    double opacity;
+    /* The same for all features. */
+    double layer_opacity;
+    double translate[2];
+    camber_translate_anchor translate_anchor;
 } camber_layer_paint;
+
+/* A layer at a zoom, with all evaluated that features do not change. */
+typedef struct camber_layer_look {
+    const camber_style_layer *layer;
+    double zoom;
+    camber_layer_paint paint;
+    uint32_t by_feature; /* bits of camber_property_id */
+} camber_layer_look;
+
+camber_layer_look camber_style_layer_look(const camber_style_layer *layer, double zoom);
+/* feature may be NULL for a background. A property that cannot be evaluated has its default. */
+camber_layer_paint camber_layer_look_paint(const camber_layer_look *look, const camber_feature_view *feature);
+/* Both at once. */
 camber_layer_paint camber_style_layer_paint(const camber_style_layer *layer, double zoom,
                                             const camber_feature_view *feature);
+/* Whether two layers give each feature the same geometry: caps, joins, limits, offset, order. */
+bool camber_layer_look_shares(const camber_layer_look *a, const camber_layer_look *b);
 
 #endif

@@ -58,7 +58,7 @@ static camber_vertex strip_vertex(const camber_record *records, size_t count, si
 }
 
 /* Two indices a record: of breaks restarts, of others its vertices in the order of records. A start at a tight join has
- * one vertex of its own: the outer one is the end's, two records before. */
+ * one vertex of its own: the outer one is that of the end before. */
 static void expand_strip(camber_mesh_data *data) {
     const size_t room = data->info.vertex_count;
     uint32_t count = 0;
@@ -68,8 +68,8 @@ static void expand_strip(camber_mesh_data *data) {
         data->indices[i] = CAMBER_RESTART_INDEX;
         if (record->last & CAMBER_RECORD_BREAK)
             continue;
-        if (restarts && i >= 4 && camber_edge_is_shared(record->join, record->last, right ? -1.0f : 1.0f)) {
-            data->indices[i] = data->indices[i - 4];
+        if (restarts && i >= 2 && camber_edge_is_shared(record->join, record->last, right ? -1.0f : 1.0f)) {
+            data->indices[i] = data->indices[i - 2];
         } else if (count < room) {
             data->vertices[count] = strip_vertex(data->records, data->info.record_count, i / 2, right);
             data->indices[i] = count++;
@@ -172,6 +172,18 @@ static camber_status expand_corners(camber_context *context, const camber_row *r
     camber_free(context, first);
     camber_free(context, sets);
     return status;
+}
+
+bool camber_mesh_data_draws(const camber_mesh_data *data, size_t first_index) {
+    const size_t count = data->info.index_count, even = first_index / 2 * 2;
+    if (first_index > count || count - first_index < 3)
+        return false;
+    if (!data->info.strips)
+        return first_index % 3 == 0;
+    const uint32_t *i = data->indices + first_index, *pair = data->indices + even;
+    if (i[0] == CAMBER_RESTART_INDEX || i[1] == CAMBER_RESTART_INDEX || i[2] == CAMBER_RESTART_INDEX)
+        return false;
+    return pair[0] != pair[2] && !(even + 3 < count && pair[1] == pair[3]);
 }
 
 camber_status camber_mesh_expand(camber_context *context, const camber_row *rows, camber_mesh_data *data) {

@@ -219,6 +219,9 @@ static camber_status check_camera(camber_context *context, const camber_camera *
     if (!(camera->scale_px > 0.0 && isfinite(camera->scale_px)))
         return camber_fail(context, CAMBER_ERROR_ARGUMENT, "camera: %g px a world unit; choose a number above 0",
                            camera->scale_px);
+    if (!(camera->translate_px >= 0.0 && isfinite(camera->translate_px)))
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "camera: a translation of %g px; choose 0 or a distance",
+                           camera->translate_px);
     if (!(camera->simplify_px >= 0.0 && isfinite(camera->simplify_px)))
         return camber_fail(context, CAMBER_ERROR_ARGUMENT,
                            "camera: a simplification of %g px; choose 0 or a distance in pixels", camera->simplify_px);
@@ -266,6 +269,7 @@ camber_status camber_network_aim(const camber_network *network, const camber_cam
     double reach = 0.0;
     for (size_t i = 0; i < desc->stroke_count; i++)
         reach = fmax(reach, reach_of(desc->strokes + i));
+    reach += camera->translate_px;
     const double margin = fmax(reach + 16.0, 64.0);
     /* Half the box of the turned picture and what strokes reach around it, in world units. */
     const double across = half_x + reach + 1.0, down = half_y + reach + 1.0;

@@ -75,10 +75,15 @@ static camber_u32 join_word(const twin *t, size_t slot, float *half_shorter) {
 
 /* A strip begins: where the segment before it comes in from, then the point. */
 static void push_start(twin *t, const place *p, size_t from, camber_u32 last) {
-    const bool shares = camber_join_kind(p->join) == CAMBER_KIND_TIGHT && last & CAMBER_RECORD_START;
     push_record(t, t->polylines->x[from], t->polylines->y[from], 0, (p->info & CAMBER_ROW_BITS) | CAMBER_RECORD_BREAK);
     push_point(t, p, p->join, last);
-    t->data->info.vertex_count += shares ? 1 : 2;
+    t->data->info.vertex_count += 2;
+}
+
+/* The point again, for the segment behind it, whose inner vertex is another one. */
+static void push_tight_start(twin *t, const place *p) {
+    push_point(t, p, p->join, p->info | CAMBER_RECORD_START);
+    t->data->info.vertex_count++;
 }
 
 static void walk_strip_point(twin *t, const place *p) {
@@ -90,7 +95,9 @@ static void walk_strip_point(twin *t, const place *p) {
     push_point(t, p, p->join, p->info & ~CAMBER_POINT_FIRST);
     t->data->info.vertex_count += 2;
     t->data->info.triangle_count += 2;
-    if (!last && camber_join_kind(p->join) != CAMBER_KIND_CUT)
+    if (!last && camber_join_kind(p->join) == CAMBER_KIND_TIGHT)
+        push_tight_start(t, p);
+    if (!last && camber_join_kind(p->join) == CAMBER_KIND_SPLIT)
         push_start(t, p, p->slot - 1, p->info | CAMBER_RECORD_START);
 }
 

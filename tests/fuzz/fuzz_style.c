@@ -1,7 +1,7 @@
 /* Style documents: parsed, their layers evaluated over features with values of every kind, and drawn to a scene. */
 #include "fuzz_scene.h"
 
-#include "source/source.h"
+#include "source/fill.h"
 #include "style/style.h"
 
 #include <math.h>
@@ -67,7 +67,7 @@ static void check_layers(const camber_style *style, const camber_features *featu
     static const double zooms[] = {0.0, 9.75, 14.0, 24.0};
     for (size_t i = 0; i < style->layer_count; i++) {
         const camber_style_layer *layer = style->layers + i;
-        REQUIRE(layer->id && layer->min_zoom >= 0.0 && layer->max_zoom <= 24.0 && layer->miter_limit >= 1.0f);
+        REQUIRE(layer->id && layer->min_zoom >= 0.0 && layer->max_zoom <= 24.0);
         for (size_t c = 0; c < features->class_count; c++) {
             const camber_feature_view feature = {
                 .values = features->values ? features->values + features->classes[c].first_value : NULL,
@@ -76,6 +76,12 @@ static void check_layers(const camber_style *style, const camber_features *featu
                 camber_style_layer_matches(layer, zooms[z], &feature);
                 const camber_layer_paint paint = camber_style_layer_paint(layer, zooms[z], &feature);
                 REQUIRE(paint.width >= 0.0 && isfinite(paint.width));
+                REQUIRE(paint.gap_width >= 0.0 && isfinite(paint.gap_width) && paint.blur >= 0.0 &&
+                        isfinite(paint.blur));
+                REQUIRE(isfinite(paint.miter_limit) && isfinite(paint.round_limit) && isfinite(paint.sort_key));
+                REQUIRE(isfinite(paint.translate[0]) && isfinite(paint.translate[1]) && isfinite(paint.offset));
+                REQUIRE(paint.cap <= CAMBER_CAP_SQUARE && paint.join <= CAMBER_JOIN_BEVEL);
+                REQUIRE(paint.layer_opacity >= 0.0 && paint.layer_opacity <= 1.0);
                 REQUIRE(paint.color.a >= 0.0f && paint.color.a <= 1.0f);
             }
         }

@@ -1,0 +1,26 @@
+/* Filling a set of features, whatever they are read from. Failures are logged. */
+#ifndef CAMBER_FILL_H
+#define CAMBER_FILL_H
+
+#include "source/features.h"
+
+/* The set's own copy of text, the same pointer for equal texts. */
+camber_status camber_features_intern(camber_features *features, const char *text, const char **interned);
+camber_status camber_features_find_layer(camber_features *features, const char *name, uint32_t *layer);
+/* The value as the set's own: the same pointer for values of the same text. */
+camber_status camber_features_intern_json(camber_features *features, const json_t *json, const camber_value **value);
+/* values: style->property_count of them, interned. */
+camber_status camber_features_find_class(camber_features *features, uint32_t layer, camber_geometry_kind geometry,
+                                         const camber_value *values, uint32_t *class_index);
+/* The same with an id and all properties; wanted's source and first_value are not read. */
+camber_status camber_features_find_class_of(camber_features *features, const camber_feature_class *wanted,
+                                            const camber_value *values, uint32_t *class_index);
+camber_status camber_features_add_feature(camber_features *features, uint32_t class_index);
+/* A polyline of the feature added last. points: pairs of world coordinates. */
+camber_status camber_features_add_polyline(camber_features *features, const double *points, size_t point_count);
+/* Merges lines of first_polyline and after it; directed: only the end of one with the start of another. */
+camber_status camber_features_merge(camber_features *features, size_t first_polyline, bool directed);
+/* Sets the importance of the points of first_polyline and of those after it. */
+camber_status camber_features_weigh(camber_features *features, size_t first_polyline);
+
+#endif

@@ -1,0 +1,124 @@
+#include "source/mvt_geometry.h"
+
+enum { MOVE_TO = 1, LINE_TO = 2, CLOSE_PATH = 7 };
+
+typedef struct pen {
+    camber_mvt_geometry *geometry;
+    const camber_mvt_commands *commands;
+    int64_t x, y; /* 2^26 words of 2^31 each stay in range */
+    size_t first; /* point of the open part */
+    bool closed;
+} pen;
+
+static bool add_world_point(camber_mvt_geometry *geometry, double x, double y) {
+    if (!camber_grow(geometry->context, &geometry->points, &geometry->point_capacity, geometry->point_count + 1,
+                     2 * sizeof *geometry->points))
+        return false;
+    geometry->points[2 * geometry->point_count] = x;
+    geometry->points[2 * geometry->point_count + 1] = y;
+    geometry->point_count++;
+    return true;
+}
+
+/* A tile's corner and what lies on a grid of a power of two are exact. */
+static bool add_point(const pen *p) {
+    const camber_mvt_commands *c = p->commands;
+    return add_world_point(p->geometry, (c->column + (double)p->x / c->extent) / c->side,
+                           (c->row + (double)p->y / c->extent) / c->side);
+}
+
+static void spoil(camber_mvt_geometry *geometry, const char *damage) {
+    if (!geometry->damage)
+        geometry->damage = damage;
+}
+
+static bool end_part(pen *p) {
+    camber_mvt_geometry *geometry = p->geometry;
+    const bool ring = p->commands->kind == CAMBER_GEOMETRY_POLYGON;
+    const size_t count = geometry->point_count - p->first;
+    if (count == 0)
+        return true;
+    if (ring && !p->closed)
+        spoil(geometry, "a ring that is not closed");
+    if (count < (ring ? 3u : 2u)) {
+        spoil(geometry, ring ? "a ring of one point" : "a line of one point");
+        geometry->point_count = p->first;
+        return true;
+    }
+    if (!camber_grow(geometry->context, &geometry->ends, &geometry->part_capacity, geometry->part_count + 1,
+                     sizeof *geometry->ends))
+        return false;
+    geometry->ends[geometry->part_count++] = p->first = geometry->point_count;
+    return true;
+}
+
+static int64_t unzigzag(uint32_t word) {
+    return (int64_t)(word >> 1) ^ -(int64_t)(word & 1);
+}
+
+static bool close_ring(pen *p) {
+    camber_mvt_geometry *geometry = p->geometry;
+    if (p->commands->kind != CAMBER_GEOMETRY_POLYGON || geometry->point_count == p->first) {
+        spoil(geometry, "it closes what is no ring");
+        return true;
+    }
+    p->closed = true;
+    const double x = geometry->points[2 * p->first], y = geometry->points[2 * p->first + 1];
+    return add_world_point(geometry, x, y) && end_part(p);
+}
+
+/* So many points from words on. */
+static bool draw(pen *p, uint32_t command, const uint32_t *words, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        if (command == MOVE_TO) {
+            if (!end_part(p))
+                return false;
+            p->first = p->geometry->point_count;
+            p->closed = false;
+        } else if (p->geometry->point_count == p->first) {
+            spoil(p->geometry, "a line that starts nowhere");
+            return true;
+        }
+        p->x += unzigzag(words[2 * i]);
+        p->y += unzigzag(words[2 * i + 1]);
+        if (!add_point(p))
+            return false;
+    }
+    return true;
+}
+
+camber_status camber_mvt_geometry_read(camber_mvt_geometry *geometry, const camber_mvt_commands *commands) {
+    geometry->point_count = geometry->part_count = 0;
+    geometry->damage = NULL;
+    pen p = {.geometry = geometry, .commands = commands};
+    bool fits = true;
+    for (size_t i = 0; i < commands->count && fits;) {
+        const uint32_t command = commands->words[i] & 7;
+        size_t count = commands->words[i++] >> 3;
+        if (command == CLOSE_PATH) {
+            fits = close_ring(&p);
+            continue;
+        }
+        if (command != MOVE_TO && command != LINE_TO) {
+            spoil(geometry, "an unknown command");
+            break;
+        }
+        if (count == 0)
+            spoil(geometry, "a command without points");
+        if (count > (commands->count - i) / 2) {
+            spoil(geometry, "fewer points than it announces");
+            count = (commands->count - i) / 2;
+            fits = draw(&p, command, commands->words + i, count);
+            break;
+        }
+        fits = draw(&p, command, commands->words + i, count);
+        i += 2 * count;
+    }
+    return fits && end_part(&p) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+}
+
+void camber_mvt_geometry_free(camber_mvt_geometry *geometry) {
+    camber_free(geometry->context, geometry->ends);
+    camber_free(geometry->context, geometry->points);
+    *geometry = (camber_mvt_geometry){0};
+}

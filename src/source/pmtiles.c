@@ -1,0 +1,444 @@
+/* PMTiles 3: a header of 127 bytes, a root directory, metadata, leaf directories, tiles. Directories are lists of tile
+ * numbers along Hilbert curves, zoom by zoom, as varints; compressed. */
+#define _FILE_OFFSET_BITS 64
+
+#include "source/pmtiles.h"
+#include "source/tile_set.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { HEADER_BYTES = 127, DEEPEST = 4, NO_COMPRESSION = 1, GZIP = 2, VECTOR_TILES = 1 };
+
+/* Real directories take some hundred kilobytes. */
+static const size_t LARGEST_DIRECTORY_BYTES = (size_t)16 << 20, LARGEST_BYTES = (size_t)64 << 20;
+/* Entries looked at to list a zoom's tiles, and what reading a directory counts for. */
+static const uint64_t MOST_LISTED = UINT64_C(1) << 26, DIRECTORY_COSTS = 1024;
+
+typedef struct range {
+    uint64_t offset, size;
+} range;
+
+typedef struct directory {
+    camber_pmtiles_entry *entries;
+    size_t count;
+} directory;
+
+typedef struct archive {
+    int file;
+    uint64_t size_bytes;
+    range root, metadata, leaves, tiles;
+    int directory_compression, tile_compression;
+    directory parsed_root;
+    directory leaf; /* the last one that was read */
+    range leaf_range;
+    camber_bytes packed, unpacked;
+} archive;
+
+/* ---- Numbers ---- */
+
+uint64_t camber_pmtiles_number(int zoom, uint32_t column, uint32_t row) {
+    uint64_t before = 0, along = 0;
+    for (int z = 0; z < zoom; z++)
+        before += UINT64_C(1) << 2 * z;
+    uint32_t x = column, y = row;
+    for (int z = zoom - 1; z >= 0; z--) {
+        const uint32_t half = UINT32_C(1) << z, right = x & half ? 1 : 0, down = y & half ? 1 : 0;
+        along += ((uint64_t)half * half) * ((3 * right) ^ down);
+        /* The curve of a quarter is turned. */
+        if (!down) {
+            if (right) {
+                x = half - 1 - (x & (half - 1));
+                y = half - 1 - (y & (half - 1));
+            }
+            const uint32_t swapped = x;
+            x = y;
+            y = swapped;
+        }
+    }
+    return before + along;
+}
+
+void camber_pmtiles_place(uint64_t along, int zoom, uint32_t *column, uint32_t *row) {
+    uint32_t x = 0, y = 0;
+    for (int z = 0; z < zoom; z++, along >>= 2) {
+        const uint32_t half = UINT32_C(1) << z, right = (uint32_t)(along >> 1) & 1,
+                       down = (uint32_t)(along ^ right) & 1;
+        if (!down) {
+            if (right) {
+                x = half - 1 - x;
+                y = half - 1 - y;
+            }
+            const uint32_t swapped = x;
+            x = y;
+            y = swapped;
+        }
+        x += half * right;
+        y += half * down;
+    }
+    *column = x;
+    *row = y;
+}
+
+/* ---- Directories ---- */
+
+typedef struct cursor {
+    const unsigned char *at, *end;
+    bool failed;
+} cursor;
+
+static uint64_t take_varint(cursor *c) {
+    uint64_t value = 0;
+    for (int shift = 0; shift < 64; shift += 7) {
+        if (c->at == c->end)
+            break;
+        const unsigned char byte = *c->at++;
+        value |= (uint64_t)(byte & 127) << shift;
+        if (byte < 128)
+            return value;
+    }
+    c->failed = true;
+    return 0;
+}
+
+const char *camber_pmtiles_parse(camber_context *context, const void *bytes, size_t size_bytes,
+                                 camber_pmtiles_entry **entries, size_t *count) {
+    cursor c = {bytes, (const unsigned char *)bytes + size_bytes, false};
+    const uint64_t announced = take_varint(&c);
+    /* An entry takes four bytes at least. */
+    if (c.failed || announced > size_bytes / 4)
+        return "a directory announces more entries than it holds";
+    camber_pmtiles_entry *made = camber_alloc(context, (size_t)announced + 1, sizeof *made);
+    if (!made)
+        return "out of memory";
+    const char *why = NULL;
+    uint64_t number = 0;
+    for (size_t i = 0; i < announced; i++) {
+        const uint64_t step = take_varint(&c);
+        if (i && (step == 0 || step > UINT64_MAX - number))
+            why = "a directory is not in order";
+        made[i].number = number += step;
+    }
+    for (size_t i = 0; i < announced; i++)
+        made[i].run = take_varint(&c);
+    for (size_t i = 0; i < announced; i++)
+        made[i].size = take_varint(&c);
+    for (size_t i = 0; i < announced; i++) {
+        const uint64_t offset = take_varint(&c);
+        if (offset == 0 && i == 0)
+            why = "a directory's first tile follows none";
+        made[i].offset = offset ? offset - 1 : i ? made[i - 1].offset + made[i - 1].size : 0;
+    }
+    if (c.failed)
+        why = "a directory is cut off";
+    if (why) {
+        camber_free(context, made);
+        return why;
+    }
+    *entries = made;
+    *count = (size_t)announced;
+    return NULL;
+}
+
+static camber_status fail(const camber_tile_set *set, const char *why) {
+    return camber_fail(set->context, CAMBER_ERROR_INPUT, "%s: damaged or cut off: %s; get the file again", set->name,
+                       why);
+}
+
+/* The bytes of a part of the file. *why: it lies past the end. */
+static camber_status read_range(camber_tile_set *set, range at, size_t limit_bytes, camber_bytes *bytes,
+                                const char **why) {
+    const archive *self = set->self;
+    if (at.offset > self->size_bytes || at.size > self->size_bytes - at.offset) {
+        *why = "it lies past the end of the file";
+        return CAMBER_OK;
+    }
+    if (at.size > limit_bytes) {
+        *why = "it is too large";
+        return CAMBER_OK;
+    }
+    if (!camber_bytes_resize(bytes, (size_t)at.size))
+        return CAMBER_ERROR_MEMORY;
+    for (size_t done = 0; done < at.size;) {
+        const ssize_t got = pread(self->file, bytes->data + done, (size_t)at.size - done, (off_t)(at.offset + done));
+        if (got < 0 && errno == EINTR)
+            continue;
+        if (got < 0)
+            return camber_fail(set->context, CAMBER_ERROR_IO, "%s: cannot be read: %s; get the file again", set->name,
+                               strerror(errno));
+        if (got == 0) {
+            *why = "it lies past the end of the file";
+            return CAMBER_OK;
+        }
+        done += (size_t)got;
+    }
+    return CAMBER_OK;
+}
+
+/* A part that is compressed as directories are: in *bytes. */
+static camber_status read_packed(camber_tile_set *set, range at, const char *what, const camber_bytes **bytes) {
+    archive *self = set->self;
+    const char *why = NULL;
+    bool no_memory = false;
+    camber_status status = read_range(set, at, LARGEST_DIRECTORY_BYTES, &self->packed, &why);
+    if (status != CAMBER_OK)
+        return status;
+    if (!why && self->directory_compression == GZIP)
+        why = camber_gunzip(self->packed.data, self->packed.size_bytes, LARGEST_DIRECTORY_BYTES, &self->unpacked,
+                            &no_memory);
+    if (no_memory)
+        return CAMBER_ERROR_MEMORY;
+    *bytes = self->directory_compression == GZIP ? &self->unpacked : &self->packed;
+    if (!why)
+        return CAMBER_OK;
+    return camber_fail(set->context, CAMBER_ERROR_INPUT, "%s: damaged or cut off: %s: %s; get the file again",
+                       set->name, what, why);
+}
+
+static camber_status read_directory(camber_tile_set *set, range at, directory *parsed) {
+    const camber_bytes *bytes;
+    directory made = {0};
+    const camber_status status = read_packed(set, at, "a directory", &bytes);
+    if (status != CAMBER_OK)
+        return status;
+    const char *why = camber_pmtiles_parse(set->context, bytes->data, bytes->size_bytes, &made.entries, &made.count);
+    if (why)
+        return fail(set, why);
+    camber_free(set->context, parsed->entries);
+    *parsed = made;
+    return CAMBER_OK;
+}
+
+static range leaf_of(const archive *self, const camber_pmtiles_entry *entry) {
+    const uint64_t room = UINT64_MAX - self->leaves.offset;
+    return (range){entry->offset <= room ? self->leaves.offset + entry->offset : UINT64_MAX, entry->size};
+}
+
+/* The last entry that does not lie behind the number; NULL: all do. */
+static const camber_pmtiles_entry *find_entry(const directory *in, uint64_t number) {
+    size_t low = 0, high = in->count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (in->entries[middle].number <= number)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low ? &in->entries[low - 1] : NULL;
+}
+
+/* ---- Tiles ---- */
+
+static camber_status get_tile(camber_tile_set *set, int zoom, camber_tile_place place, camber_bytes *bytes,
+                              const char **why) {
+    archive *self = set->self;
+    const uint64_t number = camber_pmtiles_number(zoom, place.column, place.row);
+    const directory *in = &self->parsed_root;
+    bytes->size_bytes = 0;
+    for (int depth = 0; depth < DEEPEST; depth++) {
+        const camber_pmtiles_entry *entry = find_entry(in, number);
+        if (!entry || (entry->run && number - entry->number >= entry->run))
+            return CAMBER_OK;
+        if (entry->run) {
+            const uint64_t room = UINT64_MAX - self->tiles.offset;
+            const range at = {entry->offset <= room ? self->tiles.offset + entry->offset : UINT64_MAX, entry->size};
+            return read_range(set, at, LARGEST_BYTES, bytes, why);
+        }
+        const range at = leaf_of(self, entry);
+        if (at.offset != self->leaf_range.offset || at.size != self->leaf_range.size || !self->leaf.entries) {
+            const camber_status status = read_directory(set, at, &self->leaf);
+            if (status != CAMBER_OK)
+                return status;
+            self->leaf_range = at;
+        }
+        in = &self->leaf;
+    }
+    return fail(set, "its directories go round in circles");
+}
+
+typedef struct listing {
+    camber_tile_set *set;
+    int zoom;
+    uint64_t first, end; /* numbers of the zoom */
+    camber_tile_place *places;
+    size_t count, capacity;
+    uint64_t cost;
+} listing;
+
+static camber_status list_run(listing *list, const camber_pmtiles_entry *entry) {
+    const uint64_t last = entry->run - 1 <= UINT64_MAX - entry->number ? entry->number + (entry->run - 1) : UINT64_MAX;
+    if (last < list->first || entry->number >= list->end)
+        return CAMBER_OK;
+    const uint64_t from = entry->number > list->first ? entry->number : list->first;
+    const uint64_t end = last < list->end ? last + 1 : list->end;
+    if (end - from > MOST_LISTED - (list->cost < MOST_LISTED ? list->cost : MOST_LISTED))
+        return camber_fail(list->set->context, CAMBER_ERROR_LIMIT,
+                           "%s: more than %llu tiles; draw it through a style that names it as a source",
+                           list->set->name, (unsigned long long)MOST_LISTED);
+    list->cost += end - from;
+    for (uint64_t number = from; number < end; number++) {
+        if (!camber_grow(list->set->context, &list->places, &list->capacity, list->count + 1, sizeof *list->places))
+            return CAMBER_ERROR_MEMORY;
+        camber_tile_place *place = &list->places[list->count++];
+        camber_pmtiles_place(number - list->first, list->zoom, &place->column, &place->row);
+    }
+    return CAMBER_OK;
+}
+
+static camber_status list_directory(listing *list, const directory *in, int depth) {
+    const archive *self = list->set->self;
+    camber_status status = CAMBER_OK;
+    for (size_t i = 0; i < in->count && status == CAMBER_OK; i++) {
+        const camber_pmtiles_entry *entry = &in->entries[i];
+        if (entry->run) {
+            status = list_run(list, entry);
+            continue;
+        }
+        const bool beyond =
+            entry->number >= list->end || (i + 1 < in->count && in->entries[i + 1].number <= list->first);
+        if (beyond)
+            continue;
+        list->cost += DIRECTORY_COSTS;
+        directory leaf = {0};
+        if (depth >= DEEPEST || list->cost > MOST_LISTED)
+            return fail(list->set, "its directories go round in circles");
+        status = read_directory(list->set, leaf_of(self, entry), &leaf);
+        list->cost += leaf.count;
+        if (status == CAMBER_OK)
+            status = list_directory(list, &leaf, depth + 1);
+        camber_free(list->set->context, leaf.entries);
+    }
+    return status;
+}
+
+static camber_status list_tiles(camber_tile_set *set, int zoom, camber_tile_place **places, size_t *count) {
+    const archive *self = set->self;
+    listing list = {.set = set, .zoom = zoom, .first = camber_pmtiles_number(zoom, 0, 0)};
+    list.end = list.first + (UINT64_C(1) << 2 * zoom);
+    const camber_status status = list_directory(&list, &self->parsed_root, 1);
+    if (status != CAMBER_OK) {
+        camber_free(set->context, list.places);
+        return status;
+    }
+    *places = list.places;
+    *count = list.count;
+    return CAMBER_OK;
+}
+
+static void close_archive(camber_tile_set *set) {
+    archive *self = set->self;
+    if (self->file >= 0)
+        close(self->file);
+    camber_free(set->context, self->parsed_root.entries);
+    camber_free(set->context, self->leaf.entries);
+    camber_bytes_free(&self->packed);
+    camber_bytes_free(&self->unpacked);
+    camber_free(set->context, self);
+}
+
+static const camber_tile_set_calls archive_calls = {get_tile, list_tiles, close_archive};
+
+/* ---- Opening ---- */
+
+static uint64_t read_number(const unsigned char *bytes, int size) {
+    uint64_t number = 0;
+    for (int i = 0; i < size; i++)
+        number |= (uint64_t)bytes[i] << 8 * i;
+    return number;
+}
+
+static range read_header_range(const unsigned char *bytes) {
+    return (range){read_number(bytes, 8), read_number(bytes + 8, 8)};
+}
+
+static const char *const compressions[] = {"unknown", "none", "gzip", "brotli", "zstd"};
+
+static camber_status check_compression(const camber_tile_set *set, int compression, const char *what) {
+    if (compression == NO_COMPRESSION || compression == GZIP)
+        return CAMBER_OK;
+    return camber_fail(set->context, CAMBER_ERROR_INPUT,
+                       "%s: its %s are compressed with %s; camber reads gzip and none: make it again with one of them",
+                       set->name, what, compressions[compression >= 0 && compression <= 4 ? compression : 0]);
+}
+
+static camber_status read_header(camber_tile_set *set) {
+    archive *self = set->self;
+    const char *why = NULL;
+    camber_status status = read_range(set, (range){0, HEADER_BYTES}, LARGEST_BYTES, &self->packed, &why);
+    if (status != CAMBER_OK)
+        return status;
+    const unsigned char *head = self->packed.data;
+    if (why || memcmp(head, "PMTiles", 7) != 0)
+        return camber_fail(set->context, CAMBER_ERROR_INPUT, "%s: no PMTiles; get the file again", set->name);
+    if (head[7] != 3)
+        return camber_fail(set->context, CAMBER_ERROR_INPUT, "%s: version %d of PMTiles; convert it to version 3",
+                           set->name, head[7]);
+    self->root = read_header_range(head + 8);
+    self->metadata = read_header_range(head + 24);
+    self->leaves = read_header_range(head + 40);
+    self->tiles = read_header_range(head + 56);
+    self->directory_compression = head[97];
+    self->tile_compression = head[98];
+    const int type = head[99];
+    set->min_zoom = head[100];
+    set->max_zoom = head[101];
+    for (int i = 0; i < 4; i++)
+        set->bounds[i] = (double)(int32_t)(uint32_t)read_number(head + 102 + 4 * i, 4) * 1e-7;
+    set->has_bounds = set->bounds[0] < set->bounds[2] && set->bounds[1] < set->bounds[3] && set->bounds[0] >= -180 &&
+                      set->bounds[2] <= 180 && set->bounds[1] >= -90 && set->bounds[3] <= 90;
+    if (!set->has_bounds)
+        memcpy(set->bounds, (double[4]){-180, -90, 180, 90}, sizeof set->bounds);
+    if (type != VECTOR_TILES && type != 0)
+        return camber_fail(set->context, CAMBER_ERROR_INPUT, "%s: its tiles are pictures; camber reads vector tiles",
+                           set->name);
+    if (set->min_zoom > set->max_zoom || set->max_zoom > CAMBER_LARGEST_TILE_ZOOM)
+        return fail(set, "its zooms make no sense");
+    status = check_compression(set, self->directory_compression, "directories");
+    return status == CAMBER_OK ? check_compression(set, self->tile_compression, "tiles") : status;
+}
+
+static camber_status read_metadata(camber_tile_set *set) {
+    archive *self = set->self;
+    const camber_bytes *bytes;
+    if (self->metadata.size == 0)
+        return CAMBER_OK;
+    const camber_status status = read_packed(set, self->metadata, "its metadata", &bytes);
+    if (status != CAMBER_OK)
+        return status;
+    json_t *about = json_loadb((const char *)bytes->data, bytes->size_bytes, JSON_DECODE_INT_AS_REAL, NULL);
+    if (json_is_object(about)) {
+        /* What the header tells is right. */
+        json_object_del(about, "minzoom");
+        json_object_del(about, "maxzoom");
+        json_object_del(about, "bounds");
+        camber_tile_set_describe(set, about);
+    }
+    json_decref(about);
+    return CAMBER_OK;
+}
+
+camber_status camber_pmtiles_open(camber_tile_set *set, const char *path) {
+    archive *self = camber_alloc_zero(set->context, 1, sizeof *self);
+    struct stat about;
+    if (!self)
+        return CAMBER_ERROR_MEMORY;
+    set->self = self;
+    set->calls = &archive_calls;
+    self->packed.context = self->unpacked.context = set->context;
+    self->file = open(path, O_RDONLY | O_CLOEXEC);
+    if (self->file < 0 || fstat(self->file, &about) != 0) {
+        const int cause = errno;
+        return camber_fail(set->context, cause == ENOENT || cause == ENOTDIR ? CAMBER_ERROR_NOT_FOUND : CAMBER_ERROR_IO,
+                           "%s: cannot be read: %s; check the path and its permissions", set->name, strerror(cause));
+    }
+    self->size_bytes = about.st_size > 0 ? (uint64_t)about.st_size : 0;
+    camber_status status = read_header(set);
+    if (status == CAMBER_OK)
+        status = read_directory(set, self->root, &self->parsed_root);
+    if (status == CAMBER_OK)
+        status = read_metadata(set);
+    return status;
+}

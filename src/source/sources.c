@@ -1,0 +1,335 @@
+#include "source/sources.h"
+#include "source/geojson.h"
+#include "source/mercator.h"
+#include "source/tile_reader.h"
+#include "source/url.h"
+
+#include <math.h>
+#include <stdio.h>
+
+typedef struct source {
+    const camber_style_source *style;
+    uint32_t index;
+    char what[160];       /* source "name" */
+    camber_tile_set *set; /* of a vector source */
+    bool is_bounded;      /* the document has bounds: no tiles lie outside */
+    double bounds[4];     /* world coordinates; x0 > x1: not known */
+} source;
+
+struct camber_sources {
+    camber_context *context;
+    camber_features *features;
+    camber_sources_desc desc;
+    source *items;
+    size_t count;
+};
+
+static bool is_drawn_from(const camber_style_layer *layer, uint32_t index) {
+    return layer->kind == CAMBER_LAYER_LINE && layer->visible && layer->source_index == index;
+}
+
+static bool is_wanted(const camber_style *style, uint32_t index) {
+    for (size_t i = 0; i < style->layer_count; i++)
+        if (is_drawn_from(&style->layers[i], index))
+            return true;
+    return false;
+}
+
+static camber_status load_json(camber_context *context, const char *what, const char *path, json_t **root) {
+    char *text;
+    size_t size;
+    json_error_t error;
+    const camber_status status = camber_read_file(context, path, &text, &size);
+    if (status != CAMBER_OK)
+        return status;
+    *root = json_loadb(text, size, JSON_DECODE_INT_AS_REAL | JSON_ALLOW_NUL, &error);
+    camber_free(context, text);
+    if (*root)
+        return CAMBER_OK;
+    return camber_fail(context, CAMBER_ERROR_INPUT, "%s: %s: no JSON at line %d, column %d: %s; get the file again",
+                       what, path, error.line, error.column, error.text);
+}
+
+/* ---- GeoJSON ---- */
+
+static void warn(const camber_sources *sources, const char *what, size_t damaged, const char *damage, size_t skipped) {
+    if (damaged)
+        camber_log(sources->context, CAMBER_LOG_WARNING,
+                   "%s: %zu damaged features (the first: %s); what of them reads is kept", what, damaged, damage);
+    if (skipped)
+        camber_log(sources->context, CAMBER_LOG_INFO, "%s: left out what is no line of %zu features", what, skipped);
+}
+
+static camber_status read_geojson(camber_sources *sources, source *one) {
+    camber_context *context = sources->context;
+    const json_t *data = json_object_get(one->style->json, "data");
+    json_t *loaded = NULL;
+    camber_status status = CAMBER_OK;
+    if (json_is_string(data)) {
+        camber_url url = {0};
+        status = camber_url_resolve(context, one->what, json_string_value(data), sources->desc.base_path, &url);
+        if (status == CAMBER_OK)
+            status = load_json(context, one->what, url.path, &loaded);
+        camber_free(context, url.path);
+    } else if (!json_is_object(data)) {
+        status = camber_fail(context, CAMBER_ERROR_INPUT, "%s: no \"data\"; write GeoJSON, or the path of a file",
+                             one->what);
+    }
+    camber_geojson_stats stats = {0};
+    const camber_geojson_desc desc = {.what = one->what, .root = loaded ? loaded : data, .source = one->style};
+    if (status == CAMBER_OK)
+        status = camber_geojson_read(sources->features, &desc, &stats);
+    json_decref(loaded);
+    if (status != CAMBER_OK)
+        return status;
+    memcpy(one->bounds, stats.bounds, sizeof one->bounds);
+    sources->features->stats.skipped_features += stats.skipped_features;
+    sources->features->stats.damaged_features += stats.damaged_features;
+    warn(sources, one->what, stats.damaged_features, stats.damage, stats.skipped_features);
+    return CAMBER_OK;
+}
+
+/* ---- Vector tiles: opening ---- */
+
+static camber_status open_archive(camber_sources *sources, source *one, const camber_url *url) {
+    if (url->kind == CAMBER_URL_FILE || camber_tile_set_knows(url->path))
+        return camber_tile_set_open(sources->context, url->path, &one->set);
+    return camber_fail(sources->context, CAMBER_ERROR_INPUT,
+                       "%s: %s ends neither in .mbtiles nor in .pmtiles; rename it", one->what, url->path);
+}
+
+static camber_status open_template(camber_sources *sources, source *one, const json_t *about, const char *base_path) {
+    const char *text = json_string_value(json_array_get(json_object_get(about, "tiles"), 0));
+    const char *scheme = json_string_value(json_object_get(about, "scheme"));
+    camber_url url = {0};
+    if (!text)
+        return camber_fail(sources->context, CAMBER_ERROR_INPUT,
+                           "%s: neither \"url\" nor \"tiles\"; write \"tiles\": [\"tiles/{z}/{x}/{y}.mvt\"]",
+                           one->what);
+    camber_status status = camber_url_resolve(sources->context, one->what, text, base_path, &url);
+    if (status == CAMBER_OK && url.kind != CAMBER_URL_FILE) {
+        status = open_archive(sources, one, &url);
+    } else if (status == CAMBER_OK) {
+        const camber_tile_template files = {.name = text,
+                                            .path = url.path,
+                                            .south_first = scheme && strcmp(scheme, "tms") == 0,
+                                            .high_resolution = sources->desc.ratio > 1.0};
+        status = camber_tile_set_of_files(sources->context, &files, &one->set);
+    }
+    camber_free(sources->context, url.path);
+    return status;
+}
+
+/* about: of the style, laid over what the TileJSON file tells. */
+static camber_status open_tilejson(camber_sources *sources, source *one, const char *path, json_t *about) {
+    json_t *loaded = NULL;
+    camber_status status = load_json(sources->context, one->what, path, &loaded);
+    if (status != CAMBER_OK)
+        return status;
+    /* Its own paths start from itself. */
+    const char *base_path = json_object_get(about, "tiles") ? sources->desc.base_path : path;
+    json_object_update_missing(about, loaded);
+    json_decref(loaded);
+    return open_template(sources, one, about, base_path);
+}
+
+static void take_bounds(source *one) {
+    const double *degrees = one->set->bounds;
+    if (!one->set->has_bounds)
+        return;
+    double y[2];
+    for (int i = 0; i < 2; i++)
+        y[i] = fmin(fmax(degrees[1 + 2 * i], -CAMBER_MERCATOR_LATITUDE), CAMBER_MERCATOR_LATITUDE);
+    camber_mercator_project(degrees[0], y[1], &one->bounds[0], &one->bounds[1]);
+    camber_mercator_project(degrees[2], y[0], &one->bounds[2], &one->bounds[3]);
+}
+
+static camber_status open_vector(camber_sources *sources, source *one) {
+    camber_context *context = sources->context;
+    json_t *about = json_copy(one->style->json);
+    const char *text = json_string_value(json_object_get(about, "url"));
+    camber_url url = {0};
+    camber_status status = about ? CAMBER_OK : camber_fail(context, CAMBER_ERROR_MEMORY, "out of memory for a source");
+    if (status == CAMBER_OK && text)
+        status = camber_url_resolve(context, one->what, text, sources->desc.base_path, &url);
+    if (status != CAMBER_OK)
+        goto done;
+    if (!text)
+        status = open_template(sources, one, about, sources->desc.base_path);
+    else if (url.kind != CAMBER_URL_FILE || camber_tile_set_knows(url.path))
+        status = open_archive(sources, one, &url);
+    else
+        status = open_tilejson(sources, one, url.path, about);
+    if (status != CAMBER_OK)
+        goto done;
+    camber_tile_set_describe(one->set, about);
+    one->is_bounded = json_object_get(about, "bounds") != NULL;
+    take_bounds(one);
+    if (one->set->min_zoom > one->set->max_zoom)
+        status = camber_fail(context, CAMBER_ERROR_INPUT, "%s: minzoom %d lies above maxzoom %d; swap them", one->what,
+                             one->set->min_zoom, one->set->max_zoom);
+done:
+    camber_free(context, url.path);
+    json_decref(about);
+    return status;
+}
+
+/* ---- All of them ---- */
+
+/* The lines added since, of one source. */
+static camber_status finish(camber_features *features, size_t first_polyline) {
+    const double start_ms = camber_now_ms();
+    const camber_status status = camber_features_weigh(features, first_polyline);
+    features->times.weigh_ms += camber_now_ms() - start_ms;
+    features->stats.features = features->feature_count;
+    features->stats.polylines = features->polyline_count;
+    features->stats.points = features->point_count;
+    return status;
+}
+
+static camber_status open_source(camber_sources *sources, source *one) {
+    camber_features *features = sources->features;
+    const size_t first_polyline = features->polyline_count;
+    const char *type = one->style->type;
+    features->source = one->index;
+    if (strcmp(type, "vector") == 0)
+        return open_vector(sources, one);
+    if (strcmp(type, "geojson") == 0) {
+        const camber_status status = read_geojson(sources, one);
+        return status == CAMBER_OK ? finish(features, first_polyline) : status;
+    }
+    camber_log(sources->context, CAMBER_LOG_WARNING,
+               "%s: of type %s, which has no lines; its layers are left out: use vector or geojson", one->what, type);
+    return CAMBER_OK;
+}
+
+camber_status camber_sources_open(camber_features *features, const camber_sources_desc *desc,
+                                  camber_sources **sources) {
+    camber_context *context = features->context;
+    const camber_style *style = features->style;
+    camber_sources *made = camber_alloc_zero(context, 1, sizeof *made);
+    if (!made)
+        return CAMBER_ERROR_MEMORY;
+    *made = (camber_sources){.context = context, .features = features, .desc = *desc};
+    camber_status status = CAMBER_OK;
+    if (!(made->items = camber_alloc_zero(context, style->source_count, sizeof *made->items)))
+        status = CAMBER_ERROR_MEMORY;
+    const double start_ms = camber_now_ms();
+    for (uint32_t i = 0; status == CAMBER_OK && i < style->source_count; i++) {
+        if (!is_wanted(style, i))
+            continue;
+        source *one = &made->items[made->count++];
+        *one = (source){.style = &style->sources[i], .index = i, .bounds = {1, 1, 0, 0}};
+        snprintf(one->what, sizeof one->what, "source \"%s\"", style->sources[i].name);
+        status = open_source(made, one);
+    }
+    features->times.file_ms += camber_now_ms() - start_ms;
+    features->source = CAMBER_NO_SOURCE;
+    if (status != CAMBER_OK) {
+        camber_sources_close(made);
+        return status;
+    }
+    *sources = made;
+    return CAMBER_OK;
+}
+
+bool camber_sources_bounds(const camber_sources *sources, double bounds[4]) {
+    bool any = false;
+    for (size_t i = 0; i < sources->count; i++) {
+        const double *one = sources->items[i].bounds;
+        if (one[0] > one[2])
+            continue;
+        bounds[0] = any ? fmin(bounds[0], one[0]) : one[0];
+        bounds[1] = any ? fmin(bounds[1], one[1]) : one[1];
+        bounds[2] = any ? fmax(bounds[2], one[2]) : one[2];
+        bounds[3] = any ? fmax(bounds[3], one[3]) : one[3];
+        any = true;
+    }
+    return any;
+}
+
+/* ---- Vector tiles: reading ---- */
+
+static size_t list_layers(const camber_style *style, uint32_t index, const char **names) {
+    size_t count = 0;
+    for (size_t i = 0; i < style->layer_count; i++) {
+        const camber_style_layer *layer = &style->layers[i];
+        size_t k = 0;
+        if (!is_drawn_from(layer, index) || !layer->source_layer)
+            continue;
+        while (k < count && strcmp(names[k], layer->source_layer) != 0)
+            k++;
+        if (k == count)
+            names[count++] = layer->source_layer;
+    }
+    return count;
+}
+
+static camber_status read_places(camber_sources *sources, const source *one, const camber_tile_reading *reading) {
+    camber_features *features = sources->features;
+    camber_tile_result result;
+    const size_t first_polyline = features->polyline_count;
+    features->source = one->index;
+    camber_status status = camber_tiles_read(features, reading, &result);
+    if (status == CAMBER_OK)
+        status = finish(features, first_polyline);
+    if (status != CAMBER_OK)
+        return status;
+    features->is_osm |= result.stats.names_osm || one->set->is_osm;
+    features->stats.skipped_features += result.stats.skipped_features;
+    features->stats.damaged_features += result.stats.damaged_features;
+    warn(sources, one->what, result.stats.damaged_features, result.stats.damage, result.stats.skipped_features);
+    if (reading->place_count && result.found == 0)
+        camber_log(sources->context, CAMBER_LOG_WARNING,
+                   "%s: %s has none of the %zu tiles of zoom %d that the view sees; check the view, the path and the "
+                   "zooms",
+                   one->what, one->set->name, reading->place_count, reading->zoom);
+    return CAMBER_OK;
+}
+
+static camber_status read_tiles(camber_sources *sources, const source *one, const camber_cover *cover) {
+    const camber_style *style = sources->features->style;
+    const int zoom = (int)fmin(floor(fmax(cover->zoom, 0)), one->set->max_zoom);
+    if (zoom < one->set->min_zoom)
+        return CAMBER_OK;
+    camber_mvt_place *places = NULL;
+    camber_tile_reading reading = {.set = one->set, .zoom = zoom};
+    camber_status status = CAMBER_ERROR_MEMORY;
+    const char **names = camber_alloc(sources->context, style->layer_count, sizeof *names);
+    if (names)
+        status = camber_cover_tiles(sources->context, cover, zoom, one->is_bounded ? one->bounds : NULL, &places,
+                                    &reading.place_count);
+    if (status == CAMBER_OK) {
+        reading.places = places;
+        reading.mvt = (camber_mvt_desc){.features = sources->features,
+                                        .layers = names,
+                                        .layer_count = list_layers(style, one->index, names),
+                                        .wants_polygons = true,
+                                        .promote_id = json_object_get(one->style->json, "promoteId")};
+        status = read_places(sources, one, &reading);
+    }
+    camber_free(sources->context, places);
+    camber_free(sources->context, names);
+    return status;
+}
+
+camber_status camber_sources_read(camber_sources *sources, const camber_cover *cover) {
+    const double start_ms = camber_now_ms(), weighed_ms = sources->features->times.weigh_ms;
+    camber_status status = CAMBER_OK;
+    for (size_t i = 0; i < sources->count && status == CAMBER_OK; i++)
+        if (sources->items[i].set)
+            status = read_tiles(sources, &sources->items[i], cover);
+    camber_features_times *times = &sources->features->times;
+    times->file_ms += camber_now_ms() - start_ms - (times->weigh_ms - weighed_ms);
+    sources->features->source = CAMBER_NO_SOURCE;
+    return status;
+}
+
+void camber_sources_close(camber_sources *sources) {
+    if (!sources)
+        return;
+    for (size_t i = 0; i < sources->count; i++)
+        camber_tile_set_close(sources->items[i].set);
+    camber_free(sources->context, sources->items);
+    camber_free(sources->context, sources);
+}

@@ -1,0 +1,316 @@
+#include "source/tile_reader.h"
+
+#include <stdio.h>
+#include <strings.h>
+
+static const double PROGRESS_MS = 50;
+
+camber_features_mark camber_features_here(const camber_features *features) {
+    return (camber_features_mark){features->point_count, features->polyline_count, features->feature_count,
+                                  features->is_osm,      features->stats,          features->source};
+}
+
+void camber_features_reset(camber_features *features, const camber_features_mark *mark) {
+    features->point_count = mark->point_count;
+    features->polyline_count = mark->polyline_count;
+    features->feature_count = mark->feature_count;
+    features->is_osm = mark->is_osm;
+    features->stats = mark->stats;
+    features->source = mark->source;
+}
+
+/* ---- Tiles to features ---- */
+
+typedef struct reader {
+    camber_context *context;
+    const camber_tile_reading *reading;
+    camber_mvt *mvt;
+    camber_bytes bytes;
+    size_t found;
+    double shown_ms;
+} reader;
+
+static void show_progress(reader *self, size_t done) {
+    const double now = camber_now_ms();
+    if (now - self->shown_ms < PROGRESS_MS)
+        return;
+    self->shown_ms = now;
+    camber_progress(self->context, "reading", (double)done / (double)self->reading->place_count);
+}
+
+static camber_status read_place(reader *self, const camber_mvt_place *place) {
+    const camber_tile_place kept = {place->column & ((UINT32_C(1) << place->zoom) - 1), place->row};
+    const char *why;
+    const camber_status status = camber_tile_set_get(self->reading->set, place->zoom, kept, &self->bytes, &why);
+    if (status != CAMBER_OK)
+        return status;
+    if (why)
+        camber_mvt_spoil(self->mvt, place, why);
+    self->found += why || self->bytes.size_bytes;
+    return why ? CAMBER_OK : camber_mvt_read(self->mvt, place, self->bytes.data, self->bytes.size_bytes);
+}
+
+/* restart: CAMBER_PLAIN_PROPERTY was set for features before a tile named another property. */
+static camber_status read_places(reader *self, bool *restart) {
+    const camber_mvt_stats *stats = camber_mvt_get_stats(self->mvt);
+    camber_status status = CAMBER_OK;
+    for (size_t i = 0; i < self->reading->place_count && status == CAMBER_OK; i++) {
+        const size_t before = stats->features;
+        const bool named = stats->names_property;
+        status = read_place(self, &self->reading->places[i]);
+        if (self->reading->mvt.plain && !named && stats->names_property && before) {
+            *restart = true;
+            return CAMBER_OK;
+        }
+        show_progress(self, i);
+    }
+    return status;
+}
+
+static camber_status read_once(camber_features *features, const camber_tile_reading *reading,
+                               camber_tile_result *result, bool *restart) {
+    camber_context *context = features->context;
+    reader self = {.context = context, .reading = reading, .bytes.context = context};
+    camber_mvt_desc desc = reading->mvt;
+    camber_status status = camber_tiles_create(context, reading->zoom, &desc.tiles);
+    if (status == CAMBER_OK)
+        status = camber_mvt_create(context, &desc, &self.mvt);
+    if (status == CAMBER_OK)
+        status = read_places(&self, restart);
+    if (status == CAMBER_OK && !*restart)
+        status = camber_tiles_finish(desc.tiles, features);
+    if (status == CAMBER_OK)
+        *result = (camber_tile_result){*camber_mvt_get_stats(self.mvt), self.found};
+    camber_bytes_free(&self.bytes);
+    camber_mvt_destroy(self.mvt);
+    camber_tiles_destroy(desc.tiles);
+    return status;
+}
+
+camber_status camber_tiles_read(camber_features *features, const camber_tile_reading *reading,
+                                camber_tile_result *result) {
+    camber_tile_reading again = *reading;
+    bool restart = false;
+    camber_status status = read_once(features, reading, result, &restart);
+    if (status != CAMBER_OK || !restart)
+        return status;
+    again.mvt.plain = restart = false;
+    return read_once(features, &again, result, &restart);
+}
+
+/* ---- A file as input ---- */
+
+typedef struct input {
+    camber_context *context;
+    camber_features *features;
+    const camber_source_desc *desc;
+    camber_tile_set *set;
+    int zoom;
+    camber_mvt_place *places;
+    size_t place_count;
+    char *layer;
+} input;
+
+/* Every tile of the highest zoom. */
+static camber_status list_places(input *self) {
+    camber_tile_place *places = NULL;
+    camber_status status = CAMBER_OK;
+    self->zoom = self->set->max_zoom;
+    for (; self->zoom >= 0 && status == CAMBER_OK; self->zoom--) {
+        status = camber_tile_set_list(self->set, self->zoom, &places, &self->place_count);
+        if (self->place_count || self->zoom == 0)
+            break;
+        camber_free(self->context, places);
+        places = NULL;
+    }
+    if (status != CAMBER_OK)
+        return status;
+    if (!(self->places = camber_alloc(self->context, self->place_count, sizeof *self->places)))
+        status = CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; status == CAMBER_OK && i < self->place_count; i++)
+        self->places[i] = (camber_mvt_place){.zoom = self->zoom, .column = places[i].column, .row = places[i].row};
+    camber_free(self->context, places);
+    return status;
+}
+
+static const char *layer_name(const input *self, size_t i) {
+    return json_string_value(json_object_get(json_array_get(self->set->layers, i), "id"));
+}
+
+/* What tiles do not tell of themselves is looked for in all of them. */
+static camber_status look_for_layers(input *self) {
+    camber_context *context = self->context;
+    reader look = {.context = context, .bytes.context = context};
+    const camber_tile_reading reading = {
+        .set = self->set, .places = self->places, .place_count = self->place_count, .mvt.features = self->features};
+    bool restart = false;
+    look.reading = &reading;
+    camber_status status = camber_mvt_create(context, &reading.mvt, &look.mvt);
+    if (status != CAMBER_OK)
+        return status;
+    status = read_places(&look, &restart);
+    size_t count;
+    const camber_mvt_layer *layers = camber_mvt_layers(look.mvt, &count);
+    json_t *found = json_array();
+    for (int lines = 1; lines >= 0 && status == CAMBER_OK; lines--)
+        for (size_t i = 0; i < count; i++)
+            if (layers[i].has_lines == (lines == 1))
+                json_array_append_new(found, json_pack("{s:s, s:b}", "id", layers[i].name, "lines", lines));
+    json_decref(self->set->layers);
+    self->set->layers = found;
+    camber_bytes_free(&look.bytes);
+    camber_mvt_destroy(look.mvt);
+    return status;
+}
+
+/* The names that the common schemas give to roads: OpenMapTiles, Mapbox Streets, Shortbread, Tilezen, TIGER. */
+static const char *find_roads(const input *self) {
+    static const char *const names[] = {"transportation", "roads",   "road",     "streets",
+                                        "street",         "highway", "highways", "tiger"};
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++)
+        for (size_t i = 0; i < json_array_size(self->set->layers); i++)
+            if (layer_name(self, i) && strcasecmp(layer_name(self, i), names[k]) == 0)
+                return layer_name(self, i);
+    return NULL;
+}
+
+static const char *find_named(const input *self) {
+    for (size_t i = 0; i < json_array_size(self->set->layers); i++)
+        if (layer_name(self, i) && strcmp(layer_name(self, i), self->desc->layer) == 0)
+            return layer_name(self, i);
+    return NULL;
+}
+
+static camber_status fail_layer(const input *self) {
+    char names[512] = "";
+    size_t used = 0;
+    for (size_t i = 0; i < json_array_size(self->set->layers); i++) {
+        const char *name = layer_name(self, i);
+        const int added = snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", name ? name : "");
+        if (added < 0 || used + (size_t)added >= sizeof names - 6) {
+            memcpy(names + used, ", ...", 6);
+            break;
+        }
+        used += (size_t)added;
+    }
+    if (self->desc->layer)
+        return camber_fail(self->context, CAMBER_ERROR_INPUT, "%s: no layer \"%s\"; choose one of: %s",
+                           self->desc->path, self->desc->layer, used ? names : "(it has no layers)");
+    return camber_fail(self->context, CAMBER_ERROR_INPUT, "%s: no layer with lines; its layers are: %s",
+                       self->desc->path, used ? names : "(none)");
+}
+
+static camber_status choose_layer(input *self) {
+    const char *name = self->desc->layer ? find_named(self) : find_roads(self);
+    if (!name) {
+        const camber_status status = look_for_layers(self);
+        if (status != CAMBER_OK)
+            return status;
+        name = self->desc->layer ? find_named(self) : find_roads(self);
+        const json_t *first = json_array_get(self->set->layers, 0);
+        if (!name && !self->desc->layer && json_is_true(json_object_get(first, "lines")))
+            name = layer_name(self, 0);
+    }
+    if (!name)
+        return fail_layer(self);
+    self->layer = camber_copy_string(self->context, name);
+    return self->layer ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+}
+
+static bool wants_plain(const camber_style *style) {
+    for (size_t i = 0; i < style->property_count; i++)
+        if (strcmp(style->properties[i], CAMBER_PLAIN_PROPERTY) == 0)
+            return true;
+    return false;
+}
+
+static camber_status read_input(input *self, camber_tile_result *result) {
+    const camber_style *style = self->features->style;
+    camber_status status = camber_tile_set_open(self->context, self->desc->path, &self->set);
+    if (status == CAMBER_OK)
+        status = list_places(self);
+    if (status == CAMBER_OK)
+        status = choose_layer(self);
+    if (status != CAMBER_OK)
+        return status;
+    const char *const layers[] = {self->layer};
+    const camber_tile_reading reading = {.set = self->set,
+                                         .zoom = self->zoom,
+                                         .places = self->places,
+                                         .place_count = self->place_count,
+                                         .mvt = {.features = self->features,
+                                                 .layers = layers,
+                                                 .layer_count = 1,
+                                                 .wants_polygons = style->wants_polygons,
+                                                 .plain = wants_plain(style)}};
+    return camber_tiles_read(self->features, &reading, result);
+}
+
+/* What it gave, looked at as a whole. */
+static camber_status judge(const input *self, const camber_mvt_stats *stats, const camber_features_mark *before) {
+    if (self->features->feature_count > before->feature_count || stats->skipped_features == 0)
+        return CAMBER_OK;
+    return camber_fail(self->context, CAMBER_ERROR_INPUT,
+                       "%s: no lines: %zu features have other geometry (points, areas, nothing); name another "
+                       "--layer, or a style that draws outlines of polygons",
+                       self->desc->path, stats->skipped_features);
+}
+
+static void add_stats(camber_features *features, const camber_mvt_stats *stats) {
+    features->stats.features = features->feature_count;
+    features->stats.polylines = features->polyline_count;
+    features->stats.points = features->point_count;
+    features->stats.skipped_features += stats->skipped_features;
+    features->stats.damaged_features += stats->damaged_features;
+}
+
+static void warn(const input *self, const camber_mvt_stats *stats) {
+    if (stats->damaged_features)
+        camber_log(self->context, CAMBER_LOG_WARNING,
+                   "%s: %zu damaged features (the first: %s); what of them reads is kept", self->desc->path,
+                   stats->damaged_features, stats->damage);
+    if (stats->skipped_features)
+        camber_log(self->context, CAMBER_LOG_WARNING,
+                   "%s: left out what is no line (points, areas, empty geometry) of %zu features", self->desc->path,
+                   stats->skipped_features);
+}
+
+static camber_status finish(const input *self, size_t first_polyline) {
+    camber_features *features = self->features;
+    const double start_ms = camber_now_ms();
+    camber_status status = CAMBER_OK;
+    if (!self->desc->keep_apart)
+        status = camber_features_merge(features, first_polyline, features->style->directed);
+    const double merged_ms = camber_now_ms();
+    if (status == CAMBER_OK)
+        status = camber_features_weigh(features, first_polyline);
+    features->times.merge_ms += merged_ms - start_ms;
+    features->times.weigh_ms += camber_now_ms() - merged_ms;
+    return status;
+}
+
+camber_status camber_tiles_read_file(camber_features *features, const camber_source_desc *desc) {
+    input self = {.context = features->context, .features = features, .desc = desc};
+    const camber_features_mark before = camber_features_here(features);
+    const double start_ms = camber_now_ms();
+    camber_tile_result result = {.found = 0};
+    camber_status status = read_input(&self, &result);
+    if (status == CAMBER_OK)
+        status = judge(&self, &result.stats, &before);
+    if (status == CAMBER_OK)
+        features->is_osm |= result.stats.names_osm || self.set->is_osm;
+    camber_tile_set_close(self.set);
+    camber_free(self.context, self.layer);
+    camber_free(self.context, self.places);
+    features->times.file_ms += camber_now_ms() - start_ms;
+    if (status == CAMBER_OK)
+        status = finish(&self, before.polyline_count);
+    if (status != CAMBER_OK) {
+        camber_features_reset(features, &before);
+        return status;
+    }
+    add_stats(features, &result.stats);
+    warn(&self, &result.stats);
+    camber_progress(features->context, "reading", 1);
+    return CAMBER_OK;
+}

@@ -1,0 +1,40 @@
+/* Tiles of a set into features, their pieces joined. */
+#ifndef CAMBER_TILE_READER_H
+#define CAMBER_TILE_READER_H
+
+#include "source/mvt.h"
+#include "source/tile_set.h"
+
+typedef struct camber_tile_reading {
+    camber_tile_set *set;
+    int zoom;
+    const camber_mvt_place *places;
+    size_t place_count;
+    camber_mvt_desc mvt; /* tiles are filled in here */
+} camber_tile_reading;
+
+typedef struct camber_tile_result {
+    camber_mvt_stats stats;
+    size_t found; /* tiles that are there */
+} camber_tile_result;
+
+/* Adds features and their polylines, of features->source. Where it fails the caller takes them out again. */
+camber_status camber_tiles_read(camber_features *features, const camber_tile_reading *reading,
+                                camber_tile_result *result);
+/* camber_features_read of a file that camber_tile_set_knows. */
+camber_status camber_tiles_read_file(camber_features *features, const camber_source_desc *desc);
+
+/* ---- A set as it was, for what fails half way ---- */
+
+typedef struct camber_features_mark {
+    size_t point_count, polyline_count, feature_count;
+    bool is_osm;
+    camber_features_stats stats;
+    uint32_t source;
+} camber_features_mark;
+
+camber_features_mark camber_features_here(const camber_features *features);
+/* Spare classes stay. */
+void camber_features_reset(camber_features *features, const camber_features_mark *mark);
+
+#endif

@@ -1,0 +1,86 @@
+/* An open set of vector tiles: files by a template, MBTiles, PMTiles. */
+#ifndef CAMBER_TILE_SET_H
+#define CAMBER_TILE_SET_H
+
+#include "base/base.h"
+
+#include <jansson.h>
+
+enum { CAMBER_LARGEST_TILE_ZOOM = 24 };
+
+typedef struct camber_tile_place {
+    uint32_t column, row; /* from the north-west */
+} camber_tile_place;
+
+/* A buffer that is used again. */
+typedef struct camber_bytes {
+    camber_context *context;
+    unsigned char *data;
+    size_t size_bytes, capacity;
+} camber_bytes;
+
+void camber_bytes_free(camber_bytes *bytes);
+/* Room for so many, size_bytes set. */
+bool camber_bytes_resize(camber_bytes *bytes, size_t size_bytes);
+
+typedef struct camber_tile_set camber_tile_set;
+
+/* What one kind of set does. */
+typedef struct camber_tile_set_calls {
+    /* The tile as it is kept, maybe compressed; size 0 where there is none. why: as camber_tile_set_get. */
+    camber_status (*get)(camber_tile_set *set, int zoom, camber_tile_place place, camber_bytes *bytes,
+                         const char **why);
+    /* NULL: the kind cannot tell. *places is freed with camber_free. */
+    camber_status (*list)(camber_tile_set *set, int zoom, camber_tile_place **places, size_t *count);
+    void (*close)(camber_tile_set *set);
+} camber_tile_set_calls;
+
+struct camber_tile_set {
+    const camber_tile_set_calls *calls;
+    camber_context *context;
+    char *name; /* in messages */
+    int min_zoom, max_zoom;
+    double bounds[4]; /* west, south, east, north, degrees; the whole world where nothing is said */
+    bool has_bounds;
+    bool is_osm;    /* the attribution names OpenStreetMap */
+    json_t *layers; /* an array of objects with an "id". NULL: not told */
+    void *self;     /* the kind's own */
+    camber_bytes raw;
+};
+
+/* A file by its ending, .mbtiles or .pmtiles. Returns CAMBER_ERROR_NOT_FOUND, CAMBER_ERROR_IO, CAMBER_ERROR_INPUT
+ * (another format, tiles that are pictures), CAMBER_ERROR_MEMORY. */
+camber_status camber_tile_set_open(camber_context *context, const char *path, camber_tile_set **set);
+/* Whether the path ends as such a file. */
+bool camber_tile_set_knows(const char *path);
+
+typedef struct camber_tile_template {
+    const char *name;     /* in messages */
+    const char *path;     /* with {z}, {x}, {y} or {-y}, {quadkey}, {prefix}, {ratio} */
+    bool south_first;     /* the rows of {y} count from the south: scheme tms */
+    bool high_resolution; /* {ratio} is @2x, not nothing */
+} camber_tile_template;
+
+camber_status camber_tile_set_of_files(camber_context *context, const camber_tile_template *files,
+                                       camber_tile_set **set);
+
+/* Takes what TileJSON and the metadata of the other kinds have in common: minzoom, maxzoom, bounds, attribution,
+ * vector_layers. Values that make no sense are left out. */
+void camber_tile_set_describe(camber_tile_set *set, const json_t *about);
+
+/* The tile's bytes, decompressed; size 0 where there is none. *why: NULL, or what is wrong with this one tile. Returns
+ * CAMBER_ERROR_INPUT where the set itself is damaged, CAMBER_ERROR_IO, CAMBER_ERROR_MEMORY. */
+camber_status camber_tile_set_get(camber_tile_set *set, int zoom, camber_tile_place place, camber_bytes *bytes,
+                                  const char **why);
+camber_status camber_tile_set_list(camber_tile_set *set, int zoom, camber_tile_place **places, size_t *count);
+void camber_tile_set_close(camber_tile_set *set);
+
+/* ---- For the kinds ---- */
+
+camber_status camber_mbtiles_open(camber_tile_set *set, const char *path);
+camber_status camber_pmtiles_open(camber_tile_set *set, const char *path);
+
+/* Decompresses gzip or zlib; limit_bytes is the most that comes out. NULL, or why not. *no_memory: that was logged. */
+const char *camber_gunzip(const void *bytes, size_t size_bytes, size_t limit_bytes, camber_bytes *out, bool *no_memory);
+
+#endif

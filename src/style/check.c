@@ -1,0 +1,214 @@
+/* What is wrong with a style document, and what is drawn of it: the document is read to its end, and what reading says
+ * is collected. */
+#include "style/document.h"
+
+#include <stdio.h>
+
+/* A report, with room for what comes. */
+typedef struct checker {
+    camber_style_report report; /* first: what is handed out */
+    camber_context *context;
+    camber_style_finding *findings;
+    camber_style_type *types;
+    camber_style_origin *sources;
+    size_t finding_capacity, type_capacity, source_capacity;
+    char **texts;
+    size_t text_count, text_capacity;
+    bool out_of_memory;
+    camber_soft_log log; /* kept, once that is said */
+} checker;
+
+static void run_out(checker *k) {
+    if (!k->out_of_memory)
+        camber_log_soften(k->context, &k->log);
+    k->out_of_memory = true;
+}
+
+static const char *keep(checker *k, const char *text) {
+    char *copy = camber_copy_string(k->context, text);
+    if (copy && camber_grow(k->context, &k->texts, &k->text_capacity, k->text_count + 1, sizeof *k->texts)) {
+        k->texts[k->text_count++] = copy;
+        return copy;
+    }
+    camber_free(k->context, copy);
+    run_out(k);
+    return "";
+}
+
+/* ---- Findings ---- */
+
+static void find(void *user, const camber_compiler *c, camber_log_level level, const char *message) {
+    checker *k = user;
+    camber_style_report *report = &k->report;
+    char pointer[CAMBER_POINTER_SIZE];
+    camber_compiler_write_pointer(c, pointer);
+    if (k->out_of_memory ||
+        !camber_grow(k->context, &k->findings, &k->finding_capacity, report->finding_count + 1, sizeof *k->findings)) {
+        run_out(k);
+        return;
+    }
+    const bool error = level == CAMBER_LOG_ERROR;
+    k->findings[report->finding_count++] = (camber_style_finding){error, keep(k, pointer), keep(k, message)};
+    report->error_count += error;
+}
+
+/* What reads well but draws otherwise than one may expect, of layers and the sources that they name. */
+static void find_in_layer(camber_document *d, const camber_style_layer *layer, const char *type) {
+    camber_compiler *c = &d->compiler;
+    if (layer->kind != CAMBER_LAYER_LINE)
+        return;
+    if (!layer->source) {
+        camber_compiler_warn(c, "the layer names no source; name one, or it is drawn of files given as input only");
+        return;
+    }
+    if (layer->source_index == CAMBER_NO_SOURCE)
+        return;
+    const json_t *source = c->style->sources[layer->source_index].json;
+    if (strcmp(type, "vector") == 0 && !layer->source_layer)
+        camber_compiler_warn(c,
+                             "the layer names no \"source-layer\", as vector sources want; it is drawn of all of them");
+    for (unsigned i = 0; i < CAMBER_PROPERTIES; i++)
+        if (layer->properties[i] && camber_property_rows[i].needs_line_metrics &&
+            !json_is_true(json_object_get(source, "lineMetrics")))
+            camber_compiler_warn(c, "%s needs a geojson source with \"lineMetrics\": true; add that to \"%.64s\"",
+                                 camber_property_rows[i].property.name, layer->source);
+}
+
+/* The document's layers that are drawn are the style's, in the same order. */
+static void find_in_layers(camber_document *d) {
+    camber_compiler *c = &d->compiler;
+    const json_t *layers = json_object_get(d->root, "layers");
+    size_t drawn = 0;
+    camber_compiler_enter_key(c, "layers");
+    for (size_t i = 0; i < json_array_size(layers) && drawn < c->style->layer_count; i++) {
+        const camber_style_layer *layer = c->style->layers + drawn;
+        const char *id = json_string_value(json_object_get(json_array_get(layers, i), "id"));
+        if (!id || !layer->id || strcmp(id, layer->id) != 0)
+            continue;
+        drawn++;
+        camber_compiler_enter_index(c, i);
+        find_in_layer(d, layer,
+                      layer->source_index == CAMBER_NO_SOURCE ? "" : c->style->sources[layer->source_index].type);
+        camber_compiler_leave(c);
+    }
+    camber_compiler_leave(c);
+}
+
+/* ---- What there is ---- */
+
+static void list_type(checker *k, const char *type, size_t layers) {
+    camber_style_report *report = &k->report;
+    if (k->out_of_memory ||
+        !camber_grow(k->context, &k->types, &k->type_capacity, report->type_count + 1, sizeof *k->types)) {
+        run_out(k);
+        return;
+    }
+    const bool drawn = strcmp(type, "line") == 0 || strcmp(type, "background") == 0;
+    k->types[report->type_count++] = (camber_style_type){keep(k, type), layers, drawn};
+}
+
+static void count_types(checker *k, const camber_document *d) {
+    const json_t *layer;
+    json_t *counts = json_object(), *count;
+    const char *type;
+    size_t i;
+    json_array_foreach(json_object_get(d->root, "layers"), i, layer) {
+        const char *ref = json_string_value(json_object_get(layer, "ref"));
+        type = json_string_value(json_object_get(ref ? json_object_get(d->by_id, ref) : layer, "type"));
+        if (type &&
+            json_object_set_new(counts, type, json_integer(json_integer_value(json_object_get(counts, type)) + 1)) != 0)
+            run_out(k);
+    }
+    json_object_foreach(counts, type, count) {
+        list_type(k, type, (size_t)json_integer_value(count));
+    }
+    json_decref(counts);
+}
+
+static bool is_remote(const json_t *json) {
+    const char *url = json_string_value(json);
+    return url &&
+           (strncmp(url, "http://", 7) == 0 || strncmp(url, "https://", 8) == 0 || strncmp(url, "mapbox://", 9) == 0);
+}
+
+static const char *trouble_of(const camber_style_source *source) {
+    static const char *const remote = "it lies on a network, which is not read; save it as a file and name that";
+    const bool geojson = strcmp(source->type, "geojson") == 0;
+    if (!geojson && strcmp(source->type, "vector") != 0)
+        return "sources of this type have no lines; draw lines of a geojson or vector source";
+    const json_t *data = json_object_get(source->json, "data"), *url = json_object_get(source->json, "url");
+    const json_t *tiles = json_object_get(source->json, "tiles");
+    if (geojson ? !data : !url && !tiles)
+        return geojson ? "it has no \"data\"; add GeoJSON or the name of a file"
+                       : "it has neither \"url\" nor \"tiles\"; add one";
+    return is_remote(geojson ? data : url) || is_remote(json_array_get(tiles, 0)) ? remote : NULL;
+}
+
+static void list_sources(checker *k, const camber_style *style) {
+    if (k->out_of_memory ||
+        !camber_grow(k->context, &k->sources, &k->source_capacity, style->source_count, sizeof *k->sources)) {
+        run_out(k);
+        return;
+    }
+    for (size_t i = 0; i < style->source_count; i++) {
+        const camber_style_source *source = style->sources + i;
+        size_t count = 0;
+        for (size_t n = 0; n < style->layer_count; n++)
+            count += style->layers[n].kind == CAMBER_LAYER_LINE && style->layers[n].source_index == i;
+        k->sources[i] = (camber_style_origin){keep(k, source->name), keep(k, source->type), count, trouble_of(source)};
+    }
+    k->report.source_count = style->source_count;
+}
+
+/* ---- Reports ---- */
+
+static camber_status check(checker *k, const char *json, size_t size_bytes, const char *name) {
+    camber_document d = {.compiler = {.context = k->context, .name = name, .report = find, .report_user = k},
+                         .reads_on = true};
+    d.compiler.style = camber_alloc_zero(k->context, 1, sizeof *d.compiler.style);
+    if (!d.compiler.style)
+        return CAMBER_ERROR_MEMORY;
+    d.compiler.style->context = k->context;
+    camber_status status = camber_document_read(&d, json, size_bytes);
+    if (status == CAMBER_OK) {
+        find_in_layers(&d);
+        count_types(k, &d);
+        list_sources(k, d.compiler.style);
+    }
+    camber_style_destroy(d.compiler.style);
+    camber_document_end(&d);
+    if (k->out_of_memory)
+        camber_log_restore(k->context, &k->log);
+    return status == CAMBER_OK && k->out_of_memory ? CAMBER_ERROR_MEMORY : status;
+}
+
+camber_status camber_style_check(camber_context *context, const char *json, size_t size_bytes, const char *name,
+                                 camber_style_report **report) {
+    checker *k = camber_alloc_zero(context, 1, sizeof *k);
+    if (!k)
+        return CAMBER_ERROR_MEMORY;
+    k->context = context;
+    const camber_status status = check(k, json, size_bytes, name);
+    if (status != CAMBER_OK) {
+        camber_style_report_destroy(&k->report);
+        return status;
+    }
+    k->report.findings = k->findings;
+    k->report.types = k->types;
+    k->report.sources = k->sources;
+    *report = &k->report;
+    return CAMBER_OK;
+}
+
+void camber_style_report_destroy(camber_style_report *report) {
+    checker *k = (checker *)report;
+    if (!k)
+        return;
+    for (size_t i = 0; i < k->text_count; i++)
+        camber_free(k->context, k->texts[i]);
+    camber_free(k->context, k->texts);
+    camber_free(k->context, k->sources);
+    camber_free(k->context, k->types);
+    camber_free(k->context, k->findings);
+    camber_free(k->context, k);
+}

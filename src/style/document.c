@@ -1,0 +1,342 @@
+/* Style documents: what the specification calls the root. */
+#include "style/document.h"
+
+#include "base/embedded.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* ---- For layers too ---- */
+
+bool camber_document_first_time(camber_document *d, const char *what) {
+    for (size_t i = 0; i < d->warned_count; i++)
+        if (strcmp(d->warned[i], what) == 0)
+            return false;
+    if (d->warned_count == CAMBER_WARNING_LIMIT)
+        return false;
+    d->warned[d->warned_count++] = what;
+    if (d->warned_count == CAMBER_WARNING_LIMIT)
+        camber_compiler_warn(&d->compiler, "more is not drawn; warnings end here");
+    return d->warned_count < CAMBER_WARNING_LIMIT;
+}
+
+bool camber_document_fail_memory(camber_document *d) {
+    d->compiler.status = CAMBER_ERROR_MEMORY;
+    return false;
+}
+
+bool camber_document_copy_string(camber_document *d, const json_t *json, char **copy) {
+    *copy = camber_copy_string(d->compiler.context, json_string_value(json));
+    return *copy || camber_document_fail_memory(d);
+}
+
+bool camber_document_goes_on(camber_document *d, size_t path_length) {
+    if (!d->reads_on || d->compiler.status != CAMBER_ERROR_INPUT)
+        return false;
+    d->compiler.path_length = path_length;
+    d->compiler.status = CAMBER_OK;
+    return true;
+}
+
+bool camber_document_read_string(camber_document *d, const json_t *object, const char *key, char **string) {
+    camber_compiler *c = &d->compiler;
+    const json_t *json = json_object_get(object, key);
+    const size_t depth = c->path_length;
+    if (!json)
+        return true;
+    camber_compiler_enter_key(c, key);
+    if (!json_is_string(json))
+        return camber_compiler_fail(c, "expected a string, found %s; write a name", camber_json_name(json)) ||
+               camber_document_goes_on(d, depth);
+    camber_compiler_leave(c);
+    return camber_document_copy_string(d, json, string);
+}
+
+bool camber_document_read_number(camber_document *d, const json_t *object, const char *key, double low, double high,
+                                 double *number) {
+    camber_compiler *c = &d->compiler;
+    const json_t *json = json_object_get(object, key);
+    const size_t depth = c->path_length;
+    if (!json)
+        return true;
+    camber_compiler_enter_key(c, key);
+    if (!json_is_number(json))
+        return camber_compiler_fail(c, "expected a number, found %s; use %g to %g", camber_json_name(json), low,
+                                    high) ||
+               camber_document_goes_on(d, depth);
+    if (!(json_number_value(json) >= low && json_number_value(json) <= high))
+        return camber_compiler_fail(c, "%g is out of range; use %g to %g", json_number_value(json), low, high) ||
+               camber_document_goes_on(d, depth);
+    *number = json_number_value(json);
+    camber_compiler_leave(c);
+    return true;
+}
+
+void camber_document_warn_unknown(camber_document *d, const json_t *object, const char *const *known,
+                                  const char *what) {
+    const char *key;
+    json_t *value;
+    json_object_foreach((json_t *)(uintptr_t)object, key, value) {
+        size_t i = 0;
+        while (known[i] && strcmp(known[i], key) != 0)
+            i++;
+        if (known[i] || !camber_document_first_time(d, key))
+            continue;
+        camber_compiler_enter_key(&d->compiler, key);
+        camber_compiler_warn(&d->compiler, "no %s has this by the specification; it is left out", what);
+        camber_compiler_leave(&d->compiler);
+    }
+}
+
+/* ---- Sources and sprites ---- */
+
+static bool read_source(camber_document *d, const char *name, json_t *json) {
+    camber_compiler *c = &d->compiler;
+    const json_t *type = json_object_get(json, "type");
+    if (!json_is_object(json))
+        return camber_compiler_fail(c, "expected a source, an object, found %s; write {\"type\": \"vector\", ...}",
+                                    camber_json_name(json));
+    if (!json_is_string(type))
+        return camber_compiler_fail(c, "the source has no \"type\" that is a string; write e.g. \"type\": \"geojson\"");
+    camber_style_source *source = &c->style->sources[c->style->source_count++];
+    if (json_object_set_new(d->source_indices, name, json_integer((json_int_t)c->style->source_count - 1)) != 0)
+        return camber_document_fail_memory(d);
+    source->json = json_incref(json);
+    source->name = camber_copy_string(c->context, name);
+    if (!source->name)
+        return camber_document_fail_memory(d);
+    if (!camber_document_copy_string(d, type, &source->type))
+        return false;
+    json_t *filter = json_object_get(json, "filter");
+    if (!filter || strcmp(source->type, "geojson") != 0)
+        return true;
+    camber_compiler_enter_key(c, "filter");
+    const bool compiled = camber_compile_filter(c, filter, &source->filter);
+    camber_compiler_leave(c);
+    return compiled;
+}
+
+/* Before the layers, which name them. */
+static bool read_sources(camber_document *d, json_t *sources) {
+    camber_compiler *c = &d->compiler;
+    const char *name;
+    json_t *json;
+    if (!sources)
+        return true;
+    camber_compiler_enter_key(c, "sources");
+    const size_t depth = c->path_length;
+    if (!json_is_object(sources))
+        return camber_compiler_fail(c, "expected an object, found %s; write {\"name\": {...}, ...}",
+                                    camber_json_name(sources)) ||
+               camber_document_goes_on(d, depth - 1);
+    c->style->sources = camber_alloc_zero(c->context, json_object_size(sources), sizeof *c->style->sources);
+    d->source_indices = json_object();
+    if (!c->style->sources || !d->source_indices)
+        return camber_document_fail_memory(d);
+    json_object_foreach(sources, name, json) {
+        camber_compiler_enter_key(c, name);
+        if (!read_source(d, name, json) && !camber_document_goes_on(d, depth))
+            return false;
+        c->path_length = depth;
+    }
+    camber_compiler_leave(c);
+    return true;
+}
+
+static bool add_sprite(camber_document *d, const char *id, const char *url) {
+    camber_style *style = d->compiler.style;
+    camber_style_sprite *sprite = &style->sprites[style->sprite_count++];
+    sprite->id = camber_copy_string(style->context, id);
+    sprite->url = camber_copy_string(style->context, url);
+    return (sprite->id && sprite->url) || camber_document_fail_memory(d);
+}
+
+/* A URL, or several with ids. */
+static bool read_sprites(camber_document *d, const json_t *json) {
+    camber_compiler *c = &d->compiler;
+    const size_t depth = c->path_length, count = json_is_array(json) ? json_array_size(json) : 1;
+    if (!json)
+        return true;
+    camber_compiler_enter_key(c, "sprite");
+    c->style->sprites = camber_alloc_zero(c->context, count, sizeof *c->style->sprites);
+    if (!c->style->sprites)
+        return camber_document_fail_memory(d);
+    for (size_t i = 0; i < count; i++) {
+        const json_t *item = json_is_array(json) ? json_array_get(json, i) : NULL;
+        const char *url = json_string_value(item ? json_object_get(item, "url") : json);
+        const char *id = item ? json_string_value(json_object_get(item, "id")) : "default";
+        if (!url || !id)
+            return camber_compiler_fail(c, "expected a URL, or an array of {\"id\": \"default\", \"url\": \"...\"}; "
+                                           "write one of them") ||
+                   camber_document_goes_on(d, depth);
+        if (!add_sprite(d, id, url))
+            return false;
+    }
+    c->path_length = depth;
+    return true;
+}
+
+/* ---- The root ---- */
+
+static bool read_version(camber_document *d) {
+    camber_compiler *c = &d->compiler;
+    const json_t *version = json_object_get(d->root, "version");
+    const size_t depth = c->path_length;
+    camber_compiler_enter_key(c, "version");
+    if (!json_is_number(version) || json_number_value(version) < 8.0 || json_number_value(version) > 8.0)
+        if (!camber_compiler_fail(c, "expected the number 8; write \"version\": 8") &&
+            !camber_document_goes_on(d, depth))
+            return false;
+    c->path_length = depth;
+    if (!json_object_get(d->root, "constants"))
+        return true;
+    camber_compiler_enter_key(c, "constants");
+    return camber_compiler_fail(c, "constants went with version 8; write their values where they are used") ||
+           camber_document_goes_on(d, depth);
+}
+
+static bool read_camera(camber_document *d) {
+    camber_compiler *c = &d->compiler;
+    camber_style_camera *camera = &c->style->camera;
+    const json_t *center = json_object_get(d->root, "center");
+    const size_t depth = c->path_length;
+    if (center) {
+        const json_t *longitude = json_array_get(center, 0), *latitude = json_array_get(center, 1);
+        camber_compiler_enter_key(c, "center");
+        if (json_array_size(center) != 2 || !json_is_number(longitude) || !json_is_number(latitude) ||
+            !(fabs(json_number_value(longitude)) <= 360.0 && fabs(json_number_value(latitude)) <= 90.0)) {
+            camber_compiler_fail(c, "expected a place; write [longitude, latitude] in degrees");
+            if (!camber_document_goes_on(d, depth))
+                return false;
+        } else {
+            camera->longitude = json_number_value(longitude);
+            camera->latitude = json_number_value(latitude);
+        }
+        c->path_length = depth;
+    }
+    return camber_document_read_number(d, d->root, "zoom", 0.0, 24.0, &camera->zoom) &&
+           camber_document_read_number(d, d->root, "bearing", -1e6, 1e6, &camera->bearing_deg) &&
+           camber_document_read_number(d, d->root, "pitch", 0.0, 180.0, &camera->pitch_deg);
+}
+
+/* Of ["global-state", key]. */
+static bool read_state(camber_document *d) {
+    camber_compiler *c = &d->compiler;
+    json_t *state = json_object_get(d->root, "state"), *value;
+    const size_t depth = c->path_length;
+    const char *key;
+    if (!state)
+        return true;
+    camber_compiler_enter_key(c, "state");
+    bool good = json_is_object(state);
+    json_object_foreach(state, key, value) {
+        good = good && json_is_object(value) && json_object_get(value, "default");
+    }
+    if (!good)
+        return camber_compiler_fail(c, "expected values with a default; write {\"name\": {\"default\": 1}, ...}") ||
+               camber_document_goes_on(d, depth);
+    c->style->state = json_incref(state);
+    c->state = state;
+    c->state_defaults = true;
+    camber_compiler_leave(c);
+    return true;
+}
+
+static bool read_document(camber_document *d) {
+    /* What needs other kinds of layers, or a picture that changes, is nothing of these. */
+    static const char *const known[] = {"version",    "name",    "metadata",  "center", "centerAltitude",
+                                        "zoom",       "bearing", "pitch",     "roll",   "state",
+                                        "light",      "sources", "sprite",    "glyphs", "font-faces",
+                                        "transition", "layers",  "constants", NULL};
+    camber_compiler *c = &d->compiler;
+    if (!json_is_object(d->root))
+        return camber_compiler_fail(c, "expected a style document, an object, found %s; pass a MapLibre style",
+                                    camber_json_name(d->root));
+    if (!read_version(d))
+        return false;
+    camber_document_warn_unknown(d, d->root, known, "style");
+    return camber_document_read_string(d, d->root, "name", &c->style->name) && read_camera(d) && read_state(d) &&
+           read_sprites(d, json_object_get(d->root, "sprite")) &&
+           read_sources(d, json_object_get(d->root, "sources")) &&
+           camber_document_read_layers(d, json_object_get(d->root, "layers"));
+}
+
+static bool fail_json(camber_document *d, const json_error_t *error) {
+    camber_compiler *c = &d->compiler;
+    /* jansson takes what it has no memory for to be a wrong character, mostly. */
+    if (json_error_code(error) != json_error_out_of_memory && errno != ENOMEM)
+        return camber_compiler_fail(c, "line %d, column %d: %s; correct the JSON there", error->line, error->column,
+                                    error->text);
+    c->status = camber_fail(c->context, CAMBER_ERROR_MEMORY, "%s: out of memory; make the document shorter", c->name);
+    return false;
+}
+
+camber_status camber_document_read(camber_document *d, const char *json, size_t size_bytes) {
+    json_error_t error;
+    if (size_bytes >= 3 && memcmp(json, "\xef\xbb\xbf", 3) == 0) {
+        json += 3;
+        size_bytes -= 3;
+    }
+    errno = 0;
+    d->root = json_loadb(json, size_bytes, JSON_DECODE_ANY | JSON_DECODE_INT_AS_REAL, &error);
+    const bool done = d->root ? read_document(d) : fail_json(d, &error);
+    (void)(done || camber_document_goes_on(d, 0));
+    return d->compiler.status;
+}
+
+void camber_document_end(camber_document *d) {
+    camber_compiler_end(&d->compiler);
+    json_decref(d->source_indices);
+    json_decref(d->by_id);
+    json_decref(d->root);
+}
+
+camber_status camber_style_parse(camber_context *context, const char *json, size_t size_bytes, const char *name,
+                                 camber_style **style) {
+    camber_document d = {.compiler = {.context = context, .name = name}};
+    d.compiler.style = camber_alloc_zero(context, 1, sizeof *d.compiler.style);
+    if (!d.compiler.style)
+        return CAMBER_ERROR_MEMORY;
+    d.compiler.style->context = context;
+    const camber_status status = camber_document_read(&d, json, size_bytes);
+    if (status == CAMBER_OK)
+        *style = d.compiler.style;
+    else
+        camber_style_destroy(d.compiler.style);
+    camber_document_end(&d);
+    return status;
+}
+
+camber_status camber_style_builtin(camber_context *context, camber_theme theme, camber_style **style) {
+    if (theme == CAMBER_THEME_DARK)
+        return camber_style_parse(context, camber_style_dark, camber_style_dark_size, "built-in dark style", style);
+    return camber_style_parse(context, camber_style_light, camber_style_light_size, "built-in light style", style);
+}
+
+void camber_style_destroy(camber_style *style) {
+    if (!style)
+        return;
+    camber_context *context = style->context;
+    for (size_t i = 0; i < style->layer_count; i++)
+        camber_style_layer_free(context, style->layers + i);
+    for (size_t i = 0; i < style->source_count; i++) {
+        camber_free(context, style->sources[i].name);
+        camber_free(context, style->sources[i].type);
+        json_decref(style->sources[i].json);
+        camber_expression_destroy(context, style->sources[i].filter);
+    }
+    for (size_t i = 0; i < style->sprite_count; i++) {
+        camber_free(context, style->sprites[i].id);
+        camber_free(context, style->sprites[i].url);
+    }
+    for (size_t i = 0; i < style->property_count; i++)
+        camber_free(context, style->properties[i]);
+    json_decref(style->state);
+    camber_free(context, style->name);
+    camber_free(context, style->properties);
+    camber_free(context, style->sprites);
+    camber_free(context, style->sources);
+    camber_free(context, style->layers);
+    camber_free(context, style);
+}

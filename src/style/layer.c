@@ -1,0 +1,334 @@
+/* Layers of a style document: what any layer has, its filter, and its layout and paint by the table of properties. */
+#include "style/document.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* ---- Layout and paint ---- */
+
+static bool ends_with(const char *text, const char *end) {
+    const size_t length = strlen(text), end_length = strlen(end);
+    return length >= end_length && strcmp(text + length - end_length, end) == 0;
+}
+
+static bool read_visibility(camber_document *d, const json_t *json, bool *visible) {
+    const char *text = json_string_value(json);
+    if (!text || (strcmp(text, "visible") != 0 && strcmp(text, "none") != 0))
+        return camber_compiler_fail(&d->compiler, "expected \"visible\" or \"none\"; write one of them");
+    *visible = strcmp(text, "visible") == 0;
+    return true;
+}
+
+/* Whether it says what the specification says without it. */
+static bool is_default(const camber_property_row *row, const json_t *json) {
+    json_t *fallback = row->property.fallback
+                           ? json_loads(row->property.fallback, JSON_DECODE_ANY | JSON_DECODE_INT_AS_REAL, NULL)
+                           : NULL;
+    const bool same = fallback && json_equal(json, fallback);
+    json_decref(fallback);
+    return same;
+}
+
+static bool check_choice(camber_document *d, const camber_property *property, const camber_expression *expression) {
+    const camber_node *root = &expression->nodes[expression->root];
+    if (!property->values || root->op != CAMBER_OP_CONSTANT || root->value.type != CAMBER_VALUE_STRING)
+        return true;
+    char list[96] = "";
+    for (size_t i = 0; property->values[i]; i++) {
+        if (strcmp(property->values[i], root->value.string) == 0)
+            return true;
+        const char *between = i == 0 ? "" : property->values[i + 1] ? ", " : " or ";
+        snprintf(list + strlen(list), sizeof list - strlen(list), "%s\"%s\"", between, property->values[i]);
+    }
+    return camber_compiler_fail(&d->compiler, "\"%.64s\" is no %s; use %s", root->value.string, property->name, list);
+}
+
+static bool read_known(camber_document *d, const camber_property_row *row, json_t *json, camber_style_layer *layer) {
+    camber_compiler *c = &d->compiler;
+    camber_expression **expression = layer->properties + camber_property_id_of(row);
+    if (row->property.type != CAMBER_TYPE_ARRAY && row->property.type != CAMBER_TYPE_IMAGE &&
+        !row->property.line_progress &&
+        (!camber_compile_property(c, json, &row->property, expression) ||
+         !check_choice(d, &row->property, *expression)))
+        return false;
+    if (is_default(row, json))
+        return true;
+    c->style->directed |= row->directed;
+    if (row->not_drawn && layer->visible && camber_document_first_time(d, row->property.name))
+        camber_compiler_warn(c, "%s is not drawn; %s", row->property.name, row->not_drawn);
+    return true;
+}
+
+static bool read_property(camber_document *d, bool layout, const char *key, json_t *json, camber_style_layer *layer) {
+    if (layout && strcmp(key, "visibility") == 0)
+        return true; /* read first */
+    const camber_property_row *row = camber_property_find(layer->kind, layout, key);
+    if (row)
+        return read_known(d, row, json, layer);
+    /* Transitions are for pictures that change. */
+    if (!(!layout && ends_with(key, "-transition")) && camber_document_first_time(d, key))
+        camber_compiler_warn(&d->compiler,
+                             camber_property_find(layer->kind, !layout, key)
+                                 ? "this property stands in the wrong place; move it to %s"
+                                 : "unknown property; the layer is drawn without it",
+                             layout ? "paint" : "layout");
+    return true;
+}
+
+/* layout or paint. */
+static bool read_properties(camber_document *d, const json_t *json, const char *group, camber_style_layer *layer) {
+    camber_compiler *c = &d->compiler;
+    json_t *properties = json_object_get(json, group), *value;
+    const size_t depth = c->path_length;
+    const bool layout = strcmp(group, "layout") == 0;
+    const char *key;
+    if (!properties)
+        return true;
+    camber_compiler_enter_key(c, group);
+    if (!json_is_object(properties))
+        return camber_compiler_fail(c, "expected an object, found %s; write {\"name\": value, ...}",
+                                    camber_json_name(properties)) ||
+               camber_document_goes_on(d, depth);
+    json_object_foreach(properties, key, value) {
+        camber_compiler_enter_key(c, key);
+        if (read_property(d, layout, key, value, layer))
+            camber_compiler_leave(c);
+        else if (!camber_document_goes_on(d, depth + 1))
+            return false;
+    }
+    camber_compiler_leave(c);
+    return true;
+}
+
+static bool read_layer_visibility(camber_document *d, const json_t *json, camber_style_layer *layer) {
+    const json_t *visibility = json_object_get(json_object_get(json, "layout"), "visibility");
+    const size_t depth = d->compiler.path_length;
+    layer->visible = true;
+    if (!visibility)
+        return true;
+    camber_compiler_enter_key(&d->compiler, "layout");
+    camber_compiler_enter_key(&d->compiler, "visibility");
+    if (!read_visibility(d, visibility, &layer->visible))
+        return camber_document_goes_on(d, depth);
+    d->compiler.path_length = depth;
+    return true;
+}
+
+/* ---- Filters ---- */
+
+static bool write_filter_key(camber_compiler *c, const json_t *filter, char **key) {
+    const size_t size = filter ? json_dumpb(filter, NULL, 0, JSON_COMPACT | JSON_ENCODE_ANY) : 0;
+    *key = camber_alloc(c->context, size + 1, 1);
+    if (!*key) {
+        c->status = CAMBER_ERROR_MEMORY;
+        return false;
+    }
+    (*key)[size] = 0;
+    /* No filter's text is empty: jansson found no memory of its own. */
+    if (filter && (size == 0 || json_dumpb(filter, *key, size, JSON_COMPACT | JSON_ENCODE_ANY) != size))
+        c->status =
+            camber_fail(c->context, CAMBER_ERROR_MEMORY, "%s: out of memory for a filter; make it shorter", c->name);
+    return c->status == CAMBER_OK;
+}
+
+static bool read_filter(camber_document *d, const json_t *json, camber_style_layer *layer) {
+    camber_compiler *c = &d->compiler;
+    json_t *filter = json_object_get(json, "filter");
+    const size_t depth = c->path_length;
+    if (!filter || layer->kind == CAMBER_LAYER_BACKGROUND)
+        return write_filter_key(c, NULL, &layer->filter_key);
+    camber_compiler_enter_key(c, "filter");
+    if (!camber_compile_filter(c, filter, &layer->filter))
+        return camber_document_goes_on(d, depth);
+    if (!write_filter_key(c, filter, &layer->filter_key))
+        return false;
+    camber_compiler_leave(c);
+    c->style->wants_polygons = c->style->wants_polygons || camber_filter_asks_polygons(filter);
+    return true;
+}
+
+/* ---- Layers ---- */
+
+static bool find_source(camber_document *d, camber_style_layer *layer) {
+    camber_compiler *c = &d->compiler;
+    const camber_style *style = c->style;
+    const size_t depth = c->path_length;
+    const json_t *index = layer->source ? json_object_get(d->source_indices, layer->source) : NULL;
+    layer->source_index = index ? (uint32_t)json_integer_value(index) : CAMBER_NO_SOURCE;
+    /* A style without sources is for files that are given beside it. */
+    if (!layer->source || layer->source_index != CAMBER_NO_SOURCE || style->source_count == 0)
+        return true;
+    camber_compiler_enter_key(c, "source");
+    camber_compiler_fail(c, "the style has no source \"%.64s\"; add it to \"sources\", or name one of those there",
+                         layer->source);
+    return camber_document_goes_on(d, depth);
+}
+
+static bool read_layer(camber_document *d, const json_t *json, camber_style_layer *layer) {
+    layer->max_zoom = 24.0;
+    if (!camber_document_read_string(d, json, "id", &layer->id) ||
+        !camber_document_read_string(d, json, "source", &layer->source) ||
+        !camber_document_read_string(d, json, "source-layer", &layer->source_layer) ||
+        !camber_document_read_number(d, json, "minzoom", 0.0, 24.0, &layer->min_zoom) ||
+        !camber_document_read_number(d, json, "maxzoom", 0.0, 24.0, &layer->max_zoom))
+        return false;
+    return read_layer_visibility(d, json, layer) && find_source(d, layer) && read_filter(d, json, layer) &&
+           read_properties(d, json, "layout", layer) && read_properties(d, json, "paint", layer);
+}
+
+void camber_style_layer_free(camber_context *context, camber_style_layer *layer) {
+    for (size_t i = 0; i < CAMBER_PROPERTIES; i++)
+        camber_expression_destroy(context, layer->properties[i]);
+    camber_expression_destroy(context, layer->filter);
+    camber_free(context, layer->filter_key);
+    camber_free(context, layer->source_layer);
+    camber_free(context, layer->source);
+    camber_free(context, layer->id);
+}
+
+/* Types whose layers are drawn one day; others are misspelled. */
+static bool is_known_type(const char *type) {
+    static const char *const types[] = {"fill",   "symbol",    "circle",       "heatmap", "fill-extrusion",
+                                        "raster", "hillshade", "color-relief", "sky"};
+    for (size_t i = 0; i < sizeof types / sizeof *types; i++)
+        if (strcmp(types[i], type) == 0)
+            return true;
+    return false;
+}
+
+/* A layer with a "ref" takes from that layer all that is not paint. *resolved is a new reference. */
+static bool resolve(camber_document *d, json_t *json, json_t **resolved) {
+    static const char *const taken[] = {"type", "source", "source-layer", "minzoom", "maxzoom", "filter", "layout"};
+    camber_compiler *c = &d->compiler;
+    const json_t *ref = json_object_get(json, "ref");
+    *resolved = json_incref(json);
+    if (!ref)
+        return true;
+    camber_compiler_enter_key(c, "ref");
+    const json_t *parent = json_is_string(ref) ? json_object_get(d->by_id, json_string_value(ref)) : NULL;
+    if (!parent || json_object_get(parent, "ref"))
+        return camber_compiler_fail(c, !parent ? "no layer has this id; name one that has"
+                                               : "the layer refers to another one itself; refer to that");
+    camber_compiler_leave(c);
+    json_t *made = json_copy(json);
+    bool done = made != NULL;
+    for (size_t i = 0; i < sizeof taken / sizeof *taken && done; i++) {
+        json_t *value = json_object_get(parent, taken[i]);
+        done = !value || json_object_set(made, taken[i], value) == 0;
+    }
+    json_decref(*resolved);
+    *resolved = made;
+    return done || camber_document_fail_memory(d);
+}
+
+/* Appends the layer where it is of a kind that is drawn. */
+static bool read_resolved(camber_document *d, const json_t *json) {
+    camber_compiler *c = &d->compiler;
+    camber_style *style = c->style;
+    const char *type = json_string_value(json_object_get(json, "type"));
+    if (!type)
+        return camber_compiler_fail(c, "the layer has no \"type\" that is a string; write e.g. \"type\": \"line\"");
+    const bool line = strcmp(type, "line") == 0;
+    if (!line && strcmp(type, "background") != 0) {
+        if (camber_document_first_time(d, type))
+            camber_compiler_warn(c,
+                                 is_known_type(type) ? "layers of type \"%.64s\" are not drawn and left out"
+                                                     : "layers of the unknown type \"%.64s\" are left out",
+                                 type);
+        return true;
+    }
+    camber_style_layer *layer = &style->layers[style->layer_count++];
+    layer->kind = line ? CAMBER_LAYER_LINE : CAMBER_LAYER_BACKGROUND;
+    return read_layer(d, json, layer);
+}
+
+static bool read_any_layer(camber_document *d, json_t *json) {
+    static const char *const known[] = {"id",     "type",   "metadata", "source", "source-layer", "minzoom", "maxzoom",
+                                        "filter", "layout", "paint",    "ref",    "interactive",  NULL};
+    camber_compiler *c = &d->compiler;
+    json_t *resolved = NULL;
+    if (!json_is_object(json))
+        return camber_compiler_fail(c, "expected a layer, an object, found %s; take it out", camber_json_name(json));
+    if (!json_is_string(json_object_get(json, "id")))
+        return camber_compiler_fail(c, "the layer has no \"id\" that is a string; name it");
+    camber_document_warn_unknown(d, json, known, "layer");
+    const bool done = resolve(d, json, &resolved) && read_resolved(d, resolved);
+    json_decref(resolved);
+    return done;
+}
+
+/* ---- All of them ---- */
+
+typedef struct layer_id {
+    const char *id;
+    size_t index;
+} layer_id;
+
+static int compare_ids(const void *left, const void *right) {
+    const layer_id *a = left, *b = right;
+    const int order = strcmp(a->id, b->id);
+    return order ? order : a->index < b->index ? -1 : a->index > b->index;
+}
+
+static bool check_ids(camber_document *d, const json_t *layers) {
+    camber_compiler *c = &d->compiler;
+    const size_t depth = c->path_length;
+    size_t count = 0;
+    layer_id *ids = camber_alloc(c->context, json_array_size(layers), sizeof *ids);
+    if (!ids)
+        return camber_document_fail_memory(d);
+    for (size_t i = 0; i < json_array_size(layers); i++) {
+        const char *id = json_string_value(json_object_get(json_array_get(layers, i), "id"));
+        if (id)
+            ids[count++] = (layer_id){id, i};
+    }
+    qsort(ids, count, sizeof *ids, compare_ids);
+    bool goes_on = true;
+    for (size_t i = 1; i < count && goes_on; i++) {
+        if (strcmp(ids[i - 1].id, ids[i].id) != 0)
+            continue;
+        camber_compiler_enter_index(c, ids[i].index);
+        camber_compiler_enter_key(c, "id");
+        camber_compiler_fail(c, "\"%.64s\" is the id of /layers/%zu too; rename one", ids[i].id, ids[i - 1].index);
+        goes_on = camber_document_goes_on(d, depth);
+    }
+    camber_free(c->context, ids);
+    return goes_on;
+}
+
+static bool index_layers(camber_document *d, const json_t *layers) {
+    json_t *layer;
+    size_t i;
+    d->by_id = json_object();
+    bool done = d->by_id != NULL;
+    json_array_foreach(layers, i, layer) {
+        const char *id = json_string_value(json_object_get(layer, "id"));
+        done = done && (!id || json_object_set(d->by_id, id, layer) == 0);
+    }
+    return done || camber_document_fail_memory(d);
+}
+
+bool camber_document_read_layers(camber_document *d, const json_t *layers) {
+    camber_compiler *c = &d->compiler;
+    camber_compiler_enter_key(c, "layers");
+    const size_t depth = c->path_length;
+    if (!json_is_array(layers))
+        return camber_compiler_fail(c, "expected an array of layers; write \"layers\": [...]");
+    c->style->layers = camber_alloc_zero(c->context, json_array_size(layers), sizeof *c->style->layers);
+    if (!c->style->layers)
+        return camber_document_fail_memory(d);
+    if (!index_layers(d, layers))
+        return false;
+    for (size_t i = 0; i < json_array_size(layers); i++) {
+        camber_compiler_enter_index(c, i);
+        if (read_any_layer(d, json_array_get(layers, i)))
+            camber_compiler_leave(c);
+        else if (!camber_document_goes_on(d, depth))
+            return false;
+    }
+    if (!check_ids(d, layers))
+        return false;
+    camber_compiler_leave(c);
+    return true;
+}

@@ -1,0 +1,130 @@
+/* What a layer draws a feature with: its properties evaluated, those that features do not change once. */
+#include "style/properties.h"
+
+#include <math.h>
+
+static bool passes(const camber_expression *filter, double zoom, const camber_feature_view *feature) {
+    if (!filter)
+        return true;
+    camber_evaluation evaluation;
+    camber_evaluation_begin(&evaluation, zoom, feature);
+    camber_value value;
+    const bool matches =
+        camber_expression_evaluate(filter, &evaluation, &value) && value.type == CAMBER_VALUE_BOOL && value.boolean;
+    camber_evaluation_end(&evaluation);
+    return matches;
+}
+
+bool camber_style_layer_matches(const camber_style_layer *layer, double zoom, const camber_feature_view *feature) {
+    /* 24 is the largest limit that a style can name, and stands for none. */
+    if (!layer->visible || zoom < layer->min_zoom || (zoom >= layer->max_zoom && layer->max_zoom < 24.0))
+        return false;
+    return passes(layer->filter, zoom, feature);
+}
+
+bool camber_style_source_matches(const camber_style_source *source, const camber_feature_view *feature) {
+    return passes(source->filter, 0.0, feature);
+}
+
+static bool store_number(const camber_property_row *row, const camber_value *value, double *number) {
+    const camber_property *property = &row->property;
+    if (value->type != CAMBER_VALUE_NUMBER || !isfinite(value->number))
+        return false;
+    const bool ranged = property->low < 0.0 || property->high > 0.0;
+    *number = ranged ? fmin(fmax(value->number, property->low), property->high) : value->number;
+    return true;
+}
+
+static bool store_choice(const camber_property_row *row, const camber_value *value, void *field) {
+    _Static_assert(sizeof(int) == sizeof(camber_cap) && sizeof(int) == sizeof(camber_join) &&
+                       sizeof(int) == sizeof(camber_translate_anchor),
+                   "choices are ints");
+    for (int i = 0; value->type == CAMBER_VALUE_STRING && row->property.values[i]; i++)
+        if (strcmp(row->property.values[i], value->string) == 0) {
+            memcpy(field, &i, sizeof i);
+            return true;
+        }
+    return false;
+}
+
+static bool store_pair(const camber_property_row *row, const camber_value *value, double pair[2]) {
+    double made[2];
+    if (value->type != CAMBER_VALUE_ARRAY || value->count != 2 || !store_number(row, value->items, made) ||
+        !store_number(row, value->items + 1, made + 1))
+        return false;
+    memcpy(pair, made, sizeof made);
+    return true;
+}
+
+static bool store_value(const camber_property_row *row, const camber_value *value, void *field) {
+    switch (row->property.type) {
+    case CAMBER_TYPE_NUMBER: return store_number(row, value, field);
+    case CAMBER_TYPE_STRING: return store_choice(row, value, field);
+    case CAMBER_TYPE_ARRAY: return store_pair(row, value, field);
+    default: break;
+    }
+    if (value->type == CAMBER_VALUE_COLOR)
+        memcpy(field, &value->color, sizeof value->color);
+    return value->type == CAMBER_VALUE_COLOR;
+}
+
+/* Puts a property where the paint has it, which holds the default. */
+static void store(const camber_style_layer *layer, unsigned id, camber_evaluation *evaluation,
+                  camber_layer_paint *paint) {
+    const camber_property_row *row = camber_property_rows + id;
+    camber_value value;
+    if (camber_expression_evaluate(layer->properties[id], evaluation, &value))
+        store_value(row, &value, (char *)paint + row->offset);
+}
+
+camber_layer_look camber_style_layer_look(const camber_style_layer *layer, double zoom) {
+    camber_layer_look look = {.layer = layer, .zoom = zoom, .paint = camber_default_paint};
+    camber_evaluation evaluation;
+    camber_evaluation_begin(&evaluation, zoom, NULL);
+    for (unsigned i = 0; i < CAMBER_PROPERTIES; i++) {
+        const camber_expression *expression = layer->properties[i];
+        if (!expression || camber_property_rows[i].offset == CAMBER_NO_OFFSET)
+            continue;
+        if (expression->reads_feature)
+            look.by_feature |= 1u << i;
+        else
+            store(layer, i, &evaluation, &look.paint);
+    }
+    camber_evaluation_end(&evaluation);
+    return look;
+}
+
+camber_layer_paint camber_layer_look_paint(const camber_layer_look *look, const camber_feature_view *feature) {
+    camber_layer_paint paint = look->paint;
+    if (look->by_feature) {
+        camber_evaluation evaluation;
+        camber_evaluation_begin(&evaluation, look->zoom, feature);
+        for (unsigned i = 0; look->by_feature >> i; i++)
+            if (look->by_feature >> i & 1)
+                store(look->layer, i, &evaluation, &paint);
+        camber_evaluation_end(&evaluation);
+    }
+    paint.color.a *= (float)paint.opacity;
+    return paint;
+}
+
+camber_layer_paint camber_style_layer_paint(const camber_style_layer *layer, double zoom,
+                                            const camber_feature_view *feature) {
+    const camber_layer_look look = camber_style_layer_look(layer, zoom);
+    return camber_layer_look_paint(&look, feature);
+}
+
+bool camber_layer_look_shares(const camber_layer_look *a, const camber_layer_look *b) {
+    const uint32_t geometry = (1u << CAMBER_LINE_GEOMETRY) - 1;
+    if ((a->by_feature & geometry) != (b->by_feature & geometry))
+        return false;
+    for (unsigned i = 0; i < CAMBER_LINE_GEOMETRY; i++)
+        if (a->by_feature >> i & 1 && !json_equal(a->layer->properties[i]->document, b->layer->properties[i]->document))
+            return false;
+    /* Of what features change, both have nothing yet. */
+    const camber_layer_paint *p = &a->paint, *q = &b->paint;
+    const bool driven = a->by_feature >> CAMBER_LINE_JOIN & 1;
+    const bool limits = (p->miter_limit == q->miter_limit || (!driven && p->join != CAMBER_JOIN_MITER)) &&
+                        (p->round_limit == q->round_limit || (!driven && p->join != CAMBER_JOIN_ROUND));
+    return p->cap == q->cap && p->join == q->join && limits && p->offset == q->offset && p->sort_key == q->sort_key;
+}

@@ -1,0 +1,30 @@
+/* The table of what a layer may have in its layout and paint. */
+#ifndef CAMBER_PROPERTIES_H
+#define CAMBER_PROPERTIES_H
+
+#include "style/compiler.h"
+
+typedef struct camber_property_row {
+    camber_layer_kind kind;
+    bool layout;             /* else paint */
+    bool directed;           /* follows its line's direction */
+    bool needs_line_metrics; /* of its source */
+    size_t offset;           /* into camber_layer_paint, where it has its type's form. CAMBER_NO_OFFSET: not there */
+    const char *not_drawn;   /* how the layer is drawn meanwhile. NULL: with it */
+    camber_property property;
+} camber_property_row;
+
+#define CAMBER_NO_OFFSET SIZE_MAX
+
+/* By camber_property_id. */
+extern const camber_property_row camber_property_rows[CAMBER_PROPERTIES];
+/* What the specification says where a style says nothing, as property.fallback says in JSON. */
+extern const camber_layer_paint camber_default_paint;
+
+/* NULL: the specification has no such property. */
+const camber_property_row *camber_property_find(camber_layer_kind kind, bool layout, const char *name);
+static inline camber_property_id camber_property_id_of(const camber_property_row *row) {
+    return (camber_property_id)(row - camber_property_rows);
+}
+
+#endif

@@ -1,0 +1,136 @@
+/* Reports of style documents: all that is wrong, with its place, and what is drawn. */
+#include "core.h"
+
+#include "camber_map.h"
+
+static camber_status check(camber_context *context, const char *json, camber_style_report **report) {
+    return camber_style_check(context, json, strlen(json), "a.json", report);
+}
+
+static const camber_style_finding *find(const camber_style_report *report, const char *pointer, bool error) {
+    for (size_t i = 0; i < report->finding_count; i++)
+        if (strcmp(report->findings[i].pointer, pointer) == 0 && report->findings[i].error == error)
+            return report->findings + i;
+    return NULL;
+}
+
+static const char *const wrong =
+    "{\"version\": 7, \"center\": [1], \"zoom\": \"a\", \"sprite\": 3, \"state\": {\"x\": 1}, \"constants\": {},"
+    " \"sources\": {\"s\": {\"type\": \"vector\", \"url\": \"https://x/y\"}, \"t\": 4,"
+    "  \"g\": {\"type\": \"geojson\", \"data\": \"a.geojson\"}, \"r\": {\"type\": \"raster\", \"url\": \"x\"}},"
+    " \"layers\": ["
+    "  {\"id\": \"a\", \"type\": \"line\", \"source\": \"q\", \"filter\": [\"foo\"],"
+    "   \"paint\": {\"line-width\": \"x\", \"line-color\": 7, \"line-blurr\": 4, \"line-offset\": 3, \"line-cap\": 1},"
+    "   \"layout\": {\"line-cap\": \"pointed\", \"visibility\": 3}},"
+    "  {\"id\": \"a\", \"type\": \"fill\"}, {\"type\": \"line\"}, {\"id\": \"r\", \"ref\": \"zz\"}, 5,"
+    "  {\"id\": \"b\", \"type\": \"line\", \"source\": \"g\", \"minzoom\": 30, \"paint\": []},"
+    "  {\"id\": \"c\", \"type\": \"line\", \"source\": \"s\", \"layout\": {\"line-join\": \"round\"}},"
+    "  {\"id\": \"d\", \"ref\": \"c\", \"paint\": {\"line-opacity\": 2}}, {\"id\": \"e\", \"ref\": \"d\"},"
+    "  {\"id\": \"f\", \"type\": \"line\"}]}";
+
+static void test_all_errors(void **state) {
+    (void)state;
+    static const char *const errors[] = {"/version",
+                                         "/constants",
+                                         "/center",
+                                         "/zoom",
+                                         "/sprite",
+                                         "/state",
+                                         "/sources/t",
+                                         "/layers/0/source",
+                                         "/layers/0/filter/0",
+                                         "/layers/0/paint/line-width",
+                                         "/layers/0/paint/line-color",
+                                         "/layers/0/layout/line-cap",
+                                         "/layers/0/layout/visibility",
+                                         "/layers/1/id",
+                                         "/layers/2",
+                                         "/layers/3/ref",
+                                         "/layers/4",
+                                         "/layers/5/minzoom",
+                                         "/layers/5/paint",
+                                         "/layers/7/paint/line-opacity",
+                                         "/layers/8/ref"};
+    static const char *const warnings[] = {"/layers/0/paint/line-blurr",
+                                           "/layers/0/paint/line-offset",
+                                           "/layers/0/paint/line-cap",
+                                           "/layers/1",
+                                           "/layers/6",
+                                           "/layers/9"};
+    host h;
+    camber_context *context = host_context(&h);
+    camber_style_report *report = NULL;
+    assert_int_equal(check(context, wrong, &report), CAMBER_OK);
+    for (size_t i = 0; i < sizeof errors / sizeof *errors; i++) {
+        const camber_style_finding *finding = find(report, errors[i], true);
+        if (!finding)
+            fail_msg("no error at %s", errors[i]);
+        if (!strstr(finding->message, "; "))
+            fail_msg("no cure at %s: %s", errors[i], finding->message);
+    }
+    for (size_t i = 0; i < sizeof warnings / sizeof *warnings; i++)
+        if (!find(report, warnings[i], false))
+            fail_msg("no warning at %s", warnings[i]);
+    assert_int_equal(report->error_count, sizeof errors / sizeof *errors);
+    assert_int_equal(h.errors + h.warnings, 0);
+    camber_style_report_destroy(report);
+    host_done(&h, context);
+}
+
+static void test_what_is_drawn(void **state) {
+    (void)state;
+    host h;
+    camber_context *context = host_context(&h);
+    camber_style_report *report = NULL;
+    assert_int_equal(check(context, wrong, &report), CAMBER_OK);
+    assert_int_equal(report->type_count, 2);
+    assert_string_equal(report->types[0].type, "line");
+    assert_int_equal(report->types[0].layers, 6); /* one by reference; what refers to that has none */
+    assert_true(report->types[0].drawn);
+    assert_string_equal(report->types[1].type, "fill");
+    assert_int_equal(report->types[1].layers, 1);
+    assert_false(report->types[1].drawn);
+    assert_int_equal(report->source_count, 3);
+    assert_string_equal(report->sources[0].name, "s");
+    assert_int_equal(report->sources[0].layers, 2);
+    assert_non_null(strstr(report->sources[0].trouble, "network"));
+    assert_string_equal(report->sources[1].name, "g");
+    assert_int_equal(report->sources[1].layers, 1);
+    assert_null(report->sources[1].trouble);
+    assert_non_null(strstr(report->sources[2].trouble, "type"));
+    camber_style_report_destroy(report);
+
+    assert_int_equal(check(context, "{\"version\": 8,", &report), CAMBER_OK);
+    assert_int_equal(report->error_count, 1);
+    assert_string_equal(report->findings[0].pointer, "");
+    assert_non_null(strstr(report->findings[0].message, "line 1, column"));
+    camber_style_report_destroy(report);
+    assert_int_equal(check(context, "3", &report), CAMBER_OK);
+    assert_int_equal(report->error_count, 1);
+    camber_style_report_destroy(report);
+    host_done(&h, context);
+}
+
+static camber_status attempt(camber_context *context, void *user) {
+    camber_style_report *report = NULL;
+    const camber_status status = check(context, user, &report);
+    assert_true((status == CAMBER_OK) == (report != NULL));
+    camber_style_report_destroy(report);
+    return status;
+}
+
+static void test_memory(void **state) {
+    (void)state;
+    host h;
+    camber_context *context = host_context(&h);
+    char json[4096];
+    snprintf(json, sizeof json, "%s", wrong);
+    each_allocation_fails(&h, attempt, context, json);
+    host_done(&h, context);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_all_errors), cmocka_unit_test(test_what_is_drawn),
+                                       cmocka_unit_test(test_memory)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

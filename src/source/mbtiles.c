@@ -5,19 +5,20 @@
 #include <sqlite3.h>
 #include <sys/stat.h>
 
-/* A view can take for ever: so many steps of SQLite's machine a query, some seconds. */
-enum { STEPS_A_CALL = 1 << 20, MOST_CALLS = 500 };
+/* A view can take for ever: so many millions of steps of SQLite's machine a query, some seconds; the metadata is small.
+ */
+enum { STEPS_A_CALL = 1 << 20, MOST_CALLS = 400, MOST_METADATA_CALLS = 8 };
 static const int LARGEST_BLOB_BYTES = 64 << 20;
 
 typedef struct database {
     sqlite3 *handle;
     sqlite3_stmt *get;
-    int calls; /* since the query began */
+    int calls, most_calls; /* since the query began */
 } database;
 
 static int count_steps(void *user) {
     database *self = user;
-    return ++self->calls > MOST_CALLS;
+    return ++self->calls > self->most_calls;
 }
 
 static camber_status fail(const camber_tile_set *set) {
@@ -75,12 +76,14 @@ static camber_status read_metadata(camber_tile_set *set) {
     if (sqlite3_prepare_v2(self->handle, "SELECT name, value FROM metadata", -1, &rows, NULL) != SQLITE_OK)
         return sqlite3_errcode(self->handle) == SQLITE_ERROR ? CAMBER_OK : fail(set);
     self->calls = 0;
+    self->most_calls = MOST_METADATA_CALLS;
     json_t *about = json_object();
     int step;
     while ((step = sqlite3_step(rows)) == SQLITE_ROW)
         take_row(about, rows);
     camber_status status = step == SQLITE_DONE ? CAMBER_OK : fail(set);
     sqlite3_finalize(rows);
+    self->most_calls = MOST_CALLS;
     camber_tile_set_describe(set, about);
     const char *format = json_string_value(json_object_get(about, "format"));
     if (status == CAMBER_OK && format && strcmp(format, "pbf") != 0 && strcmp(format, "mvt") != 0 &&

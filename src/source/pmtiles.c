@@ -16,7 +16,7 @@ enum { HEADER_BYTES = 127, DEEPEST = 4, NO_COMPRESSION = 1, GZIP = 2, VECTOR_TIL
 /* Real directories take some hundred kilobytes. */
 static const size_t LARGEST_DIRECTORY_BYTES = (size_t)16 << 20, LARGEST_BYTES = (size_t)64 << 20;
 /* Entries looked at to list a zoom's tiles, and what reading a directory counts for. */
-static const uint64_t MOST_LISTED = UINT64_C(1) << 26, DIRECTORY_COSTS = 1024;
+static const uint64_t MOST_LISTED = UINT64_C(1) << 24, DIRECTORY_COSTS = 1024;
 
 typedef struct range {
     uint64_t offset, size;

@@ -6,12 +6,11 @@ static bool starts_with(const char *text, const char *start) {
     return strncmp(text, start, strlen(start)) == 0;
 }
 
-/* "https://" -> 5; 0: no scheme. */
-static size_t scheme_length(const char *text) {
+static bool has_scheme(const char *text) {
     size_t length = 0;
     while (isalnum((unsigned char)text[length]) || (length && strchr("+.-", text[length]) && text[length]))
         length++;
-    return starts_with(text + length, "://") ? length : 0;
+    return length && starts_with(text + length, "://");
 }
 
 static int hex_digit(char c) {
@@ -45,14 +44,14 @@ static char *join(camber_context *context, const char *base_path, const char *pa
     return joined;
 }
 
-static camber_status fail_scheme(camber_context *context, const char *what, const char *text, size_t scheme) {
-    if (starts_with(text, "http://") || starts_with(text, "https://") || starts_with(text, "mapbox://"))
+/* rest: behind mbtiles:// and its like. */
+static camber_status fail_scheme(camber_context *context, const char *what, const char *text, const char *rest) {
+    if (starts_with(rest, "http://") || starts_with(rest, "https://") || starts_with(rest, "mapbox://"))
         return camber_fail(context, CAMBER_ERROR_INPUT,
                            "%s: %s is on the network, which camber does not use; download it, and name the file", what,
                            text);
     return camber_fail(context, CAMBER_ERROR_INPUT,
-                       "%s: %s has the unknown scheme %.*s; name a path, file://, mbtiles:// or pmtiles://", what, text,
-                       (int)scheme, text);
+                       "%s: %s has an unknown scheme; name a path, file://, mbtiles:// or pmtiles://", what, text);
 }
 
 camber_status camber_url_resolve(camber_context *context, const char *what, const char *text, const char *base_path,
@@ -64,9 +63,8 @@ camber_status camber_url_resolve(camber_context *context, const char *what, cons
         rest += strlen("mbtiles://");
     }
     const bool is_file = starts_with(rest, "file://");
-    const size_t scheme = scheme_length(rest);
-    if (scheme && !is_file)
-        return fail_scheme(context, what, text, rest == text ? scheme : (size_t)(rest - text) + scheme);
+    if (has_scheme(rest) && !is_file)
+        return fail_scheme(context, what, text, rest);
     if (is_file) {
         rest += strlen("file://");
         if (starts_with(rest, "localhost/"))

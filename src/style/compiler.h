@@ -93,6 +93,7 @@ void camber_compiler_end(camber_compiler *c);
 void camber_compiler_write_pointer(const camber_compiler *c, char pointer[CAMBER_POINTER_SIZE]);
 /* Logs "NAME: /pointer: " and the message, and sets the status. Returns false. */
 bool camber_compiler_fail(camber_compiler *c, const char *format, ...) CAMBER_PRINTF(2, 3);
+/* Where what ran out of memory has not told of it, as jansson. */
 bool camber_compiler_fail_memory(camber_compiler *c);
 void camber_compiler_warn(camber_compiler *c, const char *format, ...) CAMBER_PRINTF(2, 3);
 

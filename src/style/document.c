@@ -101,7 +101,7 @@ static bool read_source(camber_document *d, const char *name, json_t *json) {
         return camber_compiler_fail(c, "the source has no \"type\" that is a string; write e.g. \"type\": \"geojson\"");
     camber_style_source *source = &c->style->sources[c->style->source_count++];
     if (json_object_set_new(d->source_indices, name, json_integer((json_int_t)c->style->source_count - 1)) != 0)
-        return camber_document_fail_memory(d);
+        return camber_compiler_fail_memory(c);
     source->json = json_incref(json);
     source->name = camber_copy_string(c->context, name);
     if (!source->name)
@@ -132,8 +132,10 @@ static bool read_sources(camber_document *d, json_t *sources) {
                camber_document_goes_on(d, depth - 1);
     c->style->sources = camber_alloc_zero(c->context, json_object_size(sources), sizeof *c->style->sources);
     d->source_indices = json_object();
-    if (!c->style->sources || !d->source_indices)
+    if (!c->style->sources)
         return camber_document_fail_memory(d);
+    if (!d->source_indices)
+        return camber_compiler_fail_memory(c);
     json_object_foreach(sources, name, json) {
         camber_compiler_enter_key(c, name);
         if (!read_source(d, name, json) && !camber_document_goes_on(d, depth))
@@ -238,6 +240,7 @@ static bool read_state(camber_document *d) {
                camber_document_goes_on(d, depth);
     c->style->state = json_incref(state);
     c->state = state;
+    c->state_defaults = true;
     c->state_defaults = true;
     camber_compiler_leave(c);
     return true;

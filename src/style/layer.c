@@ -30,27 +30,10 @@ static bool is_default(const camber_property_row *row, const json_t *json) {
     return same;
 }
 
-static bool check_choice(camber_document *d, const camber_property *property, const camber_expression *expression) {
-    const camber_node *root = &expression->nodes[expression->root];
-    if (!property->values || root->op != CAMBER_OP_CONSTANT || root->value.type != CAMBER_VALUE_STRING)
-        return true;
-    char list[96] = "";
-    for (size_t i = 0; property->values[i]; i++) {
-        if (strcmp(property->values[i], root->value.string) == 0)
-            return true;
-        const char *between = i == 0 ? "" : property->values[i + 1] ? ", " : " or ";
-        snprintf(list + strlen(list), sizeof list - strlen(list), "%s\"%s\"", between, property->values[i]);
-    }
-    return camber_compiler_fail(&d->compiler, "\"%.64s\" is no %s; use %s", root->value.string, property->name, list);
-}
-
 static bool read_known(camber_document *d, const camber_property_row *row, json_t *json, camber_style_layer *layer) {
     camber_compiler *c = &d->compiler;
     camber_expression **expression = layer->properties + camber_property_id_of(row);
-    if (row->property.type != CAMBER_TYPE_ARRAY && row->property.type != CAMBER_TYPE_IMAGE &&
-        !row->property.line_progress &&
-        (!camber_compile_property(c, json, &row->property, expression) ||
-         !check_choice(d, &row->property, *expression)))
+    if (!camber_compile_property(c, json, &row->property, expression))
         return false;
     if (is_default(row, json))
         return true;
@@ -219,7 +202,7 @@ static bool resolve(camber_document *d, json_t *json, json_t **resolved) {
     }
     json_decref(*resolved);
     *resolved = made;
-    return done || camber_document_fail_memory(d);
+    return done || camber_compiler_fail_memory(&d->compiler);
 }
 
 /* Appends the layer where it is of a kind that is drawn. */
@@ -306,7 +289,7 @@ static bool index_layers(camber_document *d, const json_t *layers) {
         const char *id = json_string_value(json_object_get(layer, "id"));
         done = done && (!id || json_object_set(d->by_id, id, layer) == 0);
     }
-    return done || camber_document_fail_memory(d);
+    return done || camber_compiler_fail_memory(&d->compiler);
 }
 
 bool camber_document_read_layers(camber_document *d, const json_t *layers) {

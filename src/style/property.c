@@ -76,10 +76,11 @@ static bool check_name(camber_compiler *c, const camber_property *property, cons
     for (size_t i = 0; property->values[i]; i++) {
         if (strcmp(property->values[i], name) == 0)
             return true;
+        const char *between = i == 0 ? "" : property->values[i + 1] ? ", " : " or ";
         if (used < sizeof names)
-            used += (size_t)snprintf(names + used, sizeof names - used, "%s\"%s\"", i ? ", " : "", property->values[i]);
+            used += (size_t)snprintf(names + used, sizeof names - used, "%s\"%s\"", between, property->values[i]);
     }
-    return camber_compiler_fail(c, "\"%.64s\" is not a value of %s; use one of %s", name, property->name, names);
+    return camber_compiler_fail(c, "\"%.64s\" is no %s; use %s", name, property->name, names);
 }
 
 static bool check_range(camber_compiler *c, const camber_property *property, const camber_value *value) {

@@ -224,6 +224,15 @@ typedef struct camber_device_desc {
     /* No buffer is made larger: a mesh that needs more is made in parts of whole polylines, and what is read or drawn
      * of it is the same. 4096 at least. 0, or more than that: the device's own limit, and below 2^31 for GL's sake. */
     uint64_t largest_buffer_bytes;
+    /* What all meshes of the device may hold at once: buffers of points, joins, records and indices (copied ones
+     * twice), strokes, what a device that does not work in host memory has of networks, and the few counts that the
+     * host keeps a part. Meshes are made in parts of whole polylines then, of an eighth of it or less; what does not
+     * fit is tessellated again when it is read or drawn, in place of what is needed last, and is the same bytes and
+     * pixels. No polyline may take more than half of it: about 50 bytes a point that is seen. A mesh keeps the
+     * polylines it was made of, which are not counted, nor are networks in host memory, what is read back, and pictures
+     * (largest_piece_px bounds those). 65536 at least. 0: three quarters of the device's memory; no bound where that is
+     * the host's. */
+    uint64_t memory_bytes;
 } camber_device_desc;
 
 typedef struct camber_device camber_device;
@@ -240,11 +249,18 @@ typedef struct camber_surface camber_surface;
  * before them.
  *
  * Returns CAMBER_ERROR_DEVICE (no platform, no device that matches or not so many), CAMBER_ERROR_ARGUMENT (a work-group
- * size that is none of these, a largest buffer below 4096 bytes), CAMBER_ERROR_MEMORY. */
+ * size that is none of these, a largest buffer below 4096 bytes, memory below 65536), CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_device_create(camber_context *context, const camber_device_desc *desc,
                                               camber_surface *surface, camber_device **device);
 CAMBER_API void camber_device_destroy(camber_device *device);
 CAMBER_API camber_device_info camber_device_get_info(const camber_device *device);
+
+typedef struct camber_device_memory {
+    uint64_t allowed_bytes;          /* to the device's meshes, as camber_device_desc has it. 0: no bound */
+    uint64_t held_bytes, most_bytes; /* of what is counted: now, and at any time since the device was opened */
+} camber_device_memory;
+
+CAMBER_API camber_device_memory camber_device_get_memory(const camber_device *device);
 
 /* ---- Surfaces: a GL context without a window ------------------------------------------------------- */
 
@@ -396,13 +412,22 @@ CAMBER_API void camber_mesh_destroy(camber_mesh *mesh);
  * strokes uploads nothing.
  * Returns CAMBER_ERROR_ARGUMENT (a width or a limit that is not a number or out of range, a row without a
  * stroke), CAMBER_ERROR_LIMIT (more than 2^30 records of strips or 2^25 of kite and fan, or a polyline that needs
- * more than the largest buffer), CAMBER_ERROR_MEMORY, CAMBER_ERROR_DEVICE (a kernel that does not build: the log has
- * the build log). Cost: 1 s the first time a method is used, 3 ms from the cache; then about 10 ns a point on two
- * cores. */
+ * more than the largest buffer, or than half of what the device's meshes may hold), CAMBER_ERROR_MEMORY,
+ * CAMBER_ERROR_DEVICE (a kernel that does not build: the log has the build log). Cost: 1 s the first time a method is
+ * used, 3 ms from the cache; then about 10 ns a point on two cores. */
 CAMBER_API camber_status camber_tessellate(camber_mesh *mesh, const camber_polylines *polylines,
                                            const camber_tessellation_desc *desc);
 /* The counts of joins and triangles are made at the first call after a tessellation: about 1 ns a point. */
 CAMBER_API camber_mesh_info camber_mesh_get_info(camber_mesh *mesh);
+
+typedef struct camber_mesh_memory {
+    size_t parts;          /* runs of polylines with buffers of their own: 1, where there is room */
+    size_t resident_parts; /* that need not be tessellated again to be read or drawn */
+    size_t remade_parts;   /* that were, since the last tessellation */
+    uint64_t held_bytes;   /* of what the device's bound counts */
+} camber_mesh_memory;
+
+CAMBER_API camber_mesh_memory camber_mesh_get_memory(const camber_mesh *mesh);
 
 /* ---- Networks: polylines that a camera moves over ---- */
 

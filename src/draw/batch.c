@@ -161,12 +161,12 @@ static camber_status draw_part(camber_renderer *renderer, const camber_mesh_part
 
 static camber_status draw_ranges(camber_renderer *renderer, const camber_shader *shader, size_t *draw_calls) {
     const camber_batch *batch = &renderer->batch;
-    const camber_mesh *mesh = batch->mesh;
+    camber_mesh *mesh = batch->pass->mesh;
     const camber_mesh_part *bound = NULL;
     camber_status status = CAMBER_OK;
     for (size_t r = 0; r < batch->range_count; r++)
         for (size_t i = 0; i < mesh->part_count && status == CAMBER_OK; i++) {
-            const camber_mesh_part *part = mesh->parts + i;
+            camber_mesh_part *part = mesh->parts + i;
             const size_t part_end = part->first_polyline + part->polyline_count;
             camber_batch_range range = batch->ranges[r];
             range.first = range.first > part->first_polyline ? range.first : part->first_polyline;
@@ -174,7 +174,10 @@ static camber_status draw_ranges(camber_renderer *renderer, const camber_shader 
             if (range.first >= range.end || part->index_count == 0)
                 continue;
             if (part != bound) {
-                draw_strips(renderer, draw_calls); /* of the part that is bound */
+                draw_strips(renderer, draw_calls); /* of the part that is bound, and may have to go */
+                status = camber_part_use(mesh, part);
+                if (status != CAMBER_OK)
+                    break;
                 camber_renderer_bind_part(renderer, part);
             }
             bound = part;

@@ -33,6 +33,7 @@ typedef struct counting {
     const camber_shader *cover, *every;
     camber_piece piece;
     const camber_mesh_part *bound; /* NULL: none */
+    camber_status status;          /* of binding one */
     uint8_t *pixels;               /* RGBA8 of a piece */
     camber_overdraw sum;
 } counting;
@@ -48,7 +49,7 @@ static uint64_t shared_indices(const camber_mesh *mesh) {
     return mesh->mesh_info.strips ? 2 : 0;
 }
 
-static const camber_mesh_part *part_of(const camber_mesh *mesh, uint64_t index) {
+static camber_mesh_part *part_of(const camber_mesh *mesh, uint64_t index) {
     size_t low = 0, high = mesh->part_count;
     while (high - low > 1) {
         const size_t middle = low + (high - low) / 2;
@@ -62,15 +63,19 @@ static const camber_mesh_part *part_of(const camber_mesh *mesh, uint64_t index) 
 
 /* A draw call for as much of a range as lies in one part and is not too long. */
 static void draw_range(counting *c, camber_index_range range) {
-    const camber_mesh *mesh = c->desc->mesh;
+    camber_mesh *mesh = c->desc->mesh;
     const uint64_t shared = shared_indices(mesh);
-    while (range.index_count > shared) {
-        const camber_mesh_part *part = part_of(mesh, range.first_index);
+    while (range.index_count > shared && c->status == CAMBER_OK) {
+        camber_mesh_part *part = part_of(mesh, range.first_index);
         const uint64_t first = range.first_index - part->first_index, left = part->index_count - first;
         uint64_t count = range.index_count < INDICES_MAX ? range.index_count : INDICES_MAX;
         count = count < left ? count : left;
-        if (part != c->bound)
+        if (part != c->bound) {
+            c->status = camber_part_use(mesh, part);
+            if (c->status != CAMBER_OK)
+                return;
             camber_renderer_bind_part(c->renderer, part);
+        }
         c->bound = part;
         camber_renderer_draw_indices(c->renderer, mesh, first, count);
         const uint64_t done = count < left ? count - shared : count; /* no triangle lies in two parts */
@@ -164,7 +169,7 @@ static camber_status read_counts(counting *c, uint64_t sums[2], int *highest) {
     sums[COVERED] = covered;
     sums[EVERY] = every;
     *highest = most;
-    return camber_renderer_check(c->renderer, "counting");
+    return c->status == CAMBER_OK ? camber_renderer_check(c->renderer, "counting") : c->status;
 }
 
 static camber_status count_fragments(counting *c) {

@@ -92,6 +92,8 @@ camber_status camber_mesh_create(camber_device *device, camber_renderer *rendere
     const camber_status status = camber_mesh_create_on(device, renderer ? &current_ops : NULL, renderer, mesh);
     if (status == CAMBER_OK)
         (*mesh)->renderer = renderer;
+    if (status == CAMBER_OK && renderer && renderer->path->sharing == CAMBER_SHARING_COPY)
+        (*mesh)->buffer_copies = 2;
     return status;
 }
 

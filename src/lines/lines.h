@@ -7,6 +7,7 @@
 
 struct camber_polylines {
     camber_context *context;
+    size_t holders;  /* meshes, beside who made them */
     uint64_t serial; /* unique in the context: a mesh knows by it what it has uploaded */
     /* slot_count + 2 each: a ghost before and after the slots. slot_count is a multiple of CAMBER_BLOCK. */
     float *x, *y;
@@ -27,6 +28,9 @@ struct camber_polylines {
 static inline bool camber_point_is_valid(const float *point) {
     return fabsf(point[0]) <= CAMBER_FARTHEST_PX && fabsf(point[1]) <= CAMBER_FARTHEST_PX;
 }
+
+/* Keeps polylines until another camber_polylines_destroy. */
+void camber_polylines_hold(camber_polylines *polylines);
 
 /* The polyline whose slots hold slot. */
 size_t camber_polylines_find(const camber_polylines *polylines, size_t slot);

@@ -148,9 +148,16 @@ done:
     return status;
 }
 
+void camber_polylines_hold(camber_polylines *polylines) {
+    polylines->holders++;
+}
+
 void camber_polylines_destroy(camber_polylines *polylines) {
-    if (!polylines)
+    if (!polylines || polylines->holders > 0) {
+        if (polylines)
+            polylines->holders--;
         return;
+    }
     camber_context *context = polylines->context;
     camber_free(context, polylines->polyline_rows);
     camber_free(context, polylines->first_slots);

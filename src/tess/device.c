@@ -206,7 +206,8 @@ static camber_status choose(camber_device *device, const char *match, uint32_t n
     return CAMBER_OK;
 }
 
-enum { LEAST_BUFFER_BYTES = 4096 };
+/* A part of one block and the strokes of a style have to fit in. */
+enum { LEAST_BUFFER_BYTES = 4096, LEAST_MEMORY_BYTES = 65536 };
 /* llvmpipe finds a vertex by 32 signed bits, and falls past them. */
 static const uint64_t LARGEST_BUFFER_BYTES = INT32_MAX;
 
@@ -220,6 +221,10 @@ static camber_status bound(camber_device *device, const camber_device_desc *desc
         return camber_fail(device->context, CAMBER_ERROR_ARGUMENT,
                            "a largest buffer of %llu bytes; it must be %d or more, or 0 for the device's own limit",
                            (unsigned long long)desc->largest_buffer_bytes, LEAST_BUFFER_BYTES);
+    if (desc->memory_bytes != 0 && desc->memory_bytes < LEAST_MEMORY_BYTES)
+        return camber_fail(device->context, CAMBER_ERROR_ARGUMENT,
+                           "%llu bytes of memory for meshes; it must be %d or more, or 0 for what the device has",
+                           (unsigned long long)desc->memory_bytes, LEAST_MEMORY_BYTES);
     device->block = size ? size : CAMBER_BLOCK;
     uint64_t *largest = &device->info.largest_buffer_bytes;
     if (*largest > LARGEST_BUFFER_BYTES)
@@ -229,6 +234,13 @@ static camber_status bound(camber_device *device, const camber_device_desc *desc
     if (desc->largest_buffer_bytes && desc->largest_buffer_bytes < *largest)
         *largest = desc->largest_buffer_bytes;
     return CAMBER_OK;
+}
+
+/* Without a bound of its own, a device whose memory is not the host's leaves a quarter for pictures. */
+static void bound_memory(camber_device *device, const camber_device_desc *desc) {
+    device->memory_bytes = desc->memory_bytes;
+    if (!desc->memory_bytes && !device->host_memory && device->info.memory_bytes)
+        device->memory_bytes = device->info.memory_bytes / 4 * 3;
 }
 
 static camber_status open_cl(camber_device *device, camber_surface *surface) {
@@ -278,6 +290,8 @@ camber_status camber_device_create(camber_context *context, const camber_device_
         status = bound(made, &full, surface);
     if (status == CAMBER_OK)
         status = open_cl(made, surface);
+    if (status == CAMBER_OK)
+        bound_memory(made, &full);
     if (status != CAMBER_OK) {
         camber_device_destroy(made);
         return status;

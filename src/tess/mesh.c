@@ -53,7 +53,10 @@ camber_status camber_mesh_create_on(camber_device *device, const camber_buffer_o
     made->device = device;
     made->ops = ops ? ops : &plain_ops;
     made->ops_user = ops ? ops_user : device;
+    made->buffer_copies = 1;
     made->empty = true;
+    made->next = device->meshes;
+    device->meshes = made;
     *mesh = made;
     return CAMBER_OK;
 }
@@ -66,7 +69,13 @@ void camber_mesh_destroy(camber_mesh *mesh) {
     camber_mesh_let_go(mesh);
     if (mesh->rows)
         clReleaseMemObject(mesh->rows);
+    camber_mesh **link = &mesh->device->meshes;
+    while (*link != mesh)
+        link = &(*link)->next;
+    *link = mesh->next;
     camber_free(context, mesh->host_rows);
+    mesh->row_capacity = mesh->host_row_capacity = 0;
+    camber_mesh_count(mesh);
     camber_free(context, mesh->polyline_rows);
     camber_free(context, mesh->first_slots);
     camber_free(context, mesh);
@@ -108,8 +117,11 @@ static camber_status count_joins(camber_mesh *mesh) {
     camber_mesh_info counts = mesh->mesh_info;
     camber_status status = CAMBER_OK;
     size_t segments = 0;
-    for (size_t i = 0; i < mesh->part_count && !mesh->joins_counted && status == CAMBER_OK; i++)
-        status = count_part(mesh, mesh->parts + i, &counts, &segments);
+    for (size_t i = 0; i < mesh->part_count && !mesh->joins_counted && status == CAMBER_OK; i++) {
+        status = camber_part_use(mesh, mesh->parts + i);
+        if (status == CAMBER_OK)
+            status = count_part(mesh, mesh->parts + i, &counts, &segments);
+    }
     if (status != CAMBER_OK || mesh->joins_counted)
         return status;
     counts.triangle_count = counts.strips ? 2 * segments : counts.index_count / 3;
@@ -137,13 +149,14 @@ camber_status camber_part_first_index(const camber_mesh *mesh, const camber_mesh
     return CAMBER_OK;
 }
 
-camber_status camber_mesh_first_index(const camber_mesh *mesh, size_t polyline, uint64_t *first_index) {
+camber_status camber_mesh_first_index(camber_mesh *mesh, size_t polyline, uint64_t *first_index) {
     size_t i = 0;
     while (i + 1 < mesh->part_count && mesh->parts[i + 1].first_polyline <= polyline)
         i++;
     uint64_t first = 0;
-    const camber_status status =
-        mesh->part_count ? camber_part_first_index(mesh, mesh->parts + i, polyline, &first) : CAMBER_OK;
+    camber_status status = mesh->part_count ? camber_part_use(mesh, mesh->parts + i) : CAMBER_OK;
+    if (status == CAMBER_OK && mesh->part_count)
+        status = camber_part_first_index(mesh, mesh->parts + i, polyline, &first);
     if (status == CAMBER_OK)
         *first_index = first + (mesh->part_count ? mesh->parts[i].first_index : 0);
     return status;
@@ -169,9 +182,11 @@ static camber_status read_buffer(const camber_mesh *mesh, const camber_buffer *b
     return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(mesh->device->context, "clEnqueueReadBuffer", code);
 }
 
-static camber_status read_part(const camber_mesh *mesh, camber_mesh_part *part, camber_mesh_data *data) {
+static camber_status read_part(camber_mesh *mesh, camber_mesh_part *part, camber_mesh_data *data) {
     const size_t buffer_count = camber_buffer_count(mesh);
-    camber_status status = mesh->ops->begin(mesh->ops_user, part->buffers, buffer_count);
+    camber_status status = camber_part_use(mesh, part);
+    if (status == CAMBER_OK)
+        status = mesh->ops->begin(mesh->ops_user, part->buffers, buffer_count);
     if (status != CAMBER_OK)
         return status;
     status = read_buffer(mesh, part->buffers + CAMBER_BUFFER_RECORDS, part->record_count * sizeof *data->records,

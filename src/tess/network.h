@@ -40,7 +40,8 @@ static inline size_t camber_network_first_point(const camber_network *network, s
 typedef struct camber_section {
     size_t first_entry, end_entry;
     size_t first_point, end_point;
-    cl_mem x, y, importance, runs, chunk_runs;
+    cl_mem x, y, importance, runs, chunk_runs; /* NULL: not there */
+    uint64_t held_bytes;
 } camber_section;
 
 /* What a mesh holds of a network. */
@@ -56,5 +57,9 @@ struct camber_held_network {
 };
 
 void camber_network_hold(camber_network *network);
+/* What a section takes; copied: the device does not read the network's own memory. */
+uint64_t camber_section_bytes(const camber_network *network, const camber_section *section, bool copied);
+void camber_section_count(const camber_mesh *mesh, camber_section *section);
+void camber_section_release(const camber_mesh *mesh, camber_section *section);
 
 #endif

@@ -11,18 +11,23 @@ static void release_mem(cl_mem *mem) {
     *mem = NULL;
 }
 
+void camber_section_release(const camber_mesh *mesh, camber_section *section) {
+    cl_mem *mems[] = {&section->x, &section->y, &section->importance, &section->runs, &section->chunk_runs};
+    for (size_t i = 0; i < sizeof mems / sizeof *mems; i++)
+        release_mem(mems[i]);
+    camber_section_count(mesh, section);
+}
+
 void camber_mesh_let_go(camber_mesh *mesh) {
     struct camber_held_network *held = mesh->held;
+    if (mesh->holds_polylines)
+        camber_polylines_destroy((camber_polylines *)(uintptr_t)mesh->polylines);
+    mesh->polylines = NULL;
+    mesh->holds_polylines = false;
     if (!held)
         return;
-    for (size_t i = 0; i < held->section_count; i++) {
-        camber_section *s = held->sections + i;
-        release_mem(&s->x);
-        release_mem(&s->y);
-        release_mem(&s->importance);
-        release_mem(&s->runs);
-        release_mem(&s->chunk_runs);
-    }
+    for (size_t i = 0; i < held->section_count; i++)
+        camber_section_release(mesh, held->sections + i);
     release_mem(&held->counts);
     release_mem(&held->bases);
     camber_free(mesh->device->context, held->sections);
@@ -30,6 +35,7 @@ void camber_mesh_let_go(camber_mesh *mesh) {
     camber_free(mesh->device->context, held);
     mesh->held = NULL;
     mesh->serial = 0;
+    camber_mesh_count(mesh);
 }
 
 /* A buffer that the kernels read. A device that works in host memory reads the network's own, which is held as long. */
@@ -66,36 +72,75 @@ static camber_status upload_chunk_runs(const camber_device *device, const camber
     return status;
 }
 
-static camber_status upload_section(const camber_device *device, const camber_network *network,
-                                    camber_section *section) {
+static camber_status upload_section(camber_mesh *mesh, camber_mesh_part *part) {
+    const camber_device *device = mesh->device;
+    const camber_network *network = mesh->held->network;
+    camber_section *section = mesh->held->sections + part->section;
+    if (section->x)
+        return CAMBER_OK;
+    const uint64_t size_bytes = camber_section_bytes(network, section, !device->host_memory);
+    camber_status status = camber_mesh_make_room(mesh, part, size_bytes);
+    if (status != CAMBER_OK)
+        return status;
     const size_t first = section->first_point, points = section->end_point - first;
     const size_t first_run = network->entry_runs[section->first_entry];
     const size_t runs = network->entry_runs[section->end_entry] - first_run + 1;
-    camber_status status = upload(device, network->x + first, 4 * points, true, &section->x);
+    status = upload(device, network->x + first, 4 * points, true, &section->x);
     if (status == CAMBER_OK)
         status = upload(device, network->y + first, 4 * points, true, &section->y);
     if (status == CAMBER_OK)
         status = upload(device, network->importance + first, 4 * points, true, &section->importance);
     if (status == CAMBER_OK)
         status = upload(device, network->runs + first_run, runs * sizeof *network->runs, true, &section->runs);
-    return status == CAMBER_OK ? upload_chunk_runs(device, network, section) : status;
+    if (status == CAMBER_OK)
+        status = upload_chunk_runs(device, network, section);
+    if (status == CAMBER_OK)
+        camber_section_count(mesh, section);
+    else
+        camber_section_release(mesh, section);
+    return status;
 }
 
 /* ---- Layout ---- */
 
-/* The largest buffer that the entries [first, end) take. */
-static uint64_t section_bytes(const camber_network *network, size_t first, size_t end) {
-    const uint64_t points = camber_network_first_point(network, end) - camber_network_first_point(network, first);
-    const uint64_t runs = (uint64_t)network->entry_runs[end] - network->entry_runs[first] + 1;
-    return 4 * points > runs * sizeof(camber_run) ? 4 * points : runs * sizeof(camber_run);
+static camber_section make_section(const camber_network *network, size_t first, size_t end) {
+    return (camber_section){.first_entry = first,
+                            .end_entry = end,
+                            .first_point = camber_network_first_point(network, first),
+                            .end_point = camber_network_first_point(network, end)};
+}
+
+static uint64_t bytes_of_runs(const camber_network *network, const camber_section *section) {
+    return ((uint64_t)network->entry_runs[section->end_entry] - network->entry_runs[section->first_entry] + 1) *
+           sizeof(camber_run);
+}
+
+static uint64_t larger_bytes(const camber_network *network, const camber_section *section) {
+    const uint64_t points = 4 * ((uint64_t)section->end_point - section->first_point);
+    const uint64_t runs = bytes_of_runs(network, section);
+    return points > runs ? points : runs;
+}
+
+uint64_t camber_section_bytes(const camber_network *network, const camber_section *section, bool copied) {
+    const uint64_t points = (uint64_t)section->end_point - section->first_point;
+    return (copied ? 12 * points + bytes_of_runs(network, section) : 0) + 4 * (uint64_t)chunks_of((size_t)points);
+}
+
+/* Whether the device makes the buffers of a section, and its share of memory takes them. */
+static bool fits(const camber_mesh *mesh, const camber_section *section) {
+    const camber_network *network = mesh->held->network;
+    return larger_bytes(network, section) <= mesh->device->info.largest_buffer_bytes &&
+           camber_section_bytes(network, section, true) <= camber_device_share(mesh->device, 1);
 }
 
 /* The entry behind the last that fits a section beginning with first; first itself where none does. */
-static size_t find_end(const camber_network *network, size_t first, uint64_t largest) {
+static size_t find_end(const camber_mesh *mesh, size_t first) {
+    const camber_network *network = mesh->held->network;
     size_t low = first, high = network->entry_count + 1;
     while (high - low > 1) {
         const size_t middle = low + (high - low) / 2;
-        if (section_bytes(network, first, middle) <= largest)
+        const camber_section section = make_section(network, first, middle);
+        if (fits(mesh, &section))
             low = middle;
         else
             high = middle;
@@ -103,29 +148,31 @@ static size_t find_end(const camber_network *network, size_t first, uint64_t lar
     return low;
 }
 
+static camber_status fail_entry(const camber_mesh *mesh, size_t entry) {
+    const camber_network *network = mesh->held->network;
+    const camber_section section = make_section(network, entry, entry + 1);
+    const uint64_t larger = larger_bytes(network, &section), all = camber_section_bytes(network, &section, true);
+    return larger > mesh->device->info.largest_buffer_bytes ? camber_fail_polyline(mesh, entry, larger)
+                                                            : camber_fail_memory(mesh, entry, 4 * all);
+}
+
 static camber_status lay_out(camber_mesh *mesh) {
     struct camber_held_network *held = mesh->held;
     const camber_network *network = held->network;
-    const uint64_t largest = mesh->device->info.largest_buffer_bytes;
     const size_t count = network->point_count ? network->entry_count : 0;
     for (size_t first = 0; first < count;) {
-        const size_t end = find_end(network, first, largest);
+        const size_t end = find_end(mesh, first);
         if (end == first)
-            return camber_fail_polyline(mesh, first, section_bytes(network, first, first + 1));
+            return fail_entry(mesh, first);
         if (!camber_grow(mesh->device->context, &held->sections, &held->section_capacity, held->section_count + 1,
                          sizeof *held->sections))
             return CAMBER_ERROR_MEMORY;
         camber_section *section = held->sections + held->section_count++;
-        *section = (camber_section){.first_entry = first,
-                                    .end_entry = end,
-                                    .first_point = camber_network_first_point(network, first),
-                                    .end_point = camber_network_first_point(network, end)};
+        *section = make_section(network, first, end);
         first = end;
         if (section->first_point == section->end_point)
             continue;
-        camber_status status = upload_section(mesh->device, network, section);
-        if (status == CAMBER_OK)
-            status = camber_mesh_add_part(mesh, section->first_entry, section->end_entry);
+        const camber_status status = camber_mesh_add_part(mesh, section->first_entry, section->end_entry);
         if (status != CAMBER_OK)
             return status;
     }
@@ -232,21 +279,29 @@ static camber_status run_stage(const camber_device *device, const camber_project
     return code == CL_SUCCESS ? CAMBER_OK : camber_fail_stage(device, "clEnqueueNDRangeKernel", s.name, code);
 }
 
-static camber_status reserve_chunks(const camber_mesh *mesh, camber_mesh_part *part, size_t chunks) {
+static camber_status reserve_chunks(camber_mesh *mesh, camber_mesh_part *part, size_t chunks) {
     struct camber_held_network *held = mesh->held;
-    if (!camber_grow(mesh->device->context, &part->chunk_bases, &part->chunk_capacity, chunks + 1,
-                     sizeof *part->chunk_bases))
+    const uint64_t on_host = chunks < part->chunk_capacity ? 0 : 8 * (uint64_t)chunks + 64;
+    camber_status status =
+        camber_mesh_make_room(mesh, part, on_host + (chunks <= held->chunk_capacity ? 0 : 8 * (uint64_t)chunks + 4));
+    if (status != CAMBER_OK)
+        return status;
+    const bool there = camber_grow(mesh->device->context, &part->chunk_bases, &part->chunk_capacity, chunks + 1,
+                                   sizeof *part->chunk_bases);
+    camber_part_count(mesh, part);
+    if (!there)
         return CAMBER_ERROR_MEMORY;
     if (chunks <= held->chunk_capacity)
         return CAMBER_OK;
     release_mem(&held->counts);
     release_mem(&held->bases);
     held->chunk_capacity = 0;
-    camber_status status = camber_make_buffer(mesh->device, 4 * chunks, &held->counts);
+    status = camber_make_buffer(mesh->device, 4 * chunks, &held->counts);
     if (status == CAMBER_OK)
         status = camber_make_buffer(mesh->device, 4 * (chunks + 1), &held->bases);
     if (status == CAMBER_OK)
         held->chunk_capacity = chunks;
+    camber_mesh_count(mesh);
     return status;
 }
 
@@ -278,12 +333,13 @@ static camber_status survey(camber_mesh *mesh, camber_mesh_part *part, const cam
 }
 
 /* Gives a part room for slots, and some more where the device has it: the next frame may take them. */
-static camber_status reserve_slots(const camber_device *device, camber_mesh_part *part, size_t slots) {
-    const size_t block = device->block, more = slots + slots / 4 / block * block;
-    const uint64_t largest = device->info.largest_buffer_bytes;
+static camber_status reserve_slots(camber_mesh *mesh, camber_mesh_part *part, size_t slots) {
+    const size_t block = mesh->device->block, more = slots + slots / 4 / block * block;
+    const uint64_t largest = mesh->device->info.largest_buffer_bytes;
+    const bool enough = slots <= part->slot_capacity || 4 * ((uint64_t)more + 2) > largest ||
+                        !camber_device_is_roomy(mesh->device, camber_input_bytes(mesh->device, more));
     part->slot_count = slots;
-    return camber_part_reserve(device, part,
-                               slots <= part->slot_capacity || 4 * ((uint64_t)more + 2) > largest ? slots : more);
+    return camber_part_reserve(mesh, part, enough ? slots : more);
 }
 
 camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, bool *fits) {
@@ -294,7 +350,9 @@ camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, boo
     part->slot_count = part->record_count = part->vertex_count = part->index_count = 0;
     if (p.begin == p.end)
         return CAMBER_OK;
-    camber_status status = reserve_chunks(mesh, part, part_chunks(&p));
+    camber_status status = upload_section(mesh, part);
+    if (status == CAMBER_OK)
+        status = reserve_chunks(mesh, part, part_chunks(&p));
     if (status == CAMBER_OK)
         status = survey(mesh, part, &p, &slots);
     const uint64_t padded = (slots + block - 1) / block * block;
@@ -305,7 +363,11 @@ camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, boo
         *fits = false;
         return part->polyline_count > 1 ? CAMBER_OK : camber_fail_polyline(mesh, part->first_polyline, size_bytes);
     }
-    status = reserve_slots(device, part, (size_t)padded);
+    if (!camber_part_may_hold(mesh, part, padded)) {
+        *fits = false;
+        return CAMBER_OK;
+    }
+    status = reserve_slots(mesh, part, (size_t)padded);
     if (status == CAMBER_OK)
         status = camber_write_buffer(device, mesh->held->bases, 0, 4 * (part_chunks(&p) + 1), part->chunk_bases);
     if (status != CAMBER_OK)

@@ -1,5 +1,5 @@
 /* The parts of a mesh: which polylines each has, its buffers, and what is uploaded to them. */
-#include "tess/tess.h"
+#include "tess/network.h"
 
 #include <string.h>
 
@@ -21,15 +21,47 @@ camber_status camber_write_buffer(const camber_device *device, cl_mem mem, size_
     return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(device->context, "clEnqueueWriteBuffer", code);
 }
 
+enum { INPUTS = 7 };
+
+static void list_input(camber_mesh_part *part, cl_mem *mems[INPUTS]) {
+    cl_mem *const list[INPUTS] = {&part->x,       &part->y,    &part->info, &part->joins,
+                                  &part->offsets, &part->sums, &part->bases};
+    memcpy(mems, list, sizeof list);
+}
+
 static void release_input(camber_mesh_part *part) {
-    cl_mem *mems[] = {&part->x, &part->y, &part->info, &part->joins, &part->offsets, &part->sums, &part->bases};
-    for (size_t i = 0; i < sizeof mems / sizeof *mems; i++) {
+    cl_mem *mems[INPUTS];
+    list_input(part, mems);
+    for (size_t i = 0; i < INPUTS; i++) {
         if (*mems[i])
             clReleaseMemObject(*mems[i]);
         *mems[i] = NULL;
     }
     part->slot_capacity = 0;
-    part->uploaded = false;
+    part->uploaded = part->made = false;
+}
+
+void camber_part_take(camber_mesh_part *part, camber_mesh_part *from) {
+    cl_mem *to[INPUTS], *mems[INPUTS];
+    list_input(part, to);
+    list_input(from, mems);
+    for (size_t i = 0; i < INPUTS; i++) {
+        *to[i] = *mems[i];
+        *mems[i] = NULL;
+    }
+    for (int i = 0; i < 2; i++) {
+        part->buffers[i] = from->buffers[i];
+        from->buffers[i] = (camber_buffer){0};
+    }
+    part->slot_capacity = from->slot_capacity;
+    part->host_bases = from->host_bases;
+    part->base_capacity = from->base_capacity;
+    part->chunk_bases = from->chunk_bases;
+    part->chunk_capacity = from->chunk_capacity;
+    from->host_bases = NULL;
+    from->chunk_bases = NULL;
+    from->slot_capacity = from->base_capacity = from->chunk_capacity = 0;
+    from->uploaded = from->made = false;
 }
 
 static camber_status reserve_input(const camber_device *device, camber_mesh_part *part, size_t slots) {
@@ -55,20 +87,55 @@ static camber_status reserve_input(const camber_device *device, camber_mesh_part
     return CAMBER_OK;
 }
 
-camber_status camber_part_reserve(const camber_device *device, camber_mesh_part *part, size_t slots) {
-    const camber_status status = reserve_input(device, part, slots);
+/* Of a part's input, and of what the host keeps beside it: camber_grow may double that, and gives some at least. */
+static uint64_t bytes_of_slots(const camber_mesh *mesh, const camber_mesh_part *part, size_t slots) {
+    const uint64_t chunks = mesh->held ? (part->end_point - part->first_point) / CAMBER_CHUNK + 3 : 0;
+    const uint64_t blocks = slots / mesh->device->block;
+    return camber_input_bytes(mesh->device, slots) + 2 * (16 * (blocks + 1) + 4 * chunks) + 256;
+}
+
+camber_status camber_part_reserve(camber_mesh *mesh, camber_mesh_part *part, size_t slots) {
+    const camber_device *device = mesh->device;
+    const uint64_t wanted = bytes_of_slots(mesh, part, slots);
+    if (wanted > camber_device_share(device, 4))
+        return camber_fail_memory(mesh, part->first_polyline, wanted);
+    camber_status status = CAMBER_OK;
+    if (slots > part->slot_capacity)
+        status = camber_mesh_make_room(mesh, part, wanted - camber_input_bytes(device, part->slot_capacity));
+    if (status == CAMBER_OK)
+        status = reserve_input(device, part, slots);
     if (status == CAMBER_OK && !camber_grow(device->context, &part->host_bases, &part->base_capacity,
                                             2 * (part->slot_capacity / device->block + 1), sizeof *part->host_bases))
-        return CAMBER_ERROR_MEMORY;
+        status = CAMBER_ERROR_MEMORY;
+    camber_part_count(mesh, part);
     return status;
 }
 
-static void release_part(camber_mesh *mesh, camber_mesh_part *part) {
+camber_status camber_part_reserve_output(camber_mesh *mesh, camber_mesh_part *part, size_t which, size_t size_bytes) {
+    camber_buffer *buffer = part->buffers + which;
+    camber_status status = CAMBER_OK;
+    if (size_bytes > buffer->capacity_bytes)
+        status = camber_mesh_make_room(mesh, part, mesh->buffer_copies * (size_bytes - buffer->capacity_bytes));
+    if (status == CAMBER_OK)
+        status = mesh->ops->reserve(mesh->ops_user, buffer, size_bytes);
+    camber_part_count(mesh, part);
+    return status;
+}
+
+void camber_part_empty(camber_mesh *mesh, camber_mesh_part *part) {
     for (int i = 0; i < 2; i++)
         mesh->ops->release(mesh->ops_user, part->buffers + i);
     release_input(part);
     camber_free(mesh->device->context, part->host_bases);
     camber_free(mesh->device->context, part->chunk_bases);
+    part->host_bases = NULL;
+    part->chunk_bases = NULL;
+    part->base_capacity = part->chunk_capacity = 0;
+    camber_part_count(mesh, part);
+}
+
+static void release_part(camber_mesh *mesh, camber_mesh_part *part) {
+    camber_part_empty(mesh, part);
     *part = (camber_mesh_part){0};
 }
 
@@ -99,7 +166,7 @@ static void set_polylines(const camber_mesh *mesh, camber_mesh_part *part, size_
     part->first_slot = mesh->held ? 0 : mesh->first_slots[first];
     part->slot_count = (slots + block - 1) / block * block;
     part->record_count = part->vertex_count = part->index_count = 0;
-    part->uploaded = false;
+    part->uploaded = part->made = false;
     if (mesh->held)
         camber_part_set_points(mesh, part);
 }
@@ -115,6 +182,14 @@ camber_status camber_fail_polyline(const camber_mesh *mesh, size_t polyline, uin
                        "simplify it",
                        polyline, (unsigned long long)size_bytes, device->info.name,
                        (unsigned long long)device->info.largest_buffer_bytes);
+}
+
+camber_status camber_fail_memory(const camber_mesh *mesh, size_t polyline, uint64_t size_bytes) {
+    const camber_device *device = mesh->device;
+    return camber_fail(device->context, CAMBER_ERROR_LIMIT,
+                       "polyline %zu takes %llu bytes, more than half of the %llu that meshes may hold; allow more "
+                       "memory, cut the polyline in two, or simplify it",
+                       polyline, (unsigned long long)size_bytes, (unsigned long long)device->memory_bytes);
 }
 
 /* The polyline behind the last that fits a part of so many slots beginning with first. */
@@ -138,14 +213,25 @@ void camber_mesh_trim_parts(camber_mesh *mesh) {
         release_part(mesh, mesh->parts + i);
 }
 
+/* Slots of a part that its share of memory takes, with a record each or a little more: a block at least. */
+static uint64_t shared_slots(const camber_mesh *mesh) {
+    const size_t block = mesh->device->block;
+    const uint64_t block_bytes = camber_input_bytes(mesh->device, block) + 20 * mesh->buffer_copies * block;
+    const uint64_t blocks = camber_device_share(mesh->device, 1) / block_bytes;
+    return (blocks ? blocks : 1) * block;
+}
+
 static camber_status lay_out(camber_mesh *mesh) {
     const size_t block = mesh->device->block, ghosts = 2;
-    const uint64_t words = mesh->device->info.largest_buffer_bytes / 4;
+    const uint64_t words = mesh->device->info.largest_buffer_bytes / 4, shared = shared_slots(mesh);
     const uint64_t room = words > ghosts ? (words - ghosts) / block * block : 0;
     const size_t slots_max = room < UINT32_MAX ? (size_t)room : UINT32_MAX;
+    const size_t slots = shared < slots_max ? (size_t)shared : slots_max;
     const size_t polyline_count = mesh->first_slots[mesh->polyline_count] ? mesh->polyline_count : 0;
     for (size_t first = 0; first < polyline_count; mesh->part_count++) {
-        const size_t end = find_end(mesh, first, slots_max);
+        size_t end = find_end(mesh, first, slots);
+        if (end == first && mesh->first_slots[first + 1] - mesh->first_slots[first] <= slots_max)
+            end = first + 1;
         if (end == first)
             return camber_fail_polyline(
                 mesh, first, 4 * ((uint64_t)mesh->first_slots[first + 1] - mesh->first_slots[first] + ghosts));
@@ -158,13 +244,23 @@ static camber_status lay_out(camber_mesh *mesh) {
     return CAMBER_OK;
 }
 
+static void hold_polylines(camber_mesh *mesh, const camber_polylines *polylines) {
+    mesh->holds_polylines = mesh->device->memory_bytes > 0;
+    mesh->polylines = polylines;
+    if (mesh->holds_polylines) /* what is counted is not what they are */
+        camber_polylines_hold((camber_polylines *)(uintptr_t)polylines);
+}
+
 camber_status camber_mesh_plan(camber_mesh *mesh, const camber_polylines *polylines) {
     camber_context *context = mesh->device->context;
     const size_t count = polylines->polyline_count;
-    if (mesh->serial == polylines->serial)
+    if (mesh->serial == polylines->serial) {
+        mesh->polylines = polylines;
         return CAMBER_OK;
+    }
     camber_mesh_let_go(mesh);
     mesh->serial = mesh->part_count = mesh->polyline_count = 0;
+    hold_polylines(mesh, polylines);
     if (!camber_grow(context, &mesh->first_slots, &mesh->polyline_capacity, count + 1, sizeof *mesh->first_slots) ||
         !camber_grow(context, &mesh->polyline_rows, &mesh->row_list_capacity, count, sizeof *mesh->polyline_rows))
         return CAMBER_ERROR_MEMORY;
@@ -179,12 +275,13 @@ camber_status camber_mesh_plan(camber_mesh *mesh, const camber_polylines *polyli
     return status;
 }
 
-camber_status camber_part_upload(const camber_mesh *mesh, camber_mesh_part *part, const camber_polylines *polylines) {
+camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part) {
     static const cl_uint zeros[CAMBER_BLOCK + 2];
     const camber_device *device = mesh->device;
-    if (part->uploaded)
+    const camber_polylines *polylines = mesh->polylines;
+    if (part->uploaded || part->slot_count == 0)
         return CAMBER_OK;
-    camber_status status = camber_part_reserve(device, part, part->slot_count);
+    camber_status status = camber_part_reserve(mesh, part, part->slot_count);
     const size_t words = part->slot_count + 2, first = part->first_slot;
     const size_t end = part->first_polyline + part->polyline_count;
     /* The neighbour before, the part's slots, and ghosts: the polylines' own padding, or zeros. */
@@ -212,16 +309,65 @@ camber_status camber_part_upload(const camber_mesh *mesh, camber_mesh_part *part
 
 /* ---- Splitting ---- */
 
-typedef struct output_size {
-    uint64_t records, indices;
-} output_size;
+typedef struct part_size {
+    uint64_t slots, records, indices;
+} part_size;
 
-/* Of the buffers of a part's output. Where a record is a slot, the kernel writes whole blocks of them. */
-static uint64_t larger_bytes(const camber_mesh *mesh, output_size size) {
-    const uint64_t block = mesh->device->block, whole = (size.records + block - 1) / block * block;
-    const uint64_t record_bytes = (mesh->mesh_info.strips ? size.records : whole) * sizeof(camber_record);
-    const uint64_t index_bytes = mesh->mesh_info.strips ? 0 : 4 * size.indices;
-    return record_bytes > index_bytes ? record_bytes : index_bytes;
+static uint64_t whole_blocks(const camber_mesh *mesh, uint64_t slots) {
+    const uint64_t block = mesh->device->block;
+    return (slots + block - 1) / block * block;
+}
+
+/* Where a record is a slot, the kernel writes whole blocks of them. */
+static uint64_t record_bytes(const camber_mesh *mesh, part_size size) {
+    return (mesh->mesh_info.strips ? size.records : whole_blocks(mesh, size.records)) * sizeof(camber_record);
+}
+
+static uint64_t index_bytes(const camber_mesh *mesh, part_size size) {
+    return mesh->mesh_info.strips ? 0 : 4 * (size.indices ? size.indices : 1); /* no buffer is empty */
+}
+
+static uint64_t need(const camber_mesh *mesh, const camber_mesh_part *part, part_size size) {
+    return bytes_of_slots(mesh, part, (size_t)whole_blocks(mesh, size.slots)) +
+           mesh->buffer_copies * (record_bytes(mesh, size) + index_bytes(mesh, size));
+}
+
+uint64_t camber_part_need(const camber_mesh *mesh, const camber_mesh_part *part) {
+    return need(mesh, part, (part_size){part->slot_count, part->record_count, part->index_count});
+}
+
+uint64_t camber_part_output_lacks(const camber_mesh *mesh, const camber_mesh_part *part) {
+    const part_size size = {part->slot_count, part->record_count, part->index_count};
+    const uint64_t sizes[2] = {record_bytes(mesh, size), index_bytes(mesh, size)};
+    uint64_t lacks = 0;
+    for (size_t i = 0; i < camber_buffer_count(mesh); i++)
+        if (sizes[i] > part->buffers[i].capacity_bytes)
+            lacks += sizes[i] - part->buffers[i].capacity_bytes;
+    return mesh->buffer_copies * lacks;
+}
+
+/* Whether a part of this size is too large for the device, or for so many eighths of what meshes may hold. */
+static bool is_too_large(const camber_mesh *mesh, const camber_mesh_part *part, part_size size, unsigned eighths) {
+    const uint64_t records = record_bytes(mesh, size), indices = index_bytes(mesh, size);
+    return (records > indices ? records : indices) > mesh->device->info.largest_buffer_bytes ||
+           need(mesh, part, size) > camber_device_share(mesh->device, eighths);
+}
+
+/* Of a part of one polyline and of several: see memory.c. */
+enum { ALONE = 4, TOGETHER = 1 };
+
+bool camber_part_may_hold(const camber_mesh *mesh, const camber_mesh_part *part, uint64_t slots) {
+    return part->polyline_count == 1 ||
+           need(mesh, part, (part_size){slots, slots, 0}) <= camber_device_share(mesh->device, TOGETHER);
+}
+
+static camber_status fail_alone(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline,
+                                part_size size) {
+    const uint64_t records = record_bytes(mesh, size), indices = index_bytes(mesh, size);
+    const uint64_t larger = records > indices ? records : indices;
+    return larger > mesh->device->info.largest_buffer_bytes
+               ? camber_fail_polyline(mesh, polyline, larger)
+               : camber_fail_memory(mesh, polyline, need(mesh, part, size));
 }
 
 size_t camber_part_records(const camber_mesh *mesh, const camber_mesh_part *part) {
@@ -230,37 +376,39 @@ size_t camber_part_records(const camber_mesh *mesh, const camber_mesh_part *part
 }
 
 bool camber_part_fits(const camber_mesh *mesh, const camber_mesh_part *part) {
-    const output_size size = {part->record_count, part->index_count};
-    return larger_bytes(mesh, size) <= mesh->device->info.largest_buffer_bytes;
+    const part_size size = {part->slot_count, part->record_count, part->index_count};
+    return !is_too_large(mesh, part, size, part->polyline_count > 1 ? TOGETHER : ALONE);
 }
 
 /* What the part has before a polyline. */
-static output_size size_before(const camber_mesh *mesh, const camber_mesh_part *part, const cl_uint *offsets,
-                               size_t polyline) {
+static part_size size_before(const camber_mesh *mesh, const camber_mesh_part *part, const cl_uint *offsets,
+                             size_t polyline) {
     const size_t slot = camber_part_slot(mesh, part, polyline), block = slot / mesh->device->block;
     const cl_uint packed = slot < part->slot_count ? offsets[slot] : 0;
     const uint64_t indices = part->host_bases[2 * block + 1] + (packed >> 16);
-    return (output_size){mesh->mesh_info.strips ? indices / 2 : slot, indices};
+    return (part_size){slot, mesh->mesh_info.strips ? indices / 2 : slot, indices};
+}
+
+static part_size less(part_size a, part_size b) {
+    return (part_size){a.slots - b.slots, a.records - b.records, a.indices - b.indices};
 }
 
 /* The polylines that parts after the first begin with: as many in each part as its output buffers take. */
 static camber_status find_cuts(const camber_mesh *mesh, const camber_mesh_part *part, const cl_uint *offsets,
                                size_t **cuts, size_t *cut_count) {
-    const uint64_t limit = mesh->device->info.largest_buffer_bytes;
     const size_t end = part->first_polyline + part->polyline_count;
-    size_t capacity = 0;
-    output_size start = {0, 0}, before = {0, 0};
-    for (size_t i = part->first_polyline; i < end; i++) {
-        const output_size after = size_before(mesh, part, offsets, i + 1);
-        const output_size together = {after.records - start.records, after.indices - start.indices};
-        if (larger_bytes(mesh, together) > limit) {
-            const output_size alone = {after.records - before.records, after.indices - before.indices};
-            if (larger_bytes(mesh, alone) > limit)
-                return camber_fail_polyline(mesh, i, larger_bytes(mesh, alone));
+    size_t capacity = 0, first = part->first_polyline;
+    part_size start = {0, 0, 0}, before = {0, 0, 0};
+    for (size_t i = first; i < end; i++) {
+        const part_size after = size_before(mesh, part, offsets, i + 1), alone = less(after, before);
+        if (is_too_large(mesh, part, alone, ALONE))
+            return fail_alone(mesh, part, i, alone);
+        if (i > first && is_too_large(mesh, part, less(after, start), TOGETHER)) {
             if (!camber_grow(mesh->device->context, cuts, &capacity, *cut_count + 1, sizeof **cuts))
                 return CAMBER_ERROR_MEMORY;
             (*cuts)[(*cut_count)++] = i;
             start = before;
+            first = i;
         }
         before = after;
     }

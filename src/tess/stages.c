@@ -60,9 +60,10 @@ camber_status camber_mesh_read_stages(camber_mesh *mesh, camber_stages *stages) 
     camber_stages made = {0};
     camber_status status = CAMBER_OK;
     for (size_t i = 0; i < mesh->part_count && mesh->done && status == CAMBER_OK; i++) {
-        const camber_mesh_part *part = mesh->parts + i;
+        camber_mesh_part *part = mesh->parts + i;
         if (part->slot_count == 0)
             continue;
+        status = camber_part_use(mesh, part);
         const size_t words = part->slot_count + 2;
         const arrays seen = {
             .x = map(mesh, part->x, words, &status),

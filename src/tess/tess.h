@@ -22,6 +22,9 @@ struct camber_device {
     size_t block;                       /* points a work-group: CAMBER_BLOCK as its kernels see it */
     struct camber_program *programs[3]; /* by camber_method, built when first used */
     struct camber_program *network_program;
+    /* What its meshes may hold (0: what they want), hold, and held at most. */
+    uint64_t memory_bytes, held_bytes, most_held_bytes;
+    camber_mesh *meshes; /* each knows the next */
 };
 
 /* What a surface tells OpenCL about its GL context, for cl_khr_gl_sharing. Zero: it cannot be told. */
@@ -89,6 +92,8 @@ typedef struct camber_mesh_part {
     size_t slot_capacity;
     uint64_t *host_bases; /* first vertex and first index of each block, and the totals behind the last */
     size_t base_capacity;
+    bool made; /* its buffers hold what the last tessellation made of it */
+    uint64_t held_bytes;
     size_t record_count, vertex_count, index_count;
     size_t first_record, first_vertex, first_index; /* of the mesh: what the parts before have */
 } camber_mesh_part;
@@ -98,7 +103,15 @@ struct camber_mesh {
     camber_renderer *renderer; /* NULL: cannot be drawn */
     const camber_buffer_ops *ops;
     void *ops_user;
+    unsigned buffer_copies; /* of each output buffer in memory */
+    camber_mesh *next;      /* of the device */
+    uint64_t held_bytes;    /* beside its parts and sections */
+    size_t remade_parts;
+    bool is_full; /* a part had to go since the last tessellation, or was never made */
 
+    /* What parts are made of; NULL: of a network. Held where parts may have to be made again. */
+    const camber_polylines *polylines;
+    bool holds_polylines;
     /* Of the polylines last tessellated: polyline_count + 1 slots, where a polyline begins; polyline_count rows. */
     uint64_t serial;                  /* 0: of none */
     struct camber_held_network *held; /* NULL: not of a network, whose polylines have no first_slots */
@@ -124,6 +137,8 @@ enum { CAMBER_BUFFER_RECORDS, CAMBER_BUFFER_INDICES };
 
 camber_status camber_mesh_create_on(camber_device *device, const camber_buffer_ops *ops, void *ops_user,
                                     camber_mesh **mesh);
+/* Makes a part, a pointer into mesh->parts, again unless its buffers hold it. Others may go. */
+camber_status camber_part_use(camber_mesh *mesh, camber_mesh_part *part);
 /* First slot of a polyline in its part; the part's first polyline + polyline_count gives the end. */
 size_t camber_part_slot(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline);
 /* How many of a part's output buffers there are. */
@@ -135,7 +150,7 @@ static inline size_t camber_buffer_count(const camber_mesh *mesh) {
 camber_status camber_part_first_index(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline,
                                       uint64_t *first_index);
 /* The same in the indices of the mesh, as camber_mesh_read gives them. */
-camber_status camber_mesh_first_index(const camber_mesh *mesh, size_t polyline, uint64_t *first_index);
+camber_status camber_mesh_first_index(camber_mesh *mesh, size_t polyline, uint64_t *first_index);
 
 /* parts.c: lays out the parts of a mesh, each small enough for the device to upload; keeps them, and what is uploaded,
  * where the polylines are those of last time. CAMBER_ERROR_LIMIT names a polyline that fits no part. */
@@ -145,15 +160,28 @@ camber_status camber_mesh_plan(camber_mesh *mesh, const camber_polylines *polyli
 camber_status camber_mesh_split(camber_mesh *mesh, size_t which);
 size_t camber_part_records(const camber_mesh *mesh, const camber_mesh_part *part);
 bool camber_part_fits(const camber_mesh *mesh, const camber_mesh_part *part);
-camber_status camber_part_upload(const camber_mesh *mesh, camber_mesh_part *part, const camber_polylines *polylines);
+camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part);
 void camber_mesh_release_parts(camber_mesh *mesh);
+/* Lets go of a part's buffers. */
+void camber_part_empty(camber_mesh *mesh, camber_mesh_part *part);
+/* Gives an empty part the buffers of another. */
+void camber_part_take(camber_mesh_part *part, camber_mesh_part *from);
 /* Room for slots in the buffers of a part's input and its host_bases. */
-camber_status camber_part_reserve(const camber_device *device, camber_mesh_part *part, size_t slots);
+camber_status camber_part_reserve(camber_mesh *mesh, camber_mesh_part *part, size_t slots);
+/* The bytes that a part takes: input and output. */
+uint64_t camber_part_need(const camber_mesh *mesh, const camber_mesh_part *part);
+/* What its output buffers lack for its output. */
+uint64_t camber_part_output_lacks(const camber_mesh *mesh, const camber_mesh_part *part);
+/* Whether a part of several polylines may have so many slots in its share of memory. */
+bool camber_part_may_hold(const camber_mesh *mesh, const camber_mesh_part *part, uint64_t slots);
+/* Makes room in an output buffer and counts it. */
+camber_status camber_part_reserve_output(camber_mesh *mesh, camber_mesh_part *part, size_t which, size_t size_bytes);
 /* Frees what parts past the mesh's hold, but for the first. */
 void camber_mesh_trim_parts(camber_mesh *mesh);
 /* Adds an empty part, or cuts one in two at the middle of its polylines. */
 camber_status camber_mesh_add_part(camber_mesh *mesh, size_t first_polyline, size_t end_polyline);
 camber_status camber_mesh_halve(camber_mesh *mesh, size_t which);
+camber_status camber_fail_memory(const camber_mesh *mesh, size_t polyline, uint64_t size_bytes);
 camber_status camber_fail_polyline(const camber_mesh *mesh, size_t polyline, uint64_t size_bytes);
 
 /* network_parts.c: the same for a network, which is uploaded here. */
@@ -170,6 +198,23 @@ size_t camber_part_network_slot(const camber_mesh *mesh, const camber_mesh_part 
 /* Adds the time of a command to ms and releases the event, which may be NULL. */
 void camber_add_ms(cl_event event, double *ms);
 camber_status camber_fail_stage(const camber_device *device, const char *call, const char *name, cl_int code);
+
+/* memory.c. So many eighths of what the device's meshes may hold. */
+uint64_t camber_device_share(const camber_device *device, unsigned eighths);
+/* Whether there is room for that much many times over. */
+bool camber_device_is_roomy(const camber_device *device, uint64_t size_bytes);
+/* Counts what is held anew, after buffers have been made or let go. */
+void camber_part_count(const camber_mesh *mesh, camber_mesh_part *part);
+void camber_mesh_count(camber_mesh *mesh);
+/* Of a part's input for so many slots. */
+uint64_t camber_input_bytes(const camber_device *device, size_t slots);
+/* Lets parts and sections go, those of other meshes before the mesh's own, until so many more bytes can be held. keep
+ * and its section stay, and with spare_made all parts of the mesh that are made. */
+bool camber_mesh_has_room(camber_mesh *mesh, const camber_mesh_part *keep, uint64_t more_bytes, bool spare_made);
+/* The same, sparing none; CAMBER_ERROR_LIMIT where it does not help. */
+camber_status camber_mesh_make_room(camber_mesh *mesh, const camber_mesh_part *keep, uint64_t more_bytes);
+/* Where no room is left for so many bytes, gives a part without buffers those of the part that would have to go. */
+void camber_part_adopt(camber_mesh *mesh, camber_mesh_part *part, uint64_t wanted_bytes);
 
 /* Ends what ops->begin began on a part's output. Gives status where that is a failure, whose story is told. */
 camber_status camber_part_finish(const camber_mesh *mesh, camber_mesh_part *part, bool written, camber_status status);

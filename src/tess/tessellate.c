@@ -107,8 +107,9 @@ static camber_status reserve_output(camber_mesh *mesh, camber_mesh_part *part) {
     for (size_t i = 0; i < camber_buffer_count(mesh); i++) {
         /* The next frame of a network may take a little more. */
         const size_t room = sizes[i] + (mesh->held ? sizes[i] / 4 : 0), most = mesh->device->info.largest_buffer_bytes;
-        const size_t size_bytes = sizes[i] <= part->buffers[i].capacity_bytes || room > most ? sizes[i] : room;
-        const camber_status status = mesh->ops->reserve(mesh->ops_user, part->buffers + i, size_bytes);
+        const bool enough = sizes[i] <= part->buffers[i].capacity_bytes || room > most ||
+                            !camber_device_is_roomy(mesh->device, mesh->buffer_copies * room);
+        const camber_status status = camber_part_reserve_output(mesh, part, i, enough ? sizes[i] : room);
         if (status != CAMBER_OK)
             return status;
         part->buffers[i].used_bytes = sizes[i];
@@ -145,65 +146,135 @@ static camber_status emit(camber_mesh *mesh, camber_mesh_part *part, const cambe
 
 /* ---- Parts ---- */
 
+static camber_status reserve_rows(camber_mesh *mesh, size_t count) {
+    const size_t row_bytes = sizeof *mesh->host_rows;
+    if (!camber_grow(mesh->device->context, &mesh->host_rows, &mesh->host_row_capacity, count, row_bytes))
+        return CAMBER_ERROR_MEMORY;
+    if (count <= mesh->row_capacity)
+        return CAMBER_OK;
+    if (mesh->rows)
+        clReleaseMemObject(mesh->rows);
+    mesh->rows = NULL;
+    mesh->row_capacity = 0;
+    const camber_status status = camber_make_buffer(mesh->device, count * row_bytes, &mesh->rows);
+    if (status == CAMBER_OK)
+        mesh->row_capacity = count;
+    return status;
+}
+
 static camber_status upload_rows(camber_mesh *mesh, const camber_row *rows, size_t row_count) {
     const camber_device *device = mesh->device;
     const size_t count = row_count + 1; /* never empty */
-    if (!camber_grow(device->context, &mesh->host_rows, &mesh->host_row_capacity, count, sizeof *rows))
-        return CAMBER_ERROR_MEMORY;
-    memcpy(mesh->host_rows, rows, count * sizeof *rows);
     if (count * sizeof *rows > device->info.largest_buffer_bytes)
         return camber_fail(device->context, CAMBER_ERROR_LIMIT,
                            "%zu strokes take a buffer of %zu bytes, and %s makes none above %llu; merge equal ones",
                            row_count, count * sizeof *rows, device->info.name,
                            (unsigned long long)device->info.largest_buffer_bytes);
-    if (count > mesh->row_capacity) {
-        if (mesh->rows)
-            clReleaseMemObject(mesh->rows);
-        mesh->rows = NULL;
-        mesh->row_capacity = 0;
-        const camber_status status = camber_make_buffer(device, count * sizeof *rows, &mesh->rows);
-        if (status != CAMBER_OK)
-            return status;
-        mesh->row_capacity = count;
-    }
+    /* Here and on the device, and half as many again where more come than last time. */
+    const uint64_t size_bytes = count * sizeof *rows * 5 / 2;
+    if (size_bytes > camber_device_share(device, 1))
+        return camber_fail(device->context, CAMBER_ERROR_LIMIT,
+                           "%zu strokes take %llu bytes, more than an eighth of the %llu that meshes may hold; allow "
+                           "more memory, or merge equal ones",
+                           row_count, (unsigned long long)size_bytes, (unsigned long long)device->memory_bytes);
+    camber_status status = camber_mesh_make_room(mesh, NULL, count > mesh->row_capacity ? size_bytes : 0);
+    if (status == CAMBER_OK)
+        status = reserve_rows(mesh, count);
+    camber_mesh_count(mesh);
+    if (status != CAMBER_OK)
+        return status;
+    memcpy(mesh->host_rows, rows, count * sizeof *rows);
     return camber_write_buffer(device, mesh->rows, 0, count * sizeof *rows, rows);
 }
 
-/* Part after part; one whose output turns out too large is split, and what takes its place is done anew. polylines
- * NULL: the slots of the network that the mesh holds. */
-static camber_status run_parts(camber_mesh *mesh, const camber_polylines *polylines, const camber_program *program) {
+/* A part's slots, and what its output takes. *fits is false where the slots are too many. */
+static camber_status prepare(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program, bool *fits) {
+    camber_status status = mesh->held ? camber_part_project(mesh, part, fits) : camber_part_upload(mesh, part);
+    if (status == CAMBER_OK && *fits && part->slot_count > 0)
+        status = measure(mesh, part, program);
+    if (mesh->held) {
+        camber_add_ms(mesh->held->projected, &mesh->mesh_info.project_ms);
+        mesh->held->projected = NULL;
+    }
+    return status;
+}
+
+static camber_status make(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program) {
+    const camber_status status = part->record_count > 0 ? emit(mesh, part, program) : CAMBER_OK;
+    part->made = status == CAMBER_OK;
+    return status;
+}
+
+/* Numbers a part's output behind that of the parts before. */
+static camber_status number(camber_mesh *mesh, camber_mesh_part *part) {
     camber_mesh_info *info = &mesh->mesh_info;
+    part->first_record = info->record_count;
+    part->first_vertex = info->vertex_count;
+    part->first_index = info->index_count;
+    info->record_count += part->record_count;
+    info->vertex_count += part->vertex_count;
+    info->index_count += part->index_count;
+    return info->record_count > camber_records_max(info->method)
+               ? camber_fail_records(mesh->device->context, info->method)
+               : CAMBER_OK;
+}
+
+/* Part after part; one whose output turns out too large is split, and what takes its place is done anew. Once memory is
+ * full, parts are measured only: the first ones stay, and are what is drawn first. */
+static camber_status run_parts(camber_mesh *mesh, const camber_program *program) {
     camber_status status = CAMBER_OK;
+    mesh->is_full = false;
     for (size_t i = 0; i < mesh->part_count && status == CAMBER_OK;) {
         camber_mesh_part *part = mesh->parts + i;
         bool fits = true;
-        status = polylines ? camber_part_upload(mesh, part, polylines) : camber_part_project(mesh, part, &fits);
+        camber_part_adopt(mesh, part, camber_device_share(mesh->device, 1));
+        status = prepare(mesh, part, program, &fits);
         if (status == CAMBER_OK && !fits) {
             status = camber_mesh_halve(mesh, i);
             continue;
-        }
-        if (status == CAMBER_OK && part->slot_count > 0)
-            status = measure(mesh, part, program);
-        if (mesh->held) {
-            camber_add_ms(mesh->held->projected, &info->project_ms);
-            mesh->held->projected = NULL;
         }
         if (status == CAMBER_OK && !camber_part_fits(mesh, part)) {
             status = camber_mesh_split(mesh, i);
             continue;
         }
-        part->first_record = info->record_count;
-        part->first_vertex = info->vertex_count;
-        part->first_index = info->index_count;
-        info->record_count += part->record_count;
-        info->vertex_count += part->vertex_count;
-        info->index_count += part->index_count;
-        if (status == CAMBER_OK && info->record_count > camber_records_max(info->method))
-            status = camber_fail_records(mesh->device->context, info->method);
-        if (status == CAMBER_OK && part->record_count > 0)
-            status = emit(mesh, part, program);
+        if (status == CAMBER_OK)
+            status = number(mesh, part);
+        if (!mesh->is_full && !camber_mesh_has_room(mesh, part, camber_part_output_lacks(mesh, part), true))
+            mesh->is_full = true;
+        if (status == CAMBER_OK && !mesh->is_full)
+            status = make(mesh, part, program);
         i++;
     }
+    return status;
+}
+
+camber_status camber_part_use(camber_mesh *mesh, camber_mesh_part *part) {
+    const camber_device *device = mesh->device;
+    const camber_mesh_info told = mesh->mesh_info;
+    const size_t slots = part->slot_count, records = part->record_count, vertices = part->vertex_count,
+                 indices = part->index_count;
+    camber_program *program = NULL;
+    bool fits = true;
+    if (part->made || part->slot_count == 0)
+        return CAMBER_OK;
+    camber_status status = camber_device_program(mesh->device, told.method, &program);
+    if (status == CAMBER_OK) {
+        camber_part_adopt(mesh, part, camber_part_need(mesh, part));
+        status = prepare(mesh, part, program, &fits);
+    }
+    if (status == CAMBER_OK && (!fits || part->record_count != records || part->index_count != indices))
+        status = camber_fail(device->context, CAMBER_ERROR_DEVICE,
+                             "%s: a part of a mesh has %zu records and now %zu; update the driver or try another "
+                             "device",
+                             device->info.name, records, part->record_count);
+    if (status == CAMBER_OK)
+        status = make(mesh, part, program);
+    part->slot_count = slots;
+    part->record_count = records;
+    part->vertex_count = vertices;
+    part->index_count = indices;
+    mesh->mesh_info = told;
+    mesh->remade_parts++;
     return status;
 }
 
@@ -235,6 +306,9 @@ static camber_status tessellate(camber_mesh *mesh, const source *from, const cam
         mesh->round_caps |= desc->strokes[i].cap == CAMBER_CAP_ROUND;
     }
     mesh->mesh_info = nothing;
+    mesh->remade_parts = 0;
+    for (size_t i = 0; i < mesh->part_capacity; i++)
+        mesh->parts[i].made = false;
     camber_status status = camber_rows_create(context, from->row_count, desc, &rows);
     if (status == CAMBER_OK)
         status = plan(mesh, from, desc);
@@ -243,7 +317,7 @@ static camber_status tessellate(camber_mesh *mesh, const source *from, const cam
         if (status == CAMBER_OK)
             status = upload_rows(mesh, rows, desc->stroke_count);
         if (status == CAMBER_OK)
-            status = run_parts(mesh, from->polylines, program);
+            status = run_parts(mesh, program);
         if (status == CAMBER_OK && mesh->mesh_info.record_count > 0)
             camber_program_save(mesh->device, program);
         if (status == CAMBER_OK && mesh->held && mesh->mesh_info.record_count > 0)
@@ -254,6 +328,8 @@ static camber_status tessellate(camber_mesh *mesh, const source *from, const cam
     }
     if (status != CAMBER_OK)
         mesh->mesh_info = nothing;
+    if (!mesh->holds_polylines)
+        mesh->polylines = NULL; /* read during the call only */
     mesh->done = status == CAMBER_OK;
     mesh->empty = mesh->mesh_info.vertex_count == 0;
     camber_free(context, rows);

@@ -1,0 +1,146 @@
+/* What the meshes of a device hold, and which of their parts give way where that is bounded.
+ *
+ * A bound is shared out in eighths: one for strokes and counts, one for the network's section that is read, four for a
+ * part of a single polyline, two for what is left over in buffers that a part takes from another. Parts of several
+ * polylines take one, so that what is there need not all go for the next. */
+#include "tess/network.h"
+
+uint64_t camber_device_share(const camber_device *device, unsigned eighths) {
+    return device->memory_bytes ? device->memory_bytes / 8 * eighths : UINT64_MAX;
+}
+
+bool camber_device_is_roomy(const camber_device *device, uint64_t size_bytes) {
+    return !device->memory_bytes || device->held_bytes + size_bytes <= camber_device_share(device, 4);
+}
+
+/* ---- Counting ---- */
+
+static void count(camber_device *device, uint64_t *held_bytes, uint64_t now_bytes) {
+    device->held_bytes += now_bytes - *held_bytes;
+    *held_bytes = now_bytes;
+    if (device->held_bytes > device->most_held_bytes)
+        device->most_held_bytes = device->held_bytes;
+}
+
+uint64_t camber_input_bytes(const camber_device *device, size_t slots) {
+    const uint64_t blocks = slots / device->block, words = slots ? (uint64_t)slots + 2 : 0;
+    return 16 * words + 4 * (uint64_t)slots + (4 + 16) * blocks;
+}
+
+void camber_part_count(const camber_mesh *mesh, camber_mesh_part *part) {
+    uint64_t bytes = camber_input_bytes(mesh->device, part->slot_capacity);
+    bytes += part->base_capacity * sizeof *part->host_bases + part->chunk_capacity * sizeof *part->chunk_bases;
+    for (int i = 0; i < 2; i++)
+        bytes += mesh->buffer_copies * (uint64_t)part->buffers[i].capacity_bytes;
+    count(mesh->device, &part->held_bytes, bytes);
+}
+
+void camber_section_count(const camber_mesh *mesh, camber_section *section) {
+    const bool copied = !mesh->device->host_memory;
+    count(mesh->device, &section->held_bytes,
+          section->x ? camber_section_bytes(mesh->held->network, section, copied) : 0);
+}
+
+void camber_mesh_count(camber_mesh *mesh) {
+    uint64_t bytes = mesh->row_capacity * sizeof *mesh->host_rows + mesh->host_row_capacity * sizeof *mesh->host_rows;
+    if (mesh->held)
+        bytes += 8 * (uint64_t)mesh->held->chunk_capacity;
+    count(mesh->device, &mesh->held_bytes, bytes);
+}
+
+camber_device_memory camber_device_get_memory(const camber_device *device) {
+    return (camber_device_memory){device->memory_bytes, device->held_bytes, device->most_held_bytes};
+}
+
+camber_mesh_memory camber_mesh_get_memory(const camber_mesh *mesh) {
+    camber_mesh_memory memory = {
+        .parts = mesh->part_count, .remade_parts = mesh->remade_parts, .held_bytes = mesh->held_bytes};
+    for (size_t i = 0; i < mesh->part_capacity; i++) {
+        memory.held_bytes += mesh->parts[i].held_bytes;
+        memory.resident_parts += i < mesh->part_count && mesh->parts[i].made;
+    }
+    for (size_t i = 0; mesh->held && i < mesh->held->section_count; i++)
+        memory.held_bytes += mesh->held->sections[i].held_bytes;
+    return memory;
+}
+
+/* ---- Giving way ---- */
+
+/* The part that goes first of those that hold something: one whose output is not there, else the one whose turn comes
+ * last when parts are gone through in order again and again from keep on. NULL: none. */
+static camber_mesh_part *find_victim(const camber_mesh *mesh, const camber_mesh_part *keep, bool spare_made) {
+    const size_t from = keep ? (size_t)(keep - mesh->parts) : 0;
+    camber_mesh_part *victim = NULL;
+    for (size_t i = 1; i <= mesh->part_capacity; i++) {
+        camber_mesh_part *part = mesh->parts + (from + i) % mesh->part_capacity;
+        if (part == keep || part->held_bytes == 0 || (spare_made && part->made))
+            continue;
+        if (!victim || victim->made || !part->made)
+            victim = part;
+    }
+    return victim;
+}
+
+/* Sections come back from host memory. */
+static bool drop_section(camber_mesh *mesh, const camber_mesh_part *keep) {
+    for (size_t i = 0; mesh->held && i < mesh->held->section_count; i++)
+        if (mesh->held->sections[i].held_bytes && !(keep && keep->section == i)) {
+            camber_section_release(mesh, mesh->held->sections + i);
+            return true;
+        }
+    return false;
+}
+
+static bool drop_part(camber_mesh *mesh, const camber_mesh_part *keep, bool spare_made) {
+    camber_mesh_part *victim = find_victim(mesh, keep, spare_made);
+    if (!victim)
+        return false;
+    mesh->is_full |= victim->made;
+    camber_part_empty(mesh, victim);
+    return true;
+}
+
+/* What the other meshes of the device have. */
+static bool drop_of_others(const camber_mesh *mesh) {
+    for (camber_mesh *other = mesh->device->meshes; other; other = other->next)
+        if (other != mesh && (drop_part(other, NULL, false) || drop_section(other, NULL)))
+            return true;
+    return false;
+}
+
+bool camber_mesh_has_room(camber_mesh *mesh, const camber_mesh_part *keep, uint64_t more_bytes, bool spare_made) {
+    const camber_device *device = mesh->device;
+    while (device->memory_bytes && device->held_bytes + more_bytes > device->memory_bytes)
+        if (!drop_part(mesh, keep, true) && !drop_of_others(mesh) && !drop_section(mesh, keep) &&
+            (spare_made || !drop_part(mesh, keep, false)))
+            return false;
+    return true;
+}
+
+camber_status camber_mesh_make_room(camber_mesh *mesh, const camber_mesh_part *keep, uint64_t more_bytes) {
+    const camber_device *device = mesh->device;
+    if (camber_mesh_has_room(mesh, keep, more_bytes, false))
+        return CAMBER_OK;
+    return camber_fail(device->context, CAMBER_ERROR_LIMIT,
+                       "meshes hold %llu bytes that cannot go, %llu more are needed, and %llu are allowed; allow more "
+                       "memory, or destroy meshes",
+                       (unsigned long long)device->held_bytes, (unsigned long long)more_bytes,
+                       (unsigned long long)device->memory_bytes);
+}
+
+void camber_part_adopt(camber_mesh *mesh, camber_mesh_part *part, uint64_t wanted_bytes) {
+    const camber_device *device = mesh->device;
+    if (!device->memory_bytes)
+        return;
+    if (part->held_bytes > camber_device_share(device, 2))
+        camber_part_empty(mesh, part);
+    if (part->held_bytes || device->held_bytes + wanted_bytes <= device->memory_bytes)
+        return;
+    camber_mesh_part *victim = find_victim(mesh, part, false);
+    if (!victim || victim->held_bytes > camber_device_share(device, 2))
+        return;
+    mesh->is_full |= victim->made;
+    camber_part_take(part, victim);
+    camber_part_count(mesh, victim);
+    camber_part_count(mesh, part);
+}

@@ -1,0 +1,776 @@
+/* Meshes in bounded memory: what is read, told, drawn and counted is the same as without a bound, no more is held than
+ * allowed, parts that are not there are made again, and what cannot fit is refused by name. */
+#include "picture.h"
+
+#include "tess/network.h"
+
+/* ---- What OpenCL holds ---- */
+
+enum { MEMS_MAX = 4096 };
+
+/* Buffers of the watched context that have not been released. Those on host memory take none of their own. */
+static struct {
+    cl_context context;
+    cl_mem mems[MEMS_MAX];
+    size_t bytes[MEMS_MAX];
+    size_t count, held_bytes, most_bytes;
+    int refuse_in; /* buffers: the last of so many is refused. 0: none is */
+} watch;
+
+cl_mem __real_clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void *memory, cl_int *code);
+cl_mem __wrap_clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void *memory, cl_int *code);
+cl_int __real_clReleaseMemObject(cl_mem mem);
+cl_int __wrap_clReleaseMemObject(cl_mem mem);
+
+cl_mem __wrap_clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void *memory, cl_int *code) {
+    if (context == watch.context && watch.refuse_in && --watch.refuse_in == 0) {
+        *code = CL_MEM_OBJECT_ALLOCATION_FAILURE;
+        return NULL;
+    }
+    const cl_mem mem = __real_clCreateBuffer(context, flags, size, memory, code);
+    /* Zero copy puts an output buffer on GL's memory, which is the mesh's; a network's memory is its own. */
+    if (context != watch.context || !mem || flags == (CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR))
+        return mem;
+    assert_true(watch.count < MEMS_MAX);
+    watch.mems[watch.count] = mem;
+    watch.bytes[watch.count++] = size;
+    watch.held_bytes += size;
+    watch.most_bytes = watch.held_bytes > watch.most_bytes ? watch.held_bytes : watch.most_bytes;
+    return mem;
+}
+
+cl_int __wrap_clReleaseMemObject(cl_mem mem) {
+    for (size_t i = 0; i < watch.count; i++)
+        if (watch.mems[i] == mem) {
+            watch.held_bytes -= watch.bytes[i];
+            watch.mems[i] = watch.mems[--watch.count];
+            watch.bytes[i] = watch.bytes[watch.count];
+        }
+    return __real_clReleaseMemObject(mem);
+}
+
+/* ---- Devices with a bound ---- */
+
+typedef struct bench {
+    host h;
+    camber_context *context;
+    camber_device *device;
+    camber_mesh *mesh;
+} bench;
+
+static void bench_open(bench *b, uint64_t memory_bytes, uint32_t work_group_size) {
+    const camber_device_desc desc = {.work_group_size = work_group_size, .memory_bytes = memory_bytes};
+    b->context = host_context(&b->h);
+    assert_int_equal(camber_device_create(b->context, &desc, NULL, &b->device), CAMBER_OK);
+    assert_int_equal(camber_mesh_create(b->device, NULL, &b->mesh), CAMBER_OK);
+    memset(&watch, 0, sizeof watch);
+    watch.context = b->device->cl;
+}
+
+/* What is counted is what OpenCL was asked for, and no more than allowed. */
+static void assert_bounded(const camber_device *device) {
+    const camber_device_memory memory = camber_device_get_memory(device);
+    if (watch.context != device->cl)
+        return;
+    assert_true(memory.held_bytes <= memory.most_bytes && memory.most_bytes > 0);
+    assert_true(watch.held_bytes <= memory.held_bytes && watch.most_bytes <= memory.most_bytes);
+    if (memory.allowed_bytes)
+        assert_true(memory.most_bytes <= memory.allowed_bytes);
+}
+
+static void bench_close(bench *b) {
+    assert_bounded(b->device);
+    camber_mesh_destroy(b->mesh);
+    assert_true(camber_device_get_memory(b->device).held_bytes == 0);
+    if (watch.context == b->device->cl)
+        assert_int_equal(watch.count, 0);
+    camber_device_destroy(b->device);
+    host_done(&b->h, b->context);
+}
+
+typedef struct result {
+    camber_mesh_data mesh;
+    camber_stages stages;
+    camber_mesh_memory memory;
+} result;
+
+static result read_result(bench *b, camber_mesh *mesh) {
+    result r = {.memory = camber_mesh_get_memory(mesh)};
+    assert_int_equal(camber_mesh_read(mesh, &r.mesh), CAMBER_OK);
+    assert_int_equal(camber_mesh_read_stages(mesh, &r.stages), CAMBER_OK);
+    const camber_mesh_info told = camber_mesh_get_info(mesh);
+    assert_memory_equal(&told, &r.mesh.info, sizeof told);
+    assert_bounded(b->device);
+    return r;
+}
+
+static void free_result(bench *b, result *r) {
+    camber_mesh_data_free(b->context, &r->mesh);
+    camber_stages_free(b->context, &r->stages);
+}
+
+static void assert_same(const result *a, const result *b) {
+    camber_mesh_info x = a->mesh.info, y = b->mesh.info;
+    x.classify_ms = x.scan_ms = x.emit_ms = x.survey_ms = x.project_ms = 0;
+    y.classify_ms = y.scan_ms = y.emit_ms = y.survey_ms = y.project_ms = 0;
+    assert_memory_equal(&x, &y, sizeof x);
+    assert_memory_equal(a->mesh.records, b->mesh.records, x.record_count * sizeof *a->mesh.records);
+    if (a->mesh.corners)
+        assert_memory_equal(a->mesh.corners, b->mesh.corners, x.index_count * sizeof *a->mesh.corners);
+    assert_memory_equal(a->mesh.vertices, b->mesh.vertices, x.vertex_count * sizeof *a->mesh.vertices);
+    assert_memory_equal(a->mesh.indices, b->mesh.indices, x.index_count * sizeof *a->mesh.indices);
+    assert_int_equal(a->stages.point_count, b->stages.point_count);
+    assert_memory_equal(a->stages.points, b->stages.points, a->stages.point_count * sizeof *a->stages.points);
+}
+
+/* Lines, rings, dots, empty polylines, split ones, and none that is long. */
+static scene make_scene(int repeats) {
+    scene s = {0};
+    uint64_t seed = 21;
+    for (int i = 0; i < repeats; i++) {
+        scene_walks(&s, &seed);
+        scene_degenerate(&s, &seed);
+        scene_rings(&s, &seed);
+    }
+    return s;
+}
+
+/* ---- Polylines ---- */
+
+static void test_same_bytes(void **state) {
+    (void)state;
+    static const uint64_t limits[] = {1 << 16, 1 << 18, 1 << 19, 1 << 20, 1 << 26};
+    camber_stroke strokes[SCENE_ROWS];
+    scene_strokes(strokes);
+    scene s = make_scene(2);
+    bench whole;
+    bench_open(&whole, 0, 0);
+    result wanted[3];
+    for (int method = 0; method < 3; method++) {
+        const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)method, 0};
+        camber_polylines *polylines = scene_polylines(whole.context, &s);
+        assert_int_equal(camber_tessellate(whole.mesh, polylines, &desc), CAMBER_OK);
+        camber_polylines_destroy(polylines);
+        wanted[method] = read_result(&whole, whole.mesh);
+        assert_int_equal(wanted[method].memory.parts, 1);
+        assert_int_equal(wanted[method].memory.resident_parts, 1);
+        assert_int_equal(camber_mesh_get_memory(whole.mesh).remade_parts, 0);
+    }
+    for (size_t i = 0; i < 2 * sizeof limits / sizeof *limits; i++) {
+        bench b;
+        bench_open(&b, limits[i / 2], i % 2 ? 64 : 256);
+        for (int method = 0; method < 3; method++) {
+            const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)method, 0};
+            camber_polylines *polylines = scene_polylines(b.context, &s);
+            assert_int_equal(camber_tessellate(b.mesh, polylines, &desc), CAMBER_OK);
+            camber_polylines_destroy(polylines); /* the mesh keeps what it needs */
+            result r = read_result(&b, b.mesh);
+            assert_same(&r, wanted + method);
+            const camber_mesh_memory now = camber_mesh_get_memory(b.mesh);
+            const bool all = limits[i / 2] == 1 << 26;
+            assert_true(all ? r.memory.parts == 1 : r.memory.parts > 4);
+            if (limits[i / 2] < 1 << 20) {
+                assert_true(r.memory.resident_parts < r.memory.parts && r.memory.resident_parts > 0);
+                assert_true(now.remade_parts > r.memory.parts - r.memory.resident_parts);
+            } else if (all) {
+                assert_int_equal(r.memory.resident_parts, 1);
+                assert_int_equal(now.remade_parts, 0);
+            }
+            if (method == 0 || limits[i / 2] <= 1 << 18)
+                print_message("%llu bytes, method %d: %zu of %zu parts stay, %zu made again; %zu of OpenCL at most\n",
+                              (unsigned long long)limits[i / 2], method, r.memory.resident_parts, r.memory.parts,
+                              now.remade_parts, watch.most_bytes);
+            free_result(&b, &r);
+        }
+        bench_close(&b);
+    }
+    for (int method = 0; method < 3; method++)
+        free_result(&whole, wanted + method);
+    bench_close(&whole);
+    scene_free(&s);
+}
+
+/* What stays is used: of the bound three quarters at least are full, and reading in order makes no part again that is
+ * there. */
+static void test_keeps_what_fits(void **state) {
+    (void)state;
+    camber_stroke strokes[SCENE_ROWS];
+    scene_strokes(strokes);
+    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0};
+    scene s = make_scene(6);
+    bench b;
+    bench_open(&b, 3 << 19, 64);
+    camber_polylines *polylines = scene_polylines(b.context, &s);
+    assert_int_equal(camber_tessellate(b.mesh, polylines, &desc), CAMBER_OK);
+    const camber_mesh_memory before = camber_mesh_get_memory(b.mesh);
+    assert_true(before.held_bytes > (3 << 19) / 4 * 3);
+    assert_true(before.resident_parts >= 5 && before.resident_parts < before.parts - 2);
+    for (int round = 1; round <= 3; round++) {
+        camber_mesh_data data;
+        camber_stages stages;
+        assert_int_equal(camber_mesh_read_stages(b.mesh, &stages), CAMBER_OK);
+        camber_stages_free(b.context, &stages);
+        const camber_mesh_memory after = camber_mesh_get_memory(b.mesh);
+        /* All that were not there, and of those that were at most the one whose place the others took. */
+        const size_t gone = before.parts - before.resident_parts;
+        assert_in_range(after.remade_parts, (size_t)round * (gone - 1), (size_t)round * (gone + 1));
+        if (round == 3) {
+            assert_int_equal(camber_mesh_read(b.mesh, &data), CAMBER_OK);
+            camber_mesh_data_free(b.context, &data);
+        }
+    }
+    camber_polylines_destroy(polylines);
+    bench_close(&b);
+    scene_free(&s);
+}
+
+/* ---- Networks ---- */
+
+static const double WORLD_UNIT = 1e-7;
+
+static camber_network *make_network(camber_context *context, const scene *s) {
+    double *points = malloc((s->point_count + 1) * 2 * sizeof *points);
+    size_t *offsets = malloc((s->polyline_count + 1) * sizeof *offsets);
+    camber_network_entry *entries = calloc(s->polyline_count + 1, sizeof *entries);
+    camber_network *network = NULL;
+    assert_true(points && offsets && entries);
+    for (size_t i = 0; i < 2 * s->point_count; i++)
+        points[i] = 0.4 + WORLD_UNIT * (double)s->points[i];
+    for (size_t i = 0; i <= s->polyline_count; i++)
+        offsets[i] = s->offsets[i];
+    for (size_t i = 0; i < s->polyline_count; i++)
+        entries[i] = (camber_network_entry){(uint32_t)i, s->rows[i], 0};
+    const camber_network_desc desc = {.points = points,
+                                      .offsets = offsets,
+                                      .polyline_count = s->polyline_count,
+                                      .entries = entries,
+                                      .entry_count = s->polyline_count};
+    assert_int_equal(camber_network_create(context, &desc, &network), CAMBER_OK);
+    free(entries);
+    free(offsets);
+    free(points);
+    return network;
+}
+
+static camber_camera camera_at(double scale_px, double bearing_deg) {
+    return (camber_camera){.x = 0.4 + 480 * WORLD_UNIT,
+                           .y = 0.4 + 510 * WORLD_UNIT,
+                           .scale_px = scale_px / WORLD_UNIT,
+                           .bearing_deg = bearing_deg,
+                           .width = 600,
+                           .height = 500};
+}
+
+/* A flight over a network, on a device that reads its memory and on one that has to be given copies. */
+static void test_networks(void **state) {
+    (void)state;
+    static const uint64_t limits[] = {1 << 17, 300000, 1 << 20};
+    static const double scales[] = {0.6, 2, 0.05, 10, 0.6};
+    camber_stroke strokes[SCENE_ROWS];
+    scene_strokes(strokes);
+    scene s = make_scene(2);
+    bench whole;
+    bench_open(&whole, 0, 0);
+    camber_network *network = make_network(whole.context, &s);
+    size_t remade = 0;
+    for (size_t i = 0; i < 6; i++) {
+        bench b;
+        bench_open(&b, limits[i / 2], 64);
+        b.device->host_memory &= i % 2 == 0;
+        camber_network *own = make_network(b.context, &s);
+        for (size_t k = 0; k < sizeof scales / sizeof *scales; k++) {
+            const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)(k % 3), 0};
+            const camber_camera camera = camera_at(scales[k], 30.0 * (double)k);
+            assert_int_equal(camber_tessellate_network(whole.mesh, network, &camera, &desc), CAMBER_OK);
+            assert_int_equal(camber_tessellate_network(b.mesh, own, &camera, &desc), CAMBER_OK);
+            if (k == 4)
+                camber_network_destroy(own);
+            result wanted = read_result(&whole, whole.mesh), r = read_result(&b, b.mesh);
+            assert_same(&r, &wanted);
+            remade += camber_mesh_get_memory(b.mesh).remade_parts;
+            if (k == 4)
+                print_message("%llu bytes, %s: %zu sections, %zu of %zu parts stay; %zu of OpenCL at most\n",
+                              (unsigned long long)limits[i / 2], i % 2 ? "copied" : "shared",
+                              b.mesh->held->section_count, r.memory.resident_parts, r.memory.parts, watch.most_bytes);
+            free_result(&b, &r);
+            free_result(&whole, &wanted);
+        }
+        if (i < 2)
+            assert_true(b.mesh->held->section_count > 8);
+        bench_close(&b);
+    }
+    assert_true(remade > 100);
+    camber_network_destroy(network);
+    bench_close(&whole);
+    scene_free(&s);
+}
+
+/* ---- Several meshes ---- */
+
+/* Meshes of one device share its memory: what one needs, another gives, and has again when it is asked. */
+static void test_meshes_share(void **state) {
+    (void)state;
+    camber_stroke strokes[SCENE_ROWS];
+    scene_strokes(strokes);
+    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_FAN, 0};
+    scene s = make_scene(1);
+    bench whole, b;
+    bench_open(&whole, 0, 0);
+    camber_polylines *polylines = scene_polylines(whole.context, &s);
+    assert_int_equal(camber_tessellate(whole.mesh, polylines, &desc), CAMBER_OK);
+    camber_polylines_destroy(polylines);
+    result wanted = read_result(&whole, whole.mesh);
+    bench_open(&b, 1200000, 64);
+    camber_mesh *meshes[4] = {b.mesh};
+    camber_network *network = make_network(b.context, &s);
+    const camber_camera camera = camera_at(1, 0);
+    polylines = scene_polylines(b.context, &s);
+    for (int i = 1; i < 4; i++)
+        assert_int_equal(camber_mesh_create(b.device, NULL, meshes + i), CAMBER_OK);
+    for (int round = 0; round < 2; round++) {
+        for (int i = 0; i < 4; i++)
+            if (i < 3)
+                assert_int_equal(camber_tessellate(meshes[i], polylines, &desc), CAMBER_OK);
+            else
+                assert_int_equal(camber_tessellate_network(meshes[i], network, &camera, &desc), CAMBER_OK);
+        size_t there = 0, all = 0;
+        for (int i = 0; i < 4; i++) {
+            const camber_mesh_memory memory = camber_mesh_get_memory(meshes[i]);
+            there += memory.resident_parts;
+            all += memory.parts;
+        }
+        assert_true(there > 0 && there < all);
+        for (int i = 2; i >= 0; i--) {
+            result r = read_result(&b, meshes[i]);
+            assert_same(&r, &wanted);
+            free_result(&b, &r);
+        }
+    }
+    uint64_t held = 0;
+    for (int i = 0; i < 4; i++)
+        held += camber_mesh_get_memory(meshes[i]).held_bytes;
+    assert_true(held == camber_device_get_memory(b.device).held_bytes);
+    for (int i = 3; i > 0; i--)
+        camber_mesh_destroy(meshes[i == 3 ? 1 : i == 1 ? 3 : i]);
+    camber_polylines_destroy(polylines);
+    camber_network_destroy(network);
+    bench_close(&b);
+    free_result(&whole, &wanted);
+    bench_close(&whole);
+    scene_free(&s);
+}
+
+/* ---- Limits ---- */
+
+static void test_too_small(void **state) {
+    (void)state;
+    host h;
+    camber_context *context = host_context(&h);
+    static const uint64_t bad[] = {1, 65535};
+    for (size_t i = 0; i < 2; i++) {
+        camber_device *device = NULL;
+        assert_int_equal(camber_device_create(context, &(camber_device_desc){.memory_bytes = bad[i]}, NULL, &device),
+                         CAMBER_ERROR_ARGUMENT);
+        assert_null(device);
+        assert_story(&h, "of memory for meshes; it must be 65536 or more");
+    }
+    host_done(&h, context);
+}
+
+/* The mesh of what was refused is empty, and takes what fits. */
+static void assert_goes_on(bench *b, const camber_tessellation_desc *desc) {
+    scene s = {0};
+    camber_mesh_data data, twin;
+    assert_int_equal(camber_mesh_read(b->mesh, &data), CAMBER_OK);
+    assert_int_equal(data.info.vertex_count, 0);
+    camber_mesh_data_free(b->context, &data);
+    for (int i = 0; i < 40; i++)
+        scene_point(&s, 3 * i, i % 3);
+    scene_end(&s, 0);
+    camber_polylines *polylines = scene_polylines(b->context, &s);
+    assert_int_equal(camber_tessellate(b->mesh, polylines, desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_read(b->mesh, &data), CAMBER_OK);
+    assert_int_equal(camber_tessellate_on_host(b->context, polylines, desc, &twin), CAMBER_OK);
+    assert_int_equal(data.info.record_count, twin.info.record_count);
+    assert_memory_equal(data.records, twin.records, twin.info.record_count * sizeof *twin.records);
+    camber_mesh_data_free(b->context, &data);
+    camber_mesh_data_free(b->context, &twin);
+    camber_polylines_destroy(polylines);
+    scene_free(&s);
+    assert_bounded(b->device);
+}
+
+static void test_too_long(void **state) {
+    (void)state;
+    static const struct {
+        size_t points;
+        bool fits, fits_network;
+    } cases[] = {{900, true, true}, {5000, false, false}, {30000, false, false}};
+    const camber_stroke stroke = {2, CAMBER_JOIN_ROUND, CAMBER_CAP_ROUND, 0};
+    const camber_tessellation_desc desc = {&stroke, 1, CAMBER_METHOD_STRIP, 0};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        bench b;
+        scene s = {0};
+        uint64_t seed = 2;
+        bench_open(&b, 1 << 17, 64);
+        for (size_t i = 0; i < 60; i++) {
+            scene_walk(&s, &seed, i == 41 ? cases[k].points : 30, (const double[]){0.5, 5}, 1);
+            scene_end(&s, 0);
+        }
+        camber_polylines *polylines = scene_polylines(b.context, &s);
+        camber_network *network = make_network(b.context, &s);
+        const camber_camera camera = camera_at(0.1, 0);
+        for (int time = 0; time < 2; time++) {
+            assert_int_equal(camber_tessellate(b.mesh, polylines, &desc),
+                             cases[k].fits ? CAMBER_OK : CAMBER_ERROR_LIMIT);
+            if (!cases[k].fits) {
+                assert_story(&b.h, "polyline 41 takes ");
+                assert_non_null(strstr(b.h.last, "of the 131072 that meshes may hold; allow more memory, "));
+                assert_goes_on(&b, &desc);
+            }
+            assert_int_equal(camber_tessellate_network(b.mesh, network, &camera, &desc),
+                             cases[k].fits_network ? CAMBER_OK : CAMBER_ERROR_LIMIT);
+            if (!cases[k].fits_network) {
+                assert_story(&b.h, "polyline 41 takes ");
+                assert_goes_on(&b, &desc);
+            }
+        }
+        camber_network_destroy(network);
+        camber_polylines_destroy(polylines);
+        scene_free(&s);
+        bench_close(&b);
+    }
+}
+
+static void test_too_many_strokes(void **state) {
+    (void)state;
+    enum { STROKES = 300 };
+    static camber_stroke strokes[STROKES];
+    bench b;
+    bench_open(&b, 65536, 0);
+    scene s = {0};
+    scene_point(&s, 0, 0);
+    scene_point(&s, 9, 9);
+    scene_end(&s, 0);
+    camber_polylines *polylines = scene_polylines(b.context, &s);
+    assert_int_equal(
+        camber_tessellate(b.mesh, polylines, &(camber_tessellation_desc){strokes, STROKES, CAMBER_METHOD_STRIP, 0}),
+        CAMBER_ERROR_LIMIT);
+    assert_story(&b.h, "300 strokes take ");
+    assert_goes_on(&b, &(camber_tessellation_desc){strokes, 50, CAMBER_METHOD_STRIP, 0});
+    camber_polylines_destroy(polylines);
+    scene_free(&s);
+    bench_close(&b);
+}
+
+/* ---- Failures ---- */
+
+/* Each buffer that a mesh with parts to make again asks for is refused once: the call says so, the next one works. */
+static void test_refused_buffers(void **state) {
+    (void)state;
+    camber_stroke strokes[SCENE_ROWS];
+    scene_strokes(strokes);
+    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0};
+    scene s = make_scene(1);
+    bench b;
+    bench_open(&b, 300000, 64);
+    camber_polylines *polylines = scene_polylines(b.context, &s);
+    assert_int_equal(camber_tessellate(b.mesh, polylines, &desc), CAMBER_OK);
+    result wanted = read_result(&b, b.mesh);
+    size_t refused = 0;
+    for (int n = 1; n < 60; n++) {
+        camber_stages stages;
+        watch.refuse_in = n;
+        const camber_status made = camber_tessellate(b.mesh, polylines, &desc);
+        const camber_status read = made == CAMBER_OK ? camber_mesh_read_stages(b.mesh, &stages) : made;
+        if (read == CAMBER_OK)
+            camber_stages_free(b.context, &stages);
+        if (!watch.refuse_in) {
+            assert_int_equal(read, CAMBER_ERROR_MEMORY);
+            assert_story(&b.h, "clCreateBuffer");
+            refused += made == CAMBER_OK;
+        }
+        watch.refuse_in = 0;
+        if (made != CAMBER_OK)
+            assert_int_equal(camber_tessellate(b.mesh, polylines, &desc), CAMBER_OK);
+        result r = read_result(&b, b.mesh);
+        assert_same(&r, &wanted);
+        free_result(&b, &r);
+    }
+    assert_true(refused > 5);
+    free_result(&b, &wanted);
+    camber_polylines_destroy(polylines);
+    bench_close(&b);
+    scene_free(&s);
+}
+
+typedef struct attempt {
+    camber_device *device;
+    const camber_polylines *polylines;
+    camber_network *network;
+    const camber_tessellation_desc *desc;
+} attempt;
+
+static camber_status try_parts(camber_context *context, void *user) {
+    const attempt *a = user;
+    camber_mesh *mesh = NULL;
+    camber_mesh_data data;
+    const camber_camera camera = camera_at(1, 0);
+    camber_status status = camber_mesh_create(a->device, NULL, &mesh);
+    for (int i = 0; i < 2 && status == CAMBER_OK; i++) {
+        status = i ? camber_tessellate_network(mesh, a->network, &camera, a->desc)
+                   : camber_tessellate(mesh, a->polylines, a->desc);
+        if (status == CAMBER_OK)
+            status = camber_mesh_read(mesh, &data);
+        if (status == CAMBER_OK)
+            camber_mesh_data_free(context, &data);
+    }
+    camber_mesh_destroy(mesh);
+    return status;
+}
+
+static void test_allocations(void **state) {
+    (void)state;
+    camber_stroke strokes[SCENE_ROWS];
+    scene_strokes(strokes);
+    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0};
+    scene s = {0};
+    uint64_t seed = 3;
+    scene_walks(&s, &seed);
+    bench b;
+    bench_open(&b, 150000, 64);
+    camber_polylines *polylines = scene_polylines(b.context, &s);
+    camber_network *network = make_network(b.context, &s);
+    attempt a = {b.device, polylines, network, &desc};
+    assert_int_equal(try_parts(b.context, &a), CAMBER_OK); /* builds the kernels */
+    each_allocation_fails(&b.h, try_parts, b.context, &a);
+    camber_network_destroy(network);
+    camber_polylines_destroy(polylines);
+    bench_close(&b);
+    scene_free(&s);
+}
+
+/* ---- Pictures ---- */
+
+enum { SIDE_PX = 192, PASSES = 5 };
+
+typedef struct easel {
+    host h;
+    camber_context *context;
+    camber_surface *surface;
+    camber_device *device;
+    camber_renderer *renderer;
+    camber_mesh *mesh;
+    camber_paint opaque[SCENE_ROWS], glass[SCENE_ROWS], plain[SCENE_ROWS];
+    camber_pass passes[PASSES];
+} easel;
+
+static void easel_close(easel *e) {
+    camber_mesh_destroy(e->mesh);
+    camber_renderer_destroy(e->renderer);
+    if (e->device)
+        assert_true(camber_device_get_memory(e->device).held_bytes == 0);
+    camber_device_destroy(e->device);
+    camber_surface_destroy(e->surface);
+    host_done(&e->h, e->context);
+}
+
+/* false: this back end or this path is not here. */
+static bool easel_open(easel *e, uint64_t memory_bytes, camber_backend backend, camber_sharing sharing) {
+    *e = (easel){0};
+    e->context = host_context(&e->h);
+    const camber_device_desc desc = {.work_group_size = 64, .memory_bytes = memory_bytes};
+    memset(&watch, 0, sizeof watch);
+    if (camber_surface_create(e->context, &(camber_surface_desc){backend}, &e->surface) != CAMBER_OK ||
+        camber_device_create(e->context, &desc, e->surface, &e->device) != CAMBER_OK ||
+        camber_renderer_create(e->device, e->surface, &(camber_renderer_desc){sharing}, &e->renderer) != CAMBER_OK) {
+        easel_close(e);
+        return false;
+    }
+    assert_int_equal(camber_mesh_create(e->device, e->renderer, &e->mesh), CAMBER_OK);
+    watch.context = e->device->cl;
+    return true;
+}
+
+/* Opaque; flattened with rows of two alphas; a range that darkens; opaque runs of one colour united, twice. */
+static void make_passes(easel *e, const camber_stroke strokes[SCENE_ROWS], size_t polyline_count) {
+    for (int i = 0; i < SCENE_ROWS; i++) {
+        const float hue = (float)i / SCENE_ROWS, width_px = fminf(strokes[i].width_px, 1);
+        e->glass[i] = (camber_paint){.width_px = width_px, .color = {hue, 1 - hue, 0.5f, i == 4 ? 0.3f : 0.6f}};
+        e->opaque[i] = (camber_paint){.width_px = width_px, .color = {1, 1, hue, 1}};
+        e->plain[i] = (camber_paint){.width_px = 0.5f * width_px, .color = {0, 0.2f, 0.4f, 1}};
+    }
+    const camber_pass all = {.mesh = e->mesh, .paint_count = SCENE_ROWS};
+    for (int i = 0; i < PASSES; i++)
+        e->passes[i] = all;
+    e->passes[0].paints = e->opaque;
+    e->passes[1].paints = e->glass;
+    e->passes[2].paints = e->glass;
+    e->passes[2].first_polyline = 137;
+    e->passes[2].polyline_count = polyline_count - 260;
+    e->passes[2].overlap = CAMBER_OVERLAP_ACCUMULATE;
+    e->passes[3].paints = e->plain;
+    e->passes[3].overlap = CAMBER_OVERLAP_UNITE;
+    e->passes[4].paints = e->plain;
+}
+
+static picture draw(easel *e, uint32_t largest_piece_px) {
+    return picture_draw(e->renderer, &(camber_frame){.width = SIDE_PX,
+                                                     .height = SIDE_PX,
+                                                     .passes = e->passes,
+                                                     .pass_count = PASSES,
+                                                     .largest_piece_px = largest_piece_px});
+}
+
+static camber_overdraw count(easel *e, uint8_t *map) {
+    camber_overdraw counted;
+    const camber_overdraw_desc desc = {.width = SIDE_PX,
+                                       .height = SIDE_PX,
+                                       .mesh = e->mesh,
+                                       .paints = e->opaque,
+                                       .paint_count = SCENE_ROWS,
+                                       .map = map};
+    assert_int_equal(camber_overdraw_count(e->renderer, &desc, &counted), CAMBER_OK);
+    return counted;
+}
+
+/* A mesh of polylines, or of a network at three quarters of the size. */
+static void tessellate_on(easel *e, const scene *s, bool of_network, camber_method method) {
+    camber_stroke strokes[SCENE_ROWS];
+    scene_strokes(strokes);
+    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, method, 0};
+    if (of_network) {
+        const camber_camera camera = {.x = 0.4 + 0.5 * SIDE_PX * WORLD_UNIT,
+                                      .y = 0.4 + 0.5 * SIDE_PX * WORLD_UNIT,
+                                      .scale_px = 0.75 / WORLD_UNIT,
+                                      .bearing_deg = 20,
+                                      .width = SIDE_PX,
+                                      .height = SIDE_PX};
+        camber_network *network = make_network(e->context, s);
+        assert_int_equal(camber_tessellate_network(e->mesh, network, &camera, &desc), CAMBER_OK);
+        camber_network_destroy(network);
+    } else {
+        camber_polylines *polylines = scene_polylines(e->context, s);
+        assert_int_equal(camber_tessellate(e->mesh, polylines, &desc), CAMBER_OK);
+        camber_polylines_destroy(polylines);
+    }
+    make_passes(e, strokes, s->polyline_count);
+}
+
+static void compare_pictures(const scene *s, camber_backend backend, camber_sharing sharing, uint64_t memory_bytes) {
+    easel whole, e;
+    uint8_t maps[2][SIDE_PX * SIDE_PX];
+    assert_true(easel_open(&whole, 0, backend, sharing));
+    assert_true(easel_open(&e, memory_bytes, backend, sharing));
+    const bool all = backend == CAMBER_BACKEND_EGL && sharing != CAMBER_SHARING_COPY;
+    for (int i = 0; i < 6; i += all ? 1 : 5) {
+        tessellate_on(&whole, s, i >= 3, (camber_method)(i % 3));
+        tessellate_on(&e, s, i >= 3, (camber_method)(i % 3));
+        const camber_mesh_memory memory = camber_mesh_get_memory(e.mesh);
+        assert_true(memory.resident_parts < memory.parts);
+        picture a = draw(&e, i == 1 ? 100 : 0), b = draw(&whole, 0), again = draw(&e, 0);
+        picture_assert_same(&a, &b);
+        picture_assert_same(&again, &b);
+        picture_free(&again);
+        picture_free(&a);
+        picture_free(&b);
+        if (i % 3 == 0 || i == 5) {
+            const camber_overdraw x = count(&e, maps[0]), y = count(&whole, maps[1]);
+            assert_memory_equal(&x, &y, sizeof x);
+            assert_memory_equal(maps[0], maps[1], sizeof maps[0]);
+            assert_true(x.repeated_pixels > 0);
+        }
+        assert_true(camber_mesh_get_memory(e.mesh).remade_parts > memory.parts);
+        assert_bounded(e.device);
+    }
+    easel_close(&e);
+    easel_close(&whole);
+}
+
+static void test_same_pictures(void **state) {
+    (void)state;
+    static const camber_sharing sharings[] = {CAMBER_SHARING_GL, CAMBER_SHARING_ZERO_COPY, CAMBER_SHARING_COPY};
+    scene s = make_scene(1);
+    size_t drawn = 0;
+    for (size_t i = 0; i < 2 * s.point_count; i++)
+        s.points[i] *= (float)SIDE_PX / 1000; /* into the picture */
+    for (int backend = 0; backend < BACKENDS; backend++)
+        for (size_t k = 0; k < 3; k++) {
+            easel probe;
+            if (!easel_open(&probe, 0, BACKEND[backend], sharings[k])) {
+                print_message("%s, %s: not here\n", BACKEND_NAME[backend], camber_sharing_name(sharings[k]));
+                continue;
+            }
+            easel_close(&probe);
+            compare_pictures(&s, BACKEND[backend], sharings[k], 300000);
+            drawn++;
+        }
+    scene_free(&s);
+    if (drawn == 0)
+        skip();
+}
+
+/* What a frame asks for while parts are made again is refused once: the frame says so, and the next one is whole. */
+static void test_refused_frames(void **state) {
+    (void)state;
+    easel e;
+    scene s = make_scene(1);
+    size_t refused = 0;
+    for (size_t i = 0; i < 2 * s.point_count; i++)
+        s.points[i] *= (float)SIDE_PX / 1000;
+    if (!easel_open(&e, 400000, CAMBER_BACKEND_AUTO, CAMBER_SHARING_AUTO)) {
+        scene_free(&s);
+        skip();
+        return;
+    }
+    tessellate_on(&e, &s, false, CAMBER_METHOD_FAN);
+    picture wanted = draw(&e, 0);
+    const camber_frame frame = {.width = SIDE_PX, .height = SIDE_PX, .passes = e.passes, .pass_count = PASSES};
+    for (int kind = 0; kind < 2; kind++)
+        for (size_t n = 1; n < 40; n++) {
+            if (kind == 0)
+                watch.refuse_in = (int)n;
+            else
+                e.h.refuse_first = e.h.calls + n;
+            e.h.refuse_count = 1;
+            const camber_status status = camber_render(e.renderer, &frame, NULL, NULL, NULL);
+            e.h.refuse_first = 0;
+            watch.refuse_in = 0;
+            if (status != CAMBER_OK) {
+                assert_int_equal(status, CAMBER_ERROR_MEMORY);
+                assert_story(&e.h, "memory");
+                refused++;
+            }
+            assert_int_equal(e.h.errors, 0);
+            if (status == CAMBER_OK && n % 8)
+                continue;
+            picture p = draw(&e, 0);
+            picture_assert_same(&p, &wanted);
+            picture_free(&p);
+            assert_bounded(e.device);
+        }
+    assert_true(refused > 8);
+    picture_free(&wanted);
+    easel_close(&e);
+    scene_free(&s);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_same_bytes),       cmocka_unit_test(test_keeps_what_fits),
+        cmocka_unit_test(test_networks),         cmocka_unit_test(test_meshes_share),
+        cmocka_unit_test(test_too_small),        cmocka_unit_test(test_too_long),
+        cmocka_unit_test(test_too_many_strokes), cmocka_unit_test(test_refused_buffers),
+        cmocka_unit_test(test_allocations),      cmocka_unit_test(test_same_pictures),
+        cmocka_unit_test(test_refused_frames),
+    };
+    char pocl_cache[64];
+    pocl_cache_apart(pocl_cache);
+    int failed = 77;
+    if (device_is_there())
+        failed = cmocka_run_group_tests(tests, NULL, NULL);
+    else
+        puts("skipped: no OpenCL device");
+    folder_remove(pocl_cache);
+    return failed;
+}

@@ -481,7 +481,8 @@ typedef struct camber_camera {
  * stroke reaches, by 64 px at least, so that neither caps show there nor vertices lie far away. The mesh keeps the
  * network on the device: another call uploads nothing. The same camera gives the same bytes.
  * Returns what camber_tessellate does, and CAMBER_ERROR_ARGUMENT for a camera that is not finite, a scale or a size of
- * 0, a size above 65535. Cost: about 10 ns a point of what the boxes of polylines do not rule out, on two cores. */
+ * 0, a size above 65535, a scale that makes more than 10^9 px of a step. Cost: about 10 ns a point of what the boxes of
+ * polylines do not rule out, on two cores. */
 CAMBER_API camber_status camber_tessellate_network(camber_mesh *mesh, camber_network *network,
                                                    const camber_camera *camera, const camber_tessellation_desc *desc);
 /* Whether the mesh's last tessellation was of this network. */

@@ -494,6 +494,7 @@ static void test_wrong_input(void **state) {
     const camber_camera cameras[] = {{.scale_px = 0, .width = 1, .height = 1},
                                      {.scale_px = NAN, .width = 1, .height = 1},
                                      {.x = INFINITY, .scale_px = 1, .width = 1, .height = 1},
+                                     {.scale_px = 1e19, .width = 1, .height = 1}, /* the network has steps of 2^-31 */
                                      {.scale_px = 1, .width = 0, .height = 1},
                                      {.scale_px = 1, .width = 65536, .height = 1},
                                      {.scale_px = 1, .width = 1, .height = 1, .simplify_px = -1}};

@@ -13,6 +13,9 @@ static const size_t MOST_POINTS = INT32_MAX;
 /* A miter limit without reason must not undo the cutting. */
 static const double LARGEST_REACH_PX = 65536.0;
 
+/* No pixel of a projected point is infinite. */
+static const double LARGEST_STEP_PX = 1e9, FARTHEST_PX = 1e30;
+
 /* ---- Making ---- */
 
 static camber_status check_entry(camber_context *context, const camber_network_desc *desc,
@@ -211,7 +214,8 @@ camber_polylines_stats camber_network_get_stats(const camber_network *network) {
 
 /* ---- Aiming ---- */
 
-static camber_status check_camera(camber_context *context, const camber_camera *camera) {
+static camber_status check_camera(const camber_network *network, const camber_camera *camera) {
+    camber_context *context = network->context;
     const double sides = (double)camera->width * camera->height;
     if (!(isfinite(camera->x) && isfinite(camera->y) && isfinite(camera->bearing_deg)))
         return camber_fail(context, CAMBER_ERROR_ARGUMENT, "camera: at %g, %g with a bearing of %g; give numbers",
@@ -222,6 +226,10 @@ static camber_status check_camera(camber_context *context, const camber_camera *
     if (!(camera->translate_px >= 0.0 && isfinite(camera->translate_px)))
         return camber_fail(context, CAMBER_ERROR_ARGUMENT, "camera: a translation of %g px; choose 0 or a distance",
                            camera->translate_px);
+    if (!(network->step * camera->scale_px <= LARGEST_STEP_PX))
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT,
+                           "camera: %g px a world unit make %g px of a step of the network; choose a smaller scale",
+                           camera->scale_px, network->step * camera->scale_px);
     if (!(camera->simplify_px >= 0.0 && isfinite(camera->simplify_px)))
         return camber_fail(context, CAMBER_ERROR_ARGUMENT,
                            "camera: a simplification of %g px; choose 0 or a distance in pixels", camera->simplify_px);
@@ -252,9 +260,13 @@ static double origin_of(double offset, double step) {
     return steps <= 0.0 ? 0.0 : steps >= STEPS ? STEPS : steps;
 }
 
+static double bound_px(double px) {
+    return fmin(fmax(px, -FARTHEST_PX), FARTHEST_PX);
+}
+
 camber_status camber_network_aim(const camber_network *network, const camber_camera *camera,
                                  const camber_tessellation_desc *desc, camber_projection *projection) {
-    const camber_status status = check_camera(network->context, camera);
+    const camber_status status = check_camera(network, camera);
     if (status != CAMBER_OK)
         return status;
     const double angle = fmod(camera->bearing_deg, 360.0) * (3.14159265358979323846 / 180.0);
@@ -263,8 +275,8 @@ camber_status camber_network_aim(const camber_network *network, const camber_cam
     const double step = network->step, scale = step * camera->scale_px;
     const double origin_x = origin_of(camera->x - network->x0, step),
                  origin_y = origin_of(camera->y - network->y0, step);
-    const double dx = (network->x0 + origin_x * step - camera->x) * camera->scale_px;
-    const double dy = (network->y0 + origin_y * step - camera->y) * camera->scale_px;
+    const double dx = bound_px((network->x0 + origin_x * step - camera->x) * camera->scale_px);
+    const double dy = bound_px((network->y0 + origin_y * step - camera->y) * camera->scale_px);
     const double half_x = 0.5 * camera->width, half_y = 0.5 * camera->height;
     double reach = 0.0;
     for (size_t i = 0; i < desc->stroke_count; i++)

@@ -24,7 +24,8 @@ static void unmap(const camber_mesh *mesh, cl_mem mem, void *bytes) {
         clEnqueueUnmapMemObject(mesh->device->queue, mem, bytes, 0, NULL, NULL);
 }
 
-/* The points of a part, behind those that stages holds. */
+/* The points of a part, behind those that stages holds. Where a device has counted wrongly, slots of polylines may lie
+ * past the part's or before those of others: none is read twice. */
 static camber_status append_points(const camber_mesh *mesh, const camber_mesh_part *part, const arrays *a,
                                    camber_stages *stages) {
     size_t count = 0;
@@ -34,10 +35,12 @@ static camber_status append_points(const camber_mesh *mesh, const camber_mesh_pa
     if (!camber_grow(mesh->device->context, &stages->points, &capacity, stages->point_count + count,
                      sizeof *stages->points))
         return CAMBER_ERROR_MEMORY;
-    for (size_t i = 0; i < part->polyline_count; i++) {
-        const size_t polyline = part->first_polyline + i, end = camber_part_slot(mesh, part, polyline + 1);
+    for (size_t i = 0, slot = 0; i < part->polyline_count; i++) {
+        const size_t polyline = part->first_polyline + i, begin = camber_part_slot(mesh, part, polyline);
+        const size_t wanted = camber_part_slot(mesh, part, polyline + 1);
+        const size_t end = wanted < part->slot_count ? wanted : part->slot_count;
         uint32_t point = 0;
-        for (size_t slot = camber_part_slot(mesh, part, polyline); slot < end; slot++) {
+        for (slot = begin > slot ? begin : slot; slot < end; slot++) {
             const size_t word = slot + 1, block = slot / mesh->device->block;
             if (!(a->info[word] & CAMBER_POINT_REAL))
                 continue;

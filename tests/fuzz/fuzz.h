@@ -32,6 +32,17 @@ void fuzz_each(const uint8_t *bytes, size_t size, fuzz_body *body);
  * refused. */
 bool fuzz_done(fuzz_run *run, camber_status status);
 
+/* Bytes that a target takes its input from; 0 behind the end. */
+typedef struct fuzz_reader {
+    const uint8_t *bytes;
+    size_t size;
+} fuzz_reader;
+uint64_t fuzz_take(fuzz_reader *from, size_t byte_count);
+float fuzz_take_float(fuzz_reader *from);
+double fuzz_take_double(fuzz_reader *from);
+/* f32 width, f32 miter limit, u8 join | cap << 2. */
+camber_stroke fuzz_take_stroke(fuzz_reader *from);
+
 /* Tessellates on the host and checks the mesh; keep: it is handed over and freed by the caller. */
 bool fuzz_tessellate(fuzz_run *run, const camber_polylines *polylines, const camber_tessellation_desc *desc,
                      camber_mesh_data *keep);

@@ -18,30 +18,11 @@
 
 enum { STROKES_MAX = 8, POLYLINES_MAX = 255 };
 
-typedef struct reader {
-    const uint8_t *bytes;
-    size_t size;
-} reader;
-
-static uint32_t take(reader *from, size_t count) {
-    uint32_t value = 0;
-    for (size_t i = 0; i < count && from->size; i++, from->size--)
-        value |= (uint32_t)*from->bytes++ << 8 * i;
-    return value;
-}
-
-static float take_float(reader *from) {
-    const uint32_t word = take(from, 4);
-    float number;
-    memcpy(&number, &word, sizeof number);
-    return number;
-}
-
-static float take_coordinate(reader *from, unsigned form) {
+static float take_coordinate(fuzz_reader *from, unsigned form) {
     switch (form) {
-    case 0: return take_float(from);
-    case 1: return (float)(int8_t)take(from, 1);
-    default: return (float)(int16_t)take(from, 2) * (1.0f / 16);
+    case 0: return fuzz_take_float(from);
+    case 1: return (float)(int8_t)fuzz_take(from, 1);
+    default: return (float)(int16_t)fuzz_take(from, 2) * (1.0f / 16);
     }
 }
 
@@ -54,7 +35,7 @@ typedef struct input {
     camber_tessellation_desc tessellation;
 } input;
 
-static void read_points(reader *from, unsigned form, uint32_t wanted, input *made) {
+static void read_points(fuzz_reader *from, unsigned form, uint32_t wanted, input *made) {
     static const size_t coordinate_bytes[] = {4, 1, 2, 2};
     const size_t there = from->size / (2 * coordinate_bytes[form]);
     const size_t count = wanted < there ? wanted : there;
@@ -65,20 +46,16 @@ static void read_points(reader *from, unsigned form, uint32_t wanted, input *mad
     made->polylines.point_count = count;
 }
 
-static void read_input(reader *from, input *made) {
-    const unsigned head = take(from, 1), form = head >> 3 & 3;
+static void read_input(fuzz_reader *from, input *made) {
+    const unsigned head = (unsigned)fuzz_take(from, 1), form = head >> 3 & 3;
     const bool wild_offsets = head & 32, wild_rows = head & 64;
-    *made = (input){.stroke_count = take(from, 1) % (STROKES_MAX + 1)};
-    const size_t polyline_count = take(from, 1);
-    const float tolerance_px = take_float(from);
-    for (size_t i = 0; i < made->stroke_count; i++) {
-        const float width_px = take_float(from), miter_limit = take_float(from);
-        const unsigned kinds = take(from, 1);
-        made->strokes[i] =
-            (camber_stroke){width_px, (camber_join)(kinds & 3), (camber_cap)(kinds >> 2 & 3), miter_limit};
-    }
+    *made = (input){.stroke_count = fuzz_take(from, 1) % (STROKES_MAX + 1)};
+    const size_t polyline_count = fuzz_take(from, 1);
+    const float tolerance_px = fuzz_take_float(from);
+    for (size_t i = 0; i < made->stroke_count; i++)
+        made->strokes[i] = fuzz_take_stroke(from);
     for (size_t i = 0; i < polyline_count; i++) {
-        const uint32_t points = take(from, 2), row = take(from, 1);
+        const uint32_t points = (uint32_t)fuzz_take(from, 2), row = (uint32_t)fuzz_take(from, 1);
         made->offsets[i + 1] = wild_offsets ? points : made->offsets[i] + points % 64;
         made->rows[i] = wild_rows ? row << (row & 31) : made->stroke_count ? row % (uint32_t)made->stroke_count : 0;
     }
@@ -128,13 +105,20 @@ static void check_again(fuzz_run *run, const camber_polylines *polylines, const 
     camber_mesh_data_free(run->context, &again);
 }
 
+/* Every point is kept or was counted as dropped. */
+static bool adds_up(const camber_polylines *polylines) {
+    const camber_polylines_stats stats = camber_polylines_get_stats(polylines);
+    REQUIRE(stats.kept_points + stats.repeated_points + stats.invalid_points == stats.points);
+    return true;
+}
+
 static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
-    reader from = {bytes, size};
+    fuzz_reader from = {bytes, size};
     input made;
     camber_polylines *polylines = NULL;
     camber_mesh_data mesh = {0};
     read_input(&from, &made);
-    if (fuzz_done(run, camber_polylines_create(run->context, &made.polylines, &polylines)) &&
+    if (fuzz_done(run, camber_polylines_create(run->context, &made.polylines, &polylines)) && adds_up(polylines) &&
         fuzz_tessellate(run, polylines, &made.tessellation, &mesh)) {
         check_again(run, polylines, &made, &mesh);
         write_glb(run, &mesh, &made);

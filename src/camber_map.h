@@ -160,6 +160,10 @@ typedef struct camber_view_desc {
     double ratio;                    /* device px a CSS px. 0: 1 */
 } camber_view_desc;
 
+/* The view that the style's document asks for, centre, zoom and bearing: what it leaves out is longitude and latitude
+ * 0, the whole world, north. Sizes and ratio are 0. */
+CAMBER_API camber_view_desc camber_style_get_view(const camber_style *style);
+
 /* ---- Sources: what a style itself names ----------------------------------------------------------- */
 
 /* Reads the sources that the style's line layers name, in place of files. Those of type vector (tiles or url: files by

@@ -510,7 +510,7 @@ says '/layers/0/paint/line-color'
 expect 65 "style that is a folder" render "$osm" -o a.png --style "$tmp/in"
 
 layers='"layers": [{"id": "a", "type": "line", "source": "s", "paint": {"line-width": 3}}]'
-echo "{\"version\": 8, \"sources\": {\"s\": {\"type\": \"geojson\", \"data\": \"line.geojson\"}}, $layers}" >"$tmp/in/own.json"
+echo "{\"version\": 8, \"center\": [1.5, 1.5], \"zoom\": 4, \"sources\": {\"s\": {\"type\": \"geojson\", \"data\": \"line.geojson\"}}, $layers}" >"$tmp/in/own.json"
 expect 0 "a style with its own source" render --style "$tmp/in/own.json" -o a.png --size 64x64 --json
 has "$tmp/stdout" '"features": 1'
 is_png a.png 64 64
@@ -518,7 +518,9 @@ rm -f a.png
 sed 's/line.geojson/none.geojson/' "$tmp/in/own.json" >"$tmp/in/gone.json"
 expect 66 "a style whose source is not there" render --style "$tmp/in/gone.json" -o a.png
 sed 's|line.geojson|https://example.org/a.geojson|' "$tmp/in/own.json" >"$tmp/in/url.json"
-expect 2 "a style whose source is elsewhere" render --style "$tmp/in/url.json" -o a.png
+expect 65 "a style whose source is elsewhere" render --style "$tmp/in/url.json" -o a.png
+says 'example.org'
+expect 2 "a filter on a style's own source" render --style "$tmp/in/own.json" -o a.png --where "a = 1"
 says 'INPUT'
 
 # ---- Output ----

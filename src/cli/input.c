@@ -1,5 +1,4 @@
 #include "cli/input.h"
-#include "cli/style_source.h"
 
 #include <errno.h>
 #include <math.h>
@@ -116,11 +115,34 @@ static int open_style(camber_input *input) {
         return status;
     const char *name = strcmp(options->style, "-") == 0 ? "standard input" : options->style;
     const camber_status parsed = camber_style_parse(session->context, bytes, size_bytes, name, &input->style);
-    int exit_status = camber_report_status(session->report, parsed);
-    if (parsed == CAMBER_OK && options->input_count == 0)
-        exit_status = camber_style_source(session->report, name, bytes, size_bytes, &input->source);
     free(bytes);
-    return exit_status;
+    return camber_report_status(session->report, parsed);
+}
+
+/* What the options leave open is the style's. */
+static void take_view(camber_input *input) {
+    const camber_options *options = input->session->options;
+    const camber_view_desc own = camber_style_get_view(input->style);
+    camber_view_desc *view = &input->view;
+    if (isnan(options->bearing_deg))
+        view->bearing_deg = own.bearing_deg;
+    if (options->has_bbox)
+        return;
+    view->kind = CAMBER_VIEW_CENTER;
+    if (isnan(options->zoom))
+        view->zoom = own.zoom;
+    if (!options->has_center) {
+        view->longitude = own.longitude;
+        view->latitude = own.latitude;
+    }
+}
+
+static int read_sources(camber_input *input) {
+    const char *style = input->session->options->style;
+    take_view(input);
+    return camber_report_status(
+        input->session->report,
+        camber_features_read_sources(input->features, &input->view, strcmp(style, "-") == 0 ? NULL : style));
 }
 
 static int read_file(camber_input *input, const char *path) {
@@ -149,8 +171,8 @@ static int open_map(camber_input *input) {
                                       camber_features_create(session->context, input->style, &input->features));
     for (size_t i = 0; i < session->options->input_count && status == CAMBER_EXIT_DONE; i++)
         status = read_file(input, session->options->inputs[i]);
-    if (status == CAMBER_EXIT_DONE && input->source)
-        status = read_file(input, input->source);
+    if (status == CAMBER_EXIT_DONE && session->options->input_count == 0)
+        status = read_sources(input);
     if (status != CAMBER_EXIT_DONE)
         return status;
     input->osm = camber_features_is_osm(input->features);
@@ -163,9 +185,8 @@ static int open_map(camber_input *input) {
 
 static camber_status project_map(camber_input *input) {
     if (input->scene)
-        return camber_scene_move(input->scene, &input->session->options->view);
-    const camber_scene_desc desc = {.view = input->session->options->view,
-                                    .simplify_px = input->session->options->simplify_px};
+        return camber_scene_move(input->scene, &input->view);
+    const camber_scene_desc desc = {.view = input->view, .simplify_px = input->session->options->simplify_px};
     return camber_scene_create(input->features, &desc, &input->scene);
 }
 #endif
@@ -173,7 +194,7 @@ static camber_status project_map(camber_input *input) {
 /* ---- Both ---- */
 
 int camber_input_open(camber_input *input, camber_session *session) {
-    *input = (camber_input){.session = session};
+    *input = (camber_input){.session = session, .view = session->options->view};
 #ifdef CAMBER_MAP
     if (!session->options->polylines)
         return open_map(input);
@@ -188,7 +209,6 @@ void camber_input_close(camber_input *input) {
     camber_scene_destroy(input->scene);
     camber_features_destroy(input->features);
     camber_style_destroy(input->style);
-    free(input->source);
 #endif
     camber_polylines_destroy(input->polylines);
     camber_lines_free(input->session->context, &input->simplified);

@@ -20,7 +20,7 @@ typedef struct camber_input {
     camber_pass pass;
 
     /* A map. */
-    char *source; /* the file that the style names, where there is no INPUT */
+    camber_view_desc view; /* of the options, or where they have none of a style that is drawn from its own sources */
     camber_style *style;
     camber_features *features;
     camber_scene *scene;

@@ -37,7 +37,7 @@ typedef struct verb_spec {
 
 static const verb_spec verbs[] = {
 #ifdef CAMBER_MAP
-    {"render", CAMBER_VERB_RENDER, "INPUT... -o OUT.png", "draws a map"},
+    {"render", CAMBER_VERB_RENDER, "INPUT... | --style FILE -o OUT.png", "draws a map"},
     {"tessellate", CAMBER_VERB_TESSELLATE, "INPUT... -o OUT.glb", "writes the GPU-ready mesh"},
     {"compare", CAMBER_VERB_COMPARE, "INPUT... | --polylines FILE",
      "the paper's experiment: fan, kite, strip side by side"},
@@ -89,8 +89,7 @@ static const option_spec specs[] = {
     {"bbox", 0, KIND_BBOX, MAPS, 0, "W,S,E,N", "show this box, degrees; W > E crosses the antimeridian", 0, 0},
     {"center", 0, KIND_CENTER, MAPS, 0, "LON,LAT", "show what lies around this place, with --zoom", 0, 0},
     {"zoom", 0, KIND_NUMBER, MAPS, FIELD(zoom), "Z", "MapLibre's: the world is 512 CSS px wide at 0", -2, 30},
-    {"bearing", 0, KIND_NUMBER, MAPS, FIELD(view.bearing_deg), "DEG", "the direction that is up, clockwise (0)", -1e6,
-     1e6},
+    {"bearing", 0, KIND_NUMBER, MAPS, FIELD(bearing_deg), "DEG", "the direction that is up, clockwise (0)", -1e6, 1e6},
     {"pitch", 0, KIND_NUMBER, MAPS, FIELD(pitch_deg), "DEG", "0: this version draws maps flat", -90, 90},
     {"style", 0, KIND_TEXT, STYLED, FIELD(style), "FILE", "a MapLibre style (the built-in road style)", 0, 0},
     {"theme", 0, KIND_CHOICE, STYLED, FIELD(theme), "light|dark", "of the built-in style (light)", 0, 0},
@@ -380,6 +379,7 @@ int camber_options_parse(int argc, char **argv, camber_options *options, char *m
                                 .method = -1,
                                 .view = {.ratio = 1},
                                 .zoom = NAN,
+                                .bearing_deg = NAN,
                                 .simplify_px = NAN,
                                 .runs = 9,
                                 .windows = 24};

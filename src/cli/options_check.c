@@ -56,13 +56,16 @@ static int check_view(const checked *p) {
     camber_view_desc *view = &options->view;
     if (options->has_bbox && (options->has_center || !isnan(options->zoom)))
         return usage(p, "--bbox and --center or --zoom: they exclude each other; give the box or the centre");
-    if (options->has_center != !isnan(options->zoom))
+    /* A style says the other, where it is drawn from its own sources. */
+    const bool own = options->style && options->input_count == 0;
+    if (!own && options->has_center != !isnan(options->zoom))
         return usage(p, "--%s alone: give --center LON,LAT and --zoom Z together",
                      options->has_center ? "center" : "zoom");
     if (options->pitch_deg < 0 || options->pitch_deg > 0)
         return usage(p, "--pitch %g: this version draws maps flat; leave it out", options->pitch_deg);
     view->kind = options->has_bbox ? CAMBER_VIEW_BBOX : options->has_center ? CAMBER_VIEW_CENTER : CAMBER_VIEW_FIT;
-    view->zoom = options->has_center ? options->zoom : 0;
+    view->zoom = isnan(options->zoom) ? 0 : options->zoom;
+    view->bearing_deg = isnan(options->bearing_deg) ? 0 : options->bearing_deg;
     if (view->width == 0)
         view->width = view->height = options->polylines ? 2048 : 1024;
     const double width = floor(view->width * view->ratio + 0.5);
@@ -85,7 +88,7 @@ static int check_inputs(const checked *p) {
     if (options->polylines && options->input_count)
         return usage(p, "--polylines and %s: both are inputs; give one of them", options->inputs[0]);
     if (options->polylines && (options->style || options->theme >= 0 || options->layer || options->where ||
-                               options->has_bbox || options->has_center || options->view.bearing_deg != 0.0))
+                               options->has_bbox || options->has_center || !isnan(options->bearing_deg)))
         return usage(p, "--polylines: is in pixels already and has no style, layer or view; leave those out");
     if (options->where_count > 1 && options->verb != CAMBER_VERB_COMPARE)
         return usage(p, "--where: given %zu times; camber %s takes one, so join them with AND or OR",
@@ -94,6 +97,9 @@ static int check_inputs(const checked *p) {
         return usage(p, "--width-px: is for --polylines; a map's widths are its style's");
     if (options->style && options->theme >= 0)
         return usage(p, "--theme: is for the built-in style; leave it out with --style");
+    if (options->style && options->input_count == 0 && (options->layer || options->where))
+        return usage(p, "--%s: is for INPUT, and the style's own sources are drawn; let its layers name what they draw",
+                     options->layer ? "layer" : "where");
     size_t streams = options->polylines && strcmp(options->polylines, "-") == 0;
     for (size_t i = 0; i < options->input_count; i++)
         streams += strcmp(options->inputs[i], "-") == 0;

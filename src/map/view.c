@@ -1,6 +1,7 @@
 #include "map/view.h"
 
 #include "source/mercator.h"
+#include "style/style.h"
 
 #include <math.h>
 
@@ -102,6 +103,15 @@ static camber_status set_center(camber_context *context, const camber_view_desc 
     to_world(desc->longitude, desc->latitude, &view->x, &view->y);
     set_zoom(view, desc->zoom);
     return CAMBER_OK;
+}
+
+camber_view_desc camber_style_get_view(const camber_style *style) {
+    return (camber_view_desc){.kind = CAMBER_VIEW_CENTER,
+                              .longitude = style->camera.longitude,
+                              .latitude =
+                                  fmin(fmax(style->camera.latitude, -LARGEST_LATITUDE_DEG), LARGEST_LATITUDE_DEG),
+                              .zoom = style->camera.zoom,
+                              .bearing_deg = style->camera.bearing_deg};
 }
 
 camber_status camber_view_create(camber_context *context, const camber_view_desc *desc, camber_view *view) {

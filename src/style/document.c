@@ -217,9 +217,16 @@ static bool read_camera(camber_document *d) {
         }
         c->path_length = depth;
     }
-    return camber_document_read_number(d, d->root, "zoom", 0.0, 24.0, &camera->zoom) &&
-           camber_document_read_number(d, d->root, "bearing", -1e6, 1e6, &camera->bearing_deg) &&
-           camber_document_read_number(d, d->root, "pitch", 0.0, 180.0, &camera->pitch_deg);
+    if (!camber_document_read_number(d, d->root, "zoom", 0.0, 24.0, &camera->zoom) ||
+        !camber_document_read_number(d, d->root, "bearing", -1e6, 1e6, &camera->bearing_deg) ||
+        !camber_document_read_number(d, d->root, "pitch", 0.0, 180.0, &camera->pitch_deg))
+        return false;
+    if (camera->pitch_deg > 0.0 && camber_document_first_time(d, "pitch")) {
+        camber_compiler_enter_key(c, "pitch");
+        camber_compiler_warn(c, "a pitch is not drawn; the map is flat");
+        camber_compiler_leave(c);
+    }
+    return true;
 }
 
 /* Of ["global-state", key]. */

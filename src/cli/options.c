@@ -59,6 +59,7 @@ typedef enum option_kind {
     KIND_TEXTS,  /* wheres */
     KIND_NUMBER, /* double, least to most */
     KIND_COUNT,  /* uint32_t, least to most */
+    KIND_BYTES,  /* uint64_t, least to most: a number, and K, M or G where it is not in bytes */
     KIND_CHOICE, /* int: the place in argument, whose words are parted by | */
     KIND_SIZE,
     KIND_BBOX,
@@ -115,6 +116,8 @@ static const option_spec specs[] = {
     {"sharing", 0, KIND_CHOICE, RENDER | COMPARE | BENCH | INFO, FIELD(sharing), "auto|gl|zero-copy|copy",
      "how OpenCL's buffers reach GL (auto)", 0, 0},
     {"threads", 0, KIND_COUNT, EVERY, FIELD(threads), "N", "of OpenCL and GL on a CPU (all cores)", 1, 1024},
+    {"memory", 0, KIND_BYTES, READING, FIELD(memory_bytes), "SIZE",
+     "that meshes may take, as in 512M or 2G: what does not fit is made when it is drawn", 65536, 1099511627776.0},
     {"junit", 0, KIND_TEXT, VALIDATE, FIELD(junit), "FILE", "write the results as JUnit's XML", 0, 0},
     {"pictures", 0, KIND_TEXT, VALIDATE, FIELD(pictures), "FOLDER", "write PNGs of what differs", 0, 0},
     {"windows", 0, KIND_COUNT, VALIDATE, FIELD(windows), "N", "of each picture, held against the oracle (24)", 8,
@@ -215,6 +218,25 @@ static bool parse_count(const char **text, uint32_t *value) {
     return true;
 }
 
+static bool parse_bytes(const char *text, double least, double most, uint64_t *bytes) {
+    static const char units[] = "KMG";
+    const size_t digits = strspn(text, "0123456789");
+    if (digits < 1 || digits > 15)
+        return false;
+    uint64_t size = strtoull(text, NULL, 10);
+    const char *rest = text + digits, *unit = *rest ? strchr(units, *rest) : NULL;
+    if (unit)
+        rest++;
+    if (*rest)
+        return false;
+    for (const char *at = units; unit && at <= unit && (double)size <= most; at++)
+        size *= 1024;
+    if ((double)size < least || (double)size > most)
+        return false;
+    *bytes = size;
+    return true;
+}
+
 static int parse_choice(const parser *p, const option_spec *spec, const char *text, int *value) {
     const size_t size = strlen(text);
     int place = 0;
@@ -290,6 +312,11 @@ static int parse_value(const parser *p, const option_spec *spec, const char *tex
         *(uint32_t *)(void *)field = count;
         return CAMBER_EXIT_DONE;
     }
+    case KIND_BYTES:
+        if (!parse_bytes(text, spec->least, spec->most, (uint64_t *)(void *)field))
+            return usage(p, "--%s %s: no such size; give bytes from 64K to 1024G, as in 100000000, 512M or 2G",
+                         spec->name, text);
+        return CAMBER_EXIT_DONE;
     case KIND_CHOICE: return parse_choice(p, spec, text, (int *)(void *)field);
     case KIND_SIZE:
     case KIND_BBOX:

@@ -48,7 +48,8 @@ typedef struct camber_options {
     bool has_bbox, has_center;
     double zoom, bearing_deg, pitch_deg; /* zoom, bearing: NAN where not given */
     double simplify_px, width_px, fan_tolerance_px;
-    uint32_t threads; /* 0: as many as there are */
+    uint32_t threads;      /* 0: as many as there are */
+    uint64_t memory_bytes; /* of meshes. 0: no bound */
     uint32_t runs;
     uint32_t windows; /* of each picture, held against the oracle */
 } camber_options;

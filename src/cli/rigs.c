@@ -25,6 +25,7 @@ static camber_status open_device(const camber_rig *rig, camber_session *session,
     camber_device_desc desc = *more;
     desc.match = session->options->device;
     desc.number = rig->number;
+    desc.memory_bytes = session->options->memory_bytes;
     return camber_device_create(session->context, &desc, surface, device);
 }
 

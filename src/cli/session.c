@@ -7,14 +7,12 @@
 #include <pthread.h>
 #include <stdlib.h>
 
-static camber_status open_context(camber_report *report, camber_context **context) {
-    const camber_context_desc desc = {
-        .log = camber_report_log, .log_user = report, .progress = camber_report_progress, .progress_user = report};
-    return camber_context_create(&desc, context);
-}
-
 static camber_status prepare(camber_session *session) {
-    return session->context ? CAMBER_OK : open_context(session->report, &session->context);
+    const camber_context_desc desc = {.log = camber_report_log,
+                                      .log_user = session->report,
+                                      .progress = camber_report_progress,
+                                      .progress_user = session->report};
+    return session->context ? CAMBER_OK : camber_context_create(&desc, &session->context);
 }
 
 static camber_status open_drawing(camber_session *session, camber_context *context, camber_needs needs) {
@@ -25,7 +23,7 @@ static camber_status open_drawing(camber_session *session, camber_context *conte
         status = camber_surface_create(context, &desc, &session->surface);
     }
     if (status == CAMBER_OK && needs >= CAMBER_NEEDS_DEVICE && !session->device) {
-        const camber_device_desc desc = {.match = options->device};
+        const camber_device_desc desc = {.match = options->device, .memory_bytes = options->memory_bytes};
         status = camber_device_create(context, &desc, session->surface, &session->device);
     }
     if (status == CAMBER_OK && needs >= CAMBER_NEEDS_RENDERER && !session->renderer) {
@@ -41,6 +39,7 @@ struct camber_opener {
     camber_session *session;
     camber_context *context;
     camber_report report;
+    camber_report *told; /* report while the thread runs, then the session's */
     camber_status status;
     pthread_t thread;
     bool running;
@@ -74,9 +73,16 @@ static void warm_up(const camber_session *session, camber_context *context) {
     camber_network_destroy(network);
 }
 
+static void log_beside(void *user, camber_log_level level, const char *message) {
+    const camber_opener *opener = user;
+    camber_report_log(opener->told, level, message);
+}
+
 static void *open_beside(void *user) {
     camber_opener *opener = user;
-    opener->status = open_context(&opener->report, &opener->context);
+    const camber_context_desc desc = {
+        .log = log_beside, .log_user = opener, .progress = camber_report_progress, .progress_user = &opener->report};
+    opener->status = camber_context_create(&desc, &opener->context);
     if (opener->status == CAMBER_OK)
         opener->status = open_drawing(opener->session, opener->context, CAMBER_NEEDS_RENDERER);
     if (opener->status == CAMBER_OK)
@@ -111,6 +117,7 @@ void camber_session_start(camber_session *session) {
     opener->session = session;
     opener->report = *session->report;
     opener->report.bars = false;
+    opener->told = &opener->report;
     opener->running = pthread_create(&opener->thread, NULL, open_beside, opener) == 0;
     if (opener->running)
         session->opener = opener;
@@ -133,6 +140,7 @@ int camber_session_need(camber_session *session, camber_needs needs) {
         return camber_report_status(session->report, status);
     if (session->opener) {
         join(session->opener);
+        session->opener->told = session->report;
         return camber_report_status(&session->opener->report, session->opener->status);
     }
     return camber_report_status(session->report, open_drawing(session, session->context, needs));
@@ -161,7 +169,9 @@ camber_method camber_session_method(const camber_session *session) {
 void camber_session_describe(const camber_session *session, json_t *object) {
     if (session->device) {
         const camber_device_info info = camber_device_get_info(session->device);
+        const camber_device_memory memory = camber_device_get_memory(session->device);
         json_object_set_new(object, "device", camber_json_text(info.name));
+        json_object_set_new(object, "meshes_most_bytes", camber_json_count((size_t)memory.most_bytes));
     }
     if (session->surface) {
         const camber_surface_info info = camber_surface_get_info(session->surface);

@@ -22,10 +22,7 @@ typedef struct range {
     uint64_t offset, size;
 } range;
 
-typedef struct directory {
-    camber_pmtiles_entry *entries;
-    size_t count;
-} directory;
+typedef camber_pmtiles_directory directory;
 
 typedef struct archive {
     int file;
@@ -104,43 +101,48 @@ static uint64_t take_varint(cursor *c) {
     return 0;
 }
 
-const char *camber_pmtiles_parse(camber_context *context, const void *bytes, size_t size_bytes,
-                                 camber_pmtiles_entry **entries, size_t *count) {
-    cursor c = {bytes, (const unsigned char *)bytes + size_bytes, false};
-    const uint64_t announced = take_varint(&c);
-    /* An entry takes four bytes at least. */
-    if (c.failed || announced > size_bytes / 4)
-        return "a directory announces more entries than it holds";
-    camber_pmtiles_entry *made = camber_alloc(context, (size_t)announced + 1, sizeof *made);
-    if (!made)
-        return "out of memory";
+/* What is wrong with them, NULL where nothing is. */
+static const char *read_entries(cursor *c, camber_pmtiles_entry *made, size_t count) {
     const char *why = NULL;
     uint64_t number = 0;
-    for (size_t i = 0; i < announced; i++) {
-        const uint64_t step = take_varint(&c);
+    for (size_t i = 0; i < count; i++) {
+        const uint64_t step = take_varint(c);
         if (i && (step == 0 || step > UINT64_MAX - number))
             why = "a directory is not in order";
         made[i].number = number += step;
     }
-    for (size_t i = 0; i < announced; i++)
-        made[i].run = take_varint(&c);
-    for (size_t i = 0; i < announced; i++)
-        made[i].size = take_varint(&c);
-    for (size_t i = 0; i < announced; i++) {
-        const uint64_t offset = take_varint(&c);
+    for (size_t i = 0; i < count; i++)
+        made[i].run = take_varint(c);
+    for (size_t i = 0; i < count; i++)
+        made[i].size = take_varint(c);
+    for (size_t i = 0; i < count; i++) {
+        const uint64_t offset = take_varint(c);
         if (offset == 0 && i == 0)
             why = "a directory's first tile follows none";
         made[i].offset = offset ? offset - 1 : i ? made[i - 1].offset + made[i - 1].size : 0;
     }
-    if (c.failed)
-        why = "a directory is cut off";
-    if (why) {
-        camber_free(context, made);
-        return why;
+    return c->failed ? "a directory is cut off" : why;
+}
+
+camber_status camber_pmtiles_parse(camber_context *context, const void *bytes, size_t size_bytes,
+                                   camber_pmtiles_directory *parsed, const char **why) {
+    cursor c = {bytes, (const unsigned char *)bytes + size_bytes, false};
+    const uint64_t announced = take_varint(&c);
+    /* An entry takes four bytes at least. */
+    if (c.failed || announced > size_bytes / 4) {
+        *why = "a directory announces more entries than it holds";
+        return CAMBER_ERROR_INPUT;
     }
-    *entries = made;
-    *count = (size_t)announced;
-    return NULL;
+    directory made = {.count = (size_t)announced};
+    if (!(made.entries = camber_alloc(context, made.count + 1, sizeof *made.entries)))
+        return CAMBER_ERROR_MEMORY;
+    *why = read_entries(&c, made.entries, made.count);
+    if (*why) {
+        camber_free(context, made.entries);
+        return CAMBER_ERROR_INPUT;
+    }
+    *parsed = made;
+    return CAMBER_OK;
 }
 
 static camber_status fail(const camber_tile_set *set, const char *why) {
@@ -201,12 +203,13 @@ static camber_status read_packed(camber_tile_set *set, range at, const char *wha
 static camber_status read_directory(camber_tile_set *set, range at, directory *parsed) {
     const camber_bytes *bytes;
     directory made = {0};
-    const camber_status status = read_packed(set, at, "a directory", &bytes);
+    camber_status status = read_packed(set, at, "a directory", &bytes);
     if (status != CAMBER_OK)
         return status;
-    const char *why = camber_pmtiles_parse(set->context, bytes->data, bytes->size_bytes, &made.entries, &made.count);
-    if (why)
-        return fail(set, why);
+    const char *why;
+    status = camber_pmtiles_parse(set->context, bytes->data, bytes->size_bytes, &made, &why);
+    if (status != CAMBER_OK)
+        return status == CAMBER_ERROR_INPUT ? fail(set, why) : status;
     camber_free(set->context, parsed->entries);
     *parsed = made;
     return CAMBER_OK;

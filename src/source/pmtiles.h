@@ -15,8 +15,14 @@ uint64_t camber_pmtiles_number(int zoom, uint32_t column, uint32_t row);
 /* along: from the first of its zoom. */
 void camber_pmtiles_place(uint64_t along, int zoom, uint32_t *column, uint32_t *row);
 
-/* A directory, decompressed, to entries in ascending order; freed with camber_free. NULL, or why not. */
-const char *camber_pmtiles_parse(camber_context *context, const void *bytes, size_t size_bytes,
-                                 camber_pmtiles_entry **entries, size_t *count);
+typedef struct camber_pmtiles_directory {
+    camber_pmtiles_entry *entries; /* in ascending order; freed with camber_free */
+    size_t count;
+} camber_pmtiles_directory;
+
+/* A directory, decompressed. Returns CAMBER_ERROR_INPUT with the cause in why, which is not logged;
+ * CAMBER_ERROR_MEMORY. */
+camber_status camber_pmtiles_parse(camber_context *context, const void *bytes, size_t size_bytes,
+                                   camber_pmtiles_directory *directory, const char **why);
 
 #endif

@@ -28,7 +28,7 @@ static void read_tile(fuzz_run *run, camber_features *features, const uint8_t *b
     static const char *const layers[] = {"roads", "", "a"};
     /* The first row: there is no north of it. */
     const unsigned sides = run->hash % 3 ? CAMBER_SIDE_WEST | CAMBER_SIDE_EAST | CAMBER_SIDE_SOUTH : 0;
-    const camber_mvt_place place = {.zoom = (int)(run->hash % 3) * 7, .open_sides = run->hash >> 8 & sides};
+    const camber_mvt_place place = {.zoom = (int)(run->hash % 3) * 7, .open_sides = (unsigned)(run->hash >> 8) & sides};
     camber_mvt_desc desc = {.features = features,
                             .layers = run->hash >> 12 & 7 ? layers : NULL,
                             .layer_count = 3,

@@ -1,0 +1,225 @@
+/* Layers of styles with sources of their own, as a scene draws them: order, strokes by feature, sources, translations.
+ */
+#include "picture.h"
+
+#include "camber_map.h"
+
+#include <math.h>
+
+enum { SIDE = 128 };
+
+typedef struct map {
+    camber_style *style;
+    camber_features *features;
+    camber_scene *scene;
+} map;
+
+/* A source of lines from west to east at these latitudes, with properties; at zoom 4 a degree is 22.8 px about 0. */
+#define LINE(latitude, properties)                                                                                     \
+    "{\"type\": \"Feature\", \"properties\": {" properties "}, \"geometry\": {\"type\": \"LineString\", "              \
+    "\"coordinates\": [[-20, " #latitude "], [20, " #latitude "]]}}"
+#define LINES(...)                                                                                                     \
+    "{\"type\": \"geojson\", \"data\": {\"type\": \"FeatureCollection\", \"features\": [" __VA_ARGS__ "]}}"
+
+static map open_map(studio *s, const char *sources, const char *layers, double bearing_deg) {
+    map m = {0};
+    char json[8192];
+    snprintf(json, sizeof json, "{\"version\": 8, \"zoom\": 4, \"bearing\": %g, \"sources\": {%s}, \"layers\": [%s]}",
+             bearing_deg, sources, layers);
+    if (camber_style_parse(s->context, json, strlen(json), "test", &m.style) != CAMBER_OK)
+        fail_msg("%s", s->h.last);
+    camber_scene_desc desc = {.view = camber_style_get_view(m.style)};
+    desc.view.width = desc.view.height = SIDE;
+    assert_int_equal(camber_features_create(s->context, m.style, &m.features), CAMBER_OK);
+    if (camber_features_read_sources(m.features, &desc.view, NULL) != CAMBER_OK)
+        fail_msg("%s", s->h.last);
+    assert_int_equal(camber_scene_create(m.features, &desc, &m.scene), CAMBER_OK);
+    return m;
+}
+
+static void close_map(map *m) {
+    camber_scene_destroy(m->scene);
+    camber_features_destroy(m->features);
+    camber_style_destroy(m->style);
+}
+
+static picture draw(studio *s, map *m) {
+    camber_mesh *mesh = NULL;
+    assert_int_equal(camber_mesh_create(s->device, studio_any(s), &mesh), CAMBER_OK);
+    assert_int_equal(camber_scene_tessellate(m->scene, mesh, CAMBER_METHOD_STRIP), CAMBER_OK);
+    const camber_frame frame = camber_scene_frame(m->scene, mesh);
+    picture p = picture_draw(studio_any(s), &frame);
+    camber_mesh_destroy(mesh);
+    return p;
+}
+
+static void assert_pixel(const picture *p, uint32_t x, uint32_t y, double r, double g, double b, double a) {
+    const double wanted[4] = {r, g, b, a};
+    for (int c = 0; c < 4; c++)
+        if (fabs(picture_value(p, x, y, c) - wanted[c]) > 2.5 / 255)
+            fail_msg("pixel %u, %u, channel %d: %.3f, not %.3f", x, y, c, picture_value(p, x, y, c), wanted[c]);
+}
+
+static camber_stroke stroke_of(const map *m, size_t polyline) {
+    size_t count;
+    const camber_stroke *strokes = camber_scene_strokes(m->scene, &count);
+    const uint32_t row = camber_scene_rows(m->scene)[polyline];
+    assert_in_range(row, 0, count - 1);
+    return strokes[row];
+}
+
+/* By the key, and those of one key in the order of the source. */
+static void test_sort_key(void **state) {
+    studio *s = *state;
+    const char *source =
+        "\"s\": " LINES(LINE(0, "\"k\": 3, \"c\": \"#f00\"") "," LINE(0.05, "\"k\": 1, \"c\": \"#0f0\"") "," LINE(
+            0.1, "\"k\": 2, \"c\": \"#00f\"") "," LINE(0.15, "\"k\": 1, \"c\": \"#ff0\"") "," LINE(0.2,
+                                                                                                   "\"c\": \"#0ff\""));
+    map m = open_map(s, source,
+                     "{\"id\": \"a\", \"type\": \"line\", \"source\": \"s\", \"layout\": {\"line-sort-key\": "
+                     "[\"to-number\", [\"get\", \"k\"], 0]}, \"paint\": {\"line-width\": 20, \"line-color\": "
+                     "[\"get\", \"c\"]}}",
+                     0);
+    const camber_lines *lines = camber_scene_lines(m.scene);
+    assert_int_equal(lines->polyline_count, 5);
+    /* North is up: the first drawn is the one without a key, then the two of key 1 as they come. */
+    static const double latitudes[] = {0.2, 0.05, 0.15, 0.1, 0};
+    for (size_t i = 0; i < 5; i++) {
+        const double y = (double)lines->points[2 * lines->offsets[i] + 1];
+        assert_true(fabs(y - (SIDE / 2 - latitudes[i] * 512 * 16 / 360)) < 0.1);
+    }
+    picture p = draw(s, &m);
+    assert_pixel(&p, 64, 64, 1, 0, 0, 1); /* the largest key on top */
+    picture_free(&p);
+    close_map(&m);
+}
+
+/* One layer, one pass, a stroke for each kind. */
+static void test_strokes_by_feature(void **state) {
+    studio *s = *state;
+    const char *source =
+        "\"s\": " LINES(LINE(1, "\"cap\": \"round\", \"join\": \"bevel\", \"limit\": 3, \"w\": 4") "," LINE(
+            0, "\"cap\": \"square\", \"join\": \"miter\", \"limit\": 5, \"w\": 4") "," LINE(-1, "\"cap\": \"pointed\", "
+                                                                                                "\"w\": 6"));
+    map m = open_map(
+        s, source,
+        "{\"id\": \"a\", \"type\": \"line\", \"source\": \"s\", \"layout\": {\"line-cap\": [\"get\", \"cap\"], "
+        "\"line-join\": [\"get\", \"join\"], \"line-miter-limit\": [\"get\", \"limit\"]}, \"paint\": "
+        "{\"line-width\": [\"get\", \"w\"], \"line-gap-width\": 2}}",
+        0);
+    const camber_stroke first = stroke_of(&m, 0), second = stroke_of(&m, 1), third = stroke_of(&m, 2);
+    assert_int_equal(first.cap, CAMBER_CAP_ROUND);
+    assert_int_equal(first.join, CAMBER_JOIN_BEVEL);
+    assert_int_equal(second.cap, CAMBER_CAP_SQUARE);
+    assert_int_equal(second.join, CAMBER_JOIN_MITER);
+    assert_true(fabsf(second.miter_limit - 5) < 1e-6f);
+    assert_int_equal(third.cap, CAMBER_CAP_BUTT); /* what is no cap is the default */
+    assert_int_equal(third.join, CAMBER_JOIN_MITER);
+    assert_true(fabsf(third.miter_limit - 2) < 1e-6f);
+    assert_true(fabsf(first.width_px - 10) < 1e-6f && fabsf(third.width_px - 14) < 1e-6f); /* two bands and the gap */
+    assert_int_equal(camber_scene_frame(m.scene, NULL).pass_count, 1);
+    close_map(&m);
+}
+
+static void test_sources(void **state) {
+    studio *s = *state;
+    const char *sources = "\"s\": " LINES(LINE(1, "")) ", \"t\": " LINES(LINE(-1, ""));
+    map m = open_map(s, sources,
+                     "{\"id\": \"a\", \"type\": \"line\", \"source\": \"s\", \"paint\": {\"line-width\": 8, "
+                     "\"line-color\": \"#f00\"}}, {\"id\": \"b\", \"type\": \"line\", \"source\": \"t\", \"paint\": "
+                     "{\"line-width\": 8, \"line-color\": \"#00f\"}}, {\"id\": \"c\", \"type\": \"line\", \"source\": "
+                     "\"s\", \"layout\": {\"visibility\": \"none\"}, \"paint\": {\"line-width\": 60}}",
+                     0);
+    picture p = draw(s, &m);
+    assert_pixel(&p, 64, 41, 1, 0, 0, 1);
+    assert_pixel(&p, 64, 86, 0, 0, 1, 1);
+    assert_pixel(&p, 64, 64, 0, 0, 0, 0);
+    picture_free(&p);
+    close_map(&m);
+}
+
+/* The map's translation turns with it, the viewport's does not; a line far outside the picture is seen where it is
+ * drawn inside. */
+static void test_translate(void **state) {
+    studio *s = *state;
+#define MOVED(anchor)                                                                                                  \
+    "{\"id\": \"a\", \"type\": \"line\", \"source\": \"s\", \"paint\": {\"line-width\": 8, \"line-translate\": [0, "   \
+    "300], \"line-translate-anchor\": \"" anchor "\"}}"
+    const char *source = "\"s\": " LINES(LINE(13, ""));
+    /* 13 degrees north are 299.0 px up at this zoom, which is 0.6 below the middle once moved by 300. */
+    const double up = 256 * 16 / 3.14159265358979 * log(tan(3.14159265358979 / 4 + 13 * 3.14159265358979 / 360));
+    const uint32_t row = (uint32_t)(64 + 300 - up);
+    map m = open_map(s, source, MOVED("map"), 0);
+    picture p = draw(s, &m);
+    assert_pixel(&p, 64, row, 0, 0, 0, 1);
+    assert_pixel(&p, 64, row + 8, 0, 0, 0, 0);
+    picture_free(&p);
+    close_map(&m);
+    m = open_map(s, source, MOVED("map"), 180);
+    p = draw(s, &m);
+    assert_pixel(&p, 64, SIDE - 1 - row, 0, 0, 0, 1); /* all of it turned */
+    assert_pixel(&p, 64, SIDE - 1 - row - 8, 0, 0, 0, 0);
+    picture_free(&p);
+    close_map(&m);
+    m = open_map(s, source, MOVED("viewport"), 180);
+    p = draw(s, &m);
+    for (uint32_t y = 0; y < SIDE; y += 4)
+        assert_pixel(&p, 64, y, 0, 0, 0, 0); /* farther down */
+    picture_free(&p);
+    close_map(&m);
+}
+
+static void test_layer_opacity(void **state) {
+    studio *s = *state;
+    const char *source = "\"s\": " LINES(LINE(0, "\"c\": \"#f00\"") "," LINE(0.2, "\"c\": \"#00f\""));
+    map m = open_map(
+        s, source,
+        "{\"id\": \"a\", \"type\": \"line\", \"source\": \"s\", \"paint\": {\"line-width\": 20, \"line-color\": "
+        "[\"get\", \"c\"], \"line-layer-opacity\": 0.5}}",
+        0);
+    picture p = draw(s, &m);
+    assert_pixel(&p, 64, 64, 0, 0, 0.5, 0.5); /* blue hides red, then both are half there */
+    picture_free(&p);
+    close_map(&m);
+}
+
+/* Layers share polylines where their strokes agree, though one says by a function what the other says plainly. */
+static void test_sharing(void **state) {
+    studio *s = *state;
+    static const struct {
+        const char *layout;
+        size_t polylines;
+    } others[] = {{"\"line-cap\": \"round\"", 1},
+                  {"\"line-cap\": [\"step\", [\"zoom\"], \"butt\", 3, \"round\"], \"line-miter-limit\": 7", 1},
+                  {"\"line-cap\": \"round\", \"line-join\": \"miter\", \"line-miter-limit\": 7", 2},
+                  {"\"line-cap\": \"square\"", 2},
+                  {"\"line-cap\": \"round\", \"line-sort-key\": 4", 2},
+                  {"\"line-cap\": [\"get\", \"cap\"]", 2}};
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+        char layers[1024];
+        snprintf(layers, sizeof layers,
+                 "{\"id\": \"a\", \"type\": \"line\", \"source\": \"s\", \"layout\": {\"line-cap\": \"round\", "
+                 "\"line-join\": "
+                 "\"round\"}}, {\"id\": \"b\", \"type\": \"line\", \"source\": \"s\", \"layout\": {\"line-join\": "
+                 "\"round\", %s}}",
+                 others[i].layout);
+        /* The second join is the later one in the document. */
+        map m = open_map(s, "\"s\": " LINES(LINE(0, "\"cap\": \"butt\"")), layers, 0);
+        if (camber_scene_lines(m.scene)->polyline_count != others[i].polylines)
+            fail_msg("%s: %zu polylines", others[i].layout, camber_scene_lines(m.scene)->polyline_count);
+        close_map(&m);
+    }
+}
+
+int main(void) {
+    char cache[64];
+    if (!studio_begin(cache))
+        return 77;
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_sort_key),  cmocka_unit_test(test_strokes_by_feature), cmocka_unit_test(test_sources),
+        cmocka_unit_test(test_translate), cmocka_unit_test(test_layer_opacity),      cmocka_unit_test(test_sharing),
+    };
+    const int failed = cmocka_run_group_tests(tests, studio_set_up, studio_tear_down);
+    folder_remove(cache);
+    return failed;
+}

@@ -5,6 +5,8 @@
 #include "camber_map.h"
 
 #include <math.h>
+#include <time.h>
+#include <unistd.h>
 
 enum { SIDE = 128 };
 
@@ -211,13 +213,90 @@ static void test_sharing(void **state) {
     }
 }
 
+/* ---- A style of many layers over a city ---- */
+
+enum { LAYERS = 300 };
+
+/* Casings and fills of kinds of roads, bridges and tunnels apart, each with a width that depends on zoom and feature.
+ */
+static void write_layers(char *json, size_t size) {
+    static const char *const roads[] = {"footway",  "path",       "cycleway",    "steps",         "track",
+                                        "service",  "pedestrian", "residential", "living_street", "unclassified",
+                                        "tertiary", "secondary",  "primary",     "trunk",         "motorway"};
+    static const char *const others[] = {"bridge", "tunnel", "oneway", "lit", "junction"};
+    size_t used = (size_t)snprintf(json, size, "{\"version\": 8, \"layers\": [");
+    for (size_t i = 0; i < LAYERS; i++) {
+        const size_t road = i % 15, other = i / 15 % 5, fill = i / 75;
+        used += (size_t)snprintf(json + used, size - used,
+                                 "%s{\"id\": \"l%zu\", \"type\": \"line\", \"filter\": [\"all\", [\"in\", [\"get\", "
+                                 "\"highway\"], [\"literal\", "
+                                 "[\"%s\", \"%s_link\"]]], [%s [\"==\", [\"get\", \"%s\"], \"yes\"]%s], \"layout\": "
+                                 "{\"line-cap\": \"round\", "
+                                 "\"line-join\": \"round\"}, \"paint\": {\"line-color\": [\"match\", [\"get\", "
+                                 "\"surface\"], \"asphalt\", \"#%zx%zx8\", "
+                                 "\"#%zx9%zx\"], \"line-width\": [\"interpolate\", [\"exponential\", 1.5], [\"zoom\"], "
+                                 "5, [\"case\", [\"==\", [\"get\", "
+                                 "\"oneway\"], \"yes\"], 0.5, 1], 18, %zu]}}",
+                                 i ? "," : "", i, roads[road], roads[road], fill % 2 ? "\"!\"," : "\"all\",",
+                                 others[other], "]", road, other, other, road, 40 - 8 * fill);
+    }
+    snprintf(json + used, size - used, "]}");
+}
+
+static double cpu_ms(void) {
+    return (double)clock() * 1e3 / CLOCKS_PER_SEC;
+}
+
+static void test_many_layers(void **state) {
+    studio *s = *state;
+    static char json[1 << 20];
+    char path[1024];
+    const char *data = getenv("CAMBER_DATA");
+    snprintf(path, sizeof path, "%s/data/porto_portugal.osm.pbf", data ? data : "");
+    if (!data || access(path, R_OK) != 0)
+        skip();
+    write_layers(json, sizeof json);
+    map m = {0};
+    const double start_ms = cpu_ms();
+    if (camber_style_parse(s->context, json, strlen(json), "many", &m.style) != CAMBER_OK)
+        fail_msg("%s", s->h.last);
+    const double parse_ms = cpu_ms() - start_ms;
+    assert_int_equal(camber_features_create(s->context, m.style, &m.features), CAMBER_OK);
+    assert_int_equal(camber_features_read(m.features, &(camber_source_desc){.path = path}), CAMBER_OK);
+    const camber_scene_desc desc = {.on_device = true};
+    assert_int_equal(camber_scene_create(m.features, &desc, &m.scene), CAMBER_OK);
+    /* What a frame evaluates: another zoom of the same features. */
+    const camber_scene_info info = camber_scene_get_view(m.scene);
+    const camber_view_desc view = {
+        .kind = CAMBER_VIEW_CENTER, .longitude = info.longitude, .latitude = info.latitude, .zoom = info.zoom + 0.25};
+    const double before_ms = cpu_ms();
+    assert_int_equal(camber_scene_move(m.scene, &view), CAMBER_OK);
+    const double evaluate_ms = cpu_ms() - before_ms;
+    camber_mesh *mesh = NULL;
+    camber_frame_stats stats = {0};
+    assert_int_equal(camber_mesh_create(s->device, studio_any(s), &mesh), CAMBER_OK);
+    assert_int_equal(camber_scene_tessellate(m.scene, mesh, CAMBER_METHOD_STRIP), CAMBER_OK);
+    const camber_frame frame = camber_scene_frame(m.scene, mesh);
+    assert_int_equal(camber_render(studio_any(s), &frame, NULL, NULL, &stats), CAMBER_OK);
+    printf("%d layers: %zu bytes parsed in %.1f ms, evaluated in %.1f ms, %zu passes, %zu draw calls\n", LAYERS,
+           strlen(json), parse_ms, evaluate_ms, frame.pass_count, stats.draw_calls);
+    assert_in_range(frame.pass_count, 2, LAYERS);
+    assert_in_range(stats.draw_calls, 1, 10);
+#if !defined(__SANITIZE_ADDRESS__)
+    assert_true(parse_ms + evaluate_ms < 300);
+#endif
+    camber_mesh_destroy(mesh);
+    close_map(&m);
+}
+
 int main(void) {
     char cache[64];
     if (!studio_begin(cache))
         return 77;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_sort_key),  cmocka_unit_test(test_strokes_by_feature), cmocka_unit_test(test_sources),
-        cmocka_unit_test(test_translate), cmocka_unit_test(test_layer_opacity),      cmocka_unit_test(test_sharing),
+        cmocka_unit_test(test_translate), cmocka_unit_test(test_layer_opacity),      cmocka_unit_test(test_many_layers),
+        cmocka_unit_test(test_sharing),
     };
     const int failed = cmocka_run_group_tests(tests, studio_set_up, studio_tear_down);
     folder_remove(cache);

@@ -124,7 +124,6 @@ bool camber_layer_look_shares(const camber_layer_look *a, const camber_layer_loo
     /* Of what features change, both have nothing yet. */
     const camber_layer_paint *p = &a->paint, *q = &b->paint;
     const bool driven = a->by_feature >> CAMBER_LINE_JOIN & 1;
-    const bool limits = (p->miter_limit == q->miter_limit || (!driven && p->join != CAMBER_JOIN_MITER)) &&
-                        (p->round_limit == q->round_limit || (!driven && p->join != CAMBER_JOIN_ROUND));
+    const bool limits = p->miter_limit == q->miter_limit || (!driven && p->join != CAMBER_JOIN_MITER);
     return p->cap == q->cap && p->join == q->join && limits && p->offset == q->offset && p->sort_key == q->sort_key;
 }

@@ -142,7 +142,7 @@ static double reach_of(const job *j) {
 static int check_window(job *j, const camber_subject *s) {
     camber_check check = camber_check_start(NULL, NULL, "%s: no point far outside the picture", s->name);
     const camber_tessellation_desc desc = {j->strokes, j->stroke_count, s->method, 0};
-    const double most = 64 + 16 + reach_of(j);
+    const double most = 64 + 16 + reach_of(j) + s->camera.translate_px;
     camber_stages stages = {0};
     const int status = camber_report_status(
         j->v->session->report, camber_stages_on_host(j->v->session->context, s->polylines, &desc, &stages));

@@ -10,13 +10,12 @@ precision highp float;
 flat in vec4 v_segment; // A in the piece, direction
 flat in vec4 v_shape;   // length, half width; at A and B: where a flat cap lies, px past the end
 flat in vec4 v_turns;   // cosine and sine of half the turn at A, at B; the sine > 0 where it turns towards +y
-flat in vec4 v_edge;    // extent, taper, slope, curve: of the sides and, turned by a right angle, of flat caps
-flat in vec4 v_limits;  // at A and B: foreign from here on, round from here on; px past the end
+flat in vec4 v_rest;    // slope and curve of the edge; at A and B: foreign from here on, px past the end
 #if TIPS
 flat in vec2 v_tips; // at A and B: where the round cap of a thin line ends, px past the end
 #endif
 #if SHARP_JOINS
-flat in highp uint v_kinds; // camber_end at A, at B
+flat in highp uvec3 v_ends; // camber_end at A and << 3 at B; bits of floats: round from here on at A, at B, px past the end
 #endif
 flat in mediump vec4 v_color;
 #if GAP || BLUR
@@ -82,10 +81,20 @@ float bend(float beyond, float s) {
     return beyond > 0.0 ? 0.0 : s * f * f;
 }
 
+// How far past the ends, where they are round.
+vec2 arcs(vec2 past) {
+#if SHARP_JOINS
+    past -= uintBitsToFloat(v_ends.yz);
+#elif FLAT_CAPS
+    past = vec2(v_shape.z < NEVER_PX ? 0.0 : past.x, v_shape.w < NEVER_PX ? 0.0 : past.y);
+#endif
+    return max(past, 0.0);
+}
+
 #if UNION
 // Into the stroke, across the edge that is nearest, in the picture.
 vec2 normal_of(vec2 past, float y, vec2 u, float half_width) {
-    vec2 arc = max(past - v_limits.zw, 0.0);
+    vec2 arc = arcs(past);
     vec2 off = vec2(arc.y - arc.x, y);
     vec2 inward = -off / max(length(off), 1e-3);
 #if FLAT_CAPS
@@ -99,21 +108,20 @@ vec2 normal_of(vec2 past, float y, vec2 u, float half_width) {
 void main() {
     vec2 u = v_segment.zw, q = gl_FragCoord.xy - v_segment.xy;
     float half_width = v_shape.y;
+    // Of the sides and, turned by a right angle, of flat caps.
+    vec4 edge = vec4(edge_extent(u), v_rest.xy);
     float x = dot(q, u), y = q.y * u.x - q.x * u.y;
     vec2 past = vec2(-x, x - v_shape.x); // the ends, along the segment
     vec2 beyond = v_turns.xz * past + v_turns.yw * y;         // the bisectors
 
-#if FLAT_CAPS || SHARP_JOINS
-    float arc = max(max(past.x - v_limits.z, past.y - v_limits.w), 0.0);
-#else
-    float arc = max(max(past.x, past.y), 0.0);
-#endif
+    vec2 ends = arcs(past);
+    float arc = max(ends.x, ends.y);
     // On an arc farther than a pixel from the segment, the distance is all.
     float bent = y - (bend(beyond.x, v_turns.y) + bend(beyond.y, v_turns.w)) * max(1.0 - arc, 0.0);
     float d = sqrt(arc * arc + bent * bent);
-    float area = covered(half_width - d, v_edge);
+    float area = covered(half_width - d, edge);
 #if THIN
-    area = max(area + covered(half_width + d, v_edge) - 1.0, 0.0);
+    area = max(area + covered(half_width + d, edge) - 1.0, 0.0);
 #endif
 #if TIPS
     // How much of the pixel round caps leave along the line.
@@ -121,14 +129,14 @@ void main() {
     area *= max(tip.x + tip.y - 1.0, 0.0);
 #endif
 #if SHARP_JOINS
-    area = cut_join(area, v_kinds & 7u, past.x, v_turns.xy, y, vec2(-u.x, u.y), half_width);
-    area = cut_join(area, v_kinds >> 3, past.y, v_turns.zw, y, u, half_width);
+    area = cut_join(area, v_ends.x & 7u, past.x, v_turns.xy, y, vec2(-u.x, u.y), half_width);
+    area = cut_join(area, v_ends.x >> 3, past.y, v_turns.zw, y, u, half_width);
 #endif
 #if GAP
-    float gap = max(covered(v_band.x - d, v_edge) + covered(v_band.x + d, v_edge) - 1.0, 0.0);
+    float gap = max(covered(v_band.x - d, edge) + covered(v_band.x + d, edge) - 1.0, 0.0);
 #if SHARP_JOINS
-    gap = cut_join(gap, v_kinds & 7u, past.x, v_turns.xy, y, vec2(-u.x, u.y), v_band.x);
-    gap = cut_join(gap, v_kinds >> 3, past.y, v_turns.zw, y, u, v_band.x);
+    gap = cut_join(gap, v_ends.x & 7u, past.x, v_turns.xy, y, vec2(-u.x, u.y), v_band.x);
+    gap = cut_join(gap, v_ends.x >> 3, past.y, v_turns.zw, y, u, v_band.x);
 #endif
     area = v_band.x > 0.0 ? max(area - gap, 0.0) : area;
 #endif
@@ -136,8 +144,8 @@ void main() {
     // A ramp from half a pixel outside inwards, and into the gap.
     float rim = half_width - d;
 #if SHARP_JOINS
-    Second at_a = second_line(v_kinds & 7u, past.x, v_turns.xy, y, half_width);
-    Second at_b = second_line(v_kinds >> 3, past.y, v_turns.zw, y, half_width);
+    Second at_a = second_line(v_ends.x & 7u, past.x, v_turns.xy, y, half_width);
+    Second at_b = second_line(v_ends.x >> 3, past.y, v_turns.zw, y, half_width);
     rim = min(rim, min(at_a.applies ? at_a.inside : rim, at_b.applies ? at_b.inside : rim));
 #endif
     float fade = v_band.y + 1.0, inner = v_band.x > 0.0 ? d - v_band.x + v_band.y : rim;
@@ -145,12 +153,12 @@ void main() {
 #endif
 #if FLAT_CAPS
     vec2 cap = v_shape.zw - past;
-    area *= max(covered(cap.x, v_edge) + covered(cap.y, v_edge) - 1.0, 0.0);
+    area *= max(covered(cap.x, edge) + covered(cap.y, edge) - 1.0, 0.0);
 #endif
     // The two sides of a split end know the turn to 16 bits only, 4 / 65534 off at most: between them lies a strip that both
     // draw, so that neither leaves a hole.
     float tie = 4e-5 * half_width + 4e-5;
-    bool foreign = (beyond.x > tie && past.x > v_limits.x) || (beyond.y > tie && past.y > v_limits.y);
+    bool foreign = (beyond.x > tie && past.x > v_rest.z) || (beyond.y > tie && past.y > v_rest.w);
 #if (GAP || BLUR) && METHOD == 2
     // Bodies of fans overlap on the inner side of a join: what one leaves open the other must not fill.
     foreign = foreign || (beyond.x > tie && y * v_turns.y > 0.0) || (beyond.y > tie && y * v_turns.w > 0.0);

@@ -17,10 +17,13 @@ uniform vec2 u_scale;           // 2 / size of the viewport
 flat out vec4 v_segment;
 flat out vec4 v_shape;
 flat out vec4 v_turns;
-flat out vec4 v_edge;
-flat out vec4 v_limits;
+flat out vec4 v_rest;
+#if TIPS
 flat out vec2 v_tips;
-flat out highp uint v_kinds;
+#endif
+#if SHARP_JOINS
+flat out highp uvec3 v_ends;
+#endif
 flat out mediump vec4 v_color;
 #if GAP || BLUR
 flat out vec2 v_band;
@@ -31,7 +34,7 @@ const uint FIRST = 2u, RING = 8u, BREAK = 16u, START = 32u; // of a record
 const uint AFTER_FIRST = 1u << 26u, BEFORE_LAST = 1u << 27u; // of a join
 const uint DOT = 1u, CUT = 3u, TIGHT = 4u; // kinds of joins
 const uint ROUND = 0u, BUTT = 1u, SQUARE = 2u, SPLIT_ROUND = 5u; // camber_end
-const float NEVER_PX = 1e6, ALWAYS_PX = -1e30;
+const float ALWAYS_PX = -1e30;
 
 struct Record {
     vec2 p;
@@ -113,9 +116,11 @@ float foreign_from(uint end, vec2 turn, bool ends_soon, float half_width) {
     return end < SPLIT_ROUND ? NEVER_PX : kept ? 0.0 : ALWAYS_PX;
 }
 
+#if SHARP_JOINS
 float round_from(uint end) {
     return end == ROUND || end == SPLIT_ROUND ? 0.0 : NEVER_PX;
 }
+#endif
 
 float flat_cap(uint end, float half_width) {
     return end == BUTT ? 0.0 : end == SQUARE ? half_width : NEVER_PX;
@@ -135,11 +140,14 @@ void hand_over(vec2 a, vec2 u, float len, float half_width, uint join_a, uint jo
     v_segment = vec4(a - u_origin, u);
     v_shape = vec4(len, half_width, flat_cap(end_a, half_width), flat_cap(end_b, half_width));
     v_turns = vec4(turn_a, turn_b);
-    v_edge = edge_of(u);
-    v_limits = vec4(foreign_from(end_a, turn_a, (join_a & AFTER_FIRST) != 0u, half_width),
-                    foreign_from(end_b, turn_b, (join_b & BEFORE_LAST) != 0u, half_width), round_from(end_a), round_from(end_b));
+    v_rest = vec4(edge_of(u).zw, foreign_from(end_a, turn_a, (join_a & AFTER_FIRST) != 0u, half_width),
+                  foreign_from(end_b, turn_b, (join_b & BEFORE_LAST) != 0u, half_width));
+#if TIPS
     v_tips = vec2(tip(join_a, half_width), tip(join_b, half_width));
-    v_kinds = end_a | end_b << 3;
+#endif
+#if SHARP_JOINS
+    v_ends = uvec3(end_a | end_b << 3, floatBitsToUint(round_from(end_a)), floatBitsToUint(round_from(end_b)));
+#endif
 }
 
 void main() {

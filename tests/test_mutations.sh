@@ -177,7 +177,7 @@ mutant strip shaders/stroke.vert "no pad" 'PAD_PX = 0.75' 'PAD_PX = 0.0'
 mutant strip shaders/edge.glsl "the slope of an edge" '1.0 / p,' '0.8 / p,'
 mutant strip shaders/stroke.frag "the corner of a pixel" 'corner * corner * edge.w' 'corner * edge.w'
 evidence=(--pictures "$tmp/pictures" --junit "$tmp/junit.xml")
-mutant strip shaders/stroke.frag "half the width" 'covered(half_width - d, v_edge)' 'covered(0.9 * half_width - d, v_edge)'
+mutant strip shaders/stroke.frag "half the width" 'covered(half_width - d, edge)' 'covered(0.9 * half_width - d, edge)'
 evidence=()
 mutant strip shaders/stroke.vert "the sine of a turn" '2.0 * q * scale' 'q * scale'
 mutant strip shaders/stroke.frag "the wrong side of a bisector" 'v_turns.yw * y' '-v_turns.yw * y'

@@ -134,8 +134,10 @@ camber_status camber_renderer_count_shader(camber_renderer *renderer, camber_met
                                            const camber_shader **shader) {
     camber_shader *wanted = renderer->counts + method;
     if (!wanted->program) {
-        char head[64];
-        snprintf(head, sizeof head, "#define METHOD %d\n#define GAP 0\n#define BLUR 0\n", (int)method);
+        char head[128];
+        snprintf(head, sizeof head,
+                 "#define METHOD %d\n#define TIPS 0\n#define SHARP_JOINS 0\n#define GAP 0\n#define BLUR 0\n",
+                 (int)method);
         const camber_status status = build(renderer, head, camber_stroke_vert, camber_count_frag, wanted);
         if (status != CAMBER_OK)
             return status;

@@ -6,7 +6,7 @@
 
 /* The widest that a stroke may be: camber.h. */
 static const double WIDEST_PX = 16384.0;
-static const size_t MOST_ROWS = (size_t)1 << 24;
+static const size_t MOST_ROWS = (size_t)1 << 24, MOST_MATCHES = (size_t)1 << 26;
 
 /* The part of camber_style_layer_matches that needs no feature; a limit of 24 stands for none. */
 static bool is_active(const camber_style_layer *layer, double zoom) {
@@ -78,6 +78,30 @@ static bool shares_polylines(const camber_layer_look *a, const camber_layer_look
            same_text(a->layer->filter_key, b->layer->filter_key) && camber_layer_look_shares(a, b);
 }
 
+/* Sets by what layers must agree in to share one, and more: a hash, so that many layers take no longer than their
+ * number. */
+typedef struct set_table {
+    uint32_t *slots;   /* set + 1; 0: free */
+    size_t slot_count; /* a power of two */
+} set_table;
+
+static uint64_t set_hash(const camber_style_layer *layer) {
+    const char *source_layer = layer->source_layer ? layer->source_layer : "";
+    uint64_t hash = camber_hash(CAMBER_HASH_START, &layer->source_index, sizeof layer->source_index);
+    hash = camber_hash(hash, source_layer, strlen(source_layer) + 1);
+    return camber_hash(hash, layer->filter_key, strlen(layer->filter_key));
+}
+
+/* The set that the layer shares, or the place for a new one's number. */
+static uint32_t *find_set(const camber_plan *plan, const set_table *table, const camber_layer_look *look) {
+    const uint64_t hash = set_hash(look->layer);
+    size_t at = (size_t)(hash ^ hash >> 32) & (table->slot_count - 1);
+    while (table->slots[at] &&
+           !shares_polylines(&plan->layers[plan->sets[table->slots[at] - 1].first_layer].look, look))
+        at = (at + 1) & (table->slot_count - 1);
+    return table->slots + at;
+}
+
 /* A map's translation turns with it. */
 static void find_translation(const camber_layer_look *look, const camber_view *view, float translate_px[2]) {
     const bool turns = look->paint.translate_anchor == CAMBER_TRANSLATE_MAP;
@@ -87,26 +111,38 @@ static void find_translation(const camber_layer_look *look, const camber_view *v
     translate_px[1] = (float)fmin(fmax(y * cosine - x * sine, -WIDEST_PX), WIDEST_PX);
 }
 
+static void add_layer(camber_plan *plan, const set_table *table, const camber_style_layer *layer,
+                      const camber_view *view) {
+    camber_plan_layer *made = plan->layers + plan->layer_count;
+    *made = (camber_plan_layer){.look = camber_style_layer_look(layer, camber_view_style_zoom(view))};
+    find_translation(&made->look, view, made->translate_px);
+    uint32_t *slot = find_set(plan, table, &made->look);
+    if (*slot == 0) {
+        plan->sets[plan->set_count] =
+            (camber_plan_set){.first_layer = plan->layer_count, .last_layer = plan->layer_count};
+        *slot = (uint32_t)++plan->set_count;
+    }
+    made->set = *slot - 1;
+    camber_plan_set *set = plan->sets + made->set;
+    made->slot = set->layer_count++;
+    plan->layers[set->last_layer].next = plan->layer_count;
+    set->last_layer = plan->layer_count++;
+}
+
 static camber_status group_layers(camber_plan *plan, const camber_style *style, size_t first, const camber_view *view) {
-    const double zoom = camber_view_style_zoom(view);
+    set_table table = {.slot_count = 16};
+    while (table.slot_count / 2 < style->layer_count)
+        table.slot_count *= 2;
     if (!(plan->layers = camber_alloc(plan->context, style->layer_count, sizeof *plan->layers)) ||
-        !(plan->sets = camber_alloc_zero(plan->context, style->layer_count, sizeof *plan->sets)))
+        !(plan->sets = camber_alloc_zero(plan->context, style->layer_count, sizeof *plan->sets)) ||
+        !(table.slots = camber_alloc_zero(plan->context, table.slot_count, sizeof *table.slots)))
         return CAMBER_ERROR_MEMORY;
     for (size_t i = first; i < style->layer_count; i++) {
         const camber_style_layer *layer = style->layers + i;
-        if (layer->kind != CAMBER_LAYER_LINE || !is_active(layer, zoom))
-            continue;
-        camber_plan_layer *made = plan->layers + plan->layer_count;
-        *made = (camber_plan_layer){.look = camber_style_layer_look(layer, zoom)};
-        find_translation(&made->look, view, made->translate_px);
-        while (made->set < plan->set_count &&
-               !shares_polylines(&plan->layers[plan->sets[made->set].first_layer].look, &made->look))
-            made->set++;
-        if (made->set == plan->set_count)
-            plan->sets[plan->set_count++] = (camber_plan_set){.first_layer = plan->layer_count};
-        made->slot = plan->sets[made->set].layer_count++;
-        plan->layer_count++;
+        if (layer->kind == CAMBER_LAYER_LINE && is_active(layer, camber_view_style_zoom(view)))
+            add_layer(plan, &table, layer, view);
     }
+    camber_free(plan->context, table.slots);
     return CAMBER_OK;
 }
 
@@ -180,13 +216,10 @@ static uint32_t intern_row(camber_plan *plan, camber_plan_set *set, row_table *t
 /* The tuple of a class, and its stroke; false where none of the set's layers draws it. */
 static bool fill_tuple(camber_plan *plan, const camber_plan_set *set, const camber_view *view,
                        const camber_feature_view *feature, row_table *table, double *key) {
-    const size_t index = (size_t)(set - plan->sets);
-    size_t found = 0;
+    size_t at = set->first_layer;
     table->stroke.width_px = 0.0f;
-    for (size_t i = set->first_layer; found < set->layer_count; i++) {
-        const camber_plan_layer *layer = plan->layers + i;
-        if (layer->set != index)
-            continue;
+    for (size_t i = 0; i < set->layer_count; i++, at = plan->layers[at].next) {
+        const camber_plan_layer *layer = plan->layers + at;
         const camber_layer_paint paint = camber_layer_look_paint(&layer->look, feature);
         camber_paint *made = table->tuple + layer->slot;
         *made = paint_of(layer, &paint, view->ratio);
@@ -196,7 +229,6 @@ static bool fill_tuple(camber_plan *plan, const camber_plan_set *set, const camb
         *key = paint.sort_key;
         if (made->width_px > 0.0f)
             plan->translate_px = fmaxf(plan->translate_px, hypotf(made->translate_x_px, made->translate_y_px));
-        found++;
     }
     return table->stroke.width_px > 0.0f;
 }
@@ -390,6 +422,10 @@ camber_status camber_plan_create(const camber_features *features, const camber_v
     if (status != CAMBER_OK)
         return status;
 
+    if (plan->set_count > MOST_MATCHES / (features->class_count + 1))
+        return camber_fail(context, CAMBER_ERROR_LIMIT,
+                           "style: %zu layers that differ over %zu kinds of features; use fewer layers, or properties",
+                           plan->set_count, features->class_count);
     class_sets by_class = {0};
     class_rows rows = {.table = {.slot_count = 16}};
     row_table *table = &rows.table;

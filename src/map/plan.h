@@ -13,7 +13,7 @@
 
 /* Layers that agree in source, filter, caps and joins: one geometry, cut for the widest of them. */
 typedef struct camber_plan_set {
-    size_t first_layer, layer_count; /* the plan's index of the first; the others follow it, not at once */
+    size_t first_layer, last_layer, layer_count; /* of the plan; from one to the next by next */
     size_t first_row, row_count;
     size_t first_pair, pair_count;   /* its classes, in order */
     size_t first_paint;              /* into paints: row_count tuples of layer_count */
@@ -26,6 +26,7 @@ typedef struct camber_plan_layer {
     float translate_px[2];
     size_t set;
     size_t slot; /* which of the set's layers it is */
+    size_t next; /* layer of the set */
 } camber_plan_layer;
 
 /* A polyline of the features that a set draws, with its pair: the set and the class. Pairs stay what they are while

@@ -3,6 +3,9 @@
 #include <math.h>
 #include <string.h>
 
+/* 2.4 GB. */
+static const size_t MOST_PAINTS = (size_t)1 << 26;
+
 /* The passes over the polylines of a mesh: by entries and pairs where a network was tessellated, by pieces and rows
  * where polylines were. */
 typedef struct pass_list {
@@ -139,6 +142,11 @@ static camber_status make_passes(camber_context *context, const numbering *n, si
     size_t paint_count = 0;
     for (size_t i = 0; i < count; i++)
         paint_count += runs[i].end_paint;
+    if (paint_count > MOST_PAINTS) {
+        status = camber_fail(context, CAMBER_ERROR_LIMIT, "style: %zu passes over %zu kinds of lines; use fewer layers",
+                             count, runs[count - 1].end_paint);
+        goto done;
+    }
     if (!(list->paints = camber_alloc(context, paint_count, sizeof *list->paints)) ||
         !(list->passes = camber_alloc(context, count, sizeof *list->passes)))
         goto done;

@@ -32,7 +32,8 @@ CAMBER_API camber_status camber_style_parse(camber_context *context, const char 
 CAMBER_API camber_status camber_style_builtin(camber_context *context, camber_theme theme, camber_style **style);
 CAMBER_API void camber_style_destroy(camber_style *style);
 
-/* Compiles one expression or older function and evaluates it over inputs. json is {"expression": ..., "propertySpec":
+/* Compiles one expression or older function, or a filter where "filter" stands for "expression", and evaluates it over
+ * inputs. json is {"expression": ..., "propertySpec":
  * {...}, "inputs": [[{"zoom": ...}, {"properties": {...}, "id": ..., "geometry": ...}], ...], "globalState": {...}}, as
  * the specification's own tests have it; all but the expression may be missing. The sink gets {"compiled": {"result":
  * "success", "type": ..., "isFeatureConstant": ..., "isZoomConstant": ...}, "outputs": [...]} with {"error": ...} for

@@ -47,11 +47,17 @@ static bool add_number(camber_text *text, double number) {
     return add(text, digits);
 }
 
+/* Alpha is a float: its digits are those of the 255th that it is, or six. */
+static double true_alpha(double alpha) {
+    const double step = round(alpha * 255.0) / 255.0;
+    return fabs(alpha - step) < 1e-7 ? step : round(alpha * 1e6) / 1e6;
+}
+
 static bool add_color(camber_text *text, camber_color color) {
     char rgb[64];
     snprintf(rgb, sizeof rgb, "rgba(%.0f,%.0f,%.0f,", round((double)color.r * 255.0), round((double)color.g * 255.0),
              round((double)color.b * 255.0));
-    return add(text, rgb) && add_number(text, round((double)color.a * 1e6) / 1e6) && add(text, ")");
+    return add(text, rgb) && add_number(text, true_alpha((double)color.a)) && add(text, ")");
 }
 
 /* ---- JSON, as ECMAScript's JSON.stringify ---- */

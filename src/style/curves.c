@@ -29,7 +29,7 @@ static bool evaluate_input(camber_evaluation *e, const camber_node *node, double
 
 static bool evaluate_step(camber_evaluation *e, const camber_node *node, camber_value *value) {
     double input = 0.0;
-    if (node->index_count > 0 && !evaluate_input(e, node, &input))
+    if (!evaluate_input(e, node, &input))
         return false;
     return camber_evaluate_operand(e, node, 1 + count_stops(e->expression, node, input), value);
 }

@@ -61,10 +61,12 @@ static bool compile_value(camber_compiler *c, const json_t *array, size_t index,
     return true;
 }
 
-/* A feature that does not have the property is not one that has null. */
+/* A feature that does not have the property is not one that has null; the id of one without is null. */
 static bool require_key(camber_compiler *c, const json_t *array, uint32_t *node) {
     const size_t first_operand = c->operand_count;
     uint32_t has;
+    if (is(json_string_value(json_array_get(array, 1)), "$id"))
+        return true;
     return compile_key(c, array, CAMBER_OP_HAS, &has) && camber_push_operand(c, has) && camber_push_operand(c, *node) &&
            camber_make_node(c, &(camber_node){.op = CAMBER_OP_ALL, .type = boolean}, first_operand, node);
 }
@@ -77,8 +79,6 @@ static bool compile_comparison(camber_compiler *c, const json_t *array, const ch
     } ops[] = {{"==", CAMBER_OP_EQUAL},      {"!=", CAMBER_OP_EQUAL},  {"<", CAMBER_OP_LESS},
                {"<=", CAMBER_OP_LESS_EQUAL}, {">", CAMBER_OP_GREATER}, {">=", CAMBER_OP_GREATER_EQUAL}};
     const size_t first_operand = c->operand_count;
-    if (json_array_size(array) == 3 && json_is_null(json_array_get(array, 2)) && !(is(op, "==") || is(op, "!=")))
-        return camber_compiler_fail(c, "null has no order; compare with a number or a string");
     if (!compile_key(c, array, CAMBER_OP_GET, node) || !camber_push_operand(c, *node) ||
         !compile_value(c, array, 2, node) || !camber_push_operand(c, *node))
         return false;
@@ -127,7 +127,10 @@ static bool compile_in(camber_compiler *c, const json_t *array, bool negated, ui
     const bool made = labels ? camber_sort_labels(c, first, false) && camber_make_node(c, &among, first_operand, node)
                              : camber_make_node(c, &list, first_operand + 1, node) && camber_push_operand(c, *node) &&
                                    camber_make_node(c, &in, first_operand, node);
-    return made && camber_wrap_node(c, CAMBER_OP_QUIET, boolean, node) &&
+    bool nulls = false;
+    for (size_t i = 2; i < json_array_size(array); i++)
+        nulls = nulls || json_is_null(json_array_get(array, i));
+    return made && camber_wrap_node(c, CAMBER_OP_QUIET, boolean, node) && (!nulls || require_key(c, array, node)) &&
            (!negated || camber_wrap_node(c, CAMBER_OP_NOT, boolean, node));
 }
 

@@ -44,7 +44,8 @@ static bool read_shape(function *f) {
         return camber_compiler_fail(f->c, "the function's type is not known; use \"exponential\", \"interval\", "
                                           "\"categorical\" or \"identity\"");
     const bool needs_key = found >= SHAPE_CATEGORICAL && !f->key;
-    if (needs_key || (found == SHAPE_EXPONENTIAL && !f->property->interpolated))
+    const bool lenient = f->c->strict && f->key;
+    if (needs_key || (found == SHAPE_EXPONENTIAL && !f->property->interpolated && !lenient))
         return camber_compiler_fail(f->c, "the function's type is wrong for %s; use %s\"interval\" with stops on zoom",
                                     f->property->name, f->property->interpolated ? "\"exponential\" or " : "");
     if (found != SHAPE_IDENTITY && !f->stops)

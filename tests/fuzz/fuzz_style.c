@@ -1,10 +1,12 @@
-/* Style documents: parsed, their layers evaluated over features with values of every kind, and drawn to a scene. */
+/* Style documents: parsed, their layers evaluated over features with values of every kind, and drawn to a scene; and
+ * documents of one expression, as style eval takes them. */
 #include "fuzz_scene.h"
 
 #include "source/fill.h"
 #include "style/style.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { CLASSES = 8 };
@@ -63,6 +65,14 @@ static bool add_features(fuzz_run *run, camber_features *features) {
     return true;
 }
 
+/* What reads an id or all properties finds these. */
+static const camber_value numbers[] = {{.type = CAMBER_VALUE_NUMBER, .number = 1.5},
+                                       {.type = CAMBER_VALUE_STRING, .string = "a"}};
+static const camber_member members[] = {
+    {.key = "a", .place = 1, .value = {.type = CAMBER_VALUE_ARRAY, .count = 2, .items = numbers}},
+    {.key = "k", .place = 0, .value = {.type = CAMBER_VALUE_NUMBER, .number = -2.0}}};
+static const camber_value all_properties = {.type = CAMBER_VALUE_OBJECT, .count = 2, .members = members};
+
 static void check_layers(const camber_style *style, const camber_features *features) {
     static const double zooms[] = {0.0, 9.75, 14.0, 24.0};
     for (size_t i = 0; i < style->layer_count; i++) {
@@ -71,7 +81,9 @@ static void check_layers(const camber_style *style, const camber_features *featu
         for (size_t c = 0; c < features->class_count; c++) {
             const camber_feature_view feature = {
                 .values = features->values ? features->values + features->classes[c].first_value : NULL,
-                .geometry_type = features->classes[c].geometry ? "Polygon" : "LineString"};
+                .geometry_type = features->classes[c].geometry ? "Polygon" : "LineString",
+                .id = c % 2 ? numbers[c / 2 % 2] : (camber_value){0},
+                .all = c % 3 ? &all_properties : NULL};
             for (size_t z = 0; z < sizeof zooms / sizeof *zooms; z++) {
                 camber_style_layer_matches(layer, zooms[z], &feature);
                 const camber_layer_paint paint = camber_style_layer_paint(layer, zooms[z], &feature);
@@ -103,8 +115,16 @@ static void use_style(fuzz_run *run, const camber_style *style) {
     camber_features_destroy(features);
 }
 
+static void use_expression(fuzz_run *run, const uint8_t *bytes, size_t size) {
+    fuzz_bytes answer = {0};
+    if (fuzz_done(run, camber_style_evaluate(run->context, (const char *)bytes, size, "fuzzed", fuzz_sink(&answer))))
+        REQUIRE(answer.size > 2 && answer.bytes[0] == '{');
+    free(answer.bytes);
+}
+
 static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
     camber_style *style = NULL;
+    use_expression(run, bytes, size);
     if (!fuzz_done(run, camber_style_parse(run->context, (const char *)bytes, size, "fuzzed", &style)))
         return;
     use_style(run, style);

@@ -222,9 +222,11 @@ static int compare_label(const camber_value *value, const camber_label *label) {
 /* The node's label that the value is; NULL: none. */
 static const camber_label *find_label(const camber_expression *expression, const camber_node *node,
                                       const camber_value *value) {
-    const camber_label *labels = &expression->labels[node->index];
-    const bool strings = node->index_count > 0 && labels[0].string != NULL;
     uint32_t low = 0, high = node->index_count;
+    if (high == 0)
+        return NULL;
+    const camber_label *labels = &expression->labels[node->index];
+    const bool strings = labels[0].string != NULL;
     if (value->type != (strings ? CAMBER_VALUE_STRING : CAMBER_VALUE_NUMBER) || (!strings && isnan(value->number)))
         return NULL;
     while (low < high) {

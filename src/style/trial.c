@@ -76,14 +76,16 @@ static void keep_error(void *user, const camber_compiler *c, camber_log_level le
 
 /* ---- Compiling ---- */
 
-/* The names of an enum, NULL at the end; NULL: no memory, or no enum. */
+/* The names of an enum, NULL at the end. NULL: no memory. */
 static const char **list_names(evaluator *e, const json_t *values) {
     const char **names = camber_alloc(e->compiler.context, json_object_size(values) + 1, sizeof *names);
     const char *key;
     json_t *value;
     size_t count = 0;
-    if (!names)
+    if (!names) {
+        e->compiler.status = CAMBER_ERROR_MEMORY;
         return NULL;
+    }
     json_object_foreach((json_t *)(uintptr_t)values, key, value) {
         (void)value;
         names[count++] = key;
@@ -108,8 +110,9 @@ static bool compile(evaluator *e) {
     c->state = json_object_get(e->document, "globalState");
     json_t *filter = json_object_get(e->document, "filter");
     const bool done =
-        filter ? camber_compile_filter(c, filter, &e->expression)
-               : camber_compile_property(c, json_object_get(e->document, "expression"), &property, &e->expression);
+        c->status == CAMBER_OK &&
+        (filter ? camber_compile_filter(c, filter, &e->expression)
+                : camber_compile_property(c, json_object_get(e->document, "expression"), &property, &e->expression));
     camber_free(c->context, names);
     free(text);
     return done;

@@ -58,7 +58,8 @@ static void find_in_layer(camber_document *d, const camber_style_layer *layer, c
     if (layer->kind != CAMBER_LAYER_LINE)
         return;
     if (!layer->source) {
-        camber_compiler_warn(c, "the layer names no source; name one, or it is drawn of files given as input only");
+        if (camber_document_first_time(d, "source"))
+            camber_compiler_warn(c, "the layer names no source; name one, or it is drawn of files given as input only");
         return;
     }
     if (layer->source_index == CAMBER_NO_SOURCE)

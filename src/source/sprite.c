@@ -1,0 +1,225 @@
+#include "source/sprite.h"
+
+#include "source/url.h"
+#include "style/json.h"
+
+#include <math.h>
+#include <png.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { SIDE_MAX_PX = 16384 };
+
+/* ---- Sheets ---- */
+
+static void premultiply(camber_sprite_sheet *sheet) {
+    for (size_t i = 0; i < (size_t)sheet->width * sheet->height; i++) {
+        uint8_t *pixel = sheet->rgba + 4 * i;
+        for (int c = 0; c < 3; c++)
+            pixel[c] = (uint8_t)((pixel[c] * pixel[3] + 127) / 255);
+    }
+}
+
+/* libpng's short form: it says what is wrong and jumps nowhere. */
+static camber_status decode(camber_context *context, const char *path, png_image *image, camber_sprite_sheet *sheet) {
+    if (image->width > SIDE_MAX_PX || image->height > SIDE_MAX_PX)
+        return camber_fail(context, CAMBER_ERROR_LIMIT, "%s: %u x %u px; cut it to %d px a side", path, image->width,
+                           image->height, SIDE_MAX_PX);
+    image->format = PNG_FORMAT_RGBA;
+    uint8_t *rgba = camber_alloc(context, (size_t)image->width * image->height, 4);
+    if (!rgba)
+        return CAMBER_ERROR_MEMORY;
+    if (!png_image_finish_read(image, NULL, rgba, 0, NULL)) {
+        camber_free(context, rgba);
+        return camber_fail(context, CAMBER_ERROR_INPUT, "%s: %s; get the sprite again", path, image->message);
+    }
+    *sheet = (camber_sprite_sheet){image->width, image->height, rgba};
+    premultiply(sheet);
+    return CAMBER_OK;
+}
+
+static camber_status load_sheet(camber_context *context, const char *path, camber_sprite_sheet *sheet) {
+    png_image image = {.version = PNG_IMAGE_VERSION};
+    char *bytes = NULL;
+    size_t size_bytes;
+    camber_status status = camber_read_file(context, path, &bytes, &size_bytes);
+    if (status != CAMBER_OK)
+        return status;
+    if (png_image_begin_read_from_memory(&image, bytes, size_bytes))
+        status = decode(context, path, &image, sheet);
+    else
+        status = camber_fail(context, CAMBER_ERROR_INPUT, "%s: no PNG (%s); get the sprite again", path, image.message);
+    png_image_free(&image);
+    camber_free(context, bytes);
+    return status;
+}
+
+/* ---- Indices ---- */
+
+typedef struct index_reader {
+    camber_sprites *sprites;
+    const char *path, *id;
+    size_t sheet;
+} index_reader;
+
+/* A whole number of px; one that is missing is 0. */
+static bool read_px(const json_t *image, const char *key, uint32_t *px) {
+    const json_t *json = json_object_get(image, key);
+    const double value = json_number_value(json);
+    if ((json && !json_is_number(json)) || !(value >= 0.0 && value <= SIDE_MAX_PX) || value != floor(value))
+        return false;
+    *px = (uint32_t)value;
+    return true;
+}
+
+static camber_status add_image(index_reader *r, const char *name, const json_t *json) {
+    camber_sprites *sprites = r->sprites;
+    camber_context *context = sprites->context;
+    const camber_sprite_sheet *sheet = sprites->sheets + r->sheet;
+    const json_t *ratio = json_object_get(json, "pixelRatio");
+    camber_sprite_image image = {.sheet = r->sheet,
+                                 .pixel_ratio = ratio ? json_number_value(ratio) : 1.0,
+                                 .sdf = json_is_true(json_object_get(json, "sdf"))};
+    if (!read_px(json, "x", &image.x) || !read_px(json, "y", &image.y) || !read_px(json, "width", &image.width) ||
+        !read_px(json, "height", &image.height) || !(image.pixel_ratio > 0.0 && isfinite(image.pixel_ratio)))
+        return camber_fail(context, CAMBER_ERROR_INPUT,
+                           "%s: /%.64s: expected x, y, width and height in whole pixels and a pixelRatio; correct them",
+                           r->path, name);
+    if (image.x + image.width > sheet->width || image.y + image.height > sheet->height)
+        return camber_fail(context, CAMBER_ERROR_INPUT,
+                           "%s: /%.64s: %u x %u px at %u, %u lie beside its sheet of %u x %u px; get the sprite again",
+                           r->path, name, image.width, image.height, image.x, image.y, sheet->width, sheet->height);
+    if (!camber_grow(context, &sprites->images, &sprites->image_capacity, sprites->image_count + 1,
+                     sizeof *sprites->images))
+        return CAMBER_ERROR_MEMORY;
+    const bool plain = strcmp(r->id, "default") == 0;
+    const size_t size = (plain ? 0 : strlen(r->id) + 1) + strlen(name) + 1;
+    if (!(image.name = camber_alloc(context, size, 1)))
+        return CAMBER_ERROR_MEMORY;
+    snprintf(image.name, size, "%s%s%s", plain ? "" : r->id, plain ? "" : ":", name);
+    sprites->images[sprites->image_count++] = image;
+    return CAMBER_OK;
+}
+
+static camber_status load_index(index_reader *r) {
+    camber_context *context = r->sprites->context;
+    char *bytes = NULL;
+    size_t size_bytes;
+    json_t *root = NULL, *value;
+    const char *name;
+    camber_status status = camber_read_file(context, r->path, &bytes, &size_bytes);
+    if (status == CAMBER_OK)
+        status = camber_json_read(context, bytes, size_bytes, r->path, &root);
+    if (status == CAMBER_OK && !json_is_object(root))
+        status =
+            camber_fail(context, CAMBER_ERROR_INPUT, "%s: expected an object of images; get the sprite again", r->path);
+    json_object_foreach(root, name, value) {
+        if (status == CAMBER_OK)
+            status = add_image(r, name, value);
+    }
+    json_decref(root);
+    camber_free(context, bytes);
+    return status;
+}
+
+/* ---- Sprites ---- */
+
+/* path and what comes behind it. */
+static char *with_tail(camber_context *context, const char *path, const char *tail) {
+    const size_t size = strlen(path) + strlen(tail) + 1;
+    char *made = camber_alloc(context, size, 1);
+    if (made)
+        snprintf(made, size, "%s%s", path, tail);
+    return made;
+}
+
+static camber_status load_at(camber_sprites *sprites, const camber_style_sprite *sprite, const char *path, bool large) {
+    camber_context *context = sprites->context;
+    index_reader r = {.sprites = sprites, .id = sprite->id, .sheet = sprites->sheet_count};
+    char *sheet = with_tail(context, path, large ? "@2x.png" : ".png");
+    char *index = sheet ? with_tail(context, path, large ? "@2x.json" : ".json") : NULL;
+    camber_status status = sheet && index ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    if (status == CAMBER_OK)
+        status = load_sheet(context, sheet, sprites->sheets + r.sheet);
+    if (status == CAMBER_OK) {
+        sprites->sheet_count++;
+        r.path = index;
+        status = load_index(&r);
+    }
+    camber_free(context, index);
+    camber_free(context, sheet);
+    return status;
+}
+
+/* A sprite without a large form is drawn from its small one. */
+static bool has_large(camber_context *context, const char *path) {
+    char *sheet = with_tail(context, path, "@2x.png");
+    FILE *file = sheet ? fopen(sheet, "rb") : NULL;
+    if (file)
+        fclose(file);
+    camber_free(context, sheet);
+    return file != NULL;
+}
+
+static camber_status load(camber_sprites *sprites, const camber_style *style, const char *base_path, double ratio) {
+    for (size_t i = 0; i < style->sprite_count; i++) {
+        const camber_style_sprite *sprite = style->sprites + i;
+        camber_url url = {0};
+        camber_status status = camber_url_resolve(sprites->context, "sprite", sprite->url, base_path, &url);
+        if (status != CAMBER_OK)
+            return status;
+        status = load_at(sprites, sprite, url.path, ratio > 1.0 && has_large(sprites->context, url.path));
+        camber_free(sprites->context, url.path);
+        if (status != CAMBER_OK)
+            return status;
+    }
+    return CAMBER_OK;
+}
+
+static int compare_images(const void *left, const void *right) {
+    const camber_sprite_image *a = left, *b = right;
+    const int order = strcmp(a->name, b->name);
+    return order ? order : a->sheet < b->sheet ? -1 : a->sheet > b->sheet;
+}
+
+camber_status camber_sprites_load(camber_context *context, const camber_style *style, const char *base_path,
+                                  double ratio, camber_sprites **sprites) {
+    camber_sprites *made = camber_alloc_zero(context, 1, sizeof *made);
+    if (!made)
+        return CAMBER_ERROR_MEMORY;
+    made->context = context;
+    made->sheets = camber_alloc_zero(context, style->sprite_count, sizeof *made->sheets);
+    const camber_status status = made->sheets ? load(made, style, base_path, ratio) : CAMBER_ERROR_MEMORY;
+    if (status != CAMBER_OK) {
+        camber_sprites_destroy(made);
+        return status;
+    }
+    if (made->image_count)
+        qsort(made->images, made->image_count, sizeof *made->images, compare_images);
+    *sprites = made;
+    return CAMBER_OK;
+}
+
+void camber_sprites_destroy(camber_sprites *sprites) {
+    if (!sprites)
+        return;
+    for (size_t i = 0; i < sprites->image_count; i++)
+        camber_free(sprites->context, sprites->images[i].name);
+    for (size_t i = 0; i < sprites->sheet_count; i++)
+        camber_free(sprites->context, sprites->sheets[i].rgba);
+    camber_free(sprites->context, sprites->images);
+    camber_free(sprites->context, sprites->sheets);
+    camber_free(sprites->context, sprites);
+}
+
+const camber_sprite_image *camber_sprites_find(const camber_sprites *sprites, const char *name) {
+    size_t low = 0, high = sprites->image_count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (strcmp(sprites->images[middle].name, name) < 0)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < sprites->image_count && strcmp(sprites->images[low].name, name) == 0 ? sprites->images + low : NULL;
+}

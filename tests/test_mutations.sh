@@ -185,8 +185,7 @@ mutant strip shaders/stroke.vert "square caps of a whole width" 'SQUARE ? half_w
 mutant strip shaders/stroke.frag "bevels that reach too far" 'bevel ? half_width * turn.x' 'bevel ? half_width'
 mutant strip shaders/stroke.frag "a bend to the wrong side" 'y - (bend(beyond.x' 'y + (bend(beyond.x'
 mutant strip shaders/stroke.vert "caps of thin lines" '0.5 + reach : NEVER_PX' '0.5 : NEVER_PX'
-mutant strip shaders/stroke.vert "a seam that starts at its first segment" '? is_seam : is_outer' '? false : is_outer'
-mutant strip shaders/stroke.vert "a tight join's outer side that starts at the next segment" '? is_seam : is_outer' '? is_seam : false'
+mutant kite shaders/stroke.vert "kites that lie over each other" 'is_cut && inner ? cut : kind' 'is_cut && inner ? 0.5 * cut : kind'
 mutant strip shaders/stroke.frag "united lines: no edge between whole and part" '* (area * (1.0 - area)), area, area)' \
     '* area, area, area)'
 mutant strip shaders/stroke.frag "united lines: both sides face the same way" 'vec2 off = vec2(arc.y - arc.x, y)' \

@@ -1,6 +1,7 @@
 /* Pictures: against the oracle on sampled windows, the sharing paths against each other, the GL back ends against each
  * other. */
 #include "cli/samples.h"
+#include "cli/scenes.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -12,6 +13,7 @@ typedef struct job {
     const camber_rig *rig;
     camber_tessellation_desc desc;
     char style[64]; /* "round joins, butt caps" */
+    bool is_drawn_once;
     bool is_shared; /* other sharing paths are tried too: the style does not matter to them */
     camber_samples samples;
     camber_pixel_bounds bounds;
@@ -41,13 +43,17 @@ static camber_coverage coverage_of(const job *j) {
     return j->s->network ? CAMBER_COVERAGE_EXACT : (camber_coverage)j->v->session->options->coverage;
 }
 
+static camber_drawing drawing_of(const job *j, camber_overlap overlap) {
+    return (camber_drawing){.strokes = j->desc.strokes,
+                            .stroke_count = j->desc.stroke_count,
+                            .width = j->s->width,
+                            .height = j->s->height,
+                            .coverage = coverage_of(j),
+                            .overlap = overlap};
+}
+
 static camber_status draw(const job *j, const camber_path *path, camber_overlap overlap, uint8_t *levels) {
-    const camber_drawing drawing = {.strokes = j->desc.strokes,
-                                    .stroke_count = j->desc.stroke_count,
-                                    .width = j->s->width,
-                                    .height = j->s->height,
-                                    .coverage = coverage_of(j),
-                                    .overlap = overlap};
+    const camber_drawing drawing = drawing_of(j, overlap);
     const camber_status status = camber_subject_tessellate(j->s, path->mesh, &j->desc);
     return status == CAMBER_OK ? camber_draw_levels(path, &drawing, levels) : status;
 }
@@ -199,6 +205,27 @@ static int check_united(job *j, const camber_easel *easel) {
     return status == CAMBER_EXIT_DONE ? check_truth(j, &check, CAMBER_TRUTH_UNION, j->other) : status;
 }
 
+/* Neighbouring segments share their edges to the last bit. */
+static int check_once(job *j, const camber_easel *easel) {
+    camber_check check =
+        camber_check_start(j->rig->name, easel->name, "%s: %s, %s: each pixel once, on %s, %s", j->s->name,
+                           camber_method_name(j->desc.method), j->style, j->rig->name, easel->name);
+    camber_overdraw sum = {0};
+    camber_finding *finding = &check.finding;
+    const camber_drawing drawing = drawing_of(j, CAMBER_OVERLAP_FLATTEN);
+    const int status = camber_report_status(j->v->session->report, camber_draw_count(&easel->paths[0], &drawing, &sum));
+    if (status != CAMBER_EXIT_DONE)
+        return status;
+    if (sum.repeated_pixels > 0) {
+        check.verdict = CAMBER_VERDICT_FAILED;
+        *finding = (camber_finding){.stage = "pixels", .field = "repeated_pixels", .got = (double)sum.repeated_pixels};
+        snprintf(finding->what, sizeof finding->what, "pixels: of %llu, %llu are drawn again by their line, not 0",
+                 (unsigned long long)sum.drawn_pixels, (unsigned long long)sum.repeated_pixels);
+    }
+    camber_verdicts_add(&j->v->verdicts, &check);
+    return status;
+}
+
 static int check_easel(job *j, size_t which) {
     camber_easel *easel = (camber_easel *)&j->rig->easels[which];
     camber_check check = camber_check_start(j->rig->name, easel->name, "%s: %s, %s: pixels, on %s, %s", j->s->name,
@@ -208,6 +235,8 @@ static int check_easel(job *j, size_t which) {
         status = check_truth(j, &check, CAMBER_TRUTH_OVER, j->own);
     if (status == CAMBER_EXIT_DONE && j->desc.method == CAMBER_METHOD_STRIP && !j->s->network)
         status = check_united(j, easel);
+    if (status == CAMBER_EXIT_DONE && j->is_drawn_once && j->desc.method != CAMBER_METHOD_FAN)
+        status = check_once(j, easel);
     if (status == CAMBER_EXIT_DONE && which > 0)
         status = check_backend(j, easel);
     for (size_t path = 1; path < easel->path_count && j->is_shared && status == CAMBER_EXIT_DONE; path++)
@@ -281,6 +310,7 @@ static int check_number(job *j, size_t number) {
         camber_strokes_styled(s->drawn_strokes, s->stroke_count, styled ? set_style : camber_style_kept, number);
     camber_status made = CAMBER_ERROR_MEMORY;
     j->desc.strokes = strokes;
+    j->is_drawn_once = styled && strcmp(s->scene, CAMBER_SCENE_DRAWN_ONCE) == 0;
     j->is_shared = number == 0 && !s->network;
     if (!styled)
         snprintf(j->style, sizeof j->style, "as styled");

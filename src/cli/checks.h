@@ -109,5 +109,7 @@ typedef struct camber_drawing {
 
 /* Draws the path's mesh, opaque white on black, in one pass. levels takes width * height. */
 camber_status camber_draw_levels(const camber_path *path, const camber_drawing *drawing, uint8_t *levels);
+/* Counts the same, line by line. */
+camber_status camber_draw_count(const camber_path *path, const camber_drawing *drawing, camber_overdraw *sum);
 
 #endif

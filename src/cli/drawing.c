@@ -4,14 +4,20 @@
 
 #include <stdlib.h>
 
+/* Freed with free. NULL: out of memory. */
+static camber_paint *make_paints(const camber_drawing *drawing) {
+    camber_paint *paints = calloc(drawing->stroke_count + 1, sizeof *paints);
+    for (size_t row = 0; paints && row < drawing->stroke_count; row++)
+        paints[row] = (camber_paint){.width_px = drawing->strokes[row].width_px, .color = {1, 1, 1, 1}};
+    return paints;
+}
+
 camber_status camber_draw_levels(const camber_path *path, const camber_drawing *drawing, uint8_t *levels) {
     const size_t count = drawing->stroke_count;
-    camber_paint *paints = calloc(count + 1, sizeof *paints);
+    camber_paint *paints = make_paints(drawing);
     camber_levels kept = {levels, drawing->width, 0};
     if (!paints)
         return CAMBER_ERROR_MEMORY;
-    for (size_t row = 0; row < count; row++)
-        paints[row] = (camber_paint){.width_px = drawing->strokes[row].width_px, .color = {1, 1, 1, 1}};
     const camber_pass pass = {.mesh = path->mesh, .paints = paints, .paint_count = count, .overlap = drawing->overlap};
     const camber_frame frame = {.width = drawing->width,
                                 .height = drawing->height,
@@ -20,6 +26,20 @@ camber_status camber_draw_levels(const camber_path *path, const camber_drawing *
                                 .pass_count = 1,
                                 .coverage = drawing->coverage};
     const camber_status status = camber_render(path->renderer, &frame, camber_levels_take, &kept, NULL);
+    free(paints);
+    return status;
+}
+
+camber_status camber_draw_count(const camber_path *path, const camber_drawing *drawing, camber_overdraw *sum) {
+    camber_paint *paints = make_paints(drawing);
+    if (!paints)
+        return CAMBER_ERROR_MEMORY;
+    const camber_overdraw_desc desc = {.width = drawing->width,
+                                       .height = drawing->height,
+                                       .mesh = path->mesh,
+                                       .paints = paints,
+                                       .paint_count = drawing->stroke_count};
+    const camber_status status = camber_overdraw_count(path->renderer, &desc, sum);
     free(paints);
     return status;
 }

@@ -211,6 +211,26 @@ static void side_by_side(camber_builtin *scene) {
     }
 }
 
+/* Rings whose joins all have room, and the seam with them: no pixel is drawn twice. */
+static void smooth_rings(camber_builtin *scene) {
+    for (size_t i = 0; i < 121; i++) {
+        const size_t sides = 12 + i % 24;
+        const double start = uniform(scene, 0, 2 * M_PI);
+        double x, y;
+        cell(i, 11, &x, &y);
+        const double radius = uniform(scene, 25, 40), first = (double)scene->point_count;
+        x += uniform(scene, -2, 2);
+        for (size_t k = 0; k < sides; k++)
+            add_point(scene, x + radius * cos(start + 2 * M_PI * (double)k / (double)sides),
+                      y + radius * sin(start + 2 * M_PI * (double)k / (double)sides));
+        if (!scene->failed)
+            add_point(scene, (double)scene->points[2 * (size_t)first], (double)scene->points[2 * (size_t)first + 1]);
+        end_polyline(scene);
+        if (!scene->failed)
+            scene->rows[scene->polyline_count - 1] = CAMBER_SCENE_WIDTH_ROW;
+    }
+}
+
 /* Longer than a work-group's and a scan's block, so that their borders lie within one line. */
 static void one_long_line(camber_builtin *scene) {
     walk(scene, 20011, (const double[]){0.2, 9}, 1.2);
@@ -232,6 +252,7 @@ static const struct {
     {"extreme coordinates", extreme_coordinates},
     {"grid", grid},
     {"side by side", side_by_side},
+    {CAMBER_SCENE_DRAWN_ONCE, smooth_rings},
     {"one long line", one_long_line},
 };
 

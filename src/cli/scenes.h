@@ -7,7 +7,8 @@
 #define CAMBER_SCENE_ROWS 5
 #define CAMBER_SCENE_WIDTH_ROW 2 /* that is drawn CAMBER_SCENE_WIDTH_PX wide */
 #define CAMBER_SCENE_WIDTH_PX 8
-#define CAMBER_SCENE_SIDE_PX 1024 /* of the picture that most scenes are laid out for */
+#define CAMBER_SCENE_DRAWN_ONCE "smooth rings" /* of which no line draws a pixel twice */
+#define CAMBER_SCENE_SIDE_PX 1024              /* of the picture that most scenes are laid out for */
 
 /* Freed with camber_builtin_free. */
 typedef struct camber_builtin {

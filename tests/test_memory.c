@@ -213,7 +213,7 @@ static void test_keeps_what_fits(void **state) {
         const camber_mesh_memory after = camber_mesh_get_memory(b.mesh);
         /* All that were not there, and of those that were at most the one whose place the others took. */
         const size_t gone = before.parts - before.resident_parts;
-        assert_in_range(after.remade_parts, (size_t)round * (gone - 1), (size_t)round * (gone + 1));
+        assert_in_range(after.remade_parts, (size_t)round * (gone - 2), (size_t)round * (gone + 1));
         if (round == 3) {
             assert_int_equal(camber_mesh_read(b.mesh, &data), CAMBER_OK);
             camber_mesh_data_free(b.context, &data);

@@ -92,8 +92,8 @@ static void count_words(const cl_uint *joins, const cl_uint *info, size_t slot_c
     }
 }
 
-static camber_status count_part(const camber_mesh *mesh, const camber_mesh_part *part, camber_mesh_info *counts,
-                                size_t *segments) {
+camber_status camber_part_count_joins(const camber_mesh *mesh, const camber_mesh_part *part, camber_mesh_info *counts,
+                                      size_t *segments) {
     cl_command_queue queue = mesh->device->queue;
     const size_t size_bytes = 4 * (part->slot_count + 2);
     cl_int code;
@@ -112,6 +112,12 @@ static camber_status count_part(const camber_mesh *mesh, const camber_mesh_part 
     return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(mesh->device->context, "clEnqueueMapBuffer", code);
 }
 
+void camber_mesh_set_counts(camber_mesh *mesh, camber_mesh_info counts, size_t segments) {
+    counts.triangle_count = counts.strips ? 2 * segments : counts.index_count / 3;
+    mesh->mesh_info = counts;
+    mesh->joins_counted = true;
+}
+
 /* Kinds of joins and triangles, from the join words. */
 static camber_status count_joins(camber_mesh *mesh) {
     camber_mesh_info counts = mesh->mesh_info;
@@ -120,14 +126,11 @@ static camber_status count_joins(camber_mesh *mesh) {
     for (size_t i = 0; i < mesh->part_count && !mesh->joins_counted && status == CAMBER_OK; i++) {
         status = camber_part_use(mesh, mesh->parts + i);
         if (status == CAMBER_OK)
-            status = count_part(mesh, mesh->parts + i, &counts, &segments);
+            status = camber_part_count_joins(mesh, mesh->parts + i, &counts, &segments);
     }
-    if (status != CAMBER_OK || mesh->joins_counted)
-        return status;
-    counts.triangle_count = counts.strips ? 2 * segments : counts.index_count / 3;
-    mesh->mesh_info = counts;
-    mesh->joins_counted = true;
-    return CAMBER_OK;
+    if (status == CAMBER_OK && !mesh->joins_counted)
+        camber_mesh_set_counts(mesh, counts, segments);
+    return status;
 }
 
 camber_mesh_info camber_mesh_get_info(camber_mesh *mesh) {

@@ -243,6 +243,12 @@ camber_status camber_mesh_expand(camber_context *context, const camber_row *rows
 /* How many vertices the records before each have, of kite and fan: record_count + 1, freed with camber_free. */
 camber_status camber_corners_count(camber_context *context, camber_mesh_data *data, uint32_t **first_vertices);
 
+/* Adds the kinds of joins that a part has, which lies in its buffers, and its segments; then takes the sums over all
+ * parts. */
+camber_status camber_part_count_joins(const camber_mesh *mesh, const camber_mesh_part *part, camber_mesh_info *counts,
+                                      size_t *segments);
+void camber_mesh_set_counts(camber_mesh *mesh, camber_mesh_info counts, size_t segments);
+
 /* Adds a point's join word to the counts of a mesh's info. */
 void camber_mesh_info_count(camber_mesh_info *info, uint32_t join, uint32_t point);
 

@@ -220,9 +220,11 @@ static camber_status number(camber_mesh *mesh, camber_mesh_part *part) {
 }
 
 /* Part after part; one whose output turns out too large is split, and what takes its place is done anew. Once memory is
- * full, parts are measured only: the first ones stay, and are what is drawn first. */
+ * full, parts are measured only: the first ones stay, and are what is drawn first. Where parts may have to go, joins
+ * are counted while they are there. */
 static camber_status run_parts(camber_mesh *mesh, const camber_program *program) {
     camber_status status = CAMBER_OK;
+    size_t segments = 0;
     mesh->is_full = false;
     for (size_t i = 0; i < mesh->part_count && status == CAMBER_OK;) {
         camber_mesh_part *part = mesh->parts + i;
@@ -239,12 +241,16 @@ static camber_status run_parts(camber_mesh *mesh, const camber_program *program)
         }
         if (status == CAMBER_OK)
             status = number(mesh, part);
+        if (status == CAMBER_OK && mesh->part_count > 1 && mesh->device->memory_bytes)
+            status = camber_part_count_joins(mesh, part, &mesh->mesh_info, &segments);
         if (!mesh->is_full && !camber_mesh_has_room(mesh, part, camber_part_output_lacks(mesh, part), true))
             mesh->is_full = true;
         if (status == CAMBER_OK && !mesh->is_full)
             status = make(mesh, part, program);
         i++;
     }
+    if (status == CAMBER_OK && mesh->part_count > 1 && mesh->device->memory_bytes)
+        camber_mesh_set_counts(mesh, mesh->mesh_info, segments);
     return status;
 }
 
@@ -313,6 +319,7 @@ static camber_status tessellate(camber_mesh *mesh, const source *from, const cam
     if (status == CAMBER_OK)
         status = plan(mesh, from, desc);
     if (status == CAMBER_OK && mesh->part_count > 0) {
+        mesh->joins_counted = false;
         status = camber_device_program(mesh->device, desc->method, &program);
         if (status == CAMBER_OK)
             status = upload_rows(mesh, rows, desc->stroke_count);
@@ -324,7 +331,7 @@ static camber_status tessellate(camber_mesh *mesh, const source *from, const cam
             camber_program_save(mesh->device, mesh->held->program);
         camber_mesh_info *info = &mesh->mesh_info;
         info->bytes = info->record_count * sizeof(camber_record) + (info->strips ? 0 : 4 * info->index_count);
-        mesh->joins_counted = status != CAMBER_OK;
+        mesh->joins_counted |= status != CAMBER_OK;
     }
     if (status != CAMBER_OK)
         mesh->mesh_info = nothing;

@@ -530,6 +530,16 @@ says '1 error; correct it'
 echo '{"version": 8, "layers": [{"id": "a", "type": "fill"}, {"id": "b", "type": "line"}]}' >"$tmp/in/fill.json"
 expect 0 "a style that is right" style check "$tmp/in/fill.json"
 says '1 layer of type fill: not drawn'
+echo '{"expression": ["*", 2, ["get", "w"]], "inputs": [[{}, {"properties": {"w": 1.5}}], [{}, {}]]}' >"$tmp/in/double.json"
+echo '{"expression": ["+", "a"]}' >"$tmp/in/wrong.json"
+expect 0 "what an expression is" style eval "$tmp/in/double.json"
+has "$tmp/stdout" '"type":"number".*"outputs":\[3,{"error":'
+expect 0 "an expression that does not compile" style eval "$tmp/in/wrong.json"
+has "$tmp/stdout" '"result":"error".*"key":"\[1\]"'
+expect 65 "no expression" style eval "$tmp/in/fill.json"
+expect 65 "an expression that is not JSON" style eval "$tmp/in/cut.json"
+expect 66 "no such expression" style eval "$tmp/in/none.json"
+expect 2 "nothing to evaluate" style eval
 expect 65 "width of a wrong type" render "$osm" -o a.png --style "$tmp/in/type.json"
 says '/layers/0/paint/line-width'
 expect 65 "colour of a wrong type" render "$osm" -o a.png --style "$tmp/in/color.json"

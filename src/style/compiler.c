@@ -142,11 +142,14 @@ bool camber_sort_labels(camber_compiler *c, size_t first, bool unique) {
         return true;
     camber_label *labels = &c->expression->labels[first];
     qsort(labels, count, sizeof *labels, compare_labels);
-    for (size_t i = 1; i < count && unique; i++)
-        if (compare_labels(&labels[i - 1], &labels[i]) == 0)
-            return labels[i].string
-                       ? camber_compiler_fail(c, "the label \"%.64s\" occurs twice; take one out", labels[i].string)
-                       : camber_compiler_fail(c, "the label %.17g occurs twice; take one out", labels[i].number);
+    for (size_t i = 1; i < count && unique; i++) {
+        const camber_label *one = &labels[i - 1], *other = &labels[i];
+        if (compare_labels(one, other) != 0)
+            continue;
+        camber_compiler_enter_index(c, one->place > other->place ? one->place : other->place);
+        return one->string ? camber_compiler_fail(c, "the label \"%.64s\" occurs twice; take one out", one->string)
+                           : camber_compiler_fail(c, "the label %.17g occurs twice; take one out", one->number);
+    }
     return true;
 }
 

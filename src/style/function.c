@@ -284,11 +284,11 @@ static bool same_input(const json_t *a, const json_t *b) {
 }
 
 /* Pushes a stop's condition, of a boolean, or its label. */
-static bool push_category(function *f, const json_t *input, uint32_t output, camber_type *type) {
+static bool push_category(function *f, const json_t *input, camber_label label, camber_type *type) {
     camber_compiler *c = f->c;
     uint32_t node;
     if (*type != CAMBER_TYPE_BOOL)
-        return camber_compile_label(c, input, output, type);
+        return camber_compile_label(c, input, label, type);
     const size_t first_operand = c->operand_count;
     return compile_get(f, &node) && camber_push_operand(c, node) && camber_make_json_constant(c, input, &node) &&
            camber_push_operand(c, node) &&
@@ -313,20 +313,21 @@ static bool compile_categories(function *f, span stops, uint32_t *node) {
         camber_compiler_enter_index(c, i);
         if (!read_stop(f, i, &input, &zoom))
             return false;
+        const camber_label label = {.output = (uint32_t)(c->operand_count - first_operand), .place = (uint32_t)i};
         if (!same_input(before, input) &&
-            (!push_category(f, input, (uint32_t)(c->operand_count - first_operand), &type) ||
-             !push_value(f, json_array_get(json_array_get(f->stops, i), 1))))
+            (!push_category(f, input, label, &type) || !push_value(f, json_array_get(json_array_get(f->stops, i), 1))))
             return false;
         camber_compiler_leave(c);
     }
+    if (!camber_sort_labels(c, first_label, true))
+        return false;
     camber_compiler_leave(c);
     const camber_typing found = camber_node_at(c, c->operands[first_operand + 1])->type;
     const camber_node prototype = {.op = op,
                                    .type = f->type.type == CAMBER_TYPE_VALUE ? found : f->type,
                                    .index = (uint32_t)first_label,
                                    .index_count = (uint32_t)(c->expression->label_count - first_label)};
-    return camber_sort_labels(c, first_label, true) && push_otherwise(f) &&
-           camber_make_node(c, &prototype, first_operand, node);
+    return push_otherwise(f) && camber_make_node(c, &prototype, first_operand, node);
 }
 
 /* ---- Kinds ---- */

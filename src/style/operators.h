@@ -46,7 +46,8 @@ static inline camber_output_type camber_expect_outputs(camber_typing expected) {
 /* Pushes the output at index. */
 bool camber_compile_output(camber_compiler *c, const json_t *array, size_t index, camber_output_type *type);
 
-/* operators_decisions.c: pushes labels of one type, first null. */
-bool camber_compile_label(camber_compiler *c, const json_t *json, uint32_t output, camber_type *type);
+/* operators_decisions.c: pushes a label with the string or number that json is; all are of one type, unknown at first.
+ */
+bool camber_compile_label(camber_compiler *c, const json_t *json, camber_label label, camber_type *type);
 
 #endif

@@ -141,7 +141,7 @@ bool camber_compile_coalesce(camber_compiler *c, const camber_operator *row, jso
 /* 2^53 - 1, the largest integer to which all below it are doubles. */
 #define LARGEST_LABEL 9007199254740991.0
 
-bool camber_compile_label(camber_compiler *c, const json_t *json, uint32_t output, camber_type *type) {
+bool camber_compile_label(camber_compiler *c, const json_t *json, camber_label label, camber_type *type) {
     char name[CAMBER_TYPING_TEXT_SIZE];
     const camber_type found = json_is_string(json)   ? CAMBER_TYPE_STRING
                               : json_is_number(json) ? CAMBER_TYPE_NUMBER
@@ -153,7 +153,7 @@ bool camber_compile_label(camber_compiler *c, const json_t *json, uint32_t outpu
         return camber_compiler_fail(c, "expected %s like the labels before, found %s; use labels of one type",
                                     camber_typing_name(camber_typing_of(*type), name), camber_json_name(json));
     *type = found;
-    camber_label label = {.string = json_string_value(json), .output = output};
+    label.string = json_string_value(json);
     if (!label.string) {
         label.number = json_number_value(json);
         if (label.number < floor(label.number) || label.number > floor(label.number) ||
@@ -164,14 +164,15 @@ bool camber_compile_label(camber_compiler *c, const json_t *json, uint32_t outpu
 }
 
 /* One label or an array of them. */
-static bool compile_branch(camber_compiler *c, const json_t *json, uint32_t output, camber_type *type) {
+static bool compile_branch(camber_compiler *c, const json_t *json, uint32_t index, camber_type *type) {
+    const camber_label label = {.output = index / 2, .place = index};
     if (!json_is_array(json))
-        return camber_compile_label(c, json, output, type);
+        return camber_compile_label(c, json, label, type);
     if (json_array_size(json) == 0)
         return camber_compiler_fail(c, "a branch has no label; name one or take the branch out");
     for (size_t i = 0; i < json_array_size(json); i++) {
         camber_compiler_enter_index(c, i);
-        if (!camber_compile_label(c, json_array_get(json, i), output, type))
+        if (!camber_compile_label(c, json_array_get(json, i), label, type))
             return false;
         camber_compiler_leave(c);
     }
@@ -189,7 +190,7 @@ bool camber_compile_match(camber_compiler *c, const camber_operator *row, json_t
     camber_output_type type = camber_expect_outputs(expected);
     for (size_t i = 2; i + 1 < size; i += 2) {
         camber_compiler_enter_index(c, i);
-        if (!compile_branch(c, json_array_get(array, i), (uint32_t)(i / 2), &input))
+        if (!compile_branch(c, json_array_get(array, i), (uint32_t)i, &input))
             return false;
         camber_compiler_leave(c);
     }

@@ -46,8 +46,8 @@ char *camber_arena_text(camber_arena *arena, const char *text, size_t length) {
 }
 
 void camber_arena_free(camber_arena *arena) {
-    const camber_context_desc *desc = arena->context ? &arena->context->desc : NULL;
     while (arena->blocks) {
+        const camber_context_desc *desc = &arena->context->desc;
         void *block = arena->blocks;
         memcpy(&arena->blocks, block, sizeof arena->blocks);
         desc->reallocate(desc->allocator_user, block, 0);

@@ -426,12 +426,12 @@ bool camber_compile_element(camber_compiler *c, const json_t *array, size_t inde
 }
 
 bool camber_compile_operand(camber_compiler *c, const json_t *array, size_t index, camber_typing expected) {
-    uint32_t node;
+    uint32_t node = 0;
     return camber_compile_element(c, array, index, expected, &node) && camber_push_operand(c, node);
 }
 
 bool camber_compile_loose_operand(camber_compiler *c, const json_t *array, size_t index, camber_typing expected) {
-    uint32_t node;
+    uint32_t node = 0;
     camber_compiler_enter_index(c, index);
     if (!camber_compile_as(c, json_array_get(array, index), expected, CAMBER_ANNOTATE_OMIT, &node))
         return false;

@@ -30,9 +30,9 @@ bool camber_text_add(camber_text *text, const char *bytes, size_t length) {
 }
 
 bool camber_text_end(camber_text *text, camber_value *value) {
-    if (!camber_text_add(text, "", 0))
+    const char end = 0;
+    if (!camber_text_add(text, &end, 1))
         return false;
-    text->bytes[text->length] = 0;
     *value = camber_value_string(text->bytes);
     return true;
 }

@@ -64,7 +64,7 @@ static bool compile_value(camber_compiler *c, const json_t *array, size_t index,
 /* A feature that does not have the property is not one that has null; the id of one without is null. */
 static bool require_key(camber_compiler *c, const json_t *array, uint32_t *node) {
     const size_t first_operand = c->operand_count;
-    uint32_t has;
+    uint32_t has = 0;
     if (is(json_string_value(json_array_get(array, 1)), "$id"))
         return true;
     return compile_key(c, array, CAMBER_OP_HAS, &has) && camber_push_operand(c, has) && camber_push_operand(c, *node) &&
@@ -108,7 +108,7 @@ static bool are_labels(const json_t *array) {
 static bool compile_in(camber_compiler *c, const json_t *array, bool negated, uint32_t *node) {
     const size_t first_operand = c->operand_count, first = c->expression->label_count;
     const bool labels = are_labels(array);
-    uint32_t value;
+    uint32_t value = 0;
     if (!compile_key(c, array, CAMBER_OP_GET, node) || !camber_push_operand(c, *node))
         return false;
     for (size_t i = 2; i < json_array_size(array); i++) {

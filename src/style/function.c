@@ -104,7 +104,7 @@ static bool compile_get(function *f, uint32_t *node) {
 
 /* The text from start on, before the next token; its copy lives as long as the expression. */
 static bool push_text(function *f, const char *start, size_t length) {
-    uint32_t node;
+    uint32_t node = 0;
     if (length == 0)
         return true;
     const char *text = camber_arena_text(&f->c->expression->arena, start, length);
@@ -148,7 +148,7 @@ static bool compile_value(function *f, const json_t *json, uint32_t *node) {
 }
 
 static bool push_value(function *f, const json_t *json) {
-    uint32_t node;
+    uint32_t node = 0;
     return compile_value(f, json, &node) && camber_push_operand(f->c, node);
 }
 
@@ -165,7 +165,7 @@ static bool push_otherwise(function *f) {
     }
     if (c->strict)
         return camber_compiler_fail(c, "features that no stop fits have no value; give a \"default\"");
-    uint32_t node;
+    uint32_t node = 0;
     const camber_value cause = {.type = CAMBER_VALUE_STRING, .string = "no stop fits the feature"};
     return camber_make_constant(c, &cause, string, &node) &&
            camber_wrap_node(c, CAMBER_OP_ERROR, camber_typing_of(CAMBER_TYPE_ERROR), &node) &&
@@ -256,7 +256,7 @@ static bool make_curve(function *f, span stops, double base, uint32_t *node) {
 static bool compile_property_curve(function *f, span stops, double base, uint32_t *node) {
     camber_compiler *c = f->c;
     const size_t first_operand = c->operand_count;
-    uint32_t type, name;
+    uint32_t type = 0, name = 0;
     const camber_value text = {.type = CAMBER_VALUE_STRING, .string = "number"};
     if (f->otherwise) {
         const size_t comparison = c->operand_count;
@@ -286,7 +286,7 @@ static bool same_input(const json_t *a, const json_t *b) {
 /* Pushes a stop's condition, of a boolean, or its label. */
 static bool push_category(function *f, const json_t *input, camber_label label, camber_type *type) {
     camber_compiler *c = f->c;
-    uint32_t node;
+    uint32_t node = 0;
     if (*type != CAMBER_TYPE_BOOL)
         return camber_compile_label(c, input, label, type);
     const size_t first_operand = c->operand_count;

@@ -32,7 +32,7 @@ static bool compile_member(camber_compiler *c, const camber_operator *row, const
 bool camber_compile_get(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
                         uint32_t *node) {
     (void)expected;
-    uint32_t name;
+    uint32_t name = 0;
     if (!camber_compile_element(c, array, 1, string, &name))
         return false;
     const camber_node *constant = camber_node_at(c, name);

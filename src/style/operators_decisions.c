@@ -47,7 +47,7 @@ bool camber_compile_comparison(camber_compiler *c, const camber_operator *row, j
     (void)expected;
     const bool order = row->op != CAMBER_OP_EQUAL && row->op != CAMBER_OP_NOT_EQUAL;
     const size_t first_operand = c->operand_count;
-    uint32_t sides[2];
+    uint32_t sides[2] = {0};
     camber_type types[2];
     for (size_t i = 0; i < 2; i++) {
         if (!compile_side(c, row, array, i + 1, &sides[i]))

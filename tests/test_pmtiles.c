@@ -104,6 +104,12 @@ static const char *text_of(fixture *it, camber_tile_set *set, int zoom, uint32_t
     return (const char *)it->bytes.data;
 }
 
+static void pack(blob *b) {
+    const blob made = gzip_of(b);
+    free(b->bytes);
+    *b = made;
+}
+
 /* A root with a tile, a run of three with one content, and a leaf with two tiles; with and without gzip. */
 static made_archive make_archive(bool packed) {
     static const char *const texts[] = {"@zero", "@run", "@five", "@leaf last"};
@@ -129,19 +135,14 @@ static made_archive make_archive(bool packed) {
     static const char about[] =
         "{\"attribution\": \"(c) OpenStreetMap contributors\", \"vector_layers\": [{\"id\": \"road\"}]}";
     blob_put(&a.metadata, about, strlen(about));
-    blob *const parts[] = {&a.leaves, &a.metadata};
-    for (int i = 0; packed && i < 2; i++) {
-        blob made = gzip_of(parts[i]);
-        blob_free(parts[i]);
-        *parts[i] = made;
+    if (packed) {
+        pack(&a.leaves);
+        pack(&a.metadata);
     }
     const made_entry root[] = {{0, 1, offsets[0], sizes[0]}, {1, 3, offsets[1], sizes[1]}, {5, 0, 0, a.leaves.size}};
     a.root = directory_of(root, 3);
-    if (packed) {
-        blob made = gzip_of(&a.root);
-        blob_free(&a.root);
-        a.root = made;
-    }
+    if (packed)
+        pack(&a.root);
     return a;
 }
 

@@ -43,7 +43,7 @@ uint64_t camber_pmtiles_number(int zoom, uint32_t column, uint32_t row) {
         before += UINT64_C(1) << 2 * z;
     uint32_t x = column, y = row;
     for (int z = zoom - 1; z >= 0; z--) {
-        const uint32_t half = UINT32_C(1) << z, right = x & half ? 1 : 0, down = y & half ? 1 : 0;
+        const uint32_t half = UINT32_C(1) << (z & 31), right = x & half ? 1 : 0, down = y & half ? 1 : 0;
         along += ((uint64_t)half * half) * ((3 * right) ^ down);
         /* The curve of a quarter is turned. */
         if (!down) {
@@ -223,7 +223,7 @@ static range leaf_of(const archive *self, const camber_pmtiles_entry *entry) {
 /* The last entry that does not lie behind the number; NULL: all do. */
 static const camber_pmtiles_entry *find_entry(const directory *in, uint64_t number) {
     size_t low = 0, high = in->count;
-    while (low < high) {
+    while (in->entries && low < high) {
         const size_t middle = low + (high - low) / 2;
         if (in->entries[middle].number <= number)
             low = middle + 1;

@@ -23,6 +23,6 @@ typedef struct camber_pmtiles_directory {
 /* A directory, decompressed. Returns CAMBER_ERROR_INPUT with the cause in why, which is not logged;
  * CAMBER_ERROR_MEMORY. */
 camber_status camber_pmtiles_parse(camber_context *context, const void *bytes, size_t size_bytes,
-                                   camber_pmtiles_directory *directory, const char **why);
+                                   camber_pmtiles_directory *parsed, const char **why);
 
 #endif

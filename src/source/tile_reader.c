@@ -127,7 +127,7 @@ static camber_status list_places(input *self) {
         return status;
     if (!(self->places = camber_alloc(self->context, self->place_count, sizeof *self->places)))
         status = CAMBER_ERROR_MEMORY;
-    for (size_t i = 0; status == CAMBER_OK && i < self->place_count; i++)
+    for (size_t i = 0; status == CAMBER_OK && places && i < self->place_count; i++)
         self->places[i] = (camber_mvt_place){.zoom = self->zoom, .column = places[i].column, .row = places[i].row};
     camber_free(self->context, places);
     return status;

@@ -172,6 +172,26 @@ static void test_ids_and_all(void **state) {
     assert_non_null(camber_object_get(second->all, "alpha"));
 }
 
+static void test_clips(void **state) {
+    fixture *it = *state;
+    static const char *const layers[] = {"road"};
+    const camber_mvt_desc desc = {
+        .features = it->features, .tiles = it->tiles, .layers = layers, .layer_count = 1, .wants_progress = true};
+    camber_mvt_destroy(it->mvt);
+    assert_int_equal(camber_mvt_create(it->context, &desc, &it->mvt), CAMBER_OK);
+    blob tile = {0}, layer = begin_layer("road", 4096), value = {0};
+    const double quarter = 0.25;
+    put_key(&layer, "mapbox_clip_end");
+    put_varint(&value, 3 << 3 | 1);
+    blob_put(&value, &quarter, 8);
+    put_message(&layer, 4, &value);
+    put_feature(&layer, 1, 0, 0, false, (int[]){10, 20, 30, 5}, 2);
+    put_layer(&tile, &layer);
+    read_tile(it, &tile);
+    assert_non_null(it->features->progress);
+    assert_true(it->features->progress[0] == 0.0f && it->features->progress[1] == 0.25f);
+}
+
 /* ---- Damage ---- */
 
 static void expect_damage(fixture *it, const uint32_t *words, size_t count, bool ring, size_t polylines) {
@@ -269,8 +289,9 @@ static void test_no_tiles(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        TEST(test_lines),        TEST(test_values),         TEST(test_ids_and_all), TEST(test_damaged_geometry),
-        TEST(test_damaged_tags), TEST(test_damaged_layers), TEST(test_no_tiles),
+        TEST(test_lines),          TEST(test_values),           TEST(test_ids_and_all),
+        TEST(test_clips),          TEST(test_damaged_geometry), TEST(test_damaged_tags),
+        TEST(test_damaged_layers), TEST(test_no_tiles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -224,6 +224,41 @@ static void test_hostile(void **state) {
     assert_int_equal(it->features->polyline_count, 100000);
 }
 
+/* A line along x from 0 to 8192, of which each tile has its part and a buffer of 100. */
+static void test_progress(void **state) {
+    fixture *it = *state;
+    for (int only_east = 0; only_east < 2; only_east++) {
+        for (uint32_t column = (uint32_t)only_east; column < 2; column++) {
+            const double first = column ? 3996 : 0, last = column ? 8192 : 4196;
+            const double points[] = {first / WORLD, 100 / WORLD, 4050 / WORLD, 100 / WORLD, last / WORLD, 100 / WORLD};
+            const size_t end = 3;
+            const camber_tile_parts parts = {.points = points, .ends = &end, .part_count = 1};
+            const camber_tile_feature feature = {.column = column,
+                                                 .class_index = it->classes[0],
+                                                 .has_id = true,
+                                                 .id = (uint64_t)only_east + 1,
+                                                 .has_progress = true,
+                                                 .progress = {first / 8192, last / 8192}};
+            assert_int_equal(camber_tiles_add(it->tiles, &feature, &parts), CAMBER_OK);
+        }
+    }
+    ADD(it, 0, 0, 9, 100, 100, 200, 200);
+    finish(it, 3, 1);
+    const float expected[] = {0, 1, 0.5f, 1, 0, 1};
+    EXPECT(it, 1, 4096, 100, 8192, 100);
+    for (int i = 0; i < 6; i++)
+        assert_true(fabsf(it->features->progress[i] - expected[i]) < 1e-6f);
+}
+
+/* Where lines have a direction, two that begin where they meet stay two. */
+static void test_directed(void **state) {
+    fixture *it = *state;
+    it->style.directed = true;
+    ADD(it, 0, 0, 7, 5000, 200, 100, 200);
+    ADD(it, 1, 0, 7, 4000, 200, 5000, 200);
+    finish(it, 2, 0);
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
 
 int main(void) {
@@ -241,6 +276,8 @@ int main(void) {
         TEST(test_outline),
         TEST(test_nothing),
         TEST(test_hostile),
+        TEST(test_progress),
+        TEST(test_directed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -82,6 +82,7 @@ void camber_features_destroy(camber_features *features) {
     camber_free(context, features->feature_counts);
     camber_free(context, features->polyline_feature);
     camber_free(context, features->offsets);
+    camber_free(context, features->progress);
     camber_free(context, features->importance);
     camber_free(context, features->points);
     camber_free(context, features);
@@ -384,6 +385,26 @@ camber_status camber_features_add_feature(camber_features *features, uint32_t cl
     return CAMBER_OK;
 }
 
+/* Room for so many polylines; the last of them has all of its line. */
+static bool grow_progress(camber_features *features, size_t polylines) {
+    if (!camber_grow(features->context, &features->progress, &features->progress_capacity, polylines,
+                     2 * sizeof *features->progress))
+        return false;
+    features->progress[2 * polylines - 2] = 0.0f;
+    features->progress[2 * polylines - 1] = 1.0f;
+    return true;
+}
+
+camber_status camber_features_set_progress(camber_features *features, double first, double last) {
+    if (!features->progress)
+        for (size_t n = 1; n <= features->polyline_count; n++)
+            if (!grow_progress(features, n))
+                return CAMBER_ERROR_MEMORY;
+    features->progress[2 * features->polyline_count - 2] = (float)first;
+    features->progress[2 * features->polyline_count - 1] = (float)last;
+    return CAMBER_OK;
+}
+
 camber_status camber_features_add_polyline(camber_features *features, const double *points, size_t point_count) {
     camber_context *context = features->context;
     size_t offset_capacity = features->polyline_capacity, count_capacity = offset_capacity;
@@ -398,6 +419,8 @@ camber_status camber_features_add_polyline(camber_features *features, const doub
                      sizeof *features->offsets) ||
         !camber_grow(context, &features->polyline_feature, &features->polyline_capacity, features->polyline_count + 2,
                      sizeof *features->polyline_feature))
+        return CAMBER_ERROR_MEMORY;
+    if (features->progress && !grow_progress(features, features->polyline_count + 1))
         return CAMBER_ERROR_MEMORY;
     if (point_count)
         memcpy(features->points + 2 * features->point_count, points, 2 * point_count * sizeof *points);

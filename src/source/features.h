@@ -39,6 +39,10 @@ struct camber_features {
     size_t polyline_count, polyline_capacity;
     uint32_t *polyline_feature; /* polyline_count: the feature that it is a part of, or the first of them; ascending */
     uint32_t *feature_counts;   /* polyline_count: features whose first line is a part of it; their sum is all */
+    /* 2 * polyline_count: line-progress at a polyline's first and last point; between them it grows with the length in
+     * world coordinates. NULL: 0 and 1 for all. */
+    float *progress;
+    size_t progress_capacity;
 
     uint32_t *feature_class; /* feature_count */
     size_t feature_count, feature_capacity;

@@ -18,6 +18,8 @@ camber_status camber_features_find_class_of(camber_features *features, const cam
 camber_status camber_features_add_feature(camber_features *features, uint32_t class_index);
 /* A polyline of the feature added last. points: pairs of world coordinates. */
 camber_status camber_features_add_polyline(camber_features *features, const double *points, size_t point_count);
+/* The progress of the polyline added last. */
+camber_status camber_features_set_progress(camber_features *features, double first, double last);
 /* Merges lines of first_polyline and after it; directed: only the end of one with the start of another. */
 camber_status camber_features_merge(camber_features *features, size_t first_polyline, bool directed);
 /* Sets the importance of the points of first_polyline and of those after it. */

@@ -180,8 +180,8 @@ static bool skips_entry(const joiner *join, uint32_t enter) {
     return leave != NONE && (!pieces[leave / 2].cut[leave & 1] || pieces[enter / 2].cut[enter & 1]);
 }
 
-/* The chain's points, in world coordinates, to scratch. */
-static bool gather(const joiner *join, uint32_t start, size_t *count) {
+/* The chain's points, in world coordinates, to scratch; last: the end that it is left by. */
+static bool gather(const joiner *join, uint32_t start, size_t *count, uint32_t *last) {
     camber_tiles *tiles = join->tiles;
     size_t points = 0;
     uint32_t end = start;
@@ -200,6 +200,7 @@ static bool gather(const joiner *join, uint32_t start, size_t *count) {
             tiles->scratch[2 * points + 1] = from[1] / tiles->units;
             points++;
         }
+        *last = leave;
         end = enter;
     } while (end != NONE && end != start);
     if (end == start && points) {
@@ -220,10 +221,15 @@ static camber_status add_chains(const joiner *join, const camber_chain *chains, 
             status = camber_features_add_feature(features, join->tiles->features[one->key].class_index);
         feature = one->key;
         size_t points = 0;
-        if (status == CAMBER_OK && !gather(join, one->start, &points))
+        uint32_t last = one->start;
+        const camber_tile_piece *pieces = join->tiles->pieces;
+        if (status == CAMBER_OK && !gather(join, one->start, &points, &last))
             status = CAMBER_ERROR_MEMORY;
         if (status == CAMBER_OK)
             status = camber_features_add_polyline(features, join->tiles->scratch, points);
+        if (status == CAMBER_OK && join->tiles->has_progress)
+            status = camber_features_set_progress(features, (double)pieces[one->start / 2].progress[one->start & 1],
+                                                  (double)pieces[last / 2].progress[last & 1]);
         if (status != CAMBER_OK)
             return status;
     }

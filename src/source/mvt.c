@@ -17,6 +17,9 @@ enum { PEEKED_FEATURES = 32, MOST_LAYERS = 1024 };
 static const char *const id_keys[] = {"osm_id", "id", "TLID"};
 enum { ID_KEYS = 3 };
 
+/* What tiles made of GeoJSON with lineMetrics have. */
+static const char *const clip_keys[] = {"mapbox_clip_start", "mapbox_clip_end"};
+
 typedef Camber__Tile__Layer tile_layer;
 typedef Camber__Tile__Feature tile_feature;
 
@@ -39,7 +42,7 @@ struct camber_mvt {
     uint32_t *key_properties; /* layer->n_keys; NONE: no property of the style */
     camber_value *known;      /* layer->n_values */
     bool *is_known;
-    uint32_t ids[ID_KEYS], promoted; /* keys */
+    uint32_t ids[ID_KEYS], promoted, clips[2]; /* keys */
     bool plain;
 };
 
@@ -127,13 +130,15 @@ static bool find_keys(camber_mvt *mvt) {
     if (!mvt->key_properties || !mvt->known || !mvt->is_known)
         return false;
     memset(mvt->is_known, 0, layer->n_values + 1);
-    mvt->ids[0] = mvt->ids[1] = mvt->ids[2] = mvt->promoted = NONE;
+    mvt->ids[0] = mvt->ids[1] = mvt->ids[2] = mvt->promoted = mvt->clips[0] = mvt->clips[1] = NONE;
     for (uint32_t k = 0; k < layer->n_keys; k++) {
         const ProtobufCBinaryData key = layer->keys[k];
         mvt->key_properties[k] = find_property(mvt, key);
         mvt->stats.names_property |= mvt->key_properties[k] != NONE;
         for (int i = 0; i < ID_KEYS; i++)
             mvt->ids[i] = is_text(key, id_keys[i]) ? k : mvt->ids[i];
+        for (int i = 0; i < 2 && mvt->desc.wants_progress; i++)
+            mvt->clips[i] = is_text(key, clip_keys[i]) ? k : mvt->clips[i];
         for (size_t i = 0; i < sizeof osm_keys / sizeof *osm_keys; i++)
             mvt->stats.names_osm |= is_text(key, osm_keys[i]);
         if (promoted && is_text(key, promoted))
@@ -247,7 +252,8 @@ static camber_status read_tags(camber_mvt *mvt, const tile_feature *feature, cam
             piece->id = camber_hash(camber_mix(CAMBER_HASH_START, (uint64_t)rank + 1), bytes.data, bytes.len);
         }
         const uint32_t property = mvt->key_properties[key];
-        if (property == NONE && key != mvt->promoted)
+        const bool clips = key == mvt->clips[0] || key == mvt->clips[1];
+        if (property == NONE && key != mvt->promoted && !clips)
             continue;
         camber_value value;
         const camber_status status = read_value(mvt, index, &value);
@@ -257,6 +263,10 @@ static camber_status read_tags(camber_mvt *mvt, const tile_feature *feature, cam
             mvt->values[property] = value;
         if (key == mvt->promoted)
             *id = value;
+        if (clips && value.type == CAMBER_VALUE_NUMBER && value.number >= 0 && value.number <= 1) {
+            piece->has_progress = true;
+            piece->progress[key == mvt->clips[1]] = value.number;
+        }
     }
     if (feature->n_tags & 1)
         *damage = "a key without a value";
@@ -273,6 +283,7 @@ static camber_status keep(camber_mvt *mvt, const tile_feature *feature, camber_g
     camber_tile_feature piece = {.column = mvt->place.column,
                                  .row = mvt->place.row,
                                  .outline = kind == CAMBER_GEOMETRY_POLYGON,
+                                 .progress = {0, 1},
                                  .open_sides = mvt->place.open_sides};
     camber_feature_class wanted = {.layer = mvt->layer_index, .geometry = kind};
     camber_value promoted = {0};

@@ -19,8 +19,9 @@ typedef struct camber_mvt_desc {
     const char *const *layers; /* the wanted ones. NULL: none, what the tiles hold is looked at only */
     size_t layer_count;
     bool wants_polygons;
-    json_t *promote_id; /* the property that is the id, as a string, or by layer as an object. NULL: none */
-    bool plain;         /* CAMBER_PLAIN_PROPERTY is true until a layer is seen to name another property */
+    json_t *promote_id;  /* the property that is the id, as a string, or by layer as an object. NULL: none */
+    bool wants_progress; /* mapbox_clip_start and mapbox_clip_end are line-progress at a feature's ends */
+    bool plain;          /* CAMBER_PLAIN_PROPERTY is true until a layer is seen to name another property */
 } camber_mvt_desc;
 
 /* What happened so far. */

@@ -305,6 +305,7 @@ static camber_status read_tiles(camber_sources *sources, const source *one, cons
                                         .layers = names,
                                         .layer_count = list_layers(style, one->index, names),
                                         .wants_polygons = true,
+                                        .wants_progress = true,
                                         .promote_id = json_object_get(one->style->json, "promoteId")};
         status = read_places(sources, one, &reading);
     }

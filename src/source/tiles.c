@@ -101,6 +101,8 @@ typedef struct tile_cut {
     tile_box box;
     camber_tile_piece piece; /* the open one where open; its place and feature hold for all */
     bool open;
+    const double *progress; /* NULL: none */
+    double length, done;    /* of the part, and of it before the segment */
 } tile_cut;
 
 static bool on_border(const tile_box *box, const double *point) {
@@ -196,6 +198,11 @@ static camber_status open_piece(tile_cut *cut, const double *point, bool is_cut,
     return add_point(cut->tiles, point) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
 }
 
+static float progress_at(const tile_cut *cut, const double *p, const double *at) {
+    const double along = cut->done + hypot(at[0] - p[0], at[1] - p[1]);
+    return (float)(cut->progress[0] + (cut->progress[1] - cut->progress[0]) * (along / cut->length));
+}
+
 static camber_status cut_segment(tile_cut *cut, const double *p, const double *q, bool outline) {
     if (camber_tiles_same(p, q))
         return cut->open && !add_point(cut->tiles, q) ? CAMBER_ERROR_MEMORY : CAMBER_OK;
@@ -209,8 +216,13 @@ static camber_status cut_segment(tile_cut *cut, const double *p, const double *q
         status = close_piece(cut, false);
     if (status != CAMBER_OK || (run && outline))
         return status;
-    if (!cut->open)
+    if (!cut->open) {
         status = open_piece(cut, ends, is_cut[0], run);
+        if (cut->progress)
+            cut->piece.progress[0] = progress_at(cut, p, ends);
+    }
+    if (cut->progress)
+        cut->piece.progress[1] = progress_at(cut, p, ends + 2);
     if (status == CAMBER_OK && !add_point(cut->tiles, ends + 2))
         status = CAMBER_ERROR_MEMORY;
     if (status == CAMBER_OK && is_cut[1])
@@ -240,15 +252,24 @@ static camber_status close_ring(camber_tiles *tiles, size_t first_piece, const d
     return CAMBER_OK;
 }
 
+/* To the next point. */
+static double segment_length(const double *point) {
+    return hypot(point[2] - point[0], point[3] - point[1]);
+}
+
 static camber_status cut_part(tile_cut *cut, const double *points, size_t count, bool outline) {
     camber_tiles *tiles = cut->tiles;
     const size_t first_piece = tiles->piece_count;
     const double *last = points + 2 * (count - 1);
     camber_status status = CAMBER_OK;
     bool moves = false;
+    cut->length = cut->done = 0;
+    for (size_t i = 1; i < count && cut->progress; i++)
+        cut->length += segment_length(points + 2 * (i - 1));
     for (size_t i = 1; i < count && status == CAMBER_OK; i++) {
         moves = moves || !camber_tiles_same(points, points + 2 * i);
         status = cut_segment(cut, points + 2 * (i - 1), points + 2 * i, outline);
+        cut->done += cut->progress ? segment_length(points + 2 * (i - 1)) : 0;
     }
     if (!moves && inside(&cut->box, points)) {
         /* A dot: all points are one. */
@@ -258,7 +279,7 @@ static camber_status cut_part(tile_cut *cut, const double *points, size_t count,
     }
     if (status == CAMBER_OK)
         status = close_piece(cut, false);
-    if (status == CAMBER_OK && moves && camber_tiles_same(points, last))
+    if (status == CAMBER_OK && moves && !cut->progress && camber_tiles_same(points, last))
         status = close_ring(tiles, first_piece, points);
     return status;
 }
@@ -281,7 +302,9 @@ camber_status camber_tiles_add(camber_tiles *tiles, const camber_tile_feature *f
         return status;
     tile_cut cut = {.tiles = tiles,
                     .box = box_of(feature),
-                    .piece = {.feature = index, .column = feature->column, .row = feature->row}};
+                    .progress = feature->has_progress ? feature->progress : NULL,
+                    .piece = {.feature = index, .column = feature->column, .row = feature->row, .progress = {0, 1}}};
+    tiles->has_progress |= feature->has_progress;
     size_t first = 0;
     for (size_t i = 0; i < parts->part_count && status == CAMBER_OK; i++) {
         const size_t count = parts->ends[i] - first;

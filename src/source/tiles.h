@@ -14,7 +14,9 @@ typedef struct camber_tile_feature {
     uint32_t class_index;
     bool outline; /* of a polygon: what runs along the border is the tile's doing */
     bool has_id;
-    uint64_t id;         /* the same in every tile */
+    uint64_t id; /* the same in every tile */
+    bool has_progress;
+    double progress[2];  /* line-progress at the ends of each part; whatever the style, without it none is kept */
     unsigned open_sides; /* CAMBER_SIDE_*: the neighbour there is not read, and the tile's buffer is kept */
 } camber_tile_feature;
 
@@ -46,6 +48,7 @@ typedef struct camber_tile_piece {
     bool cut[2];    /* the first and last point were cut, and are no points of the feature */
     bool border[2]; /* they lie on the tile's border */
     bool run;       /* runs along the border: the neighbour has it too */
+    float progress[2];
 } camber_tile_piece;
 
 typedef struct camber_tile_record {
@@ -57,8 +60,9 @@ typedef struct camber_tile_record {
 
 struct camber_tiles {
     camber_context *context;
-    double units; /* that the world is wide */
-    double grid;  /* of the coarsest tile, in units */
+    double units;      /* that the world is wide */
+    double grid;       /* of the coarsest tile, in units */
+    bool has_progress; /* of some piece */
     double *points;
     size_t point_count, point_capacity;
     camber_tile_piece *pieces; /* fewer than 2^31 */

@@ -44,6 +44,17 @@ static inline void studio_close(studio *s) {
     camber_context_destroy(s->context);
 }
 
+/* A mesh of a scene's lines that the renderer draws. */
+static inline camber_mesh *studio_mesh(const studio *s, camber_renderer *renderer, const scene *lines,
+                                       const camber_tessellation_desc *desc) {
+    camber_mesh *mesh = NULL;
+    camber_polylines *polylines = scene_polylines(s->context, lines);
+    assert_int_equal(camber_mesh_create(s->device, renderer, &mesh), CAMBER_OK);
+    assert_int_equal(camber_tessellate(mesh, polylines, desc), CAMBER_OK);
+    camber_polylines_destroy(polylines);
+    return mesh;
+}
+
 /* Of a test program: PoCL's own cache apart, and whether there is something to draw with. false: what is missing is
  * said, and the folder is gone; the program returns 77. true: folder_remove(cache) at its end. */
 static inline bool studio_begin(char cache[64]) {

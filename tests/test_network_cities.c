@@ -1,6 +1,6 @@
 /* Networks of real streets: the device against the twin under cameras from a whole city to a doorstep, turned and
  * straight, with points left out and with all of them. */
-#include "core.h"
+#include "bench.h"
 
 #include "camber_map.h"
 
@@ -25,39 +25,9 @@ static const look LOOKS[] = {{9.4, 0, 0.1},     {12, 0, 0},      {13.3, 33.7, 0.
                              {16.8, -123, 0.1}, {18, 180, 0.25}, {21, 7, 0},        {24, 45, 0.1}};
 enum { LOOK_COUNT = sizeof LOOKS / sizeof *LOOKS };
 
-typedef struct bench {
-    host h;
-    camber_context *context;
-    camber_device *device;
-    camber_mesh *mesh;
-    bool rounds; /* the device divides as the host does: bytes are compared, else counts */
-} bench;
-
 static const char *data_folder(void) {
     const char *folder = getenv("CAMBER_DATA");
     return folder && folder[0] ? folder : NULL;
-}
-
-static int set_up(void **state) {
-    bench *b = calloc(1, sizeof *b);
-    if (!b)
-        return -1;
-    b->context = host_context(&b->h);
-    if (camber_device_create(b->context, NULL, NULL, &b->device) != CAMBER_OK ||
-        camber_mesh_create(b->device, NULL, &b->mesh) != CAMBER_OK)
-        return -1;
-    b->rounds = camber_device_get_info(b->device).type == CAMBER_DEVICE_TYPE_CPU;
-    *state = b;
-    return 0;
-}
-
-static int tear_down(void **state) {
-    bench *b = *state;
-    camber_mesh_destroy(b->mesh);
-    camber_device_destroy(b->device);
-    host_done(&b->h, b->context);
-    free(b);
-    return 0;
 }
 
 /* Points and meshes of one look. Gives how many records there are. */
@@ -98,7 +68,7 @@ static size_t compare(bench *b, camber_network *network, const camber_camera *ca
 }
 
 static size_t check_city(bench *b, const camber_features *features, const city *c) {
-    camber_scene *scene = NULL;
+    camber_scene *streets = NULL;
     size_t records = 0;
     for (size_t i = 0; i < LOOK_COUNT; i++) {
         const camber_view_desc view = {.kind = CAMBER_VIEW_CENTER,
@@ -110,18 +80,18 @@ static size_t check_city(bench *b, const camber_features *features, const city *
                                        .height = 400};
         camber_camera camera;
         camber_tessellation_desc desc;
-        if (scene)
-            assert_int_equal(camber_scene_move(scene, &view), CAMBER_OK);
+        if (streets)
+            assert_int_equal(camber_scene_move(streets, &view), CAMBER_OK);
         else
             assert_int_equal(
-                camber_scene_create(features, &(camber_scene_desc){.view = view, .on_device = true}, &scene),
+                camber_scene_create(features, &(camber_scene_desc){.view = view, .on_device = true}, &streets),
                 CAMBER_OK);
-        camber_network *network = camber_scene_network(scene, &camera, &desc);
+        camber_network *network = camber_scene_network(streets, &camera, &desc);
         camera.simplify_px = LOOKS[i].simplify_px;
         desc.method = (camber_method)(i % 3);
         records += compare(b, network, &camera, &desc);
     }
-    camber_scene_destroy(scene);
+    camber_scene_destroy(streets);
     return records;
 }
 
@@ -163,7 +133,7 @@ int main(void) {
     char cache[64];
     pocl_cache_apart(cache);
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_cities)};
-    const int failed = cmocka_run_group_tests(tests, set_up, tear_down);
+    const int failed = cmocka_run_group_tests(tests, bench_set_up, bench_tear_down);
     folder_remove(cache);
     return failed;
 }

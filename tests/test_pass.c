@@ -5,13 +5,7 @@
 
 static camber_mesh *make_mesh(studio *s, const scene *lines, const camber_stroke *strokes, size_t stroke_count,
                               camber_method method) {
-    camber_mesh *mesh = NULL;
-    camber_polylines *polylines = scene_polylines(s->context, lines);
-    assert_int_equal(camber_mesh_create(s->device, studio_any(s), &mesh), CAMBER_OK);
-    assert_int_equal(camber_tessellate(mesh, polylines, &(camber_tessellation_desc){strokes, stroke_count, method, 0}),
-                     CAMBER_OK);
-    camber_polylines_destroy(polylines);
-    return mesh;
+    return studio_mesh(s, studio_any(s), lines, &(camber_tessellation_desc){strokes, stroke_count, method, 0});
 }
 
 static void line(scene *s, size_t row, double x0, double y0, double x1, double y1) {

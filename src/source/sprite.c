@@ -205,7 +205,7 @@ void camber_sprites_destroy(camber_sprites *sprites) {
         return;
     for (size_t i = 0; i < sprites->image_count; i++)
         camber_free(sprites->context, sprites->images[i].name);
-    for (size_t i = 0; i < sprites->sheet_count; i++)
+    for (size_t i = 0; sprites->sheets && i < sprites->sheet_count; i++)
         camber_free(sprites->context, sprites->sheets[i].rgba);
     camber_free(sprites->context, sprites->images);
     camber_free(sprites->context, sprites->sheets);

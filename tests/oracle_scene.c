@@ -225,6 +225,18 @@ typedef struct bounds {
     double over, united, simplified;
 } bounds;
 
+/* What the mesh takes on the device with every point at the first width, per segment. */
+static bool judge_bytes(const core *c, const network *n, double width_px, double most) {
+    uint8_t *levels = must(malloc((size_t)SIDE_PX * SIDE_PX));
+    const bool drawn = draw(c, n, ALL_POINTS, width_px, CAMBER_OVERLAP_FLATTEN, levels);
+    const double bytes =
+        (double)camber_mesh_get_info(c->mesh).bytes / (double)camber_network_get_stats(n->held).kept_segments;
+    const bool good = drawn && bytes <= most;
+    printf("%s - %g px: %.1f bytes a segment (bound %.0f)\n", good ? "ok" : "not ok", width_px, bytes, most);
+    free(levels);
+    return good;
+}
+
 static bool judge(const core *c, const network *n, const char *name, double width_px, bounds most) {
     const camber_oracle_style style = {width_px, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 2, false};
     uint8_t *levels = must(malloc((size_t)SIDE_PX * SIDE_PX));
@@ -280,10 +292,11 @@ static void close_core(core *c) {
 int main(void) {
     static const struct {
         const char *name, *file;
-        bounds most[3]; /* at 8, 3 and 1 px */
+        double most_bytes; /* a segment at 8 px */
+        bounds most[3];    /* at 8, 3 and 1 px */
     } scenes[] = {
-        {"nyc", "nyc.osm.pbf", {{0.7, 0.45, 1.4}, {0.9, 0.4, 1.4}, {0.7, 0.55, 1.55}}},
-        {"porto", "porto_portugal.osm.pbf", {{1.05, 0.65, 1.43}, {1.1, 0.7, 1.4}, {1.15, 0.8, 1.43}}},
+        {"nyc", "nyc.osm.pbf", 34, {{0.7, 0.45, 1.4}, {0.9, 0.4, 1.4}, {0.7, 0.55, 1.55}}},
+        {"porto", "porto_portugal.osm.pbf", 30, {{1.05, 0.65, 1.43}, {1.1, 0.7, 1.4}, {1.15, 0.8, 1.43}}},
     };
     static const double widths_px[3] = {8, 3, 1};
     const char *folder = getenv("CAMBER_DATA");
@@ -308,6 +321,7 @@ int main(void) {
             fit(&n);
             printf("# %s: %zu lines, %zu points\n", scenes[i].name, n.line_count, n.point_count);
             good = make_network(&n, c.context) && good;
+            good = n.held && judge_bytes(&c, &n, widths_px[0], scenes[i].most_bytes) && good;
             for (int w = 0; w < 3 && n.held; w++)
                 good = judge(&c, &n, scenes[i].name, widths_px[w], scenes[i].most[w]) && good;
             status = good ? 0 : 1;

@@ -191,6 +191,9 @@ expect 0 "JSON" render "$tiger" -o tiger.png --size 64x64 --json --method kite -
 has "$tmp/stdout" '"width": 64' '"device"' '"gl_renderer"' '"sharing"' '"draw_calls"' '"peak_rss_bytes"' '"total_ms"' \
     '"attribution": null' '"method": "kite"' '"coverage": "linear"' '"triangles": [1-9]'
 lacks tiger.png OpenStreetMap
+expect 0 "few draw calls" render "$osm" -o calls.png --size 512x512 --json
+has "$tmp/stdout" '"draw_calls": [1-4],'
+rm -f calls.png
 expect 0 "one thread, dark" render "$tiger" -o dark.png --size 64x64 --theme dark --threads 1
 cmp -s dark.png tiger.png && fail "dark looks like light"
 expect 0 "more threads than cores" render "$tiger" -o many.png --size 64x64 --theme dark --threads $(($(nproc) + 1))

@@ -225,13 +225,11 @@ typedef struct camber_device_desc {
      * of it is the same. 4096 at least. 0, or more than that: the device's own limit, and below 2^31 for GL's sake. */
     uint64_t largest_buffer_bytes;
     /* What all meshes of the device may hold at once: buffers of points, joins, records and indices (copied ones
-     * twice), strokes, what a device that does not work in host memory has of networks, and the few counts that the
-     * host keeps a part. Meshes are made in parts of whole polylines then, of an eighth of it or less; what does not
-     * fit is tessellated again when it is read or drawn, in place of what is needed last, and is the same bytes and
-     * pixels. No polyline may take more than half of it: about 50 bytes a point that is seen. A mesh keeps the
-     * polylines it was made of, which are not counted, nor are networks in host memory, what is read back, and pictures
-     * (largest_piece_px bounds those). 65536 at least. 0: three quarters of the device's memory; no bound where that is
-     * the host's. */
+     * twice), strokes, networks on a device with memory of its own, and counts a part. Not the polylines that a mesh
+     * keeps, what is read back, or pictures (largest_piece_px bounds those). Meshes are made in parts then, of an
+     * eighth of it or less; what does not fit is tessellated again when it is read or drawn, and is the same bytes and
+     * pixels. No polyline may take more than half of it: about 50 bytes a point that is seen. 65536 at least. 0: three
+     * quarters of the device's memory; no bound where that is the host's. */
     uint64_t memory_bytes;
 } camber_device_desc;
 
@@ -242,11 +240,9 @@ typedef struct camber_surface camber_surface;
  * (camber_renderer_create tells how). The kernels of a method are built, or loaded from the cache, when it is first
  * used.
  *
- * PoCL leaves its threads to the system, which often puts two on one core; POCL_AFFINITY=1 in the environment before
- * the first OpenCL call of the process gives each its own. The tool sets it where there are no more threads than cores
- * and the process may use them all (PoCL aborts else); a library must not. PoCL also sets HWLOC_PLUGINS_PATH in its
- * first call, which is no time for another thread to read the environment: a program with threads sets it to /dev/null
- * before them.
+ * PoCL's threads are best pinned: POCL_AFFINITY=1 in the environment before the first OpenCL call of the process, where
+ * there are no more threads than cores and the process may use them all (PoCL aborts else). That call sets
+ * HWLOC_PLUGINS_PATH: a program with threads sets it to /dev/null before them.
  *
  * Returns CAMBER_ERROR_DEVICE (no platform, no device that matches or not so many), CAMBER_ERROR_ARGUMENT (a work-group
  * size that is none of these, a largest buffer below 4096 bytes, memory below 65536), CAMBER_ERROR_MEMORY. */

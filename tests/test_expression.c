@@ -339,6 +339,80 @@ static void test_folding(void **state) {
     teardown(&f);
 }
 
+/* What an expression depends on, and what it makes a style ask for. */
+static void test_reads(void **state) {
+    (void)state;
+    static const struct {
+        const char *expression;
+        bool zoom, feature, line_progress, id, all;
+    } samples[] = {
+        {"[\"+\", 1, 2]", false, false, false, false, false},
+        {"[\"step\", [\"zoom\"], 1, 5, 2]", true, false, false, false, false},
+        {"[\"step\", [\"zoom\"], 1, 5, [\"get\", \"w\"]]", true, true, false, false, false},
+        {"[\"let\", \"a\", [\"get\", \"w\"], [\"number\", [\"var\", \"a\"]]]", false, true, false, false, false},
+        {"[\"line-progress\"]", false, false, true, false, false},
+        {"[\"to-number\", [\"id\"]]", false, true, false, true, false},
+        {"[\"get\", [\"concat\", \"a\", [\"get\", \"k\"]]]", false, true, false, false, true},
+        {"[\"get\", \"x\", [\"properties\"]]", false, true, false, false, true},
+        {"[\"get\", [\"concat\", \"a\", \"b\"]]", false, true, false, false, false},
+        {"[\"get\", \"x\", [\"literal\", {\"x\": 1}]]", false, false, false, false, false},
+    };
+    for (size_t i = 0; i < sizeof samples / sizeof *samples; i++) {
+        fixture f;
+        setup(&f);
+        json_t *json = load(samples[i].expression);
+        const camber_property property = {
+            .name = "p", .type = NUMBER, .interpolated = true, .data_driven = true, .line_progress = true};
+        if (!camber_compile_property(&f.compiler, json, &property, &f.expression))
+            fail_msg("%s: %s", samples[i].expression, f.message);
+        if (f.expression->reads_zoom != samples[i].zoom || f.expression->reads_feature != samples[i].feature ||
+            f.expression->reads_line_progress != samples[i].line_progress || f.style.wants_id != samples[i].id ||
+            f.style.wants_all_properties != samples[i].all)
+            fail_msg("%s depends on something else", samples[i].expression);
+        json_decref(json);
+        teardown(&f);
+    }
+}
+
+/* Properties with ranges, names, lengths, and without zoom or features. */
+static void test_properties(void **state) {
+    (void)state;
+    static const char *const names[] = {"map", "viewport", NULL};
+    static const struct {
+        camber_property property;
+        const char *value, *message; /* NULL: it compiles */
+    } samples[] = {
+        {{.name = "p", .type = STRING, .values = names}, "\"map\"", NULL},
+        {{.name = "p", .type = STRING, .values = names}, "\"top\"", "\"top\" is no p; use \"map\" or \"viewport\""},
+        {{.name = "p", .type = CAMBER_TYPE_ARRAY, .item = NUMBER, .length = 2}, "[1, 2]", NULL},
+        {{.name = "p", .type = CAMBER_TYPE_ARRAY, .item = NUMBER, .length = 2},
+         "[1, 2, 3]",
+         "expected an array<number, 2>, found an array<number, 3>"},
+        {{.name = "p", .type = CAMBER_TYPE_ARRAY, .item = NUMBER, .high = 9.0}, "[1, -2]", "-2 is out of range"},
+        {{.name = "p", .type = CAMBER_TYPE_ARRAY, .item = NUMBER}, "[\"literal\", []]", NULL},
+        {{.name = "p", .type = CAMBER_TYPE_IMAGE}, "[\"image\", \"a\"]", NULL},
+        {{.name = "p", .type = CAMBER_TYPE_IMAGE, .data_driven = true}, "[\"concat\", \"a\", [\"get\", \"b\"]]", NULL},
+        {{.name = "p", .type = NUMBER}, "[\"get\", \"x\"]", "p cannot depend on features"},
+        {{.name = "p", .type = NUMBER, .without_zoom = true},
+         "[\"step\", [\"zoom\"], 1, 2, 3]",
+         "p cannot depend on zoom"},
+        {{.name = "p", .type = NUMBER},
+         "[\"interpolate\", [\"linear\"], [\"zoom\"], 1, 2, 3, 4]",
+         "p is not interpolated"},
+        {{.name = "p", .type = NUMBER}, "[\"line-progress\"]", "p cannot depend on \"line-progress\""},
+    };
+    for (size_t i = 0; i < sizeof samples / sizeof *samples; i++) {
+        fixture f;
+        setup(&f);
+        json_t *json = load(samples[i].value);
+        const bool done = camber_compile_property(&f.compiler, json, &samples[i].property, &f.expression);
+        if (done != !samples[i].message || (!done && !strstr(f.message, samples[i].message)))
+            fail_msg("%s: '%s'", samples[i].value, f.message);
+        json_decref(json);
+        teardown(&f);
+    }
+}
+
 static void test_polygons(void **state) {
     (void)state;
     static const struct {
@@ -457,10 +531,10 @@ static void test_locale(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_numbers),  cmocka_unit_test(test_curves), cmocka_unit_test(test_colors),
-        cmocka_unit_test(test_filters),  cmocka_unit_test(test_errors), cmocka_unit_test(test_folding),
-        cmocka_unit_test(test_polygons), cmocka_unit_test(test_depth),  cmocka_unit_test(test_number_text),
-        cmocka_unit_test(test_locale),
+        cmocka_unit_test(test_numbers), cmocka_unit_test(test_curves),      cmocka_unit_test(test_colors),
+        cmocka_unit_test(test_filters), cmocka_unit_test(test_errors),      cmocka_unit_test(test_folding),
+        cmocka_unit_test(test_reads),   cmocka_unit_test(test_properties),  cmocka_unit_test(test_polygons),
+        cmocka_unit_test(test_depth),   cmocka_unit_test(test_number_text), cmocka_unit_test(test_locale),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

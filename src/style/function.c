@@ -373,6 +373,9 @@ static bool compile_composite(function *f, uint32_t *node) {
     camber_compiler *c = f->c;
     const size_t count = json_array_size(f->stops), first_operand = c->operand_count;
     const bool step = !f->property->interpolated;
+    /* The base and the colour space are the zoom's. */
+    const camber_color_space space = f->space;
+    f->space = CAMBER_SPACE_RGB;
     if (!camber_make_reader(c, CAMBER_OP_ZOOM, CAMBER_TYPE_NUMBER, node) || !camber_push_operand(c, *node))
         return false;
     double *zooms = camber_alloc(c->context, count, sizeof *zooms);
@@ -392,7 +395,7 @@ static bool compile_composite(function *f, uint32_t *node) {
     }
     camber_node prototype = {.op = step ? CAMBER_OP_STEP : CAMBER_OP_INTERPOLATE,
                              .type = f->type,
-                             .space = (uint8_t)f->space,
+                             .space = (uint8_t)space,
                              .index = (uint32_t)c->expression->stop_count,
                              .value = {.type = CAMBER_VALUE_NUMBER, .number = c->strict ? 1.0 : f->base}};
     for (size_t i = step; done && i < zoom_count; i++)

@@ -185,6 +185,45 @@ static void test_layer_opacity(void **state) {
     close_map(&m);
 }
 
+/* Of the line's own width; where the line is translucent, it is not seen through the border, nor the border through it.
+ */
+static void test_border(void **state) {
+    studio *s = *state;
+    static const struct {
+        const char *paint;
+        double edge[4], middle[4];
+    } borders[] = {
+        {"\"line-color\": \"#f00\", \"line-border-color\": \"#00f\"", {0, 0, 1, 1}, {1, 0, 0, 1}},
+        {"\"line-color\": \"#f00\", \"line-border-color\": \"#00f\", \"line-opacity\": 0.5",
+         {0, 0, 0.5, 0.5},
+         {0.5, 0, 0, 0.5}},
+        {"\"line-color\": \"#f00\", \"line-border-color\": \"#00f\", \"line-layer-opacity\": 0.5",
+         {0, 0, 0.5, 0.5},
+         {0.5, 0, 0, 0.5}},
+        {"\"line-color\": \"#fff\"", {0.6, 0.6, 0.6, 1}, {1, 1, 1, 1}},    /* chosen: darker */
+        {"\"line-color\": \"#000\"", {0.45, 0.45, 0.45, 1}, {0, 0, 0, 1}}, /* chosen: brighter */
+    };
+    for (size_t i = 0; i < sizeof borders / sizeof *borders; i++) {
+        char layer[512];
+        snprintf(layer, sizeof layer,
+                 "{\"id\": \"a\", \"type\": \"line\", \"source\": \"s\", \"paint\": {\"line-width\": 20, "
+                 "\"line-border-width\": [\"get\", \"b\"], %s}}",
+                 borders[i].paint);
+        map m = open_map(s, "\"s\": " LINES(LINE(0, "\"b\": 4") "," LINE(2, "\"b\": 0")), layer, 0);
+        picture p = draw(s, &m);
+        const double *edge = borders[i].edge, *middle = borders[i].middle;
+        assert_pixel(&p, 64, 55, edge[0], edge[1], edge[2], edge[3]);
+        assert_pixel(&p, 64, 72, edge[0], edge[1], edge[2], edge[3]);
+        assert_pixel(&p, 64, 59, middle[0], middle[1], middle[2], middle[3]);
+        assert_pixel(&p, 64, 64, middle[0], middle[1], middle[2], middle[3]);
+        assert_pixel(&p, 64, 53, 0, 0, 0, 0);
+        assert_pixel(&p, 64, 10, middle[0], middle[1], middle[2], middle[3]); /* 45.5 px up: without a border */
+        assert_int_equal(camber_scene_get_info(m.scene).layers, 1);
+        picture_free(&p);
+        close_map(&m);
+    }
+}
+
 /* Layers share polylines where their strokes agree, though one says by a function what the other says plainly. */
 static void test_sharing(void **state) {
     studio *s = *state;
@@ -294,9 +333,10 @@ int main(void) {
     if (!studio_begin(cache))
         return 77;
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sort_key),  cmocka_unit_test(test_strokes_by_feature), cmocka_unit_test(test_sources),
-        cmocka_unit_test(test_translate), cmocka_unit_test(test_layer_opacity),      cmocka_unit_test(test_many_layers),
-        cmocka_unit_test(test_sharing),
+        cmocka_unit_test(test_sort_key),      cmocka_unit_test(test_strokes_by_feature),
+        cmocka_unit_test(test_sources),       cmocka_unit_test(test_translate),
+        cmocka_unit_test(test_layer_opacity), cmocka_unit_test(test_many_layers),
+        cmocka_unit_test(test_border),        cmocka_unit_test(test_sharing),
     };
     const int failed = cmocka_run_group_tests(tests, studio_set_up, studio_tear_down);
     folder_remove(cache);

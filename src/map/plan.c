@@ -112,9 +112,9 @@ static void find_translation(const camber_layer_look *look, const camber_view *v
 }
 
 static void add_layer(camber_plan *plan, const set_table *table, const camber_style_layer *layer,
-                      const camber_view *view) {
+                      const camber_view *view, bool border) {
     camber_plan_layer *made = plan->layers + plan->layer_count;
-    *made = (camber_plan_layer){.look = camber_style_layer_look(layer, camber_view_style_zoom(view))};
+    *made = (camber_plan_layer){.look = camber_style_layer_look(layer, camber_view_style_zoom(view)), .border = border};
     find_translation(&made->look, view, made->translate_px);
     uint32_t *slot = find_set(plan, table, &made->look);
     if (*slot == 0) {
@@ -133,14 +133,17 @@ static camber_status group_layers(camber_plan *plan, const camber_style *style, 
     set_table table = {.slot_count = 16};
     while (table.slot_count / 2 < style->layer_count)
         table.slot_count *= 2;
-    if (!(plan->layers = camber_alloc(plan->context, style->layer_count, sizeof *plan->layers)) ||
+    if (!(plan->layers = camber_alloc(plan->context, style->layer_count, 2 * sizeof *plan->layers)) ||
         !(plan->sets = camber_alloc_zero(plan->context, style->layer_count, sizeof *plan->sets)) ||
         !(table.slots = camber_alloc_zero(plan->context, table.slot_count, sizeof *table.slots)))
         return CAMBER_ERROR_MEMORY;
     for (size_t i = first; i < style->layer_count; i++) {
         const camber_style_layer *layer = style->layers + i;
-        if (layer->kind == CAMBER_LAYER_LINE && is_active(layer, camber_view_style_zoom(view)))
-            add_layer(plan, &table, layer, view);
+        if (layer->kind != CAMBER_LAYER_LINE || !is_active(layer, camber_view_style_zoom(view)))
+            continue;
+        if (layer->properties[CAMBER_LINE_BORDER_WIDTH])
+            add_layer(plan, &table, layer, view, true);
+        add_layer(plan, &table, layer, view, false);
     }
     camber_free(plan->context, table.slots);
     return CAMBER_OK;
@@ -168,14 +171,35 @@ static float whole_width(const camber_paint *paint) {
     return paint->gap_px > 0.0f ? paint->gap_px + 2.0f * paint->width_px : paint->width_px;
 }
 
-static camber_paint paint_of(const camber_plan_layer *layer, const camber_layer_paint *paint, double ratio) {
-    const double widest_px = paint->gap_width > 0.0 ? WIDEST_PX / 3.0 : WIDEST_PX; /* of a band */
-    if (!(paint->width * ratio > 0.0 && paint->color.a > 0.0f && (float)paint->layer_opacity > 0.0f))
+/* The paint of a layer without its border, or of the border alone: a wider line below, or, where that would be seen
+ * through, two bands beside. */
+static camber_layer_paint part_of(const camber_plan_layer *layer, const camber_layer_paint *whole) {
+    camber_layer_paint part = *whole;
+    const double border = fmin(whole->border_width, 0.5 * whole->width), inside = whole->width - 2.0 * border;
+    const bool seen_through = whole->color.a < 1.0f || whole->layer_opacity < 1.0;
+    if (layer->border) {
+        part.color = whole->border_color;
+        part.width = border > 0.0 ? whole->width : 0.0;
+        if (seen_through && !(whole->gap_width > 0.0) && inside > 0.0 && border > 0.0) {
+            part.width = border;
+            part.gap_width = inside;
+        }
+    } else if (border > 0.0) {
+        part.width = inside;
+        part.gap_width = whole->gap_width > 0.0 ? whole->gap_width + 2.0 * border : 0.0;
+    }
+    return part;
+}
+
+static camber_paint paint_of(const camber_plan_layer *layer, const camber_layer_paint *whole, double ratio) {
+    const camber_layer_paint part = part_of(layer, whole);
+    const double widest_px = part.gap_width > 0.0 ? WIDEST_PX / 3.0 : WIDEST_PX; /* of a band */
+    if (!(part.width * ratio > 0.0 && part.color.a > 0.0f && (float)part.layer_opacity > 0.0f))
         return (camber_paint){0};
-    return (camber_paint){.width_px = (float)fmin(paint->width * ratio, widest_px),
-                          .color = paint->color,
-                          .gap_px = (float)fmin(paint->gap_width * ratio, widest_px),
-                          .blur_px = (float)fmin(paint->blur * ratio, WIDEST_PX),
+    return (camber_paint){.width_px = (float)fmin(part.width * ratio, widest_px),
+                          .color = part.color,
+                          .gap_px = (float)fmin(part.gap_width * ratio, widest_px),
+                          .blur_px = (float)fmin(part.blur * ratio, WIDEST_PX),
                           .translate_x_px = layer->translate_px[0],
                           .translate_y_px = layer->translate_px[1]};
 }

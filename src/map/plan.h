@@ -26,6 +26,7 @@ typedef struct camber_plan_layer {
     float translate_px[2];
     size_t set;
     size_t slot; /* which of the set's layers it is */
+    bool border; /* of the layer that comes next; it is the same in the style */
     size_t next; /* layer of the set */
 } camber_plan_layer;
 

@@ -102,7 +102,7 @@ static size_t find_runs(const numbering *n, layer_run *runs, size_t *layer_count
         bool opaque;
         if (!layer_draws(n, plan->layers + i, &opaque))
             continue;
-        ++*layer_count;
+        *layer_count += !plan->layers[i].border;
         const camber_plan_set *set = plan->sets + plan->layers[i].set;
         const float opacity = (float)plan->layers[i].look.paint.layer_opacity;
         opaque = opaque && opacity >= 1.0f;

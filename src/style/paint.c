@@ -94,6 +94,15 @@ camber_layer_look camber_style_layer_look(const camber_style_layer *layer, doubl
     return look;
 }
 
+/* Where a border has no colour of its own: darker than the line, of dark ones brighter. */
+static camber_color border_of(camber_color color) {
+    const float luminance = 0.2126f * color.r + 0.7152f * color.g + 0.0722f * color.b;
+    const bool dark = luminance < 0.25f, black = luminance <= 0.0f;
+    const float factor = !dark ? 0.6f : black ? 0.0f : 1.0f + 0.5f / luminance, more = black ? 0.45f : 0.0f;
+    return (camber_color){fminf(factor * color.r + more, 1.0f), fminf(factor * color.g + more, 1.0f),
+                          fminf(factor * color.b + more, 1.0f), 1.0f};
+}
+
 camber_layer_paint camber_layer_look_paint(const camber_layer_look *look, const camber_feature_view *feature) {
     camber_layer_paint paint = look->paint;
     if (look->by_feature) {
@@ -104,6 +113,11 @@ camber_layer_paint camber_layer_look_paint(const camber_layer_look *look, const 
                 store(look->layer, i, &evaluation, &paint);
         camber_evaluation_end(&evaluation);
     }
+    if (paint.border_width > 0.0 && paint.border_color.a <= 0.0f) {
+        paint.border_color = border_of(paint.color);
+        paint.border_color.a = paint.color.a;
+    }
+    paint.border_color.a *= (float)paint.opacity;
     paint.color.a *= (float)paint.opacity;
     return paint;
 }

@@ -130,6 +130,8 @@ typedef struct camber_layer_paint {
     double width, gap_width, offset, blur;
     camber_color color; /* the alpha includes the opacity */
     double opacity;
+    double border_width;       /* of the line's own width, on each side */
+    camber_color border_color; /* the alpha includes the opacity */
     /* The same for all features. */
     double layer_opacity;
     double translate[2];

@@ -45,7 +45,7 @@ static bool compile_foreign(camber_compiler *c, const camber_operator *row, json
     (void)expected;
     (void)node;
     camber_compiler_enter_index(c, 0);
-    return camber_compiler_fail(c, "\"%s\" is of no use to lines and not supported; leave it out", row->name);
+    return camber_compiler_fail(c, "\"%s\" is not supported for lines; leave it out", row->name);
 }
 
 static bool compile_script(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,

@@ -602,7 +602,7 @@ typedef struct camber_frame {
 typedef struct camber_frame_stats {
     size_t draw_calls;
     size_t pieces;
-    double draw_ms; /* clear, draw, finish */
+    double draw_ms; /* clear, draw, finish; of a frame that overlaps others, what its calls take */
     double read_ms;
 } camber_frame_stats;
 
@@ -615,6 +615,24 @@ typedef bool camber_rows_fn(void *user, const uint8_t *rgba, uint32_t first_row,
  * does not build, or the GL reported an error), CAMBER_ERROR_MEMORY, CAMBER_ERROR_IO (rows returned false). */
 CAMBER_API camber_status camber_render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows,
                                        void *user, camber_frame_stats *stats);
+
+#define CAMBER_FRAMES_IN_FLIGHT 2
+
+/* camber_render in two steps, so that what comes next overlaps the drawing: begin draws and does not wait, end waits
+ * for the frame that began first and hands its rows over. With two meshes in turn,
+ *
+ *     tessellate mesh n + 1, begin frame n + 1, end frame n
+ *
+ * keeps the device and GL at work on two frames. CAMBER_FRAMES_IN_FLIGHT frames at most may have begun and not ended,
+ * and none when camber_render is called; the passes' meshes must live until the end. Tessellating one of them before
+ * waits for the drawing, and so gains nothing. Where a picture takes several pieces, those after the first are drawn at
+ * the end, from the meshes as they are then.
+ *
+ * They return what camber_render returns. Where begin fails no frame has begun; where end fails the frame is given up.
+ * Destroying the renderer gives up what is in flight. */
+CAMBER_API camber_status camber_render_begin(camber_renderer *renderer, const camber_frame *frame);
+CAMBER_API camber_status camber_render_end(camber_renderer *renderer, camber_rows_fn *rows, void *user,
+                                           camber_frame_stats *stats);
 
 /* ---- Overdraw: what the GPU does for a mesh, counted on it ---- */
 

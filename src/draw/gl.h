@@ -25,6 +25,10 @@
     X(void, ClearColor, (GLfloat, GLfloat, GLfloat, GLfloat))                                                          \
     X(void, Clear, (GLbitfield))                                                                                       \
     X(void, Finish, (void))                                                                                            \
+    X(void, Flush, (void))                                                                                             \
+    X(GLsync, FenceSync, (GLenum, GLbitfield))                                                                         \
+    X(GLenum, ClientWaitSync, (GLsync, GLbitfield, GLuint64))                                                          \
+    X(void, DeleteSync, (GLsync))                                                                                      \
     X(void, PixelStorei, (GLenum, GLint))                                                                              \
     X(void, ReadPixels, (GLint, GLint, GLsizei, GLsizei, GLenum, GLenum, void *))                                      \
     X(GLuint, CreateShader, (GLenum))                                                                                  \

@@ -333,6 +333,7 @@ camber_status camber_overdraw_count(camber_renderer *renderer, const camber_over
         status = camber_surface_make_current(renderer->share.surface);
         if (status != CAMBER_OK)
             return status;
+        renderer->share.frames_begun++; /* what it draws with is awaited before it changes */
         status = prepare(&c, &list);
         if (status == CAMBER_OK)
             status = count_pieces(&c);

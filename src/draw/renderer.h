@@ -42,6 +42,7 @@ typedef struct camber_target {
 
 enum {
     CAMBER_TARGET_PICTURE,
+    CAMBER_TARGET_NEXT_PICTURE, /* of the second frame in flight */
     CAMBER_TARGET_COVERAGE,
     CAMBER_TARGET_LAYER,
     CAMBER_TARGET_GROUP, /* a pass with an opacity of its own */
@@ -82,6 +83,26 @@ typedef struct camber_batch {
     size_t call_count, first_capacity, count_capacity;
 } camber_batch;
 
+/* One piece of the picture. */
+typedef struct camber_piece {
+    uint32_t x, y, width, height; /* in the picture, px */
+    camber_coverage coverage;
+    float thinnest_px; /* that is drawn in the frame */
+    int target;        /* that runs are drawn into */
+    size_t *draw_calls;
+} camber_piece;
+
+/* A frame that has begun. */
+typedef struct camber_flight {
+    camber_frame frame;
+    camber_piece first;  /* which is drawn */
+    GLsync drawn;        /* a fence behind it. NULL: it is finished */
+    uint64_t number;     /* of the frames that have begun */
+    camber_pass *passes; /* of several pieces: the frame's own */
+    camber_paint *paints;
+    camber_frame_stats stats;
+} camber_flight;
+
 struct camber_renderer {
     camber_share share;
     const camber_share_path *path;
@@ -96,6 +117,8 @@ struct camber_renderer {
     float *row_texels;  /* 4 floats a texel */
     size_t row_capacity;
     camber_batch batch;
+    camber_flight flights[CAMBER_FRAMES_IN_FLIGHT];
+    size_t first_flight, flight_count; /* a ring */
 };
 
 /* linked.c: programs in the cache folder. A key is of the driver and all the sources. */
@@ -118,14 +141,7 @@ camber_status camber_renderer_bind_target(camber_renderer *renderer, int which, 
 GLsizei camber_renderer_guard(const camber_renderer *renderer, int axis, GLsizei side);
 void camber_renderer_release_targets(camber_renderer *renderer);
 
-/* pass.c: one piece of the picture. */
-typedef struct camber_piece {
-    uint32_t x, y, width, height; /* in the picture, px */
-    camber_coverage coverage;
-    float thinnest_px; /* that is drawn in the frame */
-    int target;        /* that runs are drawn into */
-    size_t *draw_calls;
-} camber_piece;
+/* pass.c */
 float camber_renderer_thinnest(const camber_frame *frame);
 camber_status camber_renderer_draw_pass(camber_renderer *renderer, const camber_pass *pass, const camber_piece *piece);
 static inline bool camber_pass_draws(const camber_pass *pass, uint32_t row) {
@@ -155,9 +171,12 @@ camber_status camber_renderer_mesh_shader(camber_renderer *renderer, const cambe
 void camber_renderer_use_shader(camber_renderer *renderer, const camber_shader *shader, const camber_mesh *mesh,
                                 const camber_piece *piece);
 /* Binds a part's records and indices, and the row texture. */
-void camber_renderer_bind_part(camber_renderer *renderer, const camber_mesh_part *part);
+void camber_renderer_bind_part(camber_renderer *renderer, camber_mesh_part *part);
 /* Draws indices of the part that is bound. */
 void camber_renderer_draw_indices(camber_renderer *renderer, const camber_mesh *mesh, uint64_t first, uint64_t count);
+
+/* frame.c: drops what is in flight. */
+void camber_frames_forget(camber_renderer *renderer, bool is_current);
 
 /* Logs what GL reports; CAMBER_OK where it reports nothing. */
 camber_status camber_renderer_check(camber_renderer *renderer, const char *what);

@@ -22,6 +22,14 @@ void camber_share_release(void *user, camber_buffer *buffer) {
     *buffer = (camber_buffer){0};
 }
 
+void camber_share_await(camber_share *share, const camber_buffer *buffers, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        if (buffers[i].drawn_frame > share->frames_done) {
+            share->surface->gl.Finish();
+            share->frames_done = share->frames_begun;
+        }
+}
+
 enum { PROBE_BYTES = 4096 };
 
 /* What GL reads from a buffer: a copy of it that GL makes, since a map may be the very memory that OpenCL wrote. */

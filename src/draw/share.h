@@ -8,6 +8,7 @@
 typedef struct camber_share {
     camber_device *device;
     camber_surface *surface;
+    uint64_t frames_begun, frames_done; /* numbers of the last of them */
 } camber_share;
 
 typedef struct camber_share_path {
@@ -22,6 +23,9 @@ extern const camber_share_path camber_share_copy;
 
 /* Frees both sides of a buffer. */
 void camber_share_release(void *user, camber_buffer *buffer);
+
+/* Waits for GL where a frame in flight reads one of the buffers. */
+void camber_share_await(camber_share *share, const camber_buffer *buffers, size_t count);
 
 /* What GL says to a buffer of this size. */
 camber_status camber_share_check(const camber_share *share, size_t size_bytes);

@@ -45,7 +45,7 @@ static camber_status begin(void *user, camber_buffer *buffers, size_t count) {
     const camber_share *share = user;
     cl_mem mems[BUFFERS_MAX];
     list_mems(buffers, count, mems);
-    share->surface->gl.Finish();
+    camber_share_await(user, buffers, count);
     const cl_int code = clEnqueueAcquireGLObjects(share->device->queue, (cl_uint)count, mems, 0, NULL, NULL);
     return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(share->device->context, "clEnqueueAcquireGLObjects", code);
 }

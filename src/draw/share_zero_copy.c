@@ -36,10 +36,7 @@ static camber_status reserve(void *user, camber_buffer *buffer, size_t size_byte
 }
 
 static camber_status begin(void *user, camber_buffer *buffers, size_t count) {
-    const camber_share *share = user;
-    (void)buffers;
-    (void)count;
-    share->surface->gl.Finish(); /* no draw reads what the kernels are about to write */
+    camber_share_await(user, buffers, count);
     return CAMBER_OK;
 }
 

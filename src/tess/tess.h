@@ -63,6 +63,7 @@ typedef struct camber_buffer {
     unsigned gl_name; /* 0: OpenCL memory only */
     void *map;        /* zero copy: the persistent map */
     size_t used_bytes;
+    uint64_t drawn_frame; /* the last frame that reads it, by its number */
 } camber_buffer;
 
 typedef struct camber_buffer_ops {

@@ -305,6 +305,49 @@ static void test_networks(void **state) {
     scene_free(&s);
 }
 
+/* Parts that were cut for all of a network come together where little of it is seen, and are cut again. */
+static void test_parts_join(void **state) {
+    (void)state;
+    static const double scales[] = {0.9, 9, 9, 9, 9, 9, 9, 0.9};
+    enum { FRAMES = 8 };
+    camber_stroke strokes[SCENE_ROWS];
+    for (int i = 0; i < SCENE_ROWS; i++) /* that do not reach far into the picture */
+        strokes[i] = (camber_stroke){2, CAMBER_JOIN_ROUND, CAMBER_CAP_ROUND, 0};
+    scene s = {0};
+    uint64_t seed = 8;
+    for (int i = 0; i < 8; i++)
+        scene_walks(&s, &seed);
+    bench whole, b;
+    bench_open(&whole, 0, 0);
+    bench_open(&b, 500000, 64);
+    camber_network *network = make_network(whole.context, &s), *own = make_network(b.context, &s);
+    size_t parts[FRAMES];
+    for (size_t k = 0; k < FRAMES; k++) {
+        const camber_tessellation_desc desc = {strokes, SCENE_ROWS, k == 3 ? CAMBER_METHOD_FAN : CAMBER_METHOD_STRIP,
+                                               0};
+        const camber_camera camera = camera_at(scales[k], 10);
+        assert_int_equal(camber_tessellate_network(whole.mesh, network, &camera, &desc), CAMBER_OK);
+        assert_int_equal(camber_tessellate_network(b.mesh, own, &camera, &desc), CAMBER_OK);
+        result wanted = read_result(&whole, whole.mesh), r = read_result(&b, b.mesh);
+        assert_same(&r, &wanted);
+        parts[k] = r.memory.parts;
+        if (k > 3)
+            assert_true(k == FRAMES - 1 || r.memory.resident_parts == r.memory.parts);
+        free_result(&b, &r);
+        free_result(&whole, &wanted);
+    }
+    print_message("%zu parts, %zu near by, %zu again; %zu sections\n", parts[0], parts[FRAMES - 2], parts[FRAMES - 1],
+                  b.mesh->held->section_count);
+    assert_int_equal(parts[FRAMES - 2], b.mesh->held->section_count); /* no part is of two */
+    assert_true(parts[0] > b.mesh->held->section_count * 3 / 2 &&
+                parts[FRAMES - 1] > b.mesh->held->section_count * 3 / 2);
+    camber_network_destroy(own);
+    camber_network_destroy(network);
+    bench_close(&b);
+    bench_close(&whole);
+    scene_free(&s);
+}
+
 /* ---- Several meshes ---- */
 
 /* Meshes of one device share its memory: what one needs, another gives, and has again when it is asked. */
@@ -757,12 +800,12 @@ static void test_refused_frames(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_same_bytes),       cmocka_unit_test(test_keeps_what_fits),
-        cmocka_unit_test(test_networks),         cmocka_unit_test(test_meshes_share),
-        cmocka_unit_test(test_too_small),        cmocka_unit_test(test_too_long),
-        cmocka_unit_test(test_too_many_strokes), cmocka_unit_test(test_refused_buffers),
-        cmocka_unit_test(test_allocations),      cmocka_unit_test(test_same_pictures),
-        cmocka_unit_test(test_refused_frames),
+        cmocka_unit_test(test_same_bytes),      cmocka_unit_test(test_keeps_what_fits),
+        cmocka_unit_test(test_networks),        cmocka_unit_test(test_parts_join),
+        cmocka_unit_test(test_meshes_share),    cmocka_unit_test(test_too_small),
+        cmocka_unit_test(test_too_long),        cmocka_unit_test(test_too_many_strokes),
+        cmocka_unit_test(test_refused_buffers), cmocka_unit_test(test_allocations),
+        cmocka_unit_test(test_same_pictures),   cmocka_unit_test(test_refused_frames),
     };
     char pocl_cache[64];
     pocl_cache_apart(pocl_cache);

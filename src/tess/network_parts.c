@@ -195,8 +195,10 @@ static camber_status hold(camber_mesh *mesh, camber_network *network) {
 }
 
 camber_status camber_mesh_plan_network(camber_mesh *mesh, camber_network *network) {
-    if (mesh->serial == network->serial)
+    if (mesh->serial == network->serial) {
+        camber_mesh_tidy(mesh);
         return CAMBER_OK;
+    }
     camber_mesh_let_go(mesh);
     mesh->serial = mesh->part_count = mesh->polyline_count = 0;
     const camber_status status = hold(mesh, network);

@@ -435,6 +435,35 @@ camber_status camber_mesh_add_part(camber_mesh *mesh, size_t first_polyline, siz
     return CAMBER_OK;
 }
 
+/* Takes up the part behind, whose slots can be made anew with its own. */
+static void join_next(camber_mesh *mesh, size_t which) {
+    camber_mesh_part *part = mesh->parts + which;
+    const size_t end = part[1].first_polyline + part[1].polyline_count;
+    camber_part_empty(mesh, part + 1);
+    memmove(part + 1, part + 2, (mesh->part_count - which - 2) * sizeof *part);
+    mesh->part_count--;
+    memset(mesh->parts + mesh->part_count, 0, sizeof *part);
+    set_polylines(mesh, part, part->first_polyline, end);
+}
+
+void camber_mesh_tidy(camber_mesh *mesh) {
+    const uint64_t most = camber_device_share(mesh->device, 1) / 2;
+    if (!mesh->device->memory_bytes)
+        return;
+    for (size_t i = 0; i < mesh->part_count && mesh->is_full; i++)
+        if (mesh->parts[i].held_bytes / 2 > camber_part_need(mesh, mesh->parts + i))
+            camber_part_empty(mesh, mesh->parts + i);
+    for (size_t i = 0; i + 1 < mesh->part_count; i++) {
+        const camber_mesh_part *part = mesh->parts + i;
+        const part_size both = {part[0].slot_count + part[1].slot_count, part[0].record_count + part[1].record_count,
+                                part[0].index_count + part[1].index_count};
+        const camber_mesh_part joint = {.first_point = part[0].first_point, .end_point = part[1].end_point};
+        /* What it then has is not known before the next frame: it waits for that before it takes up more. */
+        if (part[0].section == part[1].section && need(mesh, &joint, both) <= most)
+            join_next(mesh, i);
+    }
+}
+
 camber_status camber_mesh_halve(camber_mesh *mesh, size_t which) {
     const camber_mesh_part *part = mesh->parts + which;
     const size_t middle = part->first_polyline + part->polyline_count / 2;

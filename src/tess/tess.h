@@ -181,6 +181,9 @@ camber_status camber_part_reserve_output(camber_mesh *mesh, camber_mesh_part *pa
 void camber_mesh_trim_parts(camber_mesh *mesh);
 /* Adds an empty part, or cuts one in two at the middle of its polylines. */
 camber_status camber_mesh_add_part(camber_mesh *mesh, size_t first_polyline, size_t end_polyline);
+/* After another frame of the same network: where memory was full, lets go of buffers that were far too large for it,
+ * and joins parts by twos that took little of their share. */
+void camber_mesh_tidy(camber_mesh *mesh);
 camber_status camber_mesh_halve(camber_mesh *mesh, size_t which);
 camber_status camber_fail_memory(const camber_mesh *mesh, size_t polyline, uint64_t size_bytes);
 camber_status camber_fail_polyline(const camber_mesh *mesh, size_t polyline, uint64_t size_bytes);

@@ -218,10 +218,9 @@ int camber_check_networks(camber_validation *validation, const camber_subject *s
                                          .scale_px = 1,
                                          .width = subject->width,
                                          .height = subject->height};
-    camber_status made = j.strokes ? CAMBER_OK : CAMBER_ERROR_MEMORY;
-    if (made == CAMBER_OK && !network)
-        made = make_own(&j);
-    int status = camber_report_status(validation->session->report, made);
+    if (!j.strokes)
+        return camber_report_status(validation->session->report, CAMBER_ERROR_MEMORY);
+    int status = camber_report_status(validation->session->report, network ? CAMBER_OK : make_own(&j));
     for (size_t i = 0; i < sizeof cameras / sizeof *cameras && status == CAMBER_EXIT_DONE; i++)
         status = check_camera(&j, i);
     close_own(&j);

@@ -138,7 +138,6 @@ mutant fan kernels/join.h "fans of one triangle" 'x > turn_cos && y > 0.0f' 'x <
 # ---- Networks: the twin tells of survey and project, pixels and the window of what they share with it ----
 
 mutant strip kernels/survey.cl "chunks that are not counted" 'counts[item] = w.at' 'counts[item] = chunk % 7u == 5u ? 0u : w.at'
-mutant strip kernels/project.cl "slots one off" 'bases[item] + 1u, 0, 0, 0}' 'bases[item], 0, 0, 0}'
 mutant strip kernels/project.cl "x in the place of y" '{x, y, importance, slot_x' '{y, x, importance, slot_x'
 mutant strip kernels/project.cl "chunks that skip where there is something" 'bases[item + 1u] > bases[item]' \
     'bases[item + 1u] > bases[item] + 1u'

@@ -14,8 +14,8 @@ static const struct {
     double read, written;
 } stages[STAGES] = {
     {"classify", 12, 4}, /* x, y, info; joins */
-    {"scan", 8, 4},      /* joins, info; offsets */
-    {"emit", 20, 0},     /* x, y, info, joins, offsets; the mesh */
+    {"scan", 8, 0},      /* joins, info */
+    {"emit", 16, 0},     /* x, y, info, joins; the mesh */
 };
 
 typedef struct trial {

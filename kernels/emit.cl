@@ -1,40 +1,93 @@
 /* emit: per point, its records and, for kite and fan, its indices.
- * Reads x, y, info[n + 2], joins[n + 2], offsets[n], bases[2 * n / CAMBER_BLOCK] (each block's first vertex and first
- * index); writes records[CAMBER_RECORD_WORDS * record count], indices[index count]. Lists and their order:
- * camber_strip_records and camber_join_counts in join.h. */
+ * Reads x, y, info[n + 2], joins[n + 2], offsets[n / CAMBER_ITEM], bases[2 * n / CAMBER_BLOCK] (each block's first
+ * vertex and first index); writes records[CAMBER_RECORD_WORDS * record count], indices[index count]. Lists and their
+ * order: camber_strip_records and camber_join_counts in join.h. A work-item appends what a run of CAMBER_ITEM points
+ * has. */
+#define LANES (CAMBER_BLOCK / CAMBER_ITEM)
 
-static inline void put_record(global camber_u32 *restrict records, size_t k, float x, float y, camber_u32 join,
+/* No restrict in what kernels call: oclgrind does not know what becomes of it where a call is inlined. */
+
+static inline void put_record(global camber_u32 *records, size_t k, float x, float y, camber_u32 join,
                               camber_u32 last) {
     vstore4((uint4)(as_uint(x), as_uint(y), join, last), k, records);
 }
 
 #if CAMBER_METHOD == CAMBER_STRIP
 
-kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK, 1, 1))) void emit(
+/* Whether a point's records are others than two stores put: a ring's first, a dot, a split, a ghost. */
+static inline camber_u32 is_rare(camber_u32 join, camber_u32 point) {
+    const camber_u32 ring_begins = CAMBER_POINT_FIRST | CAMBER_POINT_RING;
+    return (camber_join_kind(join) - CAMBER_KIND_CAP > CAMBER_KIND_TIGHT - CAMBER_KIND_CAP ? 1u : 0u) |
+           ((point & ring_begins) == ring_begins ? 1u : 0u);
+}
+
+/* All records of any point; gives how many. */
+static inline size_t put_any(global const float *x, global const float *y, size_t i, camber_u32 join, camber_u32 point,
+                             global camber_u32 *records, size_t k) {
+    const camber_u32 kind = camber_join_kind(join), begins = point & CAMBER_POINT_FIRST ? 1u : 0u;
+    const camber_u32 inside = point & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST) ? 0u : 1u;
+    const camber_u32 breaks = CAMBER_RECORD_BREAK | (point & CAMBER_ROW_BITS);
+    if (kind == CAMBER_KIND_GHOST)
+        return 0;
+    put_record(records, k + begins, x[i], y[i], join, point);
+    if (begins) { /* a ring's first segment comes in from a ghost; an open line begins with itself */
+        const size_t from = point & CAMBER_POINT_RING ? i - 1 : i;
+        put_record(records, k, x[from], y[from], 0, breaks);
+    }
+    if (kind == CAMBER_KIND_DOT)
+        put_record(records, k + 2, x[i], y[i], join, point & ~CAMBER_POINT_FIRST);
+    if (kind == CAMBER_KIND_TIGHT && inside)
+        put_record(records, k + 1, x[i], y[i], join, point | CAMBER_RECORD_START);
+    if (kind == CAMBER_KIND_SPLIT && inside) {
+        put_record(records, k + 1, x[i - 1], y[i - 1], 0, breaks);
+        put_record(records, k + 2, x[i], y[i], join, point | CAMBER_RECORD_START);
+    }
+    return camber_strip_records(kind, point);
+}
+
+/* What a second record has of its point's first, and what it has beside: of one that goes on at a tight join, and of
+ * the break before a polyline. */
+constant camber_u32 KEPT[8] = {~0u, ~0u, ~0u, ~0u, ~0u, ~0u, 0u, CAMBER_ROW_BITS};
+constant camber_u32 ADDED[8] = {0u, 0u, 0u, CAMBER_RECORD_START, 0u, 0u, 0u, CAMBER_RECORD_BREAK};
+
+/* The one or two records of most points, in an order that no processor foresees. So two are stored for each: what may
+ * be the second one first, and where there is none, the only one in its place. */
+static inline __attribute__((always_inline)) size_t put_two(camber_u32 join, camber_u32 point, uint4 record,
+                                                            global camber_u32 *records, size_t k) {
+    const camber_u32 ends = point & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST);
+    const camber_u32 begins = point / CAMBER_POINT_FIRST & 1u;
+    const camber_u32 goes_on = ((camber_join_kind(join) ^ CAMBER_KIND_TIGHT) | ends) == 0u ? 1u : 0u;
+    vstore4((record & vload4(begins, KEPT)) | vload4(begins, ADDED), k + goes_on, records);
+    vstore4(record, k + begins, records);
+    return 1u + begins + goes_on;
+}
+
+/* Four points at a time: their words become records in registers. */
+kernel __attribute__((reqd_work_group_size(LANES, 1, 1))) void emit(
     global const float *restrict x, global const float *restrict y, global const camber_u32 *restrict info,
     global const camber_row *restrict rows, global const camber_u32 *restrict joins,
     global const camber_u32 *restrict offsets, global const camber_u64 *restrict bases,
     global camber_u32 *restrict records, global camber_u32 *restrict indices) {
-    const size_t i = get_global_id(0) + 1;
-    const camber_u32 join = joins[i], kind = camber_join_kind(join), point = info[i];
-    if (kind == CAMBER_KIND_GHOST)
-        return;
-    const size_t k = ((size_t)bases[2 * get_group_id(0) + 1] + (offsets[i - 1] >> 16)) / 2; /* two indices a record */
-    const camber_u32 begins = point & CAMBER_POINT_FIRST ? 1u : 0u;
-    put_record(records, k + begins, x[i], y[i], join, point);
-    const camber_u32 inside = !(point & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST));
-    if (begins) { /* a ring's first segment comes in from a ghost; an open line begins with itself */
-        const size_t from = point & CAMBER_POINT_RING ? i - 1 : i;
-        put_record(records, k, x[from], y[from], 0, CAMBER_RECORD_BREAK | (point & CAMBER_ROW_BITS));
+    const size_t first = get_global_id(0) * CAMBER_ITEM + 1;
+    /* two indices a record */
+    size_t k = ((size_t)bases[2 * get_group_id(0) + 1] + (offsets[get_global_id(0)] >> 16)) / 2;
+    for (size_t i = first; i < first + CAMBER_ITEM; i += 4) {
+        if (is_rare(joins[i], info[i]) | is_rare(joins[i + 1], info[i + 1]) | is_rare(joins[i + 2], info[i + 2]) |
+            is_rare(joins[i + 3], info[i + 3])) {
+            for (size_t n = i; n < i + 4; n++)
+                k += put_any(x, y, n, joins[n], info[n], records, k);
+            continue;
+        }
+        const uint4 px = as_uint4(vload4(0, x + i)), py = as_uint4(vload4(0, y + i));
+        const uint4 join = vload4(0, joins + i), last = vload4(0, info + i);
+        const uint4 xy_low = (uint4)(px.s0, py.s0, px.s1, py.s1), xy_high = (uint4)(px.s2, py.s2, px.s3, py.s3);
+        const uint4 low = (uint4)(join.s0, last.s0, join.s1, last.s1),
+                    high = (uint4)(join.s2, last.s2, join.s3, last.s3);
+        k += put_two(joins[i], info[i], (uint4)(xy_low.lo, low.lo), records, k);
+        k += put_two(joins[i + 1], info[i + 1], (uint4)(xy_low.hi, low.hi), records, k);
+        k += put_two(joins[i + 2], info[i + 2], (uint4)(xy_high.lo, high.lo), records, k);
+        k += put_two(joins[i + 3], info[i + 3], (uint4)(xy_high.hi, high.hi), records, k);
     }
-    if (kind == CAMBER_KIND_TIGHT && inside)
-        put_record(records, k + 1, x[i], y[i], join, point | CAMBER_RECORD_START);
-    if (kind == CAMBER_KIND_SPLIT && inside) {
-        put_record(records, k + 1, x[i - 1], y[i - 1], 0, CAMBER_RECORD_BREAK | (point & CAMBER_ROW_BITS));
-        put_record(records, k + 2, x[i], y[i], join, point | CAMBER_RECORD_START);
-    }
-    if (kind == CAMBER_KIND_DOT)
-        put_record(records, k + 2, x[i], y[i], join, point & ~CAMBER_POINT_FIRST);
 }
 
 #else
@@ -102,12 +155,10 @@ static inline void put_join(global camber_u32 *indices, camber_u32 record, cambe
     }
 }
 
-kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK, 1, 1))) void emit(
-    global const float *restrict x, global const float *restrict y, global const camber_u32 *restrict info,
-    global const camber_row *restrict rows, global const camber_u32 *restrict joins,
-    global const camber_u32 *restrict offsets, global const camber_u64 *restrict bases,
-    global camber_u32 *restrict records, global camber_u32 *restrict indices) {
-    const size_t i = get_global_id(0) + 1;
+/* A point's record and indices; gives how many indices. */
+static inline size_t put_point(global const float *x, global const float *y, global const camber_u32 *info,
+                               global const camber_row *rows, global const camber_u32 *joins, size_t i,
+                               global camber_u32 *records, global camber_u32 *index) {
     const camber_u32 join = joins[i], kind = camber_join_kind(join), point = info[i];
     const camber_u32 before = joins[i - 1];
     /* A record a slot, ghosts too: a ring's are where its seam's neighbours lie. */
@@ -116,21 +167,32 @@ kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK, 1, 1))) void emit(
                    join, camber_half_shorter(x[i] - x[i - 1], y[i] - y[i - 1], x[i + 1] - x[i], y[i + 1] - y[i])),
                point);
     if (kind == CAMBER_KIND_GHOST || (point & CAMBER_POINT_FIRST && kind != CAMBER_KIND_DOT))
-        return;
-    const size_t block = get_group_id(0);
-    global camber_u32 *restrict index = indices + (size_t)bases[2 * block + 1] + (offsets[i - 1] >> 16);
+        return 0;
     const camber_u32 here = (camber_u32)(i - 1) << CAMBER_CORNER_BITS, in_left = here | CAMBER_CORNER_IN_LEFT;
-    if (kind == CAMBER_KIND_DOT) {
-        put_body(index, here | CAMBER_CORNER_OUT_LEFT, here | CAMBER_CORNER_OUT_RIGHT, in_left, 0, 0, 0, 0);
-        return;
-    }
+    if (kind == CAMBER_KIND_DOT)
+        return put_body(index, here | CAMBER_CORNER_OUT_LEFT, here | CAMBER_CORNER_OUT_RIGHT, in_left, 0, 0, 0, 0);
     const camber_u32 start = (camber_u32)(i - 2) << CAMBER_CORNER_BITS, joined = kind != CAMBER_KIND_CAP;
-    index += put_body(index, start | camber_start_corner(before, 1.0f, CAMBER_METHOD),
-                      start | camber_start_corner(before, -1.0f, CAMBER_METHOD), in_left, start | CAMBER_CORNER_CENTRE,
-                      camber_join_kind(before) != CAMBER_KIND_CAP, here | CAMBER_CORNER_CENTRE, joined);
-    if (joined)
-        put_join(index, here, camber_join_triangles(join), CAMBER_METHOD == CAMBER_FAN && rows[point >> 8].join == 0u,
-                 camber_turn_unpack(join) > 0.0f ? -1.0f : 1.0f);
+    const camber_u32 body =
+        put_body(index, start | camber_start_corner(before, 1.0f, CAMBER_METHOD),
+                 start | camber_start_corner(before, -1.0f, CAMBER_METHOD), in_left, start | CAMBER_CORNER_CENTRE,
+                 camber_join_kind(before) != CAMBER_KIND_CAP, here | CAMBER_CORNER_CENTRE, joined);
+    if (!joined)
+        return body;
+    put_join(index + body, here, camber_join_triangles(join),
+             CAMBER_METHOD == CAMBER_FAN && rows[point >> 8].join == 0u,
+             camber_turn_unpack(join) > 0.0f ? -1.0f : 1.0f);
+    return body + 3u * camber_join_triangles(join);
+}
+
+kernel __attribute__((reqd_work_group_size(LANES, 1, 1))) void emit(
+    global const float *restrict x, global const float *restrict y, global const camber_u32 *restrict info,
+    global const camber_row *restrict rows, global const camber_u32 *restrict joins,
+    global const camber_u32 *restrict offsets, global const camber_u64 *restrict bases,
+    global camber_u32 *restrict records, global camber_u32 *restrict indices) {
+    const size_t first = get_global_id(0) * CAMBER_ITEM + 1;
+    size_t at = (size_t)bases[2 * get_group_id(0) + 1] + (offsets[get_global_id(0)] >> 16);
+    for (size_t i = first; i < first + CAMBER_ITEM; i++)
+        at += put_point(x, y, info, rows, joins, i, records, indices + at);
 }
 
 #endif

@@ -30,8 +30,10 @@ typedef uint64_t camber_u64;
 #ifndef CAMBER_BLOCK
 #define CAMBER_BLOCK 256
 #endif
-/* Points a work-item of the scan. */
-#define CAMBER_SCAN_POINTS 8
+/* Points a work-item of classify, scan and emit. On a CPU one takes a whole block: its build says so. */
+#ifndef CAMBER_ITEM
+#define CAMBER_ITEM 8
+#endif
 
 /* A point's info word: row << CAMBER_POINT_ROW_SHIFT | flags. 0 is a ghost: a neighbour to look at, or padding,
  * that emits nothing. A ring is stored as ghost of its last but one point, its points with the first repeated

@@ -20,8 +20,9 @@
 
 #include "layout.h"
 
-/* Points a work-item walks. */
+/* Points a work-item walks, and work-items a group. */
 #define CAMBER_CHUNK 64
+#define CAMBER_WALKERS (CAMBER_BLOCK / 8)
 /* Farther from the window than this, pixels are not drawn from: floats are exact to 1/2048 px there. */
 #define CAMBER_NEAR_PX 4096.0f
 #define CAMBER_NO_POINT 0xffffffffu

@@ -2,7 +2,7 @@
  * Reads what survey reads and bases[chunks + 1], the slots before each chunk and all of them; writes x, y, info[s + 2]
  * with s these rounded up to CAMBER_BLOCK, a ghost before them and ghosts behind, and the joins of the first ghost and
  * the last, which classify leaves. A work-item a chunk. */
-kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK / CAMBER_SCAN_POINTS, 1, 1))) void project(
+kernel __attribute__((reqd_work_group_size(CAMBER_WALKERS, 1, 1))) void project(
     global const camber_i32 *restrict x, global const camber_i32 *restrict y, global const float *restrict importance,
     global const camber_run *restrict runs, global const camber_u32 *restrict chunk_runs,
     global const camber_u32 *restrict bases, global float *restrict slot_x, global float *restrict slot_y,

@@ -110,12 +110,12 @@ grep -q ': pixels, on .*EGL$' "$tmp/tap" && backend=egl
 mutant strip kernels/classify.cl "a neighbour off by one" 'x_before[i - 1]' 'x_before[i]'
 mutant strip kernels/classify.cl "only first points are ends" 'point & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST)' \
     'point & CAMBER_POINT_FIRST'
-mutant strip kernels/scan.cl "a lane's points all at one offset" 'base + before[i]' 'base + before[0]'
-mutant kite kernels/scan.cl "a point in its neighbour's place" 'joins[first + i - 1]' 'joins[first + i]'
+mutant strip kernels/scan.cl "runs that begin where they end" 'total[from][lane] - own' 'total[from][lane]'
+mutant kite kernels/scan.cl "a point in its neighbour's place" 'joins_before[first + n - 1]' 'joins_before[first + n]'
 evidence=(--pictures "$tmp/pictures" --junit "$tmp/junit.xml")
-mutant strip kernels/emit.cl "a missing break" 'CAMBER_RECORD_BREAK | (point' '(point'
+mutant strip kernels/emit.cl "a missing break" 'CAMBER_RECORD_BREAK};' '0u};'
 evidence=()
-mutant strip kernels/emit.cl "a start that is placed like an end" 'point | CAMBER_RECORD_START' 'point'
+mutant strip kernels/emit.cl "a start that is placed like an end" 'CAMBER_RECORD_START, 0u' '0u, 0u'
 mutant strip kernels/classify.cl "a line that forgets its ends" 'info_before[i - 1]' 'info_before[i]'
 mutant kite kernels/emit.cl "a triangle that winds the other way" 'put_triangle(indices + 3, sr, e + 1, e)' \
     'put_triangle(indices + 3, sr, e, e + 1)'

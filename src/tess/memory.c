@@ -24,7 +24,7 @@ static void count(camber_device *device, uint64_t *held_bytes, uint64_t now_byte
 
 uint64_t camber_input_bytes(const camber_device *device, size_t slots) {
     const uint64_t blocks = slots / device->block, words = slots ? (uint64_t)slots + 2 : 0;
-    return 16 * words + 4 * (uint64_t)slots + (4 + 16) * blocks;
+    return 16 * words + 4 * ((uint64_t)slots / device->item) + (4 + 16) * blocks;
 }
 
 void camber_part_count(const camber_mesh *mesh, camber_mesh_part *part) {

@@ -141,12 +141,14 @@ camber_mesh_info camber_mesh_get_info(camber_mesh *mesh) {
 camber_status camber_part_first_index(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline,
                                       uint64_t *first_index) {
     const size_t slot = camber_part_slot(mesh, part, polyline), block = slot / mesh->device->block;
-    cl_uint packed = 0;
+    uint32_t packed = 0;
     if (slot < part->slot_count && slot % mesh->device->block != 0) {
-        const cl_int code =
-            clEnqueueReadBuffer(mesh->device->queue, part->offsets, CL_TRUE, 4 * slot, 4, &packed, 0, NULL, NULL);
-        if (code != CL_SUCCESS)
-            return camber_fail_cl(mesh->device->context, "clEnqueueReadBuffer", code);
+        camber_offsets offsets;
+        const camber_status status = camber_offsets_map(mesh, part, slot, slot + 1, &offsets);
+        if (status != CAMBER_OK)
+            return status;
+        packed = camber_offset_before(&offsets, slot);
+        camber_offsets_unmap(&offsets);
     }
     *first_index = part->slot_count ? part->host_bases[2 * block + 1] + (packed >> 16) : 0;
     return CAMBER_OK;

@@ -268,7 +268,7 @@ typedef struct stage {
 
 /* Runs a stage over the chunks of a part; the projection is its last argument. */
 static camber_status run_stage(const camber_device *device, const camber_projection *p, stage s, cl_event *event) {
-    const size_t local = device->block / CAMBER_SCAN_POINTS;
+    const size_t local = device->block * CAMBER_WALKERS / CAMBER_BLOCK;
     const size_t global = (part_chunks(p) + local - 1) / local * local;
     cl_int code = CL_SUCCESS;
     for (cl_uint i = 0; i < s.mem_count && code == CL_SUCCESS; i++)

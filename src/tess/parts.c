@@ -74,8 +74,13 @@ static camber_status reserve_input(const camber_device *device, camber_mesh_part
         cl_mem *mem;
         size_t size_bytes;
     } wanted[] = {
-        {&part->x, 4 * words},       {&part->y, 4 * words},     {&part->info, 4 * words},    {&part->joins, 4 * words},
-        {&part->offsets, 4 * slots}, {&part->sums, 4 * blocks}, {&part->bases, 16 * blocks},
+        {&part->x, 4 * words},
+        {&part->y, 4 * words},
+        {&part->info, 4 * words},
+        {&part->joins, 4 * words},
+        {&part->offsets, 4 * (slots / device->item)},
+        {&part->sums, 4 * blocks},
+        {&part->bases, 16 * blocks},
     };
     for (size_t i = 0; i < sizeof wanted / sizeof *wanted && status == CAMBER_OK; i++)
         status = camber_make_buffer(device, wanted[i].size_bytes, wanted[i].mem);
@@ -381,10 +386,10 @@ bool camber_part_fits(const camber_mesh *mesh, const camber_mesh_part *part) {
 }
 
 /* What the part has before a polyline. */
-static part_size size_before(const camber_mesh *mesh, const camber_mesh_part *part, const cl_uint *offsets,
+static part_size size_before(const camber_mesh *mesh, const camber_mesh_part *part, camber_offsets *offsets,
                              size_t polyline) {
     const size_t slot = camber_part_slot(mesh, part, polyline), block = slot / mesh->device->block;
-    const cl_uint packed = slot < part->slot_count ? offsets[slot] : 0;
+    const uint32_t packed = slot < part->slot_count ? camber_offset_before(offsets, slot) : 0;
     const uint64_t indices = part->host_bases[2 * block + 1] + (packed >> 16);
     return (part_size){slot, mesh->mesh_info.strips ? indices / 2 : slot, indices};
 }
@@ -394,7 +399,7 @@ static part_size less(part_size a, part_size b) {
 }
 
 /* The polylines that parts after the first begin with: as many in each part as its output buffers take. */
-static camber_status find_cuts(const camber_mesh *mesh, const camber_mesh_part *part, const cl_uint *offsets,
+static camber_status find_cuts(const camber_mesh *mesh, const camber_mesh_part *part, camber_offsets *offsets,
                                size_t **cuts, size_t *cut_count) {
     const size_t end = part->first_polyline + part->polyline_count;
     size_t capacity = 0, first = part->first_polyline;
@@ -474,13 +479,12 @@ camber_status camber_mesh_split(camber_mesh *mesh, size_t which) {
     const camber_device *device = mesh->device;
     const camber_mesh_part *part = mesh->parts + which;
     size_t *cuts = NULL, cut_count = 0;
-    cl_int code;
-    cl_uint *offsets = clEnqueueMapBuffer(device->queue, part->offsets, CL_TRUE, CL_MAP_READ, 0, 4 * part->slot_count,
-                                          0, NULL, NULL, &code);
-    if (code != CL_SUCCESS)
-        return camber_fail_cl(device->context, "clEnqueueMapBuffer", code);
-    camber_status status = find_cuts(mesh, part, offsets, &cuts, &cut_count);
-    clEnqueueUnmapMemObject(device->queue, part->offsets, offsets, 0, NULL, NULL);
+    camber_offsets offsets;
+    camber_status status = camber_offsets_map(mesh, part, 0, part->slot_count, &offsets);
+    if (status != CAMBER_OK)
+        return status;
+    status = find_cuts(mesh, part, &offsets, &cuts, &cut_count);
+    camber_offsets_unmap(&offsets);
     if (status == CAMBER_OK && cut_count == 0)
         status = camber_fail(device->context, CAMBER_ERROR_DEVICE,
                              "%s: the scan's offsets contradict its sums; update the driver or try another device",

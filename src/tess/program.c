@@ -6,14 +6,14 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char *const OPTIONS = "-cl-std=CL1.2 -DCAMBER_METHOD=%d%s%s";
+static const char *const OPTIONS = "-cl-std=CL1.2 -DCAMBER_METHOD=%d%s%s -DCAMBER_ITEM=%zu";
 
 /* What a program is made of. */
 typedef struct recipe {
     const char *name;
     const char *source;
     size_t source_size;
-    char options[128];
+    char options[160];
 } recipe;
 
 /* Everything that a binary depends on. */
@@ -143,7 +143,7 @@ static void set_options(const camber_device *device, int method, recipe *from) {
     if (device->block != CAMBER_BLOCK)
         snprintf(block, sizeof block, " -DCAMBER_BLOCK=%zu", device->block);
     snprintf(from->options, sizeof from->options, OPTIONS, method,
-             device->rounds_correctly ? " -cl-fp32-correctly-rounded-divide-sqrt" : "", block);
+             device->rounds_correctly ? " -cl-fp32-correctly-rounded-divide-sqrt" : "", block, device->item);
 }
 
 camber_status camber_device_program(camber_device *device, camber_method method, camber_program **program) {

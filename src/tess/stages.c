@@ -4,7 +4,8 @@
 /* A part's arrays as the host sees them. */
 typedef struct arrays {
     float *x, *y;
-    cl_uint *info, *joins, *offsets;
+    cl_uint *info, *joins;
+    camber_offsets offsets;
 } arrays;
 
 static void *map(const camber_mesh *mesh, cl_mem mem, size_t words, camber_status *status) {
@@ -26,7 +27,7 @@ static void unmap(const camber_mesh *mesh, cl_mem mem, void *bytes) {
 
 /* The points of a part, behind those that stages holds. Where a device has counted wrongly, slots of polylines may lie
  * past the part's or before those of others: none is read twice. */
-static camber_status append_points(const camber_mesh *mesh, const camber_mesh_part *part, const arrays *a,
+static camber_status append_points(const camber_mesh *mesh, const camber_mesh_part *part, arrays *a,
                                    camber_stages *stages) {
     size_t count = 0;
     for (size_t slot = 0; slot < part->slot_count; slot++)
@@ -45,14 +46,15 @@ static camber_status append_points(const camber_mesh *mesh, const camber_mesh_pa
             if (!(a->info[word] & CAMBER_POINT_REAL))
                 continue;
             const uint64_t *base = part->host_bases + 2 * block;
+            const uint32_t packed = camber_offset_before(&a->offsets, slot);
             stages->points[stages->point_count++] = (camber_point_stages){
                 .polyline = (uint32_t)polyline,
                 .point = point++,
                 .x = a->x[word],
                 .y = a->y[word],
                 .join = a->joins[word],
-                .first_vertex = (uint32_t)(part->first_vertex + base[0] + (a->offsets[slot] & 0xffffu)),
-                .first_index = part->first_index + base[1] + (a->offsets[slot] >> 16),
+                .first_vertex = (uint32_t)(part->first_vertex + base[0] + (packed & 0xffffu)),
+                .first_index = part->first_index + base[1] + (packed >> 16),
             };
         }
     }
@@ -68,20 +70,22 @@ camber_status camber_mesh_read_stages(camber_mesh *mesh, camber_stages *stages) 
             continue;
         status = camber_part_use(mesh, part);
         const size_t words = part->slot_count + 2;
-        const arrays seen = {
+        arrays seen = {
             .x = map(mesh, part->x, words, &status),
             .y = map(mesh, part->y, words, &status),
             .info = map(mesh, part->info, words, &status),
             .joins = map(mesh, part->joins, words, &status),
-            .offsets = map(mesh, part->offsets, part->slot_count, &status),
         };
-        if (seen.x && seen.y && seen.info && seen.joins && seen.offsets)
+        if (status == CAMBER_OK)
+            status = camber_offsets_map(mesh, part, 0, part->slot_count, &seen.offsets);
+        if (seen.offsets.offsets) {
             status = append_points(mesh, part, &seen, &made);
+            camber_offsets_unmap(&seen.offsets);
+        }
         unmap(mesh, part->x, seen.x);
         unmap(mesh, part->y, seen.y);
         unmap(mesh, part->info, seen.info);
         unmap(mesh, part->joins, seen.joins);
-        unmap(mesh, part->offsets, seen.offsets);
     }
     if (status != CAMBER_OK) {
         camber_stages_free(mesh->device->context, &made);

@@ -20,6 +20,7 @@ struct camber_device {
     bool host_memory;                   /* the device works in the host's memory */
     bool gl_context;                    /* cl was made for a GL context: GL buffers can be shared */
     size_t block;                       /* points a work-group: CAMBER_BLOCK as its kernels see it */
+    size_t item;                        /* points a work-item: CAMBER_ITEM */
     struct camber_program *programs[3]; /* by camber_method, built when first used */
     struct camber_program *network_program;
     /* What its meshes may hold (0: what they want), hold, and held at most. */
@@ -152,6 +153,23 @@ camber_status camber_part_first_index(const camber_mesh *mesh, const camber_mesh
                                       uint64_t *first_index);
 /* The same in the indices of the mesh, as camber_mesh_read gives them. */
 camber_status camber_mesh_first_index(camber_mesh *mesh, size_t polyline, uint64_t *first_index);
+
+/* offsets.c: where slots begin within their blocks, as classify and scan left it. */
+typedef struct camber_offsets {
+    const camber_mesh *mesh;
+    const camber_mesh_part *part;
+    cl_uint *joins, *info, *offsets; /* mapped, from a run's first slot on */
+    size_t first, first_run;
+    size_t at; /* the slot that was asked for last, and what it has before it */
+    uint32_t sum;
+} camber_offsets;
+
+/* Of the slots [first, end) of a part; end is above first. */
+camber_status camber_offsets_map(const camber_mesh *mesh, const camber_mesh_part *part, size_t first, size_t end,
+                                 camber_offsets *offsets);
+void camber_offsets_unmap(camber_offsets *offsets);
+/* Vertices | indices << 16 that the slot's block has before it. */
+uint32_t camber_offset_before(camber_offsets *offsets, size_t slot);
 
 /* parts.c: lays out the parts of a mesh, each small enough for the device to upload; keeps them, and what is uploaded,
  * where the polylines are those of last time. CAMBER_ERROR_LIMIT names a polyline that fits no part. */

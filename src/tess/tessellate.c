@@ -8,13 +8,12 @@
 
 /* ---- Stages ---- */
 
-/* A stage: a kernel, its arguments, and how many points a work-item takes. */
+/* A stage: a kernel and its arguments. */
 typedef struct stage {
     const char *name;
     cl_kernel kernel;
     const cl_mem *mems;
     cl_uint mem_count;
-    size_t points;
 } stage;
 
 camber_status camber_fail_stage(const camber_device *device, const char *call, const char *name, cl_int code) {
@@ -25,7 +24,7 @@ camber_status camber_fail_stage(const camber_device *device, const char *call, c
 
 /* Runs a stage over a part's slots, a work-group a block. */
 static camber_status run_stage(const camber_device *device, const camber_mesh_part *part, stage s, cl_event *event) {
-    const size_t global = part->slot_count / s.points, local = device->block / s.points;
+    const size_t global = part->slot_count / device->item, local = device->block / device->item;
     for (cl_uint i = 0; i < s.mem_count; i++) {
         const cl_int code = clSetKernelArg(s.kernel, i, sizeof *s.mems, s.mems + i);
         if (code != CL_SUCCESS)
@@ -89,10 +88,10 @@ static camber_status measure(camber_mesh *mesh, camber_mesh_part *part, const ca
     cl_event events[2] = {NULL, NULL};
     const cl_mem classify[] = {part->x,    part->y,    part->x,    part->y,    part->x,    part->y,
                                part->info, part->info, part->info, mesh->rows, part->joins};
-    const cl_mem scan[] = {part->joins, part->info, part->offsets, part->sums};
-    camber_status status = run_stage(device, part, (stage){"classify", program->classify, classify, 11, 1}, events);
+    const cl_mem scan[] = {part->joins, part->joins, part->info, part->offsets, part->sums};
+    camber_status status = run_stage(device, part, (stage){"classify", program->classify, classify, 11}, events);
     if (status == CAMBER_OK)
-        status = run_stage(device, part, (stage){"scan", program->scan, scan, 4, CAMBER_SCAN_POINTS}, events + 1);
+        status = run_stage(device, part, (stage){"scan", program->scan, scan, 5}, events + 1);
     if (status == CAMBER_OK)
         status = scan_blocks(mesh, part);
     camber_add_ms(events[0], &mesh->mesh_info.classify_ms);
@@ -135,7 +134,7 @@ static camber_status emit(camber_mesh *mesh, camber_mesh_part *part, const cambe
                            part->bases,
                            part->buffers[CAMBER_BUFFER_RECORDS].mem,
                            part->buffers[mesh->mesh_info.strips ? CAMBER_BUFFER_RECORDS : CAMBER_BUFFER_INDICES].mem};
-    status = run_stage(device, part, (stage){"emit", program->emit, mems, 9, 1}, &event);
+    status = run_stage(device, part, (stage){"emit", program->emit, mems, 9}, &event);
     const cl_int code = clFinish(device->queue);
     if (status == CAMBER_OK && code != CL_SUCCESS)
         status = camber_fail_cl(device->context, "clFinish", code);

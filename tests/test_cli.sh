@@ -527,8 +527,8 @@ echo '{"version": 8, "sources": {}, "layers": [{"id": "a", "type": "line", "sour
 expect 66 "no such style" render "$osm" -o a.png --style "$tmp/in/none.json"
 expect 65 "style that is not JSON" render "$osm" -o a.png --style "$tmp/in/cut.json"
 says 'cut.json'
-expect 65 "all that is wrong with a style" style check "$tmp/in/type.json"
-says '/layers/0/paint/line-width'
+expect 65 "all that is wrong with a style" style check --json "$tmp/in/type.json"
+has "$tmp/stdout" '/layers/0/paint/line-width'
 says '1 error; correct it'
 echo '{"version": 8, "layers": [{"id": "a", "type": "fill"}, {"id": "b", "type": "line"}]}' >"$tmp/in/fill.json"
 expect 0 "a style that is right" style check "$tmp/in/fill.json"

@@ -103,7 +103,8 @@ static camber_status reserve_output(camber_mesh *mesh, camber_mesh_part *part) {
     const size_t records = mesh->mesh_info.strips ? part->record_count : part->slot_count;
     const size_t indices = part->index_count ? part->index_count : 1; /* no buffer is empty */
     const size_t sizes[2] = {records * sizeof(camber_record), indices * 4};
-    for (size_t i = 0; i < camber_buffer_count(mesh); i++) {
+    const size_t count = camber_buffer_count(mesh);
+    for (size_t i = 0; i < count; i++) {
         /* The next frame of a network may take a little more. */
         const size_t room = sizes[i] + (mesh->held ? sizes[i] / 4 : 0), most = mesh->device->info.largest_buffer_bytes;
         const bool enough = sizes[i] <= part->buffers[i].capacity_bytes || room > most ||
@@ -113,7 +114,7 @@ static camber_status reserve_output(camber_mesh *mesh, camber_mesh_part *part) {
             return status;
         part->buffers[i].used_bytes = sizes[i];
     }
-    return mesh->ops->begin(mesh->ops_user, part->buffers, camber_buffer_count(mesh));
+    return mesh->ops->begin(mesh->ops_user, part->buffers, count);
 }
 
 static camber_status emit(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program) {

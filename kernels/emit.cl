@@ -2,15 +2,28 @@
  * Reads x, y, info[n + 2], joins[n + 2], offsets[n / CAMBER_ITEM], bases[2 * n / CAMBER_BLOCK] (each block's first
  * vertex and first index); writes records[CAMBER_RECORD_WORDS * record count], indices[index count]. Lists and their
  * order: camber_strip_records and camber_join_counts in join.h. A work-item appends what a run of CAMBER_ITEM points
- * has. */
+ * has. Measured, it reads measures[2 * n] as well, and records are twice as long. */
 #define LANES (CAMBER_BLOCK / CAMBER_ITEM)
 
 /* No restrict in what kernels call: oclgrind does not know what becomes of it where a call is inlined. */
 
 static inline void put_record(global camber_u32 *records, size_t k, float x, float y, camber_u32 join,
                               camber_u32 last) {
-    vstore4((uint4)(as_uint(x), as_uint(y), join, last), k, records);
+    vstore4((uint4)(as_uint(x), as_uint(y), join, last), (1 + CAMBER_MEASURED) * k, records);
 }
+
+#if CAMBER_MEASURED
+#define MEASURES , global const float *restrict measures
+/* The records [k, k + count) lie as far along their line as point i. */
+static inline void put_measures(global camber_u32 *records, size_t k, size_t count, global const float *measures,
+                                size_t i) {
+    const camber_u32 along = as_uint(measures[2 * i]), in_all = as_uint(measures[2 * i + 1]);
+    for (size_t r = 0; r < count; r++)
+        vstore4((uint4)(along, in_all, 0u, 0u), 2 * (k + r) + 1, records);
+}
+#else
+#define MEASURES
+#endif
 
 #if CAMBER_METHOD == CAMBER_STRIP
 
@@ -67,15 +80,20 @@ kernel __attribute__((reqd_work_group_size(LANES, 1, 1))) void emit(
     global const float *restrict x, global const float *restrict y, global const camber_u32 *restrict info,
     global const camber_row *restrict rows, global const camber_u32 *restrict joins,
     global const camber_u32 *restrict offsets, global const camber_u64 *restrict bases,
-    global camber_u32 *restrict records, global camber_u32 *restrict indices) {
+    global camber_u32 *restrict records, global camber_u32 *restrict indices MEASURES) {
     const size_t first = get_global_id(0) * CAMBER_ITEM + 1;
     /* two indices a record */
     size_t k = ((size_t)bases[2 * get_group_id(0) + 1] + (offsets[get_global_id(0)] >> 16)) / 2;
     for (size_t i = first; i < first + CAMBER_ITEM; i += 4) {
-        if (is_rare(joins[i], info[i]) | is_rare(joins[i + 1], info[i + 1]) | is_rare(joins[i + 2], info[i + 2]) |
+        if (CAMBER_MEASURED | is_rare(joins[i], info[i]) | is_rare(joins[i + 1], info[i + 1]) | is_rare(joins[i + 2], info[i + 2]) |
             is_rare(joins[i + 3], info[i + 3])) {
-            for (size_t n = i; n < i + 4; n++)
-                k += put_any(x, y, n, joins[n], info[n], records, k);
+            for (size_t n = i; n < i + 4; n++) {
+                const size_t count = put_any(x, y, n, joins[n], info[n], records, k);
+#if CAMBER_MEASURED
+                put_measures(records, k, count, measures, n - 1);
+#endif
+                k += count;
+            }
             continue;
         }
         const uint4 px = as_uint4(vload4(0, x + i)), py = as_uint4(vload4(0, y + i));
@@ -188,11 +206,15 @@ kernel __attribute__((reqd_work_group_size(LANES, 1, 1))) void emit(
     global const float *restrict x, global const float *restrict y, global const camber_u32 *restrict info,
     global const camber_row *restrict rows, global const camber_u32 *restrict joins,
     global const camber_u32 *restrict offsets, global const camber_u64 *restrict bases,
-    global camber_u32 *restrict records, global camber_u32 *restrict indices) {
+    global camber_u32 *restrict records, global camber_u32 *restrict indices MEASURES) {
     const size_t first = get_global_id(0) * CAMBER_ITEM + 1;
     size_t at = (size_t)bases[2 * get_group_id(0) + 1] + (offsets[get_global_id(0)] >> 16);
-    for (size_t i = first; i < first + CAMBER_ITEM; i++)
+    for (size_t i = first; i < first + CAMBER_ITEM; i++) {
         at += put_point(x, y, info, rows, joins, i, records, indices + at);
+#if CAMBER_MEASURED
+        put_measures(records, i - 1, 1, measures, i - 1);
+#endif
+    }
 }
 
 #endif

@@ -57,8 +57,12 @@ typedef struct camber_row {
     float fan_step;  /* the angle */
 } camber_row;
 
-/* Words of a record: see camber_record in camber.h. */
+/* Words of a record: see camber_record in camber.h. A measured mesh has as many again behind them, of which the first
+ * two are camber_measure. */
 #define CAMBER_RECORD_WORDS 4
+#ifndef CAMBER_MEASURED
+#define CAMBER_MEASURED 0
+#endif
 
 /* A record's last word is its point's info, with one of these. The vertices of a start are placed by the segment that
  * goes out of it, but for the edges that it has in common with the end before, which lie where the segment that comes

@@ -26,6 +26,12 @@
 /* Farther from the window than this, pixels are not drawn from: floats are exact to 1/2048 px there. */
 #define CAMBER_NEAR_PX 4096.0f
 #define CAMBER_NO_POINT 0xffffffffu
+/* Whether a walk carries how far along its run each slot lies; the host's does both. */
+#if defined(__OPENCL_VERSION__) && !CAMBER_MEASURED
+#define CAMBER_WALK_MEASURES 0
+#else
+#define CAMBER_WALK_MEASURES 1
+#endif
 /* Of a run's word, whose row stands at CAMBER_POINT_ROW_SHIFT. */
 #define CAMBER_RUN_RING CAMBER_POINT_RING
 
@@ -46,6 +52,7 @@ typedef struct camber_projection {
     camber_i32 seen_x0, seen_y0, seen_x1, seen_y1;    /* runs whose boxes miss it are not seen */
     camber_u32 first_point;                           /* where the arrays of points begin in the network */
     camber_u32 begin, end;                            /* the points to walk, counted from there */
+    float step_px;
 } camber_projection;
 
 /* What a walk reads and where it puts slots. */
@@ -57,6 +64,10 @@ typedef struct camber_walk {
     camber_u32 puts;             /* 0: slots are counted, 1: and put */
     camber_u32 at;               /* the next slot */
     camber_u32 first, end, word; /* of the run */
+#if CAMBER_WALK_MEASURES
+    CAMBER_GLOBAL const float *lengths; /* of each point along its run, steps. NULL: not measured */
+    CAMBER_GLOBAL float *slot_measures; /* camber_measure of each slot */
+#endif
 } camber_walk;
 
 /* A point that is kept: its pixel, and which sides of the window that lies beyond. */
@@ -64,6 +75,9 @@ typedef struct camber_kept {
     camber_u32 point; /* CAMBER_NO_POINT: there is none */
     camber_u32 beyond;
     float x, y;
+#if CAMBER_WALK_MEASURES
+    float along; /* its run, steps */
+#endif
 } camber_kept;
 
 CAMBER_FN float camber_project_x(const camber_projection *p, camber_i32 x, camber_i32 y) {
@@ -91,8 +105,22 @@ CAMBER_FN camber_kept camber_keep_at(const camber_projection *p, camber_u32 poin
 }
 
 CAMBER_FN camber_kept camber_keep(const camber_walk *w, const camber_projection *p, camber_u32 point) {
-    return camber_keep_at(p, point, w->x[point], w->y[point]);
+    camber_kept kept = camber_keep_at(p, point, w->x[point], w->y[point]);
+#if CAMBER_WALK_MEASURES
+    kept.along = w->lengths ? w->lengths[point] : 0.0f;
+#endif
+    return kept;
 }
+
+#if CAMBER_WALK_MEASURES
+/* How far along its run a place of the segment from a to b lies. */
+CAMBER_FN float camber_along_at(const camber_walk *w, camber_kept a, camber_kept b, camber_i32 x, camber_i32 y) {
+    const float dx = (float)(w->x[b.point] - w->x[a.point]), dy = (float)(w->y[b.point] - w->y[a.point]);
+    const float t =
+        CAMBER_FABS(dx) > CAMBER_FABS(dy) ? (float)(x - w->x[a.point]) / dx : (float)(y - w->y[a.point]) / dy;
+    return a.along + (b.along - a.along) * t;
+}
+#endif
 
 CAMBER_FN camber_u32 camber_same_pixel(camber_kept a, camber_kept b) {
     return a.x == b.x && a.y == b.y ? 1u : 0u;
@@ -120,6 +148,9 @@ CAMBER_FN camber_kept camber_pull(const camber_walk *w, const camber_projection 
         to_x = mid_x;
         to_y = mid_y;
         found = mid;
+#if CAMBER_WALK_MEASURES
+        found.along = camber_along_at(w, a, b, mid_x, mid_y);
+#endif
         if (mid_out == 0u && (mid.beyond & a.beyond))
             break;
     }
@@ -145,11 +176,24 @@ CAMBER_FN void camber_put_slot(camber_walk *w, float x, float y, camber_u32 info
     w->at++;
 }
 
+#if CAMBER_WALK_MEASURES
+/* Of the slot that has been put last. */
+CAMBER_FN void camber_put_measure(const camber_walk *w, const camber_projection *p, float along) {
+    if (w->puts && w->lengths) {
+        w->slot_measures[2 * (w->at - 2u)] = along * p->step_px;
+        w->slot_measures[2 * (w->at - 2u) + 1u] = w->lengths[w->end - 1u] * p->step_px;
+    }
+}
+#endif
+
 /* b, or where the way to it leaves the window. */
 CAMBER_FN void camber_put_cut(camber_walk *w, const camber_projection *p, camber_kept a, camber_kept b,
                               camber_u32 info) {
     const float t = camber_part_within(p, a, b);
     camber_put_slot(w, b.beyond ? a.x + (b.x - a.x) * t : b.x, b.beyond ? a.y + (b.y - a.y) * t : b.y, info);
+#if CAMBER_WALK_MEASURES
+    camber_put_measure(w, p, b.beyond ? a.along + (b.along - a.along) * t : b.along);
+#endif
 }
 
 /* The last point before a place that is kept. The run's first point always is. */
@@ -200,6 +244,9 @@ CAMBER_FN void camber_put_point(camber_walk *w, const camber_projection *p, camb
             camber_put_ghost(w, p, 1u, a);
         camber_put_slot(w, a.x, a.y,
                         real | (begins ? CAMBER_POINT_FIRST : 0u) | (has_next ? 0u : CAMBER_POINT_LAST) | seam);
+#if CAMBER_WALK_MEASURES
+        camber_put_measure(w, p, a.along);
+#endif
         if (seam && !begins)
             camber_put_ghost(w, p, 0u, a);
     }
@@ -226,7 +273,8 @@ CAMBER_FN void camber_walk_part(camber_walk *w, const camber_projection *p, camb
     }
     if (count == 0u)
         return;
-    camber_kept now = {CAMBER_NO_POINT, 0, 0, 0};
+    camber_kept now = {0};
+    now.point = CAMBER_NO_POINT;
     if (kept[0] > w->first)
         now = camber_find_before(w, p, kept[0]);
     camber_u32 waits = 0;
@@ -271,10 +319,10 @@ CAMBER_FN void camber_chunk_bounds(const camber_projection *p, camber_u32 chunk,
 }
 
 #ifdef __OPENCL_VERSION__
-typedef char camber_projection_is_80_bytes[sizeof(camber_projection) == 80 ? 1 : -1];
+typedef char camber_projection_is_84_bytes[sizeof(camber_projection) == 84 ? 1 : -1];
 typedef char camber_run_is_24_bytes[sizeof(camber_run) == 24 ? 1 : -1];
 #else
-_Static_assert(sizeof(camber_projection) == 80, "the device reads a projection of 80 bytes");
+_Static_assert(sizeof(camber_projection) == 84, "the device reads a projection of 84 bytes");
 _Static_assert(sizeof(camber_run) == 24, "the device reads runs of 24 bytes");
 #endif
 

@@ -1,18 +1,29 @@
 /* project: the slots of a network that the camera sees, in px, as classify reads them.
  * Reads what survey reads and bases[chunks + 1], the slots before each chunk and all of them; writes x, y, info[s + 2]
  * with s these rounded up to CAMBER_BLOCK, a ghost before them and ghosts behind, and the joins of the first ghost and
- * the last, which classify leaves. A work-item a chunk. */
+ * the last, which classify leaves. Measured, it reads lengths[n] as well and writes slot_measures[2 * s]. A work-item a
+ * chunk. */
+#if CAMBER_MEASURED
+#define MEASURES , global const float *restrict lengths, global float *restrict slot_measures
+#else
+#define MEASURES
+#endif
+
 kernel __attribute__((reqd_work_group_size(CAMBER_WALKERS, 1, 1))) void project(
     global const camber_i32 *restrict x, global const camber_i32 *restrict y, global const float *restrict importance,
     global const camber_run *restrict runs, global const camber_u32 *restrict chunk_runs,
     global const camber_u32 *restrict bases, global float *restrict slot_x, global float *restrict slot_y,
-    global camber_u32 *restrict slot_info, global camber_u32 *restrict joins, const camber_projection projection) {
+    global camber_u32 *restrict slot_info, global camber_u32 *restrict joins MEASURES, const camber_projection projection) {
     const camber_u32 item = (camber_u32)get_global_id(0), chunk = projection.begin / CAMBER_CHUNK + item;
     camber_u32 begin, end;
     camber_chunk_bounds(&projection, chunk, &begin, &end);
     if (begin >= end)
         return;
     camber_walk w = {x, y, importance, slot_x, slot_y, slot_info, 1u, bases[item] + 1u, 0, 0, 0};
+#if CAMBER_MEASURED
+    w.lengths = lengths;
+    w.slot_measures = slot_measures;
+#endif
     if (item == 0u) {
         slot_x[0] = slot_y[0] = 0.0f;
         slot_info[0] = joins[0] = 0u;

@@ -11,7 +11,10 @@ kernel __attribute__((reqd_work_group_size(CAMBER_WALKERS, 1, 1))) void survey(
     camber_chunk_bounds(&projection, chunk, &begin, &end);
     if (begin >= end)
         return;
-    camber_walk w = {x, y, importance, 0, 0, 0, 0, 0, 0, 0, 0};
+    camber_walk w = {0};
+    w.x = x;
+    w.y = y;
+    w.importance = importance;
     camber_walk_chunk(&w, &projection, runs + chunk_runs[chunk], begin, end);
     counts[item] = w.at;
 }

@@ -333,6 +333,7 @@ typedef struct camber_tessellation_desc {
     size_t stroke_count;
     camber_method method;
     float fan_tolerance_px; /* farthest that a fan's chord lies from its arc, up to 64 chords a half turn. 0: 0.25 */
+    bool measured; /* records say how far along their polyline they lie, as dashes need it: 32 bytes a record */
 } camber_tessellation_desc;
 
 /* How far the geometry reaches past the stroke's edge, so that every pixel an edge touches is shaded: exact
@@ -347,6 +348,12 @@ typedef struct camber_record {
     uint32_t join; /* CAMBER_JOIN_* in kernels/layout.h */
     uint32_t last; /* row << 8 | flags: CAMBER_POINT_* and CAMBER_RECORD_* there */
 } camber_record;
+
+/* How far along its polyline a record of a measured mesh lies: the arc length over all of the polyline's points, those
+ * of a network also where the camera leaves points out or cuts. */
+typedef struct camber_measure {
+    float along_px, total_px; /* from its first point, and to its last */
+} camber_measure;
 
 /* A vertex as the vertex shader makes it from records. A segment runs from A to B, u is its direction, L its length.
  * The vertex lies at P + u * clamp(along * g, -limit_px, +limit_px) + (-u.y, u.x) * across * g with g = half the width
@@ -385,6 +392,7 @@ typedef enum camber_end {
 typedef struct camber_mesh_info {
     camber_method method;
     bool strips;           /* triangle strips; else triangles */
+    bool measured;         /* as the tessellation was asked for */
     size_t record_count;   /* camber_record */
     size_t vertex_count;   /* of strips two a record, those between strips too */
     size_t index_count;    /* of strips one a vertex, though none is kept */
@@ -445,6 +453,7 @@ typedef struct camber_network_desc {
     const camber_network_entry *entries; /* entry_count. NULL: each polyline once, with row 0 */
     size_t entry_count;
     bool keep_open; /* as in camber_polylines_desc */
+    bool measured;  /* points know how far along their polyline they lie, for measured meshes: 4 bytes a point */
 } camber_network_desc;
 
 /* Polylines in world coordinates, kept on the device from frame to frame. What a mesh and its passes call polyline is
@@ -502,6 +511,7 @@ typedef struct camber_mesh_data {
     /* What the device has: info.record_count, and of kite and fan info.index_count, record << 7 | corner
      * (CAMBER_CORNER_* in kernels/layout.h); NULL of strips. */
     camber_record *records;
+    camber_measure *measures; /* as many, of measured meshes. NULL: not measured */
     uint32_t *corners;
     /* What is drawn by it: info.vertex_count, and info.index_count. Of strips these are two indices a record, both
      * CAMBER_RESTART_INDEX where it lies between two strips. At a tight join two records follow each other that have
@@ -560,7 +570,18 @@ typedef struct camber_paint {
     float gap_px;                         /* 0: none; else the room between two bands of this width each */
     float blur_px;                        /* 0: none; else edges fade over so much more than a pixel, inwards */
     float translate_x_px, translate_y_px; /* where it is drawn, from where its polyline lies */
+    uint32_t dash;                        /* 0: none; else one of the pass's dashes, counted from 1 */
+    float dash_unit_px;                   /* that the dash's lengths are given in. 0: 1 */
 } camber_paint;
+
+/* Lengths that are drawn and left out in turn, from where a polyline begins; an odd count is gone through twice, as in
+ * SVG. Their ends are cut straight, but round where the stroke's caps are. */
+typedef struct camber_dash {
+    const float *lengths; /* count, in units of the paint; 0 and more; their sum is above 0 */
+    size_t count;         /* up to CAMBER_DASH_LENGTHS_MAX */
+} camber_dash;
+
+#define CAMBER_DASH_LENGTHS_MAX 128
 
 typedef enum camber_overlap {
     /* A translucent pass covers each pixel once, however often its lines cross it: coverage is gathered
@@ -585,6 +606,8 @@ typedef struct camber_pass {
     size_t polyline_count;      /* 0: to the last */
     const camber_paint *paints; /* paint_count; a row at or past it is not drawn */
     size_t paint_count;
+    const camber_dash *dashes; /* dash_count, of a mesh that is measured. NULL: none */
+    size_t dash_count;
     camber_overlap overlap;
     float opacity; /* of all that is drawn, put onto the picture as one layer. 0: 1, and no layer */
 } camber_pass;
@@ -612,8 +635,8 @@ typedef struct camber_frame_stats {
 typedef bool camber_rows_fn(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count);
 
 /* Draws a frame and hands its rows over. rows may be NULL: the frame is drawn and finished, not read back.
- * stats may be NULL. Returns CAMBER_ERROR_ARGUMENT (a size out of range), CAMBER_ERROR_DEVICE (a shader
- * does not build, or the GL reported an error), CAMBER_ERROR_MEMORY, CAMBER_ERROR_IO (rows returned false). */
+ * stats may be NULL. Returns CAMBER_ERROR_ARGUMENT (a size out of range, a dash that is none), CAMBER_ERROR_DEVICE (a
+ * shader does not build, or the GL reported an error), CAMBER_ERROR_MEMORY, CAMBER_ERROR_IO (rows returned false). */
 CAMBER_API camber_status camber_render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows,
                                        void *user, camber_frame_stats *stats);
 

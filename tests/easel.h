@@ -28,7 +28,7 @@ static inline bool easel_rows(void *user, const uint8_t *rgba, uint32_t first_ro
 static inline void easel_draw(easel *e, const property_case *c, easel_picture *drawn) {
     const uint32_t offsets[] = {0, (uint32_t)c->count};
     const camber_polylines_desc desc = {c->points, c->count, offsets, 1, NULL, false};
-    const camber_tessellation_desc tessellation = {&c->stroke, 1, c->method, 0};
+    const camber_tessellation_desc tessellation = {&c->stroke, 1, c->method, 0, false};
     const camber_paint paint = {.width_px = c->stroke.width_px, .color = {1, 1, 1, 1}};
     const camber_pass pass = {.mesh = e->mesh, .paints = &paint, .paint_count = 1, .overlap = e->overlap};
     const camber_frame frame = {

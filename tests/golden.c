@@ -183,7 +183,7 @@ static bool agrees_with_oracle(const golden *g, const picture *drawn) {
 
 static picture draw(const studio *s, camber_renderer *renderer, const golden *g) {
     camber_polylines *polylines = scene_polylines(s->context, &g->lines);
-    const camber_tessellation_desc desc = {g->strokes, g->stroke_count, g->method, 0};
+    const camber_tessellation_desc desc = {g->strokes, g->stroke_count, g->method, 0, false};
     camber_mesh *mesh = NULL;
     camber_pass passes[GOLDEN_PASSES];
     assert_int_equal(camber_mesh_create(s->device, renderer, &mesh), CAMBER_OK);

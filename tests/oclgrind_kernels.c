@@ -158,8 +158,8 @@ static int check_networks(camber_context *context, camber_mesh *mesh, const scen
         offsets[i] = s->offsets[i];
     for (size_t i = 0; i < s->line_count; i++)
         entries[i] = (camber_network_entry){.polyline = (uint32_t)i, .row = s->rows[i]};
-    const camber_network_desc desc = {points, offsets, s->line_count, importance, entries, s->line_count, false};
-    const camber_tessellation_desc strips = {.strokes = strokes, .stroke_count = ROWS};
+    const camber_network_desc desc = {points, offsets, s->line_count, importance, entries, s->line_count, false, true};
+    const camber_tessellation_desc strips = {.strokes = strokes, .stroke_count = ROWS, .measured = true};
     camber_network *network = NULL;
     int failures = camber_network_create(context, &desc, &network) != CAMBER_OK;
     for (size_t i = 0; i < sizeof cameras / sizeof *cameras && network; i++) {

@@ -163,7 +163,7 @@ static bool draw(const core *c, const network *n, source from, double width_px, 
     const camber_stroke stroke = {(float)width_px, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0};
     const camber_paint paint = {.width_px = (float)width_px, .color = {0, 0, 0, 1}};
     const camber_polylines_desc desc = {n->points, n->point_count, n->offsets, n->line_count, NULL, true};
-    const camber_tessellation_desc tessellation = {&stroke, 1, CAMBER_METHOD_STRIP, 0};
+    const camber_tessellation_desc tessellation = {&stroke, 1, CAMBER_METHOD_STRIP, 0, false};
     camber_polylines *polylines = NULL;
     camber_status status = CAMBER_OK;
     if (from == ALL_POINTS) {

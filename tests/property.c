@@ -123,7 +123,7 @@ camber_polylines *property_polylines(camber_context *context, const property_cas
 }
 
 camber_mesh_data property_mesh(camber_context *context, const property_case *c) {
-    const camber_tessellation_desc desc = {&c->stroke, 1, c->method, 0};
+    const camber_tessellation_desc desc = {&c->stroke, 1, c->method, 0, false};
     camber_polylines *polylines = property_polylines(context, c);
     camber_mesh_data data;
     assert_int_equal(camber_tessellate_on_host(context, polylines, &desc, &data), CAMBER_OK);

@@ -140,7 +140,7 @@ static bool keep_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint3
 static camber_status draw(sheet *s) {
     const float ink = s->white_on_black ? 1.0f : 0.0f, paper = 1.0f - ink;
     const camber_polylines_desc desc = {s->points, s->point_count, s->offsets, s->polyline_count, s->rows, false};
-    const camber_tessellation_desc tessellation = {s->strokes, s->figure_count, s->method, 0};
+    const camber_tessellation_desc tessellation = {s->strokes, s->figure_count, s->method, 0, false};
     camber_polylines *polylines = NULL;
     for (size_t i = 0; i < s->figure_count; i++)
         s->paints[i] = (camber_paint){.width_px = s->strokes[i].width_px, .color = {ink, ink, ink, 1}};

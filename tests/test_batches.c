@@ -87,7 +87,7 @@ static void test_meshes(void **state) {
     camber_stroke strokes[SCENE_ROWS];
     scene_strokes(strokes);
     for (int method = 0; method < 3; method++) {
-        const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)method, 0};
+        const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)method, 0, false};
         camber_mesh_data mesh;
         assert_int_equal(camber_tessellate_on_host(context, polylines, &desc, &mesh), CAMBER_OK);
         assert_true(mesh.info.vertex_count > 10000 && mesh.info.vertex_count < CAMBER_BATCH_VERTICES);

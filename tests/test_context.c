@@ -172,7 +172,7 @@ static camber_status try_parse(camber_context *context, void *user) {
 static camber_status try_twin(camber_context *context, void *user) {
     const camber_stroke stroke = {.width_px = 4};
     for (int method = 0; method < 3; method++) {
-        const camber_tessellation_desc desc = {&stroke, 1, (camber_method)method, 0};
+        const camber_tessellation_desc desc = {&stroke, 1, (camber_method)method, 0, false};
         camber_mesh_data made = {.vertices = (camber_vertex *)(uintptr_t)8};
         const camber_status status = camber_tessellate_on_host(context, user, &desc, &made);
         if (status != CAMBER_OK) {

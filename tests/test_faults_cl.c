@@ -60,7 +60,7 @@ static void open_set(stage_set *s, bool parts, camber_method method) {
     s->polylines = make_lines(s->context, 3, 60);
     s->others = make_lines(s->context, 4, 30);
     scene_strokes(s->strokes);
-    s->desc = (camber_tessellation_desc){s->strokes, SCENE_ROWS, method, 0};
+    s->desc = (camber_tessellation_desc){s->strokes, SCENE_ROWS, method, 0, false};
     camber_mesh *mesh = NULL;
     assert_int_equal(camber_mesh_create(s->device, NULL, &mesh), CAMBER_OK);
     assert_int_equal(camber_tessellate(mesh, s->polylines, &s->desc), CAMBER_OK);
@@ -342,7 +342,7 @@ static camber_status try_cached(stage_set *s, void *user) {
     assert_int_equal(camber_context_create(&context_desc, &context), CAMBER_OK);
     camber_status status = camber_device_create(context, NULL, NULL, &device);
     if (status == CAMBER_OK)
-        status = camber_device_program(device, s->desc.method, &program);
+        status = camber_device_program(device, s->desc.method, s->desc.measured, &program);
     if (status == CAMBER_OK)
         camber_program_save(device, program);
     s->h.errors += h.errors;

@@ -77,7 +77,7 @@ static camber_status draw(easel *e) {
             status = camber_mesh_create(e->device, e->renderer, e->meshes + i);
         if (status == CAMBER_OK && !e->ready[i])
             status = camber_tessellate(e->meshes[i], e->polylines,
-                                       &(camber_tessellation_desc){strokes, ROWS, CAMBER_METHOD_STRIP, 0});
+                                       &(camber_tessellation_desc){strokes, ROWS, CAMBER_METHOD_STRIP, 0, false});
         e->ready[i] = status == CAMBER_OK;
     }
     const camber_pass passes[] = {

@@ -281,7 +281,7 @@ static int set_up(void **state) {
     size_t count = 0;
     const camber_stroke *strokes = camber_scene_strokes(d->scene, &count);
     assert_true(count >= 4 && camber_scene_get_info(d->scene).layers >= 3);
-    const camber_tessellation_desc strips = {strokes, count, CAMBER_METHOD_STRIP, 0};
+    const camber_tessellation_desc strips = {strokes, count, CAMBER_METHOD_STRIP, 0, false};
     assert_int_equal(camber_tessellate_on_host(d->context, camber_scene_polylines(d->scene), &strips, &d->mesh),
                      CAMBER_OK);
     d->glb.refuse_at = SIZE_MAX;

@@ -23,7 +23,7 @@ typedef struct desk {
 static const camber_stroke STROKES[ROWS] = {{9, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0},
                                             {6, CAMBER_JOIN_MITER, CAMBER_CAP_ROUND, 0},
                                             {4, CAMBER_JOIN_BEVEL, CAMBER_CAP_SQUARE, 0}};
-static const camber_tessellation_desc STRIPS = {STROKES, ROWS, CAMBER_METHOD_STRIP, 0};
+static const camber_tessellation_desc STRIPS = {STROKES, ROWS, CAMBER_METHOD_STRIP, 0, false};
 
 static void assert_same_mesh(const camber_mesh_data *a, const camber_mesh_data *b) {
     assert_true(a->info.vertex_count == b->info.vertex_count && a->info.index_count == b->info.index_count);

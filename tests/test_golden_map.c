@@ -32,7 +32,7 @@ static void draw_crossing(void **state, const char *name, camber_theme theme) {
         camber_mesh *mesh = NULL;
         size_t stroke_count = 0;
         const camber_stroke *strokes = camber_scene_strokes(map, &stroke_count);
-        const camber_tessellation_desc desc = {strokes, stroke_count, CAMBER_METHOD_STRIP, 0};
+        const camber_tessellation_desc desc = {strokes, stroke_count, CAMBER_METHOD_STRIP, 0, false};
         assert_int_equal(camber_mesh_create(s->device, s->renderer[b], &mesh), CAMBER_OK);
         assert_int_equal(camber_tessellate(mesh, camber_scene_polylines(map), &desc), CAMBER_OK);
         const camber_frame frame = camber_scene_frame(map, mesh);

@@ -12,7 +12,7 @@ typedef struct found {
 static found find(camber_context *context, const scene *lines, const camber_stroke *strokes, camber_method method) {
     found f = {0};
     camber_polylines *polylines = scene_polylines(context, lines);
-    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, method, 0};
+    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, method, 0, false};
     assert_int_equal(camber_tessellate_on_host(context, polylines, &desc, &f.mesh), CAMBER_OK);
     assert_true(camber_joins_find(&f.mesh, strokes, &f.joins));
     for (size_t i = 0; i < f.joins.count; i++) {

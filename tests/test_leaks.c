@@ -224,7 +224,7 @@ static camber_status draw(camber_context *context, camber_renderer *renderer, ca
                                     .color = {0, 0, n % 2 ? (float)i / ROWS : 1.0f, i < 2 ? 0.5f : 0.3f}};
     }
     camber_polylines *polylines = scene_polylines(context, a->scenes + n % SCENES);
-    const camber_tessellation_desc desc = {STROKES, ROWS, (camber_method)(n % 3), 0};
+    const camber_tessellation_desc desc = {STROKES, ROWS, (camber_method)(n % 3), 0, false};
     camber_status status = camber_tessellate(mesh, polylines, &desc);
     const camber_pass passes[] = {
         {.mesh = mesh, .paints = solid, .paint_count = ROWS},

@@ -30,7 +30,8 @@ static picture draw_anew(const char *cache_dir, camber_backend backend, size_t *
         camber_polylines_create(context, &(camber_polylines_desc){points, 3, offsets, 1, NULL, false}, &polylines),
         CAMBER_OK);
     assert_int_equal(
-        camber_tessellate(mesh, polylines, &(camber_tessellation_desc){&stroke, 1, CAMBER_METHOD_STRIP, 0}), CAMBER_OK);
+        camber_tessellate(mesh, polylines, &(camber_tessellation_desc){&stroke, 1, CAMBER_METHOD_STRIP, 0, false}),
+        CAMBER_OK);
     fault_on(surface);
     fault.only = "CompileShader"; /* counted, none fails */
     const camber_pass pass = {.mesh = mesh, .paints = &paint, .paint_count = 1};

@@ -147,7 +147,7 @@ static void test_same_bytes(void **state) {
     bench_open(&whole, 0, 0);
     result wanted[3];
     for (int method = 0; method < 3; method++) {
-        const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)method, 0};
+        const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)method, 0, false};
         camber_polylines *polylines = scene_polylines(whole.context, &s);
         assert_int_equal(camber_tessellate(whole.mesh, polylines, &desc), CAMBER_OK);
         camber_polylines_destroy(polylines);
@@ -160,7 +160,7 @@ static void test_same_bytes(void **state) {
         bench b;
         bench_open(&b, limits[i / 2], i % 2 ? 64 : 256);
         for (int method = 0; method < 3; method++) {
-            const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)method, 0};
+            const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)method, 0, false};
             camber_polylines *polylines = scene_polylines(b.context, &s);
             assert_int_equal(camber_tessellate(b.mesh, polylines, &desc), CAMBER_OK);
             camber_polylines_destroy(polylines); /* the mesh keeps what it needs */
@@ -196,7 +196,7 @@ static void test_keeps_what_fits(void **state) {
     (void)state;
     camber_stroke strokes[SCENE_ROWS];
     scene_strokes(strokes);
-    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0};
+    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0, false};
     scene s = make_scene(6);
     bench b;
     bench_open(&b, 3 << 19, 64);
@@ -279,7 +279,7 @@ static void test_networks(void **state) {
         b.device->host_memory &= i % 2 == 0;
         camber_network *own = make_network(b.context, &s);
         for (size_t k = 0; k < sizeof scales / sizeof *scales; k++) {
-            const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)(k % 3), 0};
+            const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)(k % 3), 0, false};
             const camber_camera camera = camera_at(scales[k], 30.0 * (double)k);
             assert_int_equal(camber_tessellate_network(whole.mesh, network, &camera, &desc), CAMBER_OK);
             assert_int_equal(camber_tessellate_network(b.mesh, own, &camera, &desc), CAMBER_OK);
@@ -323,8 +323,8 @@ static void test_parts_join(void **state) {
     camber_network *network = make_network(whole.context, &s), *own = make_network(b.context, &s);
     size_t parts[FRAMES];
     for (size_t k = 0; k < FRAMES; k++) {
-        const camber_tessellation_desc desc = {strokes, SCENE_ROWS, k == 3 ? CAMBER_METHOD_FAN : CAMBER_METHOD_STRIP,
-                                               0};
+        const camber_tessellation_desc desc = {strokes, SCENE_ROWS, k == 3 ? CAMBER_METHOD_FAN : CAMBER_METHOD_STRIP, 0,
+                                               false};
         const camber_camera camera = camera_at(scales[k], 10);
         assert_int_equal(camber_tessellate_network(whole.mesh, network, &camera, &desc), CAMBER_OK);
         assert_int_equal(camber_tessellate_network(b.mesh, own, &camera, &desc), CAMBER_OK);
@@ -355,7 +355,7 @@ static void test_meshes_share(void **state) {
     (void)state;
     camber_stroke strokes[SCENE_ROWS];
     scene_strokes(strokes);
-    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_FAN, 0};
+    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_FAN, 0, false};
     scene s = make_scene(1);
     bench whole, b;
     bench_open(&whole, 0, 0);
@@ -450,7 +450,7 @@ static void test_too_long(void **state) {
         bool fits, fits_network;
     } cases[] = {{900, true, true}, {5000, false, false}, {30000, false, false}};
     const camber_stroke stroke = {2, CAMBER_JOIN_ROUND, CAMBER_CAP_ROUND, 0};
-    const camber_tessellation_desc desc = {&stroke, 1, CAMBER_METHOD_STRIP, 0};
+    const camber_tessellation_desc desc = {&stroke, 1, CAMBER_METHOD_STRIP, 0, false};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         bench b;
         scene s = {0};
@@ -496,11 +496,11 @@ static void test_too_many_strokes(void **state) {
     scene_point(&s, 9, 9);
     scene_end(&s, 0);
     camber_polylines *polylines = scene_polylines(b.context, &s);
-    assert_int_equal(
-        camber_tessellate(b.mesh, polylines, &(camber_tessellation_desc){strokes, STROKES, CAMBER_METHOD_STRIP, 0}),
-        CAMBER_ERROR_LIMIT);
+    assert_int_equal(camber_tessellate(b.mesh, polylines,
+                                       &(camber_tessellation_desc){strokes, STROKES, CAMBER_METHOD_STRIP, 0, false}),
+                     CAMBER_ERROR_LIMIT);
     assert_story(&b.h, "300 strokes take ");
-    assert_goes_on(&b, &(camber_tessellation_desc){strokes, 50, CAMBER_METHOD_STRIP, 0});
+    assert_goes_on(&b, &(camber_tessellation_desc){strokes, 50, CAMBER_METHOD_STRIP, 0, false});
     camber_polylines_destroy(polylines);
     scene_free(&s);
     bench_close(&b);
@@ -513,7 +513,7 @@ static void test_refused_buffers(void **state) {
     (void)state;
     camber_stroke strokes[SCENE_ROWS];
     scene_strokes(strokes);
-    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0};
+    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0, false};
     scene s = make_scene(1);
     bench b;
     bench_open(&b, 300000, 64);
@@ -576,7 +576,7 @@ static void test_allocations(void **state) {
     (void)state;
     camber_stroke strokes[SCENE_ROWS];
     scene_strokes(strokes);
-    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0};
+    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0, false};
     scene s = {0};
     uint64_t seed = 3;
     scene_walks(&s, &seed);
@@ -681,7 +681,7 @@ static camber_overdraw count(easel *e, uint8_t *map) {
 static void tessellate_on(easel *e, const scene *s, bool of_network, camber_method method) {
     camber_stroke strokes[SCENE_ROWS];
     scene_strokes(strokes);
-    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, method, 0};
+    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, method, 0, false};
     if (of_network) {
         const camber_camera camera = {.x = 0.4 + 0.5 * SIDE_PX * WORLD_UNIT,
                                       .y = 0.4 + 0.5 * SIDE_PX * WORLD_UNIT,

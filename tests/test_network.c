@@ -208,7 +208,7 @@ static void test_device_equals_twin(void **state) {
         size_t slots = 0;
         for (size_t i = 0; i < 3 * ZOOM_COUNT; i++) {
             const camber_camera camera = camera_make(&seed, ZOOMS[i % ZOOM_COUNT], TOLERANCES[i / ZOOM_COUNT]);
-            const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)(i % 3), 0};
+            const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)(i % 3), 0, false};
             slots += compare(b, i % 3, network, &camera, &desc);
         }
         assert_true(slots > 1000);
@@ -230,7 +230,7 @@ static void test_parts_equal_twin(void **state) {
     camber_network *network = network_make(b, &from);
     for (size_t i = 0; i < 2 * ZOOM_COUNT; i++) {
         const camber_camera camera = camera_make(&seed, ZOOMS[i % ZOOM_COUNT], TOLERANCES[i / ZOOM_COUNT]);
-        const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)(i % 3), 0};
+        const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)(i % 3), 0, false};
         compare(b, 3 + i % 2, network, &camera, &desc);
     }
     assert_true(b->meshes[3]->held->section_count > 1);
@@ -310,7 +310,7 @@ static void test_sees_all_in_the_picture(void **state) {
     bench *b = *state;
     camber_stroke strokes[SCENE_ROWS];
     narrow_strokes(strokes);
-    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0};
+    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0, false};
     uint64_t seed = 99;
     size_t seen = 0, cut = 0;
     for (size_t which = 0; which < 3; which++) {
@@ -358,7 +358,7 @@ static void test_keeps_everything(void **state) {
     bench *b = *state;
     camber_stroke strokes[SCENE_ROWS];
     scene_strokes(strokes);
-    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0};
+    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0, false};
     for (size_t which = 0; which < 5; which++) {
         scene s = scene_make(which);
         world w = world_make(&s, which);
@@ -407,7 +407,7 @@ static void test_drops_by_importance(void **state) {
     const float importance[] = {0, 0.02f, (float)NAN, 0.01f, -1};
     const size_t offsets[] = {0, 5};
     const camber_stroke stroke = {.width_px = 2};
-    const camber_tessellation_desc desc = {&stroke, 1, CAMBER_METHOD_STRIP, 0};
+    const camber_tessellation_desc desc = {&stroke, 1, CAMBER_METHOD_STRIP, 0, false};
     camber_network *network = network_make(
         b, &(camber_network_desc){.points = points, .offsets = offsets, .polyline_count = 1, .importance = importance});
     static const struct {
@@ -430,7 +430,7 @@ static void test_drops_by_importance(void **state) {
 
 static camber_status make_and_look(camber_context *context, void *user) {
     const camber_stroke stroke = {.width_px = 2};
-    const camber_tessellation_desc desc = {&stroke, 1, CAMBER_METHOD_STRIP, 0};
+    const camber_tessellation_desc desc = {&stroke, 1, CAMBER_METHOD_STRIP, 0, false};
     const camber_camera camera = {.scale_px = 100, .width = 50, .height = 50};
     camber_network *network = NULL;
     camber_lines lines = {0};
@@ -446,7 +446,7 @@ static camber_status make_and_look(camber_context *context, void *user) {
 
 static camber_status draw_on_device(camber_context *context, void *user) {
     const camber_stroke stroke = {.width_px = 2};
-    const camber_tessellation_desc desc = {&stroke, 1, CAMBER_METHOD_STRIP, 0};
+    const camber_tessellation_desc desc = {&stroke, 1, CAMBER_METHOD_STRIP, 0, false};
     const camber_camera camera = {.scale_px = 100, .width = 50, .height = 50};
     bench *b = user;
     const double points[] = {0, 0, 0.1, 0.1, NAN, 0, 0.3, 0.1, 0.4, 0};
@@ -490,7 +490,7 @@ static void test_wrong_input(void **state) {
     }
     network = network_make(b, &(camber_network_desc){.points = points, .offsets = offsets, .polyline_count = 1});
     const camber_stroke stroke = {.width_px = 2};
-    const camber_tessellation_desc desc = {&stroke, 1, CAMBER_METHOD_STRIP, 0};
+    const camber_tessellation_desc desc = {&stroke, 1, CAMBER_METHOD_STRIP, 0, false};
     const camber_camera cameras[] = {{.scale_px = 0, .width = 1, .height = 1},
                                      {.scale_px = NAN, .width = 1, .height = 1},
                                      {.x = INFINITY, .scale_px = 1, .width = 1, .height = 1},

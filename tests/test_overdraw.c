@@ -28,7 +28,7 @@ static counts count(camber_renderer *renderer, camber_overdraw_desc desc) {
 static counts count_lines(studio *s, scene *lines, float width_px, camber_method method) {
     const camber_stroke stroke = {width_px, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0};
     const camber_paint paint = {.width_px = width_px, .color = {0, 0, 0, 0}};
-    camber_mesh *mesh = studio_mesh(s, studio_any(s), lines, &(camber_tessellation_desc){&stroke, 1, method, 0});
+    camber_mesh *mesh = studio_mesh(s, studio_any(s), lines, &(camber_tessellation_desc){&stroke, 1, method, 0, false});
     const counts made =
         count(studio_any(s),
               (camber_overdraw_desc){.width = 64, .height = 64, .mesh = mesh, .paints = &paint, .paint_count = 1});
@@ -187,8 +187,8 @@ static void test_layers_of_one(void **state) {
         for (int i = 0; i <= LAYERS; i++) /* there and back from 10 to 50 */
             scene_point(&lines, i % 2 ? 50 : 10, 20);
         scene_end(&lines, 0);
-        camber_mesh *mesh =
-            studio_mesh(s, studio_any(s), &lines, &(camber_tessellation_desc){&stroke, 1, (camber_method)method, 0});
+        camber_mesh *mesh = studio_mesh(s, studio_any(s), &lines,
+                                        &(camber_tessellation_desc){&stroke, 1, (camber_method)method, 0, false});
         const camber_overdraw_desc desc = {.width = 64, .height = 64, .mesh = mesh, .paints = &paint, .paint_count = 1};
         counts made = count(studio_any(s), desc);
         assert_true(made.sum.fragments >= (uint64_t)LAYERS * BAR_DRAWN);
@@ -238,7 +238,7 @@ static void test_ranges(void **state) {
     scene lines = {0};
     add(&lines, 0, (const double[]){10, 20, 50, 20, 20, 20}, 3);
     camber_mesh *mesh =
-        studio_mesh(s, studio_any(s), &lines, &(camber_tessellation_desc){&stroke, 1, CAMBER_METHOD_STRIP, 0});
+        studio_mesh(s, studio_any(s), &lines, &(camber_tessellation_desc){&stroke, 1, CAMBER_METHOD_STRIP, 0, false});
     camber_mesh_data data;
     assert_int_equal(camber_mesh_read(mesh, &data), CAMBER_OK);
     size_t second = 2; /* where the strip breaks, behind its begin */
@@ -292,7 +292,7 @@ static void test_paints(void **state) {
     add(&lines, 0, BAR, 2);
     add(&lines, 1, BAR, 2);
     camber_mesh *mesh =
-        studio_mesh(s, studio_any(s), &lines, &(camber_tessellation_desc){strokes, 2, CAMBER_METHOD_STRIP, 0});
+        studio_mesh(s, studio_any(s), &lines, &(camber_tessellation_desc){strokes, 2, CAMBER_METHOD_STRIP, 0, false});
     const camber_index_range all = {0, camber_mesh_get_info(mesh).index_count};
     camber_overdraw_desc desc = {.width = 64, .height = 64, .mesh = mesh, .paints = wide, .paint_count = 2};
     counts made = count(studio_any(s), desc);
@@ -333,7 +333,7 @@ static void test_pieces(void **state) {
     add(&lines, 0, (const double[]){4096, 100, 4096, 2400}, 2);
     add(&lines, 0, (const double[]){2000, 2046, 2100, 2046, 2050, 2046}, 3);
     camber_mesh *mesh =
-        studio_mesh(s, studio_any(s), &lines, &(camber_tessellation_desc){&stroke, 1, CAMBER_METHOD_STRIP, 0});
+        studio_mesh(s, studio_any(s), &lines, &(camber_tessellation_desc){&stroke, 1, CAMBER_METHOD_STRIP, 0, false});
     const camber_index_range two = {0, 12};
     camber_overdraw_desc desc = {.width = W, .height = H, .mesh = mesh, .paints = &paint, .paint_count = 1};
     counts made = count(studio_any(s), desc);
@@ -371,7 +371,7 @@ static void test_backends_agree(void **state) {
         counts made[2];
         for (int i = 0; i < 2; i++) {
             camber_mesh *mesh = studio_mesh(s, s->renderer[i], &lines,
-                                            &(camber_tessellation_desc){strokes, 9, (camber_method)method, 0});
+                                            &(camber_tessellation_desc){strokes, 9, (camber_method)method, 0, false});
             made[i] = count(s->renderer[i],
                             (camber_overdraw_desc){
                                 .width = 1000, .height = 1000, .mesh = mesh, .paints = paints, .paint_count = 9});
@@ -409,7 +409,7 @@ static void test_parts(void **state) {
     for (int method = 0; method < 3; method++) {
         counts made[2][3];
         for (int i = 0; i < 2; i++) {
-            const camber_tessellation_desc desc = {&stroke, 1, (camber_method)method, 0};
+            const camber_tessellation_desc desc = {&stroke, 1, (camber_method)method, 0, false};
             camber_polylines *polylines = scene_polylines(s->context, &lines);
             camber_mesh *mesh = NULL;
             assert_int_equal(camber_mesh_create(i ? small : s->device, renderers[i], &mesh), CAMBER_OK);
@@ -456,8 +456,8 @@ static void test_pictures_after(void **state) {
         uint64_t seed = 4;
         scene_walk(&lines, &seed, 100, (const double[]){5, 30}, 1);
         scene_end(&lines, 0);
-        camber_mesh *mesh =
-            studio_mesh(s, s->renderer[i], &lines, &(camber_tessellation_desc){&stroke, 1, CAMBER_METHOD_KITE, 0});
+        camber_mesh *mesh = studio_mesh(s, s->renderer[i], &lines,
+                                        &(camber_tessellation_desc){&stroke, 1, CAMBER_METHOD_KITE, 0, false});
         const camber_pass pass = {.mesh = mesh, .paints = &paint, .paint_count = 1};
         const camber_frame frame = {.width = 1000, .height = 1000, .passes = &pass, .pass_count = 1};
         picture before = picture_draw(s->renderer[i], &frame);
@@ -494,7 +494,7 @@ static void test_no_memory(void **state) {
     add(&lines, 0, BAR, 2);
     attempt a = {.renderer = studio_any(s)};
     camber_mesh *mesh =
-        studio_mesh(s, a.renderer, &lines, &(camber_tessellation_desc){&stroke, 1, CAMBER_METHOD_STRIP, 0});
+        studio_mesh(s, a.renderer, &lines, &(camber_tessellation_desc){&stroke, 1, CAMBER_METHOD_STRIP, 0, false});
     a.desc = (camber_overdraw_desc){.width = 64, .height = 64, .mesh = mesh, .paints = &paint, .paint_count = 1};
     each_allocation_fails(&s->h, attempt_count, s->context, &a);
     camber_mesh_destroy(mesh);

@@ -95,7 +95,7 @@ typedef struct drawing {
 
 static drawing drawing_make(studio *s, const camber_polylines *polylines, float width_px, camber_method method) {
     const camber_stroke stroke = {width_px, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0};
-    const camber_tessellation_desc desc = {&stroke, 1, method, 0};
+    const camber_tessellation_desc desc = {&stroke, 1, method, 0, false};
     drawing d = {.renderer = studio_any(s), .width_px = width_px};
     camber_mesh_data data;
     assert_int_equal(camber_mesh_create(s->device, d.renderer, &d.mesh), CAMBER_OK);

@@ -135,7 +135,7 @@ static void test_same_bytes(void **state) {
         size_t parts[3];
         bench_open(&b, limits[i], 0);
         for (int method = 0; method < 3; method++) {
-            const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)method, 0};
+            const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)method, 0, false};
             result wanted = tessellate(&whole, &s, &desc), r = tessellate(&b, &s, &desc);
             assert_same(&r, &wanted);
             assert_int_equal(wanted.parts, 1);
@@ -170,7 +170,7 @@ static void test_work_groups(void **state) {
                 continue; /* a line that fits no part */
             scene s = scene_make(which);
             for (int method = 0; method < 3; method++) {
-                const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)method, 0};
+                const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)method, 0, false};
                 result wanted = tessellate(&whole, &s, &desc), r = tessellate(&b, &s, &desc);
                 assert_same(&r, &wanted);
                 parts += i < 3 ? 0 : r.parts - 1;
@@ -218,12 +218,13 @@ static void test_borders(void **state) {
     size_t borders = 0;
     for (int method = 0; method < 3; method++)
         wanted[method] =
-            tessellate(&whole, &s, &(camber_tessellation_desc){strokes, SCENE_ROWS, (camber_method)method, 0});
+            tessellate(&whole, &s, &(camber_tessellation_desc){strokes, SCENE_ROWS, (camber_method)method, 0, false});
     for (uint64_t limit = 7000; limit < 14000; limit += 622) {
         bench b;
         bench_open(&b, limit, limit % 2 ? 64 : 256);
         for (int method = 0; method < 3; method++) {
-            result r = tessellate(&b, &s, &(camber_tessellation_desc){strokes, SCENE_ROWS, (camber_method)method, 0});
+            result r =
+                tessellate(&b, &s, &(camber_tessellation_desc){strokes, SCENE_ROWS, (camber_method)method, 0, false});
             assert_same(&r, wanted + method);
             borders += r.parts - 1;
             free_result(&b, &r);
@@ -246,7 +247,7 @@ static void test_first_index(void **state) {
     bench_open(&whole, 0, 0);
     bench_open(&b, 30000, 128);
     for (int method = 0; method < 3; method += 2) {
-        const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)method, 0};
+        const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)method, 0, false};
         result wanted = tessellate(&whole, &s, &desc), r = tessellate(&b, &s, &desc);
         for (size_t i = 0; i <= s.polyline_count; i++) {
             uint64_t first, first_of_whole;
@@ -265,7 +266,7 @@ static void test_first_index(void **state) {
 static void test_nothing(void **state) {
     (void)state;
     const camber_stroke stroke = {2, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0};
-    const camber_tessellation_desc desc = {&stroke, 1, CAMBER_METHOD_STRIP, 0};
+    const camber_tessellation_desc desc = {&stroke, 1, CAMBER_METHOD_STRIP, 0, false};
     bench b;
     bench_open(&b, 4096, 0);
     scene s = {0};
@@ -324,7 +325,7 @@ static void test_again(void **state) {
             polylines[i] = scene_polylines(b.context, scenes + i);
         size_t parts = 0, count;
         for (size_t i = 0; i < sizeof steps / sizeof *steps; i++) {
-            const camber_tessellation_desc desc = {steps[i].strokes, SCENE_ROWS, steps[i].method, 0};
+            const camber_tessellation_desc desc = {steps[i].strokes, SCENE_ROWS, steps[i].method, 0, false};
             result wanted = tessellate(&whole, scenes + steps[i].scene, &desc);
             result r = again(&b, polylines[steps[i].scene], &desc, &count);
             assert_same(&r, &wanted);
@@ -368,7 +369,7 @@ static void test_too_long(void **state) {
         }
         camber_polylines *polylines = scene_polylines(b.context, &s), *others = scene_polylines(b.context, &lines);
         for (int method = 0; method < 3; method++) {
-            const camber_tessellation_desc desc = {&stroke, 1, (camber_method)method, 0};
+            const camber_tessellation_desc desc = {&stroke, 1, (camber_method)method, 0, false};
             const bool fits = k == 2 && method == CAMBER_METHOD_STRIP;
             for (int time = 0; time < 2; time++) {
                 assert_int_equal(camber_tessellate(b.mesh, polylines, &desc), fits ? CAMBER_OK : CAMBER_ERROR_LIMIT);
@@ -385,7 +386,7 @@ static void test_too_long(void **state) {
             }
             camber_stroke strokes[SCENE_ROWS];
             scene_strokes(strokes);
-            const camber_tessellation_desc next = {strokes, SCENE_ROWS, (camber_method)method, 0};
+            const camber_tessellation_desc next = {strokes, SCENE_ROWS, (camber_method)method, 0, false};
             camber_mesh_data mesh, twin;
             assert_int_equal(camber_tessellate(b.mesh, others, &next), CAMBER_OK);
             assert_int_equal(camber_mesh_read(b.mesh, &mesh), CAMBER_OK);
@@ -414,12 +415,13 @@ static void test_too_many_strokes(void **state) {
     scene_point(&s, 9, 9);
     scene_end(&s, 0);
     camber_polylines *polylines = scene_polylines(b.context, &s);
-    assert_int_equal(
-        camber_tessellate(b.mesh, polylines, &(camber_tessellation_desc){strokes, STROKES, CAMBER_METHOD_STRIP, 0}),
-        CAMBER_ERROR_LIMIT);
+    assert_int_equal(camber_tessellate(b.mesh, polylines,
+                                       &(camber_tessellation_desc){strokes, STROKES, CAMBER_METHOD_STRIP, 0, false}),
+                     CAMBER_ERROR_LIMIT);
     assert_story(&b.h, "128 strokes");
     assert_int_equal(
-        camber_tessellate(b.mesh, polylines, &(camber_tessellation_desc){strokes, STROKES - 1, CAMBER_METHOD_STRIP, 0}),
+        camber_tessellate(b.mesh, polylines,
+                          &(camber_tessellation_desc){strokes, STROKES - 1, CAMBER_METHOD_STRIP, 0, false}),
         CAMBER_OK);
     camber_polylines_destroy(polylines);
     scene_free(&s);
@@ -486,7 +488,7 @@ static void test_memory(void **state) {
     (void)state;
     camber_stroke strokes[SCENE_ROWS];
     scene_strokes(strokes);
-    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0};
+    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0, false};
     scene s = make_scene(1);
     bench b;
     bench_open(&b, 50000, 0);
@@ -541,9 +543,10 @@ static bool draw(uint64_t limit, camber_backend backend, camber_sharing sharing,
         camber_mesh *mesh = NULL;
         camber_polylines *polylines = scene_polylines(context, s);
         assert_int_equal(camber_mesh_create(device, renderer, &mesh), CAMBER_OK);
-        assert_int_equal(camber_tessellate(mesh, polylines,
-                                           &(camber_tessellation_desc){strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0}),
-                         CAMBER_OK);
+        assert_int_equal(
+            camber_tessellate(mesh, polylines,
+                              &(camber_tessellation_desc){strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0, false}),
+            CAMBER_OK);
         const camber_pass passes[PASSES] = {{.mesh = mesh, .paints = opaque, .paint_count = SCENE_ROWS},
                                             {.mesh = mesh, .paints = paints, .paint_count = SCENE_ROWS},
                                             {.mesh = mesh,

@@ -5,7 +5,7 @@
 
 static camber_mesh *make_mesh(studio *s, const scene *lines, const camber_stroke *strokes, size_t stroke_count,
                               camber_method method) {
-    return studio_mesh(s, studio_any(s), lines, &(camber_tessellation_desc){strokes, stroke_count, method, 0});
+    return studio_mesh(s, studio_any(s), lines, &(camber_tessellation_desc){strokes, stroke_count, method, 0, false});
 }
 
 static void line(scene *s, size_t row, double x0, double y0, double x1, double y1) {
@@ -449,7 +449,7 @@ static void test_mesh_changes(void **state) {
     assert_int_equal(camber_mesh_create(s->device, studio_any(s), &mesh), CAMBER_OK);
     for (int i = 0; i < 4; i++) {
         const camber_stroke stroke = {6, (camber_join)(i % 3), (camber_cap)(2 - i % 3), 0};
-        const camber_tessellation_desc desc = {&stroke, 1, (camber_method)(i % 3), 0};
+        const camber_tessellation_desc desc = {&stroke, 1, (camber_method)(i % 3), 0, false};
         camber_polylines *polylines = scene_polylines(s->context, scenes[i]);
         assert_int_equal(camber_tessellate(mesh, polylines, &desc), CAMBER_OK);
         camber_mesh *fresh = make_mesh(s, scenes[i], &stroke, 1, desc.method);

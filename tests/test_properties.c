@@ -7,7 +7,7 @@
 /* ---- Meshes of cases ---- */
 
 static camber_stages stages_of(camber_context *context, const property_case *c) {
-    const camber_tessellation_desc desc = {&c->stroke, 1, c->method, 0};
+    const camber_tessellation_desc desc = {&c->stroke, 1, c->method, 0, false};
     camber_polylines *polylines = property_polylines(context, c);
     camber_stages stages;
     assert_int_equal(camber_stages_on_host(context, polylines, &desc, &stages), CAMBER_OK);

@@ -110,7 +110,7 @@ static property_outcome check_reversed(void *user, const property_case *c, char 
 }
 
 static camber_stages stages_of(const easel *e, const property_case *c) {
-    const camber_tessellation_desc desc = {&c->stroke, 1, c->method, 0};
+    const camber_tessellation_desc desc = {&c->stroke, 1, c->method, 0, false};
     camber_polylines *polylines = property_polylines(e->studio.context, c);
     camber_stages stages;
     assert_int_equal(camber_stages_on_host(e->studio.context, polylines, &desc, &stages), CAMBER_OK);
@@ -201,7 +201,7 @@ static property_outcome check_device(void *user, const property_case *c, char st
     easel *e = user;
     const uint32_t offsets[] = {0, (uint32_t)c->count};
     const camber_polylines_desc desc = {c->points, c->count, offsets, 1, NULL, false};
-    const camber_tessellation_desc tessellation = {&c->stroke, 1, c->method, 0};
+    const camber_tessellation_desc tessellation = {&c->stroke, 1, c->method, 0, false};
     camber_polylines *polylines = NULL;
     camber_mesh_data device, twin;
     assert_int_equal(camber_polylines_create(e->studio.context, &desc, &polylines), CAMBER_OK);

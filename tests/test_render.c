@@ -57,7 +57,7 @@ static picture draw_scene(studio *s, camber_renderer *renderer, const scene *lin
                           const camber_frame *like) {
     const map_style style = make_style(1);
     camber_mesh *mesh =
-        make_mesh(s, renderer, lines, &(camber_tessellation_desc){style.strokes, MAP_ROWS, method, 0.05f});
+        make_mesh(s, renderer, lines, &(camber_tessellation_desc){style.strokes, MAP_ROWS, method, 0.05f, false});
     const camber_pass pass = {.mesh = mesh, .paints = style.paints, .paint_count = MAP_ROWS};
     camber_frame frame = *like;
     frame.passes = &pass;
@@ -137,8 +137,9 @@ static void test_sharing_paths_agree(void **state) {
                 continue;
             }
             assert_int_equal(camber_renderer_get_sharing(renderer), paths[path]);
-            camber_mesh *mesh = make_mesh(s, renderer, &lines,
-                                          &(camber_tessellation_desc){style.strokes, MAP_ROWS, CAMBER_METHOD_STRIP, 0});
+            camber_mesh *mesh =
+                make_mesh(s, renderer, &lines,
+                          &(camber_tessellation_desc){style.strokes, MAP_ROWS, CAMBER_METHOD_STRIP, 0, false});
             const camber_pass pass = {.mesh = mesh, .paints = style.paints, .paint_count = MAP_ROWS};
             picture p =
                 picture_draw(renderer, &(camber_frame){.width = 500, .height = 400, .passes = &pass, .pass_count = 1});
@@ -178,8 +179,9 @@ static void test_pieces(void **state) {
             continue;
         for (int alpha = 0; alpha < 2; alpha++) {
             const map_style style = make_style(alpha ? 0.5f : 1.0f);
-            camber_mesh *mesh = make_mesh(s, s->renderer[i], &lines,
-                                          &(camber_tessellation_desc){style.strokes, MAP_ROWS, CAMBER_METHOD_STRIP, 0});
+            camber_mesh *mesh =
+                make_mesh(s, s->renderer[i], &lines,
+                          &(camber_tessellation_desc){style.strokes, MAP_ROWS, CAMBER_METHOD_STRIP, 0, false});
             const camber_pass pass = {.mesh = mesh, .paints = style.paints, .paint_count = MAP_ROWS};
             camber_frame frame = {.width = 300, .height = 200, .passes = &pass, .pass_count = 1};
             picture whole = picture_draw(s->renderer[i], &frame);

@@ -63,7 +63,7 @@ static void test_device_equals_twin(void **state) {
     for (size_t which = 0; which < SCENE_COUNT; which++) {
         scene s = scene_make(which);
         for (int i = 0; i < 6; i++) {
-            const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)(i / 2), 0};
+            const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)(i / 2), 0, false};
             camber_polylines *polylines = scene_first(b->context, &s, s.polyline_count, i % 2);
             assert_int_equal(camber_tessellate(b->mesh, polylines, &desc), CAMBER_OK);
             camber_stages device = on_device(b), twin = on_host(b, polylines, &desc);
@@ -85,7 +85,7 @@ static void test_wrong_words_show(void **state) {
     bench *b = *state;
     camber_stroke strokes[SCENE_ROWS];
     scene_strokes(strokes);
-    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0};
+    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0, false};
     scene s = scene_make(1);
     camber_polylines *polylines = scene_first(b->context, &s, s.polyline_count, true);
     assert_int_equal(camber_tessellate(b->mesh, polylines, &desc), CAMBER_OK);
@@ -128,7 +128,7 @@ static void test_ring_by_hand(void **state) {
         scene_point(&s, points[i][0], points[i][1]);
     scene_end(&s, 0);
     const camber_stroke stroke = {2, CAMBER_JOIN_ROUND, CAMBER_CAP_ROUND, 0};
-    const camber_tessellation_desc desc = {&stroke, 1, CAMBER_METHOD_STRIP, 0};
+    const camber_tessellation_desc desc = {&stroke, 1, CAMBER_METHOD_STRIP, 0, false};
     camber_polylines *polylines = scene_polylines(b->context, &s);
     assert_int_equal(camber_tessellate(b->mesh, polylines, &desc), CAMBER_OK);
     camber_stages stages = on_device(b);
@@ -162,7 +162,7 @@ static void test_nothing(void **state) {
     bench *b = *state;
     camber_mesh *used = b->mesh;
     const camber_stroke stroke = {2, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0};
-    const camber_tessellation_desc desc = {&stroke, 1, CAMBER_METHOD_STRIP, 0};
+    const camber_tessellation_desc desc = {&stroke, 1, CAMBER_METHOD_STRIP, 0, false};
     assert_int_equal(camber_mesh_create(b->device, NULL, &b->mesh), CAMBER_OK);
     assert_no_points(b); /* before the first tessellation */
     scene s = {0};
@@ -224,7 +224,7 @@ static void test_memory(void **state) {
     bench *b = *state;
     camber_stroke strokes[SCENE_ROWS];
     scene_strokes(strokes);
-    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_KITE, 0};
+    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_KITE, 0, false};
     scene s = scene_make(0);
     camber_polylines *polylines = scene_polylines(b->context, &s);
     assert_int_equal(camber_tessellate(b->mesh, polylines, &desc), CAMBER_OK);

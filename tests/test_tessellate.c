@@ -62,8 +62,9 @@ static void test_device_equals_twin(void **state) {
             for (int method = 0; method < 3; method++) {
                 const float tolerances[] = {0.0f, 1e-6f, 1e9f};
                 for (size_t t = 0; t < (method == CAMBER_METHOD_FAN ? 3 : 1); t++)
-                    compare(b, polylines,
-                            &(camber_tessellation_desc){strokes, SCENE_ROWS, (camber_method)method, tolerances[t]});
+                    compare(
+                        b, polylines,
+                        &(camber_tessellation_desc){strokes, SCENE_ROWS, (camber_method)method, tolerances[t], false});
             }
             camber_polylines_destroy(polylines);
         }
@@ -81,7 +82,7 @@ static void test_each_join_and_cap(void **state) {
         camber_polylines *polylines = scene_polylines(b->context, &s);
         for (int i = 0; i < 27; i++) {
             const camber_stroke stroke = {6, (camber_join)(i % 3), (camber_cap)(i / 3 % 3), 0};
-            compare(b, polylines, &(camber_tessellation_desc){&stroke, 1, (camber_method)(i / 9), 0});
+            compare(b, polylines, &(camber_tessellation_desc){&stroke, 1, (camber_method)(i / 9), 0, false});
         }
         camber_polylines_destroy(polylines);
         scene_free(&s);
@@ -103,8 +104,8 @@ static void test_many_rows(void **state) {
     }
     camber_polylines *polylines = scene_polylines(b->context, &s);
     for (int method = 0; method < 3 && b->rounds; method++)
-        compare(b, polylines, &(camber_tessellation_desc){strokes, ROWS, (camber_method)method, 0});
-    const camber_tessellation_desc desc = {strokes, ROWS, CAMBER_METHOD_STRIP, 0};
+        compare(b, polylines, &(camber_tessellation_desc){strokes, ROWS, (camber_method)method, 0, false});
+    const camber_tessellation_desc desc = {strokes, ROWS, CAMBER_METHOD_STRIP, 0, false};
     camber_mesh_data data = on_device(b, polylines, &desc);
     uint32_t last = ROWS - 1;
     for (size_t i = 0; i < data.info.vertex_count; i++) { /* input order */
@@ -125,7 +126,7 @@ static void test_run_to_run(void **state) {
     scene s = scene_make(0), other = scene_make(1);
     camber_polylines *polylines = scene_polylines(b->context, &s), *others = scene_polylines(b->context, &other);
     for (int method = 0; method < 3; method++) {
-        const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)method, 0};
+        const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)method, 0, false};
         camber_mesh_data first = on_device(b, polylines, &desc);
         for (int i = 0; i < 4; i++) {
             if (i % 2) { /* whatever the mesh held before */
@@ -151,7 +152,7 @@ static void test_other_strokes_upload_nothing(void **state) {
     scene_strokes(strokes);
     scene s = scene_make(0);
     camber_polylines *polylines = scene_polylines(b->context, &s), *twin = scene_polylines(b->context, &s);
-    camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0};
+    camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0, false};
     camber_mesh_data data = on_device(b, polylines, &desc);
     camber_mesh_data_free(b->context, &data);
     memset(polylines->x, 0, polylines->slot_count * sizeof *polylines->x);
@@ -200,7 +201,7 @@ static void test_nothing(void **state) {
     scene_end(&line, 0);
     const scene *scenes[] = {&none, &line, &empties, &line, &dots, &line, &none};
     for (int method = 0; method < 3; method++) {
-        const camber_tessellation_desc desc = {&stroke, 1, (camber_method)method, 0};
+        const camber_tessellation_desc desc = {&stroke, 1, (camber_method)method, 0, false};
         for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
             camber_polylines *polylines = scene_polylines(b->context, scenes[i]);
             compare(b, polylines, &desc);
@@ -236,15 +237,15 @@ static void test_arguments(void **state) {
     for (; count < sizeof bad / sizeof *bad; count++) {
         pairs[count][0] = good;
         pairs[count][1] = bad[count];
-        descs[count] = (camber_tessellation_desc){pairs[count], 2, CAMBER_METHOD_STRIP, 0};
+        descs[count] = (camber_tessellation_desc){pairs[count], 2, CAMBER_METHOD_STRIP, 0, false};
     }
     const camber_stroke goods[] = {good, good};
-    descs[count++] = (camber_tessellation_desc){goods, 1, CAMBER_METHOD_STRIP, 0}; /* row 1 has no stroke */
-    descs[count++] = (camber_tessellation_desc){NULL, 0, CAMBER_METHOD_STRIP, 0};
-    descs[count++] = (camber_tessellation_desc){goods, 2, (camber_method)3, 0};
-    descs[count++] = (camber_tessellation_desc){goods, 2, (camber_method)-1, 0};
-    descs[count++] = (camber_tessellation_desc){goods, 2, CAMBER_METHOD_FAN, -1};
-    descs[count++] = (camber_tessellation_desc){goods, 2, CAMBER_METHOD_FAN, NAN};
+    descs[count++] = (camber_tessellation_desc){goods, 1, CAMBER_METHOD_STRIP, 0, false}; /* row 1 has no stroke */
+    descs[count++] = (camber_tessellation_desc){NULL, 0, CAMBER_METHOD_STRIP, 0, false};
+    descs[count++] = (camber_tessellation_desc){goods, 2, (camber_method)3, 0, false};
+    descs[count++] = (camber_tessellation_desc){goods, 2, (camber_method)-1, 0, false};
+    descs[count++] = (camber_tessellation_desc){goods, 2, CAMBER_METHOD_FAN, -1, false};
+    descs[count++] = (camber_tessellation_desc){goods, 2, CAMBER_METHOD_FAN, NAN, false};
     for (size_t i = 0; i < count; i++) {
         b->h.errors = 0;
         assert_int_equal(camber_tessellate(b->mesh, polylines, descs + i), CAMBER_ERROR_ARGUMENT);
@@ -257,7 +258,7 @@ static void test_arguments(void **state) {
         assert_memory_equal(&data, &untouched, sizeof data);
     }
     const camber_stroke edges[] = {{0, 0, 0, 0}, {16384, CAMBER_JOIN_BEVEL, CAMBER_CAP_SQUARE, INFINITY}};
-    compare(b, polylines, &(camber_tessellation_desc){edges, 2, CAMBER_METHOD_FAN, INFINITY});
+    compare(b, polylines, &(camber_tessellation_desc){edges, 2, CAMBER_METHOD_FAN, INFINITY, false});
     camber_polylines_destroy(polylines);
     scene_free(&s);
 }
@@ -272,7 +273,7 @@ static void test_first_index(void **state) {
         scene s = scene_make(scenes[k]);
         camber_polylines *all = scene_polylines(b->context, &s);
         for (int method = 0; method < 3; method++) {
-            const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)method, 0};
+            const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)method, 0, false};
             assert_int_equal(camber_tessellate(b->mesh, all, &desc), CAMBER_OK);
             for (size_t i = 0; i <= s.polyline_count; i++) {
                 camber_polylines *before = scene_first(b->context, &s, i, false);
@@ -340,7 +341,8 @@ static camber_status try_device(camber_context *context, void *user) {
         assert_ptr_equal(mesh, user);
     } else {
         camber_mesh_data data = {.indices = user};
-        status = camber_tessellate(mesh, polylines, &(camber_tessellation_desc){&stroke, 1, CAMBER_METHOD_STRIP, 0});
+        status =
+            camber_tessellate(mesh, polylines, &(camber_tessellation_desc){&stroke, 1, CAMBER_METHOD_STRIP, 0, false});
         if (status == CAMBER_OK)
             status = camber_mesh_read(mesh, &data);
         if (status == CAMBER_OK)
@@ -363,7 +365,7 @@ static void test_memory(void **state) {
 static void test_after_failure(void **state) {
     bench *b = *state;
     const camber_stroke stroke = {4, CAMBER_JOIN_ROUND, CAMBER_CAP_ROUND, 0};
-    const camber_tessellation_desc desc = {&stroke, 1, CAMBER_METHOD_STRIP, 0};
+    const camber_tessellation_desc desc = {&stroke, 1, CAMBER_METHOD_STRIP, 0, false};
     scene s = {0};
     uint64_t seed = 4;
     scene_walk(&s, &seed, 9000, (const double[]){1, 5}, 1);
@@ -438,7 +440,7 @@ static void test_real_lines(void **state) {
     assert_true(s.polyline_count > 20000);
     camber_polylines *polylines = scene_polylines(b->context, &s);
     for (int method = 0; method < 3; method++)
-        compare(b, polylines, &(camber_tessellation_desc){strokes, SCENE_ROWS, (camber_method)method, 0});
+        compare(b, polylines, &(camber_tessellation_desc){strokes, SCENE_ROWS, (camber_method)method, 0, false});
     camber_polylines_destroy(polylines);
     scene_free(&s);
 }

@@ -42,7 +42,7 @@ static void test_sums(void **state) {
         for (int keep_open = 0; keep_open < 2; keep_open++) {
             scene s = scene_make(which);
             camber_polylines *polylines = scene_first(context, &s, s.polyline_count, keep_open);
-            const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0};
+            const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0, false};
             const camber_lines lines = lines_of(&s);
             size_t counts[CAMBER_TURN_CLASSES] = {0}, sum = 0;
             camber_turns_count(&lines, keep_open, counts);

@@ -199,7 +199,7 @@ void torture_check(const studio *s, torture_set *set, camber_method method, tort
     for (int i = 0; i < JOINS * CAPS; i++) {
         camber_stroke *strokes = strokes_of(set, i / CAPS, i % CAPS);
         const float *truth = truth_of(set, i, strokes);
-        const camber_tessellation_desc desc = {strokes, set->count, method, 0};
+        const camber_tessellation_desc desc = {strokes, set->count, method, 0, false};
         for (int b = 0; b < BACKENDS; b++) {
             if (!s->renderer[b])
                 continue;

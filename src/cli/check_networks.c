@@ -141,7 +141,7 @@ static double reach_of(const job *j) {
 /* What camber_tessellate_network promises of the window, of all that the twin sees. */
 static int check_window(job *j, const camber_subject *s) {
     camber_check check = camber_check_start(NULL, NULL, "%s: no point far outside the picture", s->name);
-    const camber_tessellation_desc desc = {j->strokes, j->stroke_count, s->method, 0};
+    const camber_tessellation_desc desc = {j->strokes, j->stroke_count, s->method, 0, false};
     const double most = 64 + 16 + reach_of(j) + s->camera.translate_px;
     camber_stages stages = {0};
     const int status = camber_report_status(
@@ -169,7 +169,7 @@ static int check_window(job *j, const camber_subject *s) {
 
 /* The subject is what the camera sees. Zoomed out, what is smaller than a pixel has no shape to hold pixels to. */
 static int check_seen(job *j, camber_subject *s, bool has_shape) {
-    const camber_tessellation_desc desc = {j->strokes, j->stroke_count, s->method, 0};
+    const camber_tessellation_desc desc = {j->strokes, j->stroke_count, s->method, 0, false};
     camber_polylines *twin = NULL;
     int status =
         camber_report_status(j->v->session->report, camber_network_project(j->network, &s->camera, &desc, &twin));

@@ -304,9 +304,12 @@ camber_status camber_device_create(camber_context *context, const camber_device_
 void camber_device_destroy(camber_device *device) {
     if (!device)
         return;
-    for (int i = 0; i < 3; i++)
-        camber_program_destroy(device->context, device->programs[i]);
-    camber_program_destroy(device->context, device->network_program);
+    for (int measured = 0; measured < 2; measured++) {
+        for (int method = 0; method < 3; method++)
+            camber_program_destroy(device->context, device->programs[measured][method]);
+        camber_program_destroy(device->context, device->network_programs[measured]);
+    }
+    camber_program_destroy(device->context, device->measures);
     if (device->queue)
         clReleaseCommandQueue(device->queue);
     if (device->cl)

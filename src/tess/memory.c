@@ -3,6 +3,7 @@
  * A bound is shared out in eighths: one for strokes and counts, one for the network's section that is read, four for a
  * part of a single polyline, two for what is left over in buffers that a part takes from another. Parts of several
  * polylines take one, so that what is there need not all go for the next. */
+#include "kernels/measure.h"
 #include "tess/network.h"
 
 uint64_t camber_device_share(const camber_device *device, unsigned eighths) {
@@ -22,13 +23,14 @@ static void count(camber_device *device, uint64_t *held_bytes, uint64_t now_byte
         device->most_held_bytes = device->held_bytes;
 }
 
-uint64_t camber_input_bytes(const camber_device *device, size_t slots) {
+uint64_t camber_input_bytes(const camber_device *device, bool measured, size_t slots) {
     const uint64_t blocks = slots / device->block, words = slots ? (uint64_t)slots + 2 : 0;
-    return 16 * words + 4 * ((uint64_t)slots / device->item) + (4 + 16) * blocks;
+    const uint64_t measures = sizeof(camber_measure) * (uint64_t)slots + 16 * ((uint64_t)slots / CAMBER_MEASURE_CHUNK);
+    return (measured ? measures : 0) + 16 * words + 4 * ((uint64_t)slots / device->item) + (4 + 16) * blocks;
 }
 
 void camber_part_count(const camber_mesh *mesh, camber_mesh_part *part) {
-    uint64_t bytes = camber_input_bytes(mesh->device, part->slot_capacity);
+    uint64_t bytes = camber_input_bytes(mesh->device, part->measures != NULL, part->slot_capacity);
     bytes += part->base_capacity * sizeof *part->host_bases + part->chunk_capacity * sizeof *part->chunk_bases;
     for (int i = 0; i < 2; i++)
         bytes += mesh->buffer_copies * (uint64_t)part->buffers[i].capacity_bytes;

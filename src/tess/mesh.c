@@ -187,6 +187,26 @@ static camber_status read_buffer(const camber_mesh *mesh, const camber_buffer *b
     return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(mesh->device->context, "clEnqueueReadBuffer", code);
 }
 
+/* Of a measured mesh: size_bytes of each record's 32, from offset_bytes on. */
+static camber_status read_words(const camber_mesh *mesh, const camber_mesh_part *part, size_t offset_bytes,
+                                size_t size_bytes, void *bytes) {
+    const size_t from[3] = {offset_bytes, 0, 0}, to[3] = {0, 0, 0}, region[3] = {size_bytes, part->record_count, 1};
+    const cl_int code =
+        clEnqueueReadBufferRect(mesh->device->queue, part->buffers[CAMBER_BUFFER_RECORDS].mem, CL_TRUE, from, to,
+                                region, camber_record_bytes(&mesh->mesh_info), 0, size_bytes, 0, bytes, 0, NULL, NULL);
+    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(mesh->device->context, "clEnqueueReadBufferRect", code);
+}
+
+static camber_status read_records(const camber_mesh *mesh, const camber_mesh_part *part, camber_mesh_data *data) {
+    camber_record *records = data->records + part->first_record;
+    if (!mesh->mesh_info.measured)
+        return read_buffer(mesh, part->buffers + CAMBER_BUFFER_RECORDS, part->record_count * sizeof *records, records);
+    const camber_status status = read_words(mesh, part, 0, sizeof *records, records);
+    return status == CAMBER_OK
+               ? read_words(mesh, part, sizeof *records, sizeof *data->measures, data->measures + part->first_record)
+               : status;
+}
+
 static camber_status read_part(camber_mesh *mesh, camber_mesh_part *part, camber_mesh_data *data) {
     const size_t buffer_count = camber_buffer_count(mesh);
     camber_status status = camber_part_use(mesh, part);
@@ -194,8 +214,7 @@ static camber_status read_part(camber_mesh *mesh, camber_mesh_part *part, camber
         status = mesh->ops->begin(mesh->ops_user, part->buffers, buffer_count);
     if (status != CAMBER_OK)
         return status;
-    status = read_buffer(mesh, part->buffers + CAMBER_BUFFER_RECORDS, part->record_count * sizeof *data->records,
-                         data->records + part->first_record);
+    status = read_records(mesh, part, data);
     if (status == CAMBER_OK && data->corners)
         status = read_buffer(mesh, part->buffers + CAMBER_BUFFER_INDICES, 4 * part->index_count,
                              data->corners + part->first_index);
@@ -215,7 +234,9 @@ camber_status camber_mesh_read(camber_mesh *mesh, camber_mesh_data *data) {
     made.records = camber_alloc(context, made.info.record_count, sizeof *made.records);
     if (made.records && !made.info.strips)
         made.corners = camber_alloc(context, made.info.index_count, sizeof *made.corners);
-    if (!made.records || (!made.info.strips && !made.corners))
+    if (made.records && made.info.measured)
+        made.measures = camber_alloc(context, made.info.record_count, sizeof *made.measures);
+    if (!made.records || (!made.info.strips && !made.corners) || (made.info.measured && !made.measures))
         status = CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < mesh->part_count && mesh->done && status == CAMBER_OK; i++)
         if (mesh->parts[i].record_count > 0)

@@ -145,6 +145,21 @@ static camber_status put_entry(camber_network *n, const camber_network_desc *des
     return CAMBER_OK;
 }
 
+static camber_status measure_runs(camber_network *n) {
+    n->lengths = camber_alloc(n->context, n->point_count, sizeof *n->lengths);
+    if (!n->lengths)
+        return CAMBER_ERROR_MEMORY;
+    for (size_t r = 0; r < n->run_count; r++) {
+        double along = 0.0;
+        for (size_t i = n->runs[r].first; i < n->runs[r + 1].first; i++) {
+            if (i > n->runs[r].first)
+                along += hypot((double)n->x[i] - n->x[i - 1], (double)n->y[i] - n->y[i - 1]);
+            n->lengths[i] = (float)along;
+        }
+    }
+    return CAMBER_OK;
+}
+
 static camber_status fill(camber_network *n, const camber_network_desc *desc) {
     camber_context *context = n->context;
     const size_t points = n->stats.points;
@@ -167,7 +182,7 @@ static camber_status fill(camber_network *n, const camber_network_desc *desc) {
     }
     n->entry_runs[n->entry_count] = (uint32_t)n->run_count;
     n->runs[n->run_count] = (camber_run){.first = (uint32_t)n->point_count};
-    return CAMBER_OK;
+    return desc->measured ? measure_runs(n) : CAMBER_OK;
 }
 
 camber_status camber_network_create(camber_context *context, const camber_network_desc *desc,
@@ -202,6 +217,7 @@ void camber_network_destroy(camber_network *network) {
     camber_free(context, network->entry_rows);
     camber_free(context, network->entry_runs);
     camber_free(context, network->runs);
+    camber_free(context, network->lengths);
     camber_free(context, network->importance);
     camber_free(context, network->y);
     camber_free(context, network->x);
@@ -269,6 +285,9 @@ camber_status camber_network_aim(const camber_network *network, const camber_cam
     const camber_status status = check_camera(network, camera);
     if (status != CAMBER_OK)
         return status;
+    if (desc->measured && !network->lengths && network->point_count)
+        return camber_fail(network->context, CAMBER_ERROR_ARGUMENT,
+                           "a measured mesh of a network that is not; make the network measured");
     const double angle = fmod(camera->bearing_deg, 360.0) * (3.14159265358979323846 / 180.0);
     const bool quarters = remainder(camera->bearing_deg, 90.0) == 0.0; /* axis-parallel lines stay so */
     const double cosine = quarters ? round(cos(angle)) : cos(angle), sine = quarters ? round(sin(angle)) : sin(angle);
@@ -306,6 +325,7 @@ camber_status camber_network_aim(const camber_network *network, const camber_cam
         .seen_x1 = outwards(camera->x + seen_x - network->x0, step, 3.0),
         .seen_y1 = outwards(camera->y + seen_y - network->y0, step, 3.0),
         .end = (uint32_t)network->point_count,
+        .step_px = (float)scale,
     };
     return CAMBER_OK;
 }

@@ -12,7 +12,8 @@ static void release_mem(cl_mem *mem) {
 }
 
 void camber_section_release(const camber_mesh *mesh, camber_section *section) {
-    cl_mem *mems[] = {&section->x, &section->y, &section->importance, &section->runs, &section->chunk_runs};
+    cl_mem *mems[] = {&section->x,    &section->y,          &section->importance,
+                      &section->runs, &section->chunk_runs, &section->lengths};
     for (size_t i = 0; i < sizeof mems / sizeof *mems; i++)
         release_mem(mems[i]);
     camber_section_count(mesh, section);
@@ -92,6 +93,8 @@ static camber_status upload_section(camber_mesh *mesh, camber_mesh_part *part) {
         status = upload(device, network->importance + first, 4 * points, true, &section->importance);
     if (status == CAMBER_OK)
         status = upload(device, network->runs + first_run, runs * sizeof *network->runs, true, &section->runs);
+    if (status == CAMBER_OK && network->lengths)
+        status = upload(device, network->lengths + first, 4 * points, true, &section->lengths);
     if (status == CAMBER_OK)
         status = upload_chunk_runs(device, network, section);
     if (status == CAMBER_OK)
@@ -123,7 +126,8 @@ static uint64_t larger_bytes(const camber_network *network, const camber_section
 
 uint64_t camber_section_bytes(const camber_network *network, const camber_section *section, bool copied) {
     const uint64_t points = (uint64_t)section->end_point - section->first_point;
-    return (copied ? 12 * points + bytes_of_runs(network, section) : 0) + 4 * (uint64_t)chunks_of((size_t)points);
+    const uint64_t arrays = network->lengths ? 16 : 12;
+    return (copied ? arrays * points + bytes_of_runs(network, section) : 0) + 4 * (uint64_t)chunks_of((size_t)points);
 }
 
 /* Whether the device makes the buffers of a section, and its share of memory takes them. */
@@ -214,7 +218,8 @@ camber_status camber_mesh_plan_network(camber_mesh *mesh, camber_network *networ
 
 camber_status camber_mesh_aim(camber_mesh *mesh, const camber_camera *camera, const camber_tessellation_desc *desc) {
     const camber_status status = camber_network_aim(mesh->held->network, camera, desc, &mesh->held->projection);
-    return status == CAMBER_OK ? camber_device_network_program(mesh->device, &mesh->held->program) : status;
+    return status == CAMBER_OK ? camber_device_network_program(mesh->device, desc->measured, &mesh->held->program)
+                               : status;
 }
 
 bool camber_mesh_holds(const camber_mesh *mesh, const camber_network *network) {
@@ -338,8 +343,9 @@ static camber_status survey(camber_mesh *mesh, camber_mesh_part *part, const cam
 static camber_status reserve_slots(camber_mesh *mesh, camber_mesh_part *part, size_t slots) {
     const size_t block = mesh->device->block, more = slots + slots / 4 / block * block;
     const uint64_t largest = mesh->device->info.largest_buffer_bytes;
-    const bool enough = slots <= part->slot_capacity || 4 * ((uint64_t)more + 2) > largest ||
-                        !camber_device_is_roomy(mesh->device, camber_input_bytes(mesh->device, more));
+    const bool enough =
+        slots <= part->slot_capacity || 4 * ((uint64_t)more + 2) > largest ||
+        !camber_device_is_roomy(mesh->device, camber_input_bytes(mesh->device, mesh->mesh_info.measured, more));
     part->slot_count = slots;
     return camber_part_reserve(mesh, part, enough ? slots : more);
 }
@@ -377,6 +383,8 @@ camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, boo
     const camber_section *section = mesh->held->sections + part->section;
     const cl_mem mems[] = {
         section->x, section->y, section->importance, section->runs, section->chunk_runs, mesh->held->bases,
-        part->x,    part->y,    part->info,          part->joins};
-    return run_stage(device, &p, (stage){"project", mesh->held->program->project, mems, 10}, &mesh->held->projected);
+        part->x,    part->y,    part->info,          part->joins,   section->lengths,    part->measures};
+    const cl_uint mem_count = mesh->mesh_info.measured ? 12 : 10;
+    return run_stage(device, &p, (stage){"project", mesh->held->program->project, mems, mem_count},
+                     &mesh->held->projected);
 }

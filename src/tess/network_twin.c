@@ -4,7 +4,8 @@
 #include <string.h>
 
 camber_walk camber_network_walk(const camber_network *network) {
-    return (camber_walk){.x = network->x, .y = network->y, .importance = network->importance};
+    return (camber_walk){
+        .x = network->x, .y = network->y, .importance = network->importance, .lengths = network->lengths};
 }
 
 /* The run that has a point. */
@@ -61,6 +62,7 @@ static camber_status make_slots(const camber_network *network, const camber_proj
     if (!(p->x = camber_alloc_zero(context, slots + 2, sizeof *p->x)) ||
         !(p->y = camber_alloc_zero(context, slots + 2, sizeof *p->y)) ||
         !(p->info = camber_alloc_zero(context, slots + 2, sizeof *p->info)) ||
+        (network->lengths && !(p->measures = camber_alloc_zero(context, slots, sizeof *p->measures))) ||
         !(p->first_slots = camber_alloc(context, network->entry_count + 1, sizeof *p->first_slots)) ||
         !(p->polyline_rows = camber_alloc(context, network->entry_count, sizeof *p->polyline_rows)))
         return CAMBER_ERROR_MEMORY;
@@ -68,6 +70,7 @@ static camber_status make_slots(const camber_network *network, const camber_proj
     w.slot_x = p->x;
     w.slot_y = p->y;
     w.slot_info = p->info;
+    w.slot_measures = (float *)p->measures;
     w.puts = 1;
     w.at = 1;
     for (size_t i = 0; i < network->entry_count; i++) {

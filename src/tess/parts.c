@@ -1,4 +1,5 @@
 /* The parts of a mesh: which polylines each has, its buffers, and what is uploaded to them. */
+#include "kernels/measure.h"
 #include "tess/network.h"
 
 #include <string.h>
@@ -21,11 +22,11 @@ camber_status camber_write_buffer(const camber_device *device, cl_mem mem, size_
     return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(device->context, "clEnqueueWriteBuffer", code);
 }
 
-enum { INPUTS = 7 };
+enum { INPUTS = 9 };
 
 static void list_input(camber_mesh_part *part, cl_mem *mems[INPUTS]) {
-    cl_mem *const list[INPUTS] = {&part->x,       &part->y,    &part->info, &part->joins,
-                                  &part->offsets, &part->sums, &part->bases};
+    cl_mem *const list[INPUTS] = {&part->x,    &part->y,     &part->info,    &part->joins,   &part->offsets,
+                                  &part->sums, &part->bases, &part->lengths, &part->measures};
     memcpy(mems, list, sizeof list);
 }
 
@@ -64,8 +65,12 @@ void camber_part_take(camber_mesh_part *part, camber_mesh_part *from) {
     from->uploaded = from->made = false;
 }
 
-static camber_status reserve_input(const camber_device *device, camber_mesh_part *part, size_t slots) {
-    if (slots <= part->slot_capacity)
+static bool has_input(const camber_mesh_part *part, bool measured, size_t slots) {
+    return slots <= part->slot_capacity && (!measured || part->measures);
+}
+
+static camber_status reserve_input(const camber_device *device, bool measured, camber_mesh_part *part, size_t slots) {
+    if (has_input(part, measured, slots))
         return CAMBER_OK;
     release_input(part);
     const size_t blocks = slots / device->block, words = slots + 2;
@@ -81,8 +86,11 @@ static camber_status reserve_input(const camber_device *device, camber_mesh_part
         {&part->offsets, 4 * (slots / device->item)},
         {&part->sums, 4 * blocks},
         {&part->bases, 16 * blocks},
+        {&part->lengths, 16 * slots / CAMBER_MEASURE_CHUNK},
+        {&part->measures, sizeof(camber_measure) * slots},
     };
-    for (size_t i = 0; i < sizeof wanted / sizeof *wanted && status == CAMBER_OK; i++)
+    const size_t count = measured ? INPUTS : INPUTS - 2;
+    for (size_t i = 0; i < count && status == CAMBER_OK; i++)
         status = camber_make_buffer(device, wanted[i].size_bytes, wanted[i].mem);
     if (status != CAMBER_OK) {
         release_input(part);
@@ -96,19 +104,23 @@ static camber_status reserve_input(const camber_device *device, camber_mesh_part
 static uint64_t bytes_of_slots(const camber_mesh *mesh, const camber_mesh_part *part, size_t slots) {
     const uint64_t chunks = mesh->held ? (part->end_point - part->first_point) / CAMBER_CHUNK + 3 : 0;
     const uint64_t blocks = slots / mesh->device->block;
-    return camber_input_bytes(mesh->device, slots) + 2 * (16 * (blocks + 1) + 4 * chunks) + 256;
+    return camber_input_bytes(mesh->device, mesh->mesh_info.measured, slots) + 2 * (16 * (blocks + 1) + 4 * chunks) +
+           256;
 }
 
 camber_status camber_part_reserve(camber_mesh *mesh, camber_mesh_part *part, size_t slots) {
     const camber_device *device = mesh->device;
+    const bool measured = mesh->mesh_info.measured;
     const uint64_t wanted = bytes_of_slots(mesh, part, slots);
     if (wanted > camber_device_share(device, 4))
         return camber_fail_memory(mesh, part->first_polyline, wanted);
     camber_status status = CAMBER_OK;
-    if (slots > part->slot_capacity)
-        status = camber_mesh_make_room(mesh, part, wanted - camber_input_bytes(device, part->slot_capacity));
+    if (!has_input(part, measured, slots))
+        status = camber_mesh_make_room(
+            mesh, part,
+            wanted - camber_input_bytes(device, false, slots > part->slot_capacity ? part->slot_capacity : 0));
     if (status == CAMBER_OK)
-        status = reserve_input(device, part, slots);
+        status = reserve_input(device, measured, part, slots);
     if (status == CAMBER_OK && !camber_grow(device->context, &part->host_bases, &part->base_capacity,
                                             2 * (part->slot_capacity / device->block + 1), sizeof *part->host_bases))
         status = CAMBER_ERROR_MEMORY;
@@ -221,7 +233,8 @@ void camber_mesh_trim_parts(camber_mesh *mesh) {
 /* Slots of a part that its share of memory takes, with a record each or a little more: a block at least. */
 static uint64_t shared_slots(const camber_mesh *mesh) {
     const size_t block = mesh->device->block;
-    const uint64_t block_bytes = camber_input_bytes(mesh->device, block) + 20 * mesh->buffer_copies * block;
+    const uint64_t block_bytes =
+        camber_input_bytes(mesh->device, mesh->mesh_info.measured, block) + 20 * mesh->buffer_copies * block;
     const uint64_t blocks = camber_device_share(mesh->device, 1) / block_bytes;
     return (blocks ? blocks : 1) * block;
 }
@@ -325,7 +338,8 @@ static uint64_t whole_blocks(const camber_mesh *mesh, uint64_t slots) {
 
 /* Where a record is a slot, the kernel writes whole blocks of them. */
 static uint64_t record_bytes(const camber_mesh *mesh, part_size size) {
-    return (mesh->mesh_info.strips ? size.records : whole_blocks(mesh, size.records)) * sizeof(camber_record);
+    return (mesh->mesh_info.strips ? size.records : whole_blocks(mesh, size.records)) *
+           camber_record_bytes(&mesh->mesh_info);
 }
 
 static uint64_t index_bytes(const camber_mesh *mesh, part_size size) {

@@ -6,10 +6,18 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char *const OPTIONS = "-cl-std=CL1.2 -DCAMBER_METHOD=%d%s%s -DCAMBER_ITEM=%zu";
+static const char *const OPTIONS = "-cl-std=CL1.2 -DCAMBER_METHOD=%d%s%s -DCAMBER_ITEM=%zu%s";
+
+/* Which kernels a program has. */
+typedef enum program_kind {
+    PROGRAM_METHOD,
+    PROGRAM_NETWORK,
+    PROGRAM_MEASURES,
+} program_kind;
 
 /* What a program is made of. */
 typedef struct recipe {
+    program_kind kind;
     const char *name;
     const char *source;
     size_t source_size;
@@ -92,20 +100,18 @@ static camber_status build(camber_device *device, camber_program *program, const
     return CAMBER_OK;
 }
 
-/* Which kernels there are tells whose program it is. */
-static camber_status make_kernels(camber_device *device, camber_program *program, bool is_network) {
+static camber_status make_kernels(camber_device *device, camber_program *program, program_kind kind) {
     const struct {
         const char *name;
         cl_kernel *kernel;
-        bool of_network;
-    } stages[] = {{"survey", &program->survey, true},
-                  {"project", &program->project, true},
-                  {"classify", &program->classify, false},
-                  {"scan", &program->scan, false},
-                  {"emit", &program->emit, false}};
+        program_kind kind;
+    } stages[] = {{"survey", &program->survey, PROGRAM_NETWORK},    {"project", &program->project, PROGRAM_NETWORK},
+                  {"classify", &program->classify, PROGRAM_METHOD}, {"scan", &program->scan, PROGRAM_METHOD},
+                  {"emit", &program->emit, PROGRAM_METHOD},         {"tally", &program->tally, PROGRAM_MEASURES},
+                  {"measure", &program->measure, PROGRAM_MEASURES}};
     for (size_t i = 0; i < sizeof stages / sizeof *stages; i++) {
         cl_int code;
-        if (stages[i].of_network != is_network)
+        if (stages[i].kind != kind)
             continue;
         *stages[i].kernel = clCreateKernel(program->cl, stages[i].name, &code);
         if (code != CL_SUCCESS)
@@ -114,8 +120,7 @@ static camber_status make_kernels(camber_device *device, camber_program *program
     return CAMBER_OK;
 }
 
-static camber_status make_program(camber_device *device, const recipe *from, bool is_network,
-                                  camber_program **program) {
+static camber_status make_program(camber_device *device, const recipe *from, camber_program **program) {
     camber_program *made = camber_alloc_zero(device->context, 1, sizeof *made);
     if (!made)
         return CAMBER_ERROR_MEMORY;
@@ -126,7 +131,7 @@ static camber_status make_program(camber_device *device, const recipe *from, boo
     if (!cached)
         status = build(device, made, from);
     if (status == CAMBER_OK)
-        status = make_kernels(device, made, is_network);
+        status = make_kernels(device, made, from->kind);
     if (status != CAMBER_OK) {
         camber_program_destroy(device->context, made);
         return status;
@@ -138,32 +143,40 @@ static camber_status make_program(camber_device *device, const recipe *from, boo
 }
 
 /* method: one of camber_method's, or what stands for no method. */
-static void set_options(const camber_device *device, int method, recipe *from) {
+static void set_options(const camber_device *device, int method, bool measured, recipe *from) {
     char block[32] = "";
     if (device->block != CAMBER_BLOCK)
         snprintf(block, sizeof block, " -DCAMBER_BLOCK=%zu", device->block);
     snprintf(from->options, sizeof from->options, OPTIONS, method,
-             device->rounds_correctly ? " -cl-fp32-correctly-rounded-divide-sqrt" : "", block, device->item);
+             device->rounds_correctly ? " -cl-fp32-correctly-rounded-divide-sqrt" : "", block, device->item,
+             measured ? " -DCAMBER_MEASURED=1" : "");
 }
 
-camber_status camber_device_program(camber_device *device, camber_method method, camber_program **program) {
-    recipe from = {camber_method_name(method), camber_kernels_source, camber_kernels_source_size, ""};
-    set_options(device, (int)method, &from);
-    const camber_status status =
-        device->programs[method] ? CAMBER_OK : make_program(device, &from, false, device->programs + method);
+/* Makes a program unless it is there, and gives it. */
+static camber_status use_program(camber_device *device, recipe *from, camber_program **kept, camber_program **program) {
+    const camber_status status = *kept ? CAMBER_OK : make_program(device, from, kept);
     if (status == CAMBER_OK)
-        *program = device->programs[method];
+        *program = *kept;
     return status;
 }
 
-camber_status camber_device_network_program(camber_device *device, camber_program **program) {
-    recipe from = {"networks", camber_network_kernels_source, camber_network_kernels_source_size, ""};
-    set_options(device, -1, &from);
-    const camber_status status =
-        device->network_program ? CAMBER_OK : make_program(device, &from, true, &device->network_program);
-    if (status == CAMBER_OK)
-        *program = device->network_program;
-    return status;
+camber_status camber_device_program(camber_device *device, camber_method method, bool measured,
+                                    camber_program **program) {
+    recipe from = {PROGRAM_METHOD, camber_method_name(method), camber_kernels_source, camber_kernels_source_size, ""};
+    set_options(device, (int)method, measured, &from);
+    return use_program(device, &from, &device->programs[measured][method], program);
+}
+
+camber_status camber_device_measures(camber_device *device, camber_program **program) {
+    recipe from = {PROGRAM_MEASURES, "measures", camber_measure_kernels_source, camber_measure_kernels_source_size, ""};
+    set_options(device, -1, false, &from);
+    return use_program(device, &from, &device->measures, program);
+}
+
+camber_status camber_device_network_program(camber_device *device, bool measured, camber_program **program) {
+    recipe from = {PROGRAM_NETWORK, "networks", camber_network_kernels_source, camber_network_kernels_source_size, ""};
+    set_options(device, -1, measured, &from);
+    return use_program(device, &from, &device->network_programs[measured], program);
 }
 
 void camber_program_save(camber_device *device, camber_program *program) {
@@ -193,7 +206,8 @@ void camber_program_save(camber_device *device, camber_program *program) {
 void camber_program_destroy(camber_context *context, camber_program *program) {
     if (!program)
         return;
-    cl_kernel kernels[] = {program->survey, program->project, program->classify, program->scan, program->emit};
+    cl_kernel kernels[] = {program->survey, program->project, program->classify, program->scan,
+                           program->emit,   program->tally,   program->measure};
     for (size_t i = 0; i < sizeof kernels / sizeof *kernels; i++)
         if (kernels[i])
             clReleaseKernel(kernels[i]);

@@ -16,13 +16,15 @@ struct camber_device {
     cl_context cl;
     cl_command_queue queue;
     camber_device_info info;
-    bool rounds_correctly;              /* divides and takes roots as the twin does */
-    bool host_memory;                   /* the device works in the host's memory */
-    bool gl_context;                    /* cl was made for a GL context: GL buffers can be shared */
-    size_t block;                       /* points a work-group: CAMBER_BLOCK as its kernels see it */
-    size_t item;                        /* points a work-item: CAMBER_ITEM */
-    struct camber_program *programs[3]; /* by camber_method, built when first used */
-    struct camber_program *network_program;
+    bool rounds_correctly; /* divides and takes roots as the twin does */
+    bool host_memory;      /* the device works in the host's memory */
+    bool gl_context;       /* cl was made for a GL context: GL buffers can be shared */
+    size_t block;          /* points a work-group: CAMBER_BLOCK as its kernels see it */
+    size_t item;           /* points a work-item: CAMBER_ITEM */
+    /* Built when first used; the second of two for what is measured. */
+    struct camber_program *programs[2][3]; /* by camber_method */
+    struct camber_program *network_programs[2];
+    struct camber_program *measures;
     /* What its meshes may hold (0: what they want), hold, and held at most. */
     uint64_t memory_bytes, held_bytes, most_held_bytes;
     camber_mesh *meshes; /* each knows the next */
@@ -45,13 +47,16 @@ typedef struct camber_program {
     cl_program cl;
     cl_kernel classify, scan, emit; /* of a method */
     cl_kernel survey, project;      /* of networks */
-    uint64_t key;                   /* of the cache */
-    bool to_save;                   /* built from source: its binary is saved once the kernels have run */
+    cl_kernel tally, measure;
+    uint64_t key; /* of the cache */
+    bool to_save; /* built from source: its binary is saved once the kernels have run */
 } camber_program;
 
 /* The kernels of a method, built or loaded at first use. */
-camber_status camber_device_program(camber_device *device, camber_method method, camber_program **program);
-camber_status camber_device_network_program(camber_device *device, camber_program **program);
+camber_status camber_device_program(camber_device *device, camber_method method, bool measured,
+                                    camber_program **program);
+camber_status camber_device_network_program(camber_device *device, bool measured, camber_program **program);
+camber_status camber_device_measures(camber_device *device, camber_program **program);
 /* Saves the binary if it is new. Called after the kernels have run: only then does PoCL's hold machine code. */
 void camber_program_save(camber_device *device, camber_program *program);
 void camber_program_destroy(camber_context *context, camber_program *program);
@@ -91,6 +96,7 @@ typedef struct camber_mesh_part {
     size_t chunk_capacity;
     bool uploaded;
     cl_mem x, y, info, joins, offsets, sums, bases;
+    cl_mem lengths, measures; /* of what is measured: sums of chunks, and a camber_measure a slot */
     size_t slot_capacity;
     uint64_t *host_bases; /* first vertex and first index of each block, and the totals behind the last */
     size_t base_capacity;
@@ -146,6 +152,10 @@ size_t camber_part_slot(const camber_mesh *mesh, const camber_mesh_part *part, s
 /* How many of a part's output buffers there are. */
 static inline size_t camber_buffer_count(const camber_mesh *mesh) {
     return mesh->mesh_info.strips ? 1 : 2;
+}
+/* Of a record as the device has it: a measured one's words and its measure, rounded up to what a texel is. */
+static inline size_t camber_record_bytes(const camber_mesh_info *info) {
+    return (info->measured ? 2 : 1) * sizeof(camber_record);
 }
 /* First index of a polyline in its part, of strips its first vertex; the part's first polyline + polyline_count gives
  * the end. */
@@ -217,6 +227,18 @@ void camber_part_set_points(const camber_mesh *mesh, camber_mesh_part *part);
  * is large enough. */
 camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, bool *fits);
 size_t camber_part_network_slot(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline);
+/* A stage: a kernel, its arguments, and how many points a work-item takes. */
+typedef struct camber_stage {
+    const char *name;
+    cl_kernel kernel;
+    const cl_mem *mems;
+    cl_uint mem_count;
+    size_t points;
+} camber_stage;
+
+/* Runs a stage over a part's slots, a work-group a block. */
+camber_status camber_part_run(const camber_device *device, const camber_mesh_part *part, camber_stage stage,
+                              cl_event *event);
 /* Adds the time of a command to ms and releases the event, which may be NULL. */
 void camber_add_ms(cl_event event, double *ms);
 camber_status camber_fail_stage(const camber_device *device, const char *call, const char *name, cl_int code);
@@ -229,7 +251,7 @@ bool camber_device_is_roomy(const camber_device *device, uint64_t size_bytes);
 void camber_part_count(const camber_mesh *mesh, camber_mesh_part *part);
 void camber_mesh_count(camber_mesh *mesh);
 /* Of a part's input for so many slots. */
-uint64_t camber_input_bytes(const camber_device *device, size_t slots);
+uint64_t camber_input_bytes(const camber_device *device, bool measured, size_t slots);
 /* Lets parts and sections go, those of other meshes before the mesh's own, until so many more bytes can be held. keep
  * and its section stay, and with spare_made all parts of the mesh that are made. */
 bool camber_mesh_has_room(camber_mesh *mesh, const camber_mesh_part *keep, uint64_t more_bytes, bool spare_made);

@@ -1,20 +1,12 @@
 /* classify -> scan -> emit on a device, a part of the mesh at a time. */
-#include "tess/network.h"
-
 #include "kernels/layout.h"
+#include "tess/measures.h"
+#include "tess/network.h"
 
 #include <stdio.h>
 #include <string.h>
 
 /* ---- Stages ---- */
-
-/* A stage: a kernel and its arguments. */
-typedef struct stage {
-    const char *name;
-    cl_kernel kernel;
-    const cl_mem *mems;
-    cl_uint mem_count;
-} stage;
 
 camber_status camber_fail_stage(const camber_device *device, const char *call, const char *name, cl_int code) {
     char what[64];
@@ -22,9 +14,9 @@ camber_status camber_fail_stage(const camber_device *device, const char *call, c
     return camber_fail_cl(device->context, what, code);
 }
 
-/* Runs a stage over a part's slots, a work-group a block. */
-static camber_status run_stage(const camber_device *device, const camber_mesh_part *part, stage s, cl_event *event) {
-    const size_t global = part->slot_count / device->item, local = device->block / device->item;
+camber_status camber_part_run(const camber_device *device, const camber_mesh_part *part, camber_stage s,
+                              cl_event *event) {
+    const size_t global = part->slot_count / s.points, local = device->block / s.points;
     for (cl_uint i = 0; i < s.mem_count; i++) {
         const cl_int code = clSetKernelArg(s.kernel, i, sizeof *s.mems, s.mems + i);
         if (code != CL_SUCCESS)
@@ -89,9 +81,11 @@ static camber_status measure(camber_mesh *mesh, camber_mesh_part *part, const ca
     const cl_mem classify[] = {part->x,    part->y,    part->x,    part->y,    part->x,    part->y,
                                part->info, part->info, part->info, mesh->rows, part->joins};
     const cl_mem scan[] = {part->joins, part->joins, part->info, part->offsets, part->sums};
-    camber_status status = run_stage(device, part, (stage){"classify", program->classify, classify, 11}, events);
+    const size_t item = device->item;
+    camber_status status =
+        camber_part_run(device, part, (camber_stage){"classify", program->classify, classify, 11, item}, events);
     if (status == CAMBER_OK)
-        status = run_stage(device, part, (stage){"scan", program->scan, scan, 5}, events + 1);
+        status = camber_part_run(device, part, (camber_stage){"scan", program->scan, scan, 5, item}, events + 1);
     if (status == CAMBER_OK)
         status = scan_blocks(mesh, part);
     camber_add_ms(events[0], &mesh->mesh_info.classify_ms);
@@ -102,7 +96,7 @@ static camber_status measure(camber_mesh *mesh, camber_mesh_part *part, const ca
 static camber_status reserve_output(camber_mesh *mesh, camber_mesh_part *part) {
     const size_t records = mesh->mesh_info.strips ? part->record_count : part->slot_count;
     const size_t indices = part->index_count ? part->index_count : 1; /* no buffer is empty */
-    const size_t sizes[2] = {records * sizeof(camber_record), indices * 4};
+    const size_t sizes[2] = {records * camber_record_bytes(&mesh->mesh_info), indices * 4};
     const size_t count = camber_buffer_count(mesh);
     for (size_t i = 0; i < count; i++) {
         /* The next frame of a network may take a little more. */
@@ -134,8 +128,11 @@ static camber_status emit(camber_mesh *mesh, camber_mesh_part *part, const cambe
                            part->offsets,
                            part->bases,
                            part->buffers[CAMBER_BUFFER_RECORDS].mem,
-                           part->buffers[mesh->mesh_info.strips ? CAMBER_BUFFER_RECORDS : CAMBER_BUFFER_INDICES].mem};
-    status = run_stage(device, part, (stage){"emit", program->emit, mems, 9}, &event);
+                           part->buffers[mesh->mesh_info.strips ? CAMBER_BUFFER_RECORDS : CAMBER_BUFFER_INDICES].mem,
+                           part->measures};
+    const cl_uint mem_count = mesh->mesh_info.measured ? 10 : 9;
+    status =
+        camber_part_run(device, part, (camber_stage){"emit", program->emit, mems, mem_count, device->item}, &event);
     const cl_int code = clFinish(device->queue);
     if (status == CAMBER_OK && code != CL_SUCCESS)
         status = camber_fail_cl(device->context, "clFinish", code);
@@ -190,6 +187,8 @@ static camber_status upload_rows(camber_mesh *mesh, const camber_row *rows, size
 /* A part's slots, and what its output takes. *fits is false where the slots are too many. */
 static camber_status prepare(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program, bool *fits) {
     camber_status status = mesh->held ? camber_part_project(mesh, part, fits) : camber_part_upload(mesh, part);
+    if (status == CAMBER_OK && mesh->mesh_info.measured && !mesh->held && part->slot_count > 0)
+        status = camber_part_measure(mesh, part);
     if (status == CAMBER_OK && *fits && part->slot_count > 0)
         status = measure(mesh, part, program);
     if (mesh->held) {
@@ -263,7 +262,7 @@ camber_status camber_part_use(camber_mesh *mesh, camber_mesh_part *part) {
     bool fits = true;
     if (part->made || part->slot_count == 0)
         return CAMBER_OK;
-    camber_status status = camber_device_program(mesh->device, told.method, &program);
+    camber_status status = camber_device_program(mesh->device, told.method, told.measured, &program);
     if (status == CAMBER_OK) {
         camber_part_adopt(mesh, part, camber_part_need(mesh, part));
         status = prepare(mesh, part, program, &fits);
@@ -300,7 +299,8 @@ static camber_status plan(camber_mesh *mesh, const source *from, const camber_te
 }
 
 static camber_status tessellate(camber_mesh *mesh, const source *from, const camber_tessellation_desc *desc) {
-    const camber_mesh_info nothing = {.method = desc->method, .strips = desc->method == CAMBER_METHOD_STRIP};
+    const camber_mesh_info nothing = {
+        .method = desc->method, .strips = desc->method == CAMBER_METHOD_STRIP, .measured = desc->measured};
     camber_context *context = mesh->device->context;
     camber_row *rows = NULL;
     camber_program *program = NULL;
@@ -320,7 +320,7 @@ static camber_status tessellate(camber_mesh *mesh, const source *from, const cam
         status = plan(mesh, from, desc);
     if (status == CAMBER_OK && mesh->part_count > 0) {
         mesh->joins_counted = false;
-        status = camber_device_program(mesh->device, desc->method, &program);
+        status = camber_device_program(mesh->device, desc->method, desc->measured, &program);
         if (status == CAMBER_OK)
             status = upload_rows(mesh, rows, desc->stroke_count);
         if (status == CAMBER_OK)
@@ -330,7 +330,7 @@ static camber_status tessellate(camber_mesh *mesh, const source *from, const cam
         if (status == CAMBER_OK && mesh->held && mesh->mesh_info.record_count > 0)
             camber_program_save(mesh->device, mesh->held->program);
         camber_mesh_info *info = &mesh->mesh_info;
-        info->bytes = info->record_count * sizeof(camber_record) + (info->strips ? 0 : 4 * info->index_count);
+        info->bytes = info->record_count * camber_record_bytes(info) + (info->strips ? 0 : 4 * info->index_count);
         mesh->joins_counted |= status != CAMBER_OK;
     }
     if (status != CAMBER_OK)

@@ -1,6 +1,6 @@
 /* The CPU twin: what the kernels are held against. It walks each polyline from its first point to its last and appends,
  * with no counts, scans or offsets, and shares only the formulas of kernels/join.h with the device. */
-#include "tess/tess.h"
+#include "tess/measures.h"
 
 #include "kernels/join.h"
 
@@ -11,9 +11,10 @@ typedef struct twin {
     const camber_row *rows;
     camber_u32 method;
     camber_mesh_data *data;
-    camber_stages *stages;    /* NULL: not wanted */
-    uint32_t polyline, point; /* of its next point */
-    size_t record_capacity, index_capacity, stage_capacity;
+    const camber_measure *measures; /* of each slot. NULL: not measured */
+    camber_stages *stages;          /* NULL: not wanted */
+    uint32_t polyline, point;       /* of its next point */
+    size_t record_capacity, measure_capacity, index_capacity, stage_capacity;
     bool failed; /* out of memory, or of 32-bit indices */
 } twin;
 
@@ -23,15 +24,23 @@ typedef struct place {
     camber_u32 info, before, join;
 } place;
 
-static void push_record(twin *t, float x, float y, camber_u32 join, camber_u32 last) {
+static bool grow_records(twin *t) {
+    camber_context *context = t->polylines->context;
+    const size_t count = t->data->info.record_count + 1;
+    return camber_grow(context, &t->data->records, &t->record_capacity, count, sizeof *t->data->records) &&
+           (!t->measures || camber_grow(context, &t->data->measures, &t->measure_capacity, count, sizeof *t->measures));
+}
+
+/* A record of a slot, whose place may be another's. */
+static void push_record(twin *t, size_t slot, camber_record record) {
     camber_mesh_info *info = &t->data->info;
-    if (t->failed || info->record_count >= camber_records_max(t->data->info.method) ||
-        !camber_grow(t->polylines->context, &t->data->records, &t->record_capacity, info->record_count + 1,
-                     sizeof *t->data->records)) {
+    if (t->failed || info->record_count >= camber_records_max(t->data->info.method) || !grow_records(t)) {
         t->failed = true;
         return;
     }
-    t->data->records[info->record_count++] = (camber_record){x, y, join, last};
+    if (t->measures)
+        t->data->measures[info->record_count] = t->measures[slot - 1];
+    t->data->records[info->record_count++] = record;
 }
 
 static void push_index(twin *t, uint32_t index) {
@@ -53,7 +62,7 @@ static void push_triangle(twin *t, uint32_t a, uint32_t b, uint32_t c) {
 
 /* A record of the point itself. */
 static void push_point(twin *t, const place *p, camber_u32 join, camber_u32 last) {
-    push_record(t, t->polylines->x[p->slot], t->polylines->y[p->slot], join, last);
+    push_record(t, p->slot, (camber_record){t->polylines->x[p->slot], t->polylines->y[p->slot], join, last});
 }
 
 /* Rings and open ends are told apart by the flags of the point. */
@@ -75,7 +84,9 @@ static camber_u32 join_word(const twin *t, size_t slot, float *half_shorter) {
 
 /* A strip begins: where the segment before it comes in from, then the point. */
 static void push_start(twin *t, const place *p, size_t from, camber_u32 last) {
-    push_record(t, t->polylines->x[from], t->polylines->y[from], 0, (p->info & CAMBER_ROW_BITS) | CAMBER_RECORD_BREAK);
+    push_record(t, p->slot,
+                (camber_record){t->polylines->x[from], t->polylines->y[from], 0,
+                                (p->info & CAMBER_ROW_BITS) | CAMBER_RECORD_BREAK});
     push_point(t, p, p->join, last);
     t->data->info.vertex_count += 2;
 }
@@ -241,20 +252,31 @@ static camber_status run(camber_context *context, const camber_polylines *polyli
     camber_status status = camber_rows_create(context, polylines->row_count, desc, &rows);
     if (status != CAMBER_OK)
         return status;
-    data->info = (camber_mesh_info){.method = desc->method, .strips = desc->method == CAMBER_METHOD_STRIP};
-    twin t = {.polylines = polylines, .rows = rows, .method = (camber_u32)desc->method, .data = data, .stages = stages};
-    walk(&t);
+    camber_measure *measures = NULL;
+    if (desc->measured)
+        status = camber_polylines_measure(polylines, &measures);
+    data->info = (camber_mesh_info){
+        .method = desc->method, .strips = desc->method == CAMBER_METHOD_STRIP, .measured = desc->measured};
+    twin t = {.polylines = polylines,
+              .rows = rows,
+              .method = (camber_u32)desc->method,
+              .data = data,
+              .measures = measures,
+              .stages = stages};
+    if (status == CAMBER_OK)
+        walk(&t);
     camber_mesh_info *info = &data->info;
     if (t.failed)
         status = info->record_count >= camber_records_max(desc->method) ? camber_fail_records(context, desc->method)
                                                                         : CAMBER_ERROR_MEMORY;
     if (info->strips)
         info->index_count = 2 * info->record_count;
-    info->bytes = info->record_count * sizeof *data->records + (info->strips ? 0 : 4 * info->index_count);
+    info->bytes = info->record_count * camber_record_bytes(info) + (info->strips ? 0 : 4 * info->index_count);
     if (status == CAMBER_OK)
         status = camber_mesh_expand(context, rows, data);
     if (status == CAMBER_OK && stages && !info->strips)
         status = number_vertices(context, data, stages);
+    camber_free(context, measures);
     camber_free(context, rows);
     if (status == CAMBER_OK)
         return status;
@@ -288,6 +310,7 @@ void camber_mesh_data_free(camber_context *context, camber_mesh_data *data) {
     camber_free(context, data->indices);
     camber_free(context, data->vertices);
     camber_free(context, data->corners);
+    camber_free(context, data->measures);
     camber_free(context, data->records);
     *data = (camber_mesh_data){0};
 }

@@ -67,7 +67,7 @@ static void use_lines(fuzz_run *run, const camber_lines *lines, bool keep_open) 
     if (!fuzz_done(run, camber_polylines_create(run->context, &desc, &polylines)))
         return;
     for (int method = 0; method < 3; method++) {
-        const camber_tessellation_desc tessellation = {&stroke, 1, (camber_method)method, 0};
+        const camber_tessellation_desc tessellation = {&stroke, 1, (camber_method)method, 0, false};
         fuzz_tessellate(run, polylines, &tessellation, NULL);
     }
     camber_polylines_destroy(polylines);

@@ -70,7 +70,7 @@ static void read_input(fuzz_reader *from, input *made) {
     made->polylines.rows = made->rows;
     made->polylines.keep_open = head & 4;
     made->tessellation =
-        (camber_tessellation_desc){made->strokes, made->stroke_count, (camber_method)(head & 3), tolerance_px};
+        (camber_tessellation_desc){made->strokes, made->stroke_count, (camber_method)(head & 3), tolerance_px, false};
 }
 
 static void write_glb(fuzz_run *run, const camber_mesh_data *mesh, const input *from) {

@@ -1,0 +1,90 @@
+/* How far along its polyline each point lies, for what is drawn along lines: tally -> measure -> lay on a device, and
+ * the twin's way, from each polyline's first point to its last. */
+#include "tess/measures.h"
+
+#include "kernels/measure.h"
+
+#include <string.h>
+
+/* ---- Device ---- */
+
+/* Turns the sums of chunks into what lies before and behind each of them, in their place. */
+static void carry(camber_u64 *sums, size_t chunk_count) {
+    camber_u64 before = 0, behind = 0;
+    for (size_t i = 0; i < chunk_count; i++) {
+        const camber_u64 sum = sums[2 * i];
+        sums[2 * i] = before;
+        before = (sum & CAMBER_SUM_CLOSED ? 0 : before) + (sum >> CAMBER_SUM_SHIFT);
+    }
+    for (size_t i = chunk_count; i-- > 0;) {
+        const camber_u64 sum = sums[2 * i + 1];
+        sums[2 * i + 1] = behind;
+        behind = (sum & CAMBER_SUM_CLOSED ? 0 : behind) + (sum >> CAMBER_SUM_SHIFT);
+    }
+}
+
+static camber_status carry_sums(const camber_device *device, cl_mem sums, size_t chunk_count) {
+    cl_int code;
+    camber_u64 *mapped = clEnqueueMapBuffer(device->queue, sums, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0,
+                                            16 * chunk_count, 0, NULL, NULL, &code);
+    if (code != CL_SUCCESS)
+        return camber_fail_cl(device->context, "clEnqueueMapBuffer", code);
+    carry(mapped, chunk_count);
+    code = clEnqueueUnmapMemObject(device->queue, sums, mapped, 0, NULL, NULL);
+    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(device->context, "clEnqueueUnmapMemObject", code);
+}
+
+camber_status camber_part_measure(camber_mesh *mesh, camber_mesh_part *part) {
+    const camber_device *device = mesh->device;
+    camber_program *program = NULL;
+    camber_status status = camber_device_measures(mesh->device, &program);
+    if (status != CAMBER_OK)
+        return status;
+    const cl_mem tally[] = {part->x, part->y, part->info, part->lengths};
+    const cl_mem measure[] = {part->x, part->y, part->info, part->lengths, part->measures};
+    const camber_stage stages[] = {{"tally", program->tally, tally, 4, CAMBER_MEASURE_CHUNK},
+                                   {"measure", program->measure, measure, 5, CAMBER_MEASURE_CHUNK}};
+    status = camber_part_run(device, part, stages[0], NULL);
+    if (status == CAMBER_OK)
+        status = carry_sums(device, part->lengths, part->slot_count / CAMBER_MEASURE_CHUNK);
+    if (status == CAMBER_OK)
+        status = camber_part_run(device, part, stages[1], NULL);
+    if (status == CAMBER_OK && program->to_save && clFinish(device->queue) == CL_SUCCESS)
+        camber_program_save(mesh->device, program);
+    return status;
+}
+
+/* ---- Twin ---- */
+
+/* The slots [first, end) of a polyline's piece: from a first point to its last. */
+static void measure_piece(const camber_polylines *p, size_t first, size_t end, camber_measure *measures) {
+    camber_u64 sum = 0;
+    for (size_t pass = 0; pass < 2; pass++) {
+        const camber_u64 total = sum;
+        sum = 0;
+        for (size_t i = first; i < end; i++) {
+            if (i > first)
+                sum += camber_length_of(p->x[i] - p->x[i - 1], p->y[i] - p->y[i - 1], CAMBER_LENGTH_UNITS);
+            if (pass == 1)
+                measures[i - 1] = (camber_measure){camber_length_px(sum), camber_length_px(total)};
+        }
+    }
+}
+
+camber_status camber_polylines_measure(const camber_polylines *polylines, camber_measure **measures) {
+    camber_measure *made = camber_alloc_zero(polylines->context, polylines->slot_count + 1, sizeof *made);
+    if (!made)
+        return CAMBER_ERROR_MEMORY;
+    if (polylines->measures)
+        memcpy(made, polylines->measures, polylines->slot_count * sizeof *made);
+    for (size_t i = 1; i <= polylines->slot_count && !polylines->measures; i++) {
+        if (!(polylines->info[i] & CAMBER_POINT_FIRST))
+            continue;
+        const size_t first = i;
+        while (!(polylines->info[i] & CAMBER_POINT_LAST))
+            i++;
+        measure_piece(polylines, first, i + 1, made);
+    }
+    *measures = made;
+    return CAMBER_OK;
+}

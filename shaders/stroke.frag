@@ -4,7 +4,8 @@
 // runs every branch. For the same reason stroke.vert computes what is constant over a segment. With COUNT it adds 1 of
 // 255 in place of the colour, and fragments without coverage leave nothing, in the stencil neither. With UNION it leaves,
 // to be summed over all fragments of a pixel, the edge's normal times a (1 - a) and the area a, and a once more, to be
-// gathered one over the other: flatten.frag makes the union of them. GAP: strokes that may be two bands; BLUR: that may fade.
+// gathered one over the other: flatten.frag makes the union of them. GAP: strokes that may be two bands; BLUR: that may fade;
+// DASH: that may be dashed.
 precision highp float;
 
 flat in vec4 v_segment; // A in the piece, direction
@@ -22,6 +23,12 @@ flat in mediump vec4 v_color;
 flat in vec2 v_band; // half the gap between two bands, below 0 where there is none; blur; px
 #endif
 
+#if DASH
+flat in vec4 v_dash;          // at A: how far along the line, px, and how fast that grows; period; length of the line, px
+flat in highp ivec2 v_dashes; // the first one's texel; twice how many there are, and 1 where they are round
+uniform highp sampler2D u_rows;
+#endif
+
 layout(location = 0) out mediump vec4 o_color;
 
 // The area of a pixel whose centre lies s px inside an edge.
@@ -35,6 +42,35 @@ float covered(float s, vec4 edge) {
     return s < 0.0 ? area : 1.0 - area;
 #endif
 }
+
+#if DASH
+// The dash, from where to where, px; a period's last one stands before it once more, and its first one behind it.
+vec2 dash_at(int i) {
+    return texelFetch(u_rows, ivec2((v_dashes.x + i) & 2047, (v_dashes.x + i) >> 11), 0).xy;
+}
+
+// The area of a pixel that dashes leave, from its place in their period.
+float dashes_cover(float t, vec4 edge) {
+    float area = 0.0, drawn = 0.0;
+    for (int i = 0; i < v_dashes.y >> 1; i++) {
+        vec2 dash = dash_at(i);
+        area += covered(t - dash.x, edge) - covered(t - dash.y, edge);
+        drawn += max(min(dash.y, v_dash.z) - max(dash.x, 0.0), 0.0);
+    }
+    // Where a pixel holds more than a period, its share that is drawn is all there is to see.
+    return mix(drawn / v_dash.z, area, clamp(v_dash.z - 1.0, 0.0, 1.0));
+}
+
+// How far it is to the nearest dash.
+float dash_distance(float t) {
+    float nearest = 1e6;
+    for (int i = 0; i < v_dashes.y >> 1; i++) {
+        vec2 dash = dash_at(i);
+        nearest = min(nearest, max(dash.x - t, t - dash.y));
+    }
+    return max(nearest, 0.0);
+}
+#endif
 
 #if SHARP_JOINS
 const uint MITER = 3u, BEVEL = 4u, SPLIT_BEVEL = 6u, SPLIT_MITER = 7u;
@@ -118,6 +154,14 @@ void main() {
     float arc = max(ends.x, ends.y);
     // On an arc farther than a pixel from the segment, the distance is all.
     float bent = y - (bend(beyond.x, v_turns.y) + bend(beyond.y, v_turns.w)) * max(1.0 - arc, 0.0);
+#if DASH
+    bool dashed = v_dashes.y != 0, round_dashes = (v_dashes.y & 1) != 0;
+    // The ends of the line are its caps' to cut: up to where they do, dashes go on as they are a little inside.
+    float along = v_dash.x + clamp(x, 0.0, v_shape.x) * v_dash.y, inside = min(0.75, 0.5 * v_dash.w);
+    along = round_dashes ? along : clamp(along, inside, v_dash.w - inside);
+    float place = dashed ? along - v_dash.z * floor(along / v_dash.z) : 0.0;
+    arc += round_dashes ? dash_distance(place) : 0.0;
+#endif
     float d = sqrt(arc * arc + bent * bent);
     float area = covered(half_width - d, edge);
 #if THIN
@@ -154,6 +198,9 @@ void main() {
 #if FLAT_CAPS
     vec2 cap = v_shape.zw - past;
     area *= max(covered(cap.x, edge) + covered(cap.y, edge) - 1.0, 0.0);
+#endif
+#if DASH
+    area *= dashed && !round_dashes ? dashes_cover(place, edge) : 1.0;
 #endif
     // The two sides of a split end know the turn to 16 bits only, 4 / 65534 off at most: between them lies a strip that both
     // draw, so that neither leaves a hole.

@@ -5,13 +5,16 @@ precision highp float;
 precision highp int;
 
 layout(binding = 1) uniform highp usamplerBuffer u_records; // all other samplers are at unit 0
-uniform highp sampler2D u_rows; // three texels a row: half width px, -1 where not drawn, fan's step, translation px;
-                                // premultiplied colour; half the gap, below 0 where there is none, blur, px
+uniform highp sampler2D u_rows; // four texels a row: half width px, -1 where not drawn, fan's step, translation px;
+                                // premultiplied colour; half the gap, below 0 where there is none, blur, px; dashes: the
+                                // first one's texel, how many, twice that and 1 where they are round, period px
 uniform vec2 u_origin;          // of this piece in the picture, px
 uniform vec2 u_corner;          // of the viewport in the picture, px: it reaches past the piece
 uniform int u_table;            // of the rows; of strips the bits of gl_VertexID below the table's number
 uniform int u_table_rows;
 uniform vec2 u_scale;           // 2 / size of the viewport
+uniform int u_dashes;           // the texel that dashes begin at, in the texture of rows
+uniform int u_stride;           // texels a record: measured ones have another, with how far along their line they lie
 
 // What stroke.frag says of them.
 flat out vec4 v_segment;
@@ -28,6 +31,10 @@ flat out mediump vec4 v_color;
 #if GAP || BLUR
 flat out vec2 v_band;
 #endif
+#if DASH
+flat out vec4 v_dash;
+flat out highp ivec2 v_dashes;
+#endif
 
 const float PAD_PX = 0.75, NO_LIMIT_PX = 3.0e38;
 const uint FIRST = 2u, RING = 8u, BREAK = 16u, START = 32u; // of a record
@@ -42,9 +49,16 @@ struct Record {
 };
 
 Record record_at(int i) {
-    uvec4 words = texelFetch(u_records, i);
+    uvec4 words = texelFetch(u_records, u_stride * i);
     return Record(uintBitsToFloat(words.xy), words.z, words.w);
 }
+
+#if DASH
+// How far along its line a record lies, and how long that is.
+vec2 measure_at(int i) {
+    return uintBitsToFloat(texelFetch(u_records, u_stride * i + 1).xy);
+}
+#endif
 
 vec4 row_texel(int i) {
     return texelFetch(u_rows, ivec2(i & 2047, i >> 11), 0);
@@ -165,16 +179,17 @@ void main() {
     bool is_shared = (here.last & FIRST) != 0u ? is_seam : is_outer;
     bool goes_out = (here.last & (FIRST | START)) != 0u && !is_shared;
     bool is_again = (here.last & START) != 0u; // the end lies between
-    Record other = record_at(goes_out ? i + 1 : is_again ? i - 2 : i - 1);
+    int o = goes_out ? i + 1 : is_again ? i - 2 : i - 1;
 #else
     int table = u_table, i = gl_VertexID >> 7;
     uint corner = uint(gl_VertexID) & 127u;
     Record here = record_at(i);
     bool goes_out = corner == CENTRE || corner == OUT_LEFT_CORNER || corner == OUT_RIGHT_CORNER || corner == OUT_TIP;
-    Record other = record_at(kind_of(here.join) == DOT ? i : goes_out ? i + 1 : i - 1);
+    int o = kind_of(here.join) == DOT ? i : goes_out ? i + 1 : i - 1;
 #endif
+    Record other = record_at(o);
 
-    int texel = 3 * (table * u_table_rows + int(here.last >> 8u));
+    int texel = 4 * (table * u_table_rows + int(here.last >> 8u));
     vec4 row = row_texel(texel);
     float half_width = row.x;
     v_color = row_texel(texel + 1);
@@ -200,6 +215,12 @@ void main() {
     vec2 place = here.p + row.zw + u * clamp(e.along * reach, -e.limit, e.limit) + vec2(-u.y, u.x) * (e.across * reach);
 
     hand_over(a + row.zw, u, len, half_width, join_a, join_b);
+#if DASH
+    vec2 measure_a = measure_at(goes_out ? i : o), measure_b = measure_at(goes_out ? o : i);
+    vec4 dashes = row_texel(texel + 3);
+    v_dash = vec4(measure_a.x, len > 0.0 ? (measure_b.x - measure_a.x) / len : 0.0, dashes.z, measure_a.y);
+    v_dashes = ivec2(dashes.xy) + ivec2(u_dashes, 0);
+#endif
     // A row that is not drawn leaves no area; what lies outside the viewport would be clipped at some cost.
     gl_Position = vec4(half_width < 0.0 ? vec2(0.0) : (place - u_corner) * u_scale - 1.0, 0.0, 1.0);
 }

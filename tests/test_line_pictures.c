@@ -21,6 +21,7 @@ typedef enum reason {
 #define SHORT                                                                                                          \
     "butt ends are not anti-aliased there; bends of segments shorter than the line is wide lose what the segments "    \
     "cover"
+#define ANEW "dashes begin anew with every feature and at tile borders there; camber's run on along merged lines"
 #define DARKER "lines of one opacity darken where they overlap, themselves too; camber flattens them"
 
 /* Pictures that are farther off, and by how much at most. One that has come close must go from here. */
@@ -35,9 +36,9 @@ static const struct {
     {"line-color/default", FLAW, 0.0008, SHORT},
     {"line-color/function", FLAW, 0.0008, SHORT},
     {"line-dasharray/default", FLAW, 0.0004, BUTTS},
-    {"line-dasharray/function", NOT_YET, 1, "dashes"},
-    {"line-dasharray/long-segment", NOT_YET, 1, "dashes"},
-    {"line-dasharray/slant", NOT_YET, 1, "dashes"},
+    {"line-dasharray/function", FLAW, 0.004, ANEW},
+    {"line-dasharray/long-segment", FLAW, 0.07, ANEW},
+    {"line-dasharray/slant", FLAW, 0.015, ANEW},
     {"line-gap-width/property-function", FLAW, 0.0025,
      "bands of segments shorter than their gap are wide lie over each other in another order"},
     {"line-join/round-transparent", FLAW, 0.032, DARKER},

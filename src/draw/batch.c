@@ -30,6 +30,7 @@ void camber_renderer_use_shader(camber_renderer *renderer, const camber_shader *
     gl->Uniform2f(shader->corner, x - guard_x, y - guard_y);
     gl->Uniform2f(shader->scale, 2.0f / (w + 2.0f * guard_x), 2.0f / (h + 2.0f * guard_y));
     gl->Uniform1i(shader->table, mesh->mesh_info.strips ? 31 : 0);
+    gl->Uniform1i(shader->stride, mesh->mesh_info.measured ? 2 : 1);
 }
 
 void camber_renderer_bind_part(camber_renderer *renderer, camber_mesh_part *part) {
@@ -88,7 +89,9 @@ camber_status camber_batch_add(camber_renderer *renderer, const camber_run *run,
     if (status != CAMBER_OK)
         return status;
     if (!same_table)
-        camber_renderer_fill_rows(renderer, run, batch->table_count++);
+        status = camber_renderer_fill_rows(renderer, run, batch->table_count++);
+    if (status != CAMBER_OK)
+        return status;
     batch->mesh = mesh;
     batch->pass = run->pass;
     batch->bands |= run->bands;
@@ -99,6 +102,7 @@ camber_status camber_batch_add(camber_renderer *renderer, const camber_run *run,
 void camber_batch_forget(camber_renderer *renderer) {
     renderer->batch.table_count = renderer->batch.range_count = renderer->batch.call_count = 0;
     renderer->batch.bands = 0;
+    renderer->dash_count = 0;
 }
 
 /* ---- Calls ---- */
@@ -236,11 +240,13 @@ camber_status camber_batch_draw(camber_renderer *renderer, unsigned variant, con
     variant |= batch->bands;
     variant |= piece->coverage == CAMBER_COVERAGE_LINEAR ? CAMBER_VARIANT_LINEAR : 0u;
     camber_status status = camber_renderer_mesh_shader(renderer, mesh, piece->thinnest_px, variant, &shader);
+    if (status == CAMBER_OK)
+        status = camber_renderer_upload_rows(renderer, batch->table_count * mesh->row_count);
     if (status == CAMBER_OK) {
-        camber_renderer_upload_rows(renderer, batch->table_count * mesh->row_count);
         camber_renderer_use_shader(renderer, shader, mesh, piece);
         gl->Uniform1i(shader->table, mesh->mesh_info.strips ? (GLint)vertex_bits(mesh) : 0);
         gl->Uniform1i(shader->table_rows, (GLint)mesh->row_count);
+        gl->Uniform1i(shader->dashes, camber_renderer_first_dash(batch->table_count * mesh->row_count));
         status = draw_ranges(renderer, shader, piece->draw_calls);
         gl->BindVertexArray(0);
     }

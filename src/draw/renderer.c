@@ -49,6 +49,7 @@ void camber_renderer_destroy(camber_renderer *renderer) {
     camber_free(context, renderer->batch.counts);
     camber_free(context, renderer->batch.firsts);
     camber_free(context, renderer->batch.ranges);
+    camber_free(context, renderer->dash_texels);
     camber_free(context, renderer->row_texels);
     camber_free(context, renderer);
 }

@@ -9,13 +9,14 @@ enum {
     CAMBER_VARIANT_LINEAR = 1,
     CAMBER_VARIANT_SHARP_JOINS = 2,
     CAMBER_VARIANT_FLAT_CAPS = 4,
-    CAMBER_VARIANT_COUNT = 8,    /* counts the fragments with coverage instead of drawing them */
-    CAMBER_VARIANT_UNION = 16,   /* leaves what the union of a layer's strokes is made from */
-    CAMBER_VARIANT_THIN = 32,    /* strokes with both edges in a pixel */
-    CAMBER_VARIANT_TIPS = 64,    /* round caps that are hardly wider than a pixel */
-    CAMBER_VARIANT_GAP = 128,    /* strokes that may be two bands */
-    CAMBER_VARIANT_BLUR = 256,   /* strokes that may fade */
-    CAMBER_VARIANT_METHOD = 512, /* times camber_method */
+    CAMBER_VARIANT_COUNT = 8,     /* counts the fragments with coverage instead of drawing them */
+    CAMBER_VARIANT_UNION = 16,    /* leaves what the union of a layer's strokes is made from */
+    CAMBER_VARIANT_THIN = 32,     /* strokes with both edges in a pixel */
+    CAMBER_VARIANT_TIPS = 64,     /* round caps that are hardly wider than a pixel */
+    CAMBER_VARIANT_GAP = 128,     /* strokes that may be two bands */
+    CAMBER_VARIANT_BLUR = 256,    /* strokes that may fade */
+    CAMBER_VARIANT_DASH = 512,    /* strokes that may be dashed */
+    CAMBER_VARIANT_METHOD = 1024, /* times camber_method */
     CAMBER_METHODS = 3,
     CAMBER_VARIANTS = CAMBER_METHODS * CAMBER_VARIANT_METHOD
 };
@@ -30,7 +31,7 @@ typedef enum camber_flatten_kind {
 
 typedef struct camber_shader {
     GLuint program; /* 0: not built yet */
-    GLint origin, corner, scale, layer_color, table, table_rows;
+    GLint origin, corner, scale, layer_color, table, table_rows, stride, dashes;
 } camber_shader;
 
 /* A texture to draw into, of the size of a piece. */
@@ -62,7 +63,7 @@ typedef struct camber_run {
     bool one_color;    /* its layer holds coverage alone, and color is put over it */
     bool layered;
     camber_color color;
-    unsigned bands; /* CAMBER_VARIANT_GAP and BLUR, where a paint has them */
+    unsigned bands; /* CAMBER_VARIANT_GAP, BLUR and DASH, where a paint has them */
 } camber_run;
 
 typedef struct camber_batch_range {
@@ -116,6 +117,8 @@ struct camber_renderer {
     GLsizei row_height; /* texels */
     float *row_texels;  /* 4 floats a texel */
     size_t row_capacity;
+    float *dash_texels; /* behind the rows' tables: 4 floats a dash, of which two say from where to where it goes */
+    size_t dash_count, dash_capacity;
     camber_batch batch;
     camber_flight flights[CAMBER_FRAMES_IN_FLIGHT];
     size_t first_flight, flight_count; /* a ring */
@@ -152,8 +155,12 @@ static inline bool camber_pass_draws(const camber_pass *pass, uint32_t row) {
 bool camber_renderer_holds_rows(const camber_renderer *renderer, size_t row_count);
 camber_status camber_renderer_reserve_rows(camber_renderer *renderer, size_t row_count);
 /* A run's table: rows of other alphas are left out, and a layer's rows are drawn opaque. */
-void camber_renderer_fill_rows(camber_renderer *renderer, const camber_run *run, size_t table);
-void camber_renderer_upload_rows(camber_renderer *renderer, size_t row_count);
+camber_status camber_renderer_fill_rows(camber_renderer *renderer, const camber_run *run, size_t table);
+camber_status camber_renderer_upload_rows(camber_renderer *renderer, size_t row_count);
+/* The texel behind the tables. */
+GLint camber_renderer_first_dash(size_t row_count);
+/* Whether a dash is one that camber.h allows. */
+bool camber_dash_is_valid(const camber_dash *dash);
 /* One table of a mesh with widths alone; a row past the paints is not drawn. */
 camber_status camber_renderer_set_widths(camber_renderer *renderer, const camber_mesh *mesh, const camber_paint *paints,
                                          size_t paint_count);

@@ -2,10 +2,11 @@
  * its texels. */
 #include "draw/renderer.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
-enum { ROW_TEXTURE_WIDTH = 2048, TEXELS_A_ROW = 3 }; /* as stroke.vert has them */
+enum { ROW_TEXTURE_WIDTH = 2048, TEXELS_A_ROW = 4 }; /* as stroke.vert has them */
 
 /* Of the whole stroke: a gap's bands lie on both sides of it. */
 static float half_width(const camber_paint *paint) {
@@ -17,7 +18,64 @@ bool camber_renderer_holds_rows(const camber_renderer *renderer, size_t row_coun
     return row_count <= texels / TEXELS_A_ROW;
 }
 
-void camber_renderer_fill_rows(camber_renderer *renderer, const camber_run *run, size_t table) {
+/* ---- Dashes ---- */
+
+GLint camber_renderer_first_dash(size_t row_count) {
+    return (GLint)(TEXELS_A_ROW * row_count);
+}
+
+/* In its unit. */
+static double period_of(const camber_dash *dash) {
+    double sum = 0.0;
+    for (size_t i = 0; i < dash->count; i++)
+        sum += (double)dash->lengths[i];
+    return sum * (dash->count % 2 ? 2.0 : 1.0);
+}
+
+bool camber_dash_is_valid(const camber_dash *dash) {
+    if (dash->count == 0 || dash->count > CAMBER_DASH_LENGTHS_MAX)
+        return false;
+    for (size_t i = 0; i < dash->count; i++)
+        if (!(dash->lengths[i] >= 0.0f))
+            return false;
+    const double period = period_of(dash);
+    return period > 0.0 && period <= (double)FLT_MAX;
+}
+
+static void put_dash(camber_renderer *renderer, double from, double to) {
+    float *texel = renderer->dash_texels + 4 * renderer->dash_count++;
+    texel[0] = (float)from;
+    texel[1] = (float)to;
+    texel[2] = texel[3] = 0.0f;
+}
+
+/* The dashes of a row, and its texel that says where they are. A period's last one stands before it once more and its
+ * first one behind it, so that the shader need not look around. */
+static camber_status add_dashes(camber_renderer *renderer, const camber_dash *dash, double unit_px, bool round,
+                                float texel[4]) {
+    const size_t lengths = dash->count * (dash->count % 2 ? 2 : 1), count = lengths / 2 + 2;
+    const double period = period_of(dash) * unit_px;
+    const double left_out = (double)dash->lengths[(lengths - 1) % dash->count] * unit_px;
+    double at = 0.0;
+    if (!camber_grow(renderer->share.device->context, &renderer->dash_texels, &renderer->dash_capacity,
+                     renderer->dash_count + count, 4 * sizeof *renderer->dash_texels))
+        return CAMBER_ERROR_MEMORY;
+    texel[0] = (float)renderer->dash_count;
+    texel[1] = (float)(2 * count + round);
+    texel[2] = (float)period;
+    put_dash(renderer, -left_out - (double)dash->lengths[(lengths - 2) % dash->count] * unit_px, -left_out);
+    for (size_t i = 0; i < lengths; i += 2) {
+        const double end = at + (double)dash->lengths[i % dash->count] * unit_px;
+        put_dash(renderer, at, end);
+        at = end + (double)dash->lengths[(i + 1) % dash->count] * unit_px;
+    }
+    put_dash(renderer, period, period + (double)dash->lengths[0] * unit_px);
+    return CAMBER_OK;
+}
+
+/* ---- Rows ---- */
+
+camber_status camber_renderer_fill_rows(camber_renderer *renderer, const camber_run *run, size_t table) {
     const camber_pass *pass = run->pass;
     float *texels = renderer->row_texels + 4 * TEXELS_A_ROW * table * pass->mesh->row_count;
     for (size_t i = 0; i < pass->mesh->row_count; i++) {
@@ -37,12 +95,18 @@ void camber_renderer_fill_rows(camber_renderer *renderer, const camber_run *run,
         texel[9] = fmaxf(paint->blur_px, 0.0f);
         for (int c = 0; c < 4; c++)
             texel[4 + c] = run->layered && run->one_color ? 1.0f : color[c];
+        const camber_row *row = pass->mesh->host_rows + i;
+        const double unit_px = paint->dash_unit_px > 0.0f ? (double)paint->dash_unit_px : 1.0;
+        if (paint->dash && add_dashes(renderer, pass->dashes + paint->dash - 1, unit_px, row->cap == CAMBER_CAP_ROUND,
+                                      texel + 12) != CAMBER_OK)
+            return CAMBER_ERROR_MEMORY;
     }
+    return CAMBER_OK;
 }
 
 camber_status camber_renderer_reserve_rows(camber_renderer *renderer, size_t row_count) {
     const camber_gl *gl = &renderer->share.surface->gl;
-    const size_t texels = TEXELS_A_ROW * (row_count ? row_count : 1);
+    const size_t texels = TEXELS_A_ROW * (row_count ? row_count : 1) + renderer->dash_count;
     const size_t height = (texels + ROW_TEXTURE_WIDTH - 1) / ROW_TEXTURE_WIDTH;
     if (height > renderer->share.surface->info.largest_target_px)
         return camber_fail(renderer->share.device->context, CAMBER_ERROR_LIMIT, "%zu rows of style; merge equal ones",
@@ -67,9 +131,15 @@ camber_status camber_renderer_reserve_rows(camber_renderer *renderer, size_t row
     return status;
 }
 
-void camber_renderer_upload_rows(camber_renderer *renderer, size_t row_count) {
+camber_status camber_renderer_upload_rows(camber_renderer *renderer, size_t row_count) {
     const camber_gl *gl = &renderer->share.surface->gl;
-    const size_t texels = TEXELS_A_ROW * row_count;
+    const size_t texels = TEXELS_A_ROW * row_count + renderer->dash_count;
+    const camber_status status = camber_renderer_reserve_rows(renderer, row_count);
+    if (status != CAMBER_OK)
+        return status;
+    if (renderer->dash_count)
+        memcpy(renderer->row_texels + 4 * TEXELS_A_ROW * row_count, renderer->dash_texels,
+               4 * renderer->dash_count * sizeof *renderer->dash_texels);
     const GLsizei whole = (GLsizei)(texels / ROW_TEXTURE_WIDTH), rest = (GLsizei)(texels % ROW_TEXTURE_WIDTH);
     gl->BindTexture(GL_TEXTURE_2D, renderer->row_texture);
     if (whole)
@@ -77,6 +147,7 @@ void camber_renderer_upload_rows(camber_renderer *renderer, size_t row_count) {
     if (rest)
         gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, whole, rest, 1, GL_RGBA, GL_FLOAT,
                           renderer->row_texels + 4 * (size_t)whole * ROW_TEXTURE_WIDTH);
+    return CAMBER_OK;
 }
 
 camber_status camber_renderer_set_widths(camber_renderer *renderer, const camber_mesh *mesh, const camber_paint *paints,
@@ -90,6 +161,5 @@ camber_status camber_renderer_set_widths(camber_renderer *renderer, const camber
         renderer->row_texels[4 * TEXELS_A_ROW * i] = drawn ? half_width(paints + i) : -1.0f;
         renderer->row_texels[4 * TEXELS_A_ROW * i + 1] = mesh->host_rows[i].fan_step;
     }
-    camber_renderer_upload_rows(renderer, mesh->row_count);
-    return CAMBER_OK;
+    return camber_renderer_upload_rows(renderer, mesh->row_count);
 }

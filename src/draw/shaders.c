@@ -90,7 +90,9 @@ static camber_status build(camber_renderer *renderer, const char *head, const ch
                               gl->GetUniformLocation(program, "u_scale"),
                               gl->GetUniformLocation(program, "u_color"),
                               gl->GetUniformLocation(program, "u_table"),
-                              gl->GetUniformLocation(program, "u_table_rows")};
+                              gl->GetUniformLocation(program, "u_table_rows"),
+                              gl->GetUniformLocation(program, "u_stride"),
+                              gl->GetUniformLocation(program, "u_dashes")};
     return CAMBER_OK;
 }
 
@@ -101,12 +103,14 @@ camber_status camber_renderer_stroke_shader(camber_renderer *renderer, unsigned 
         snprintf(
             head, sizeof head,
             "#define LINEAR %d\n#define SHARP_JOINS %d\n#define FLAT_CAPS %d\n#define COUNT %d\n"
-            "#define UNION %d\n#define METHOD %u\n#define THIN %d\n#define TIPS %d\n#define GAP %d\n#define BLUR %d\n",
+            "#define UNION %d\n#define METHOD %u\n#define THIN %d\n#define TIPS %d\n#define GAP %d\n#define BLUR %d\n"
+            "#define DASH %d\n",
             (variant & CAMBER_VARIANT_LINEAR) != 0, (variant & CAMBER_VARIANT_SHARP_JOINS) != 0,
             (variant & CAMBER_VARIANT_FLAT_CAPS) != 0, (variant & CAMBER_VARIANT_COUNT) != 0,
             (variant & CAMBER_VARIANT_UNION) != 0, variant / CAMBER_VARIANT_METHOD,
             (variant & CAMBER_VARIANT_THIN) != 0, (variant & CAMBER_VARIANT_TIPS) != 0,
-            (variant & CAMBER_VARIANT_GAP) != 0, (variant & CAMBER_VARIANT_BLUR) != 0);
+            (variant & CAMBER_VARIANT_GAP) != 0, (variant & CAMBER_VARIANT_BLUR) != 0,
+            (variant & CAMBER_VARIANT_DASH) != 0);
         const camber_status status = build(renderer, head, camber_stroke_vert, camber_stroke_frag, wanted);
         if (status != CAMBER_OK)
             return status;
@@ -136,7 +140,8 @@ camber_status camber_renderer_count_shader(camber_renderer *renderer, camber_met
     if (!wanted->program) {
         char head[128];
         snprintf(head, sizeof head,
-                 "#define METHOD %d\n#define TIPS 0\n#define SHARP_JOINS 0\n#define GAP 0\n#define BLUR 0\n",
+                 "#define METHOD %d\n#define TIPS 0\n#define SHARP_JOINS 0\n#define GAP 0\n#define BLUR 0\n"
+                 "#define DASH 0\n",
                  (int)method);
         const camber_status status = build(renderer, head, camber_stroke_vert, camber_count_frag, wanted);
         if (status != CAMBER_OK)

@@ -71,7 +71,7 @@ static uint64_t key_of(const camber_view *view, const camber_plan *plan) {
 }
 
 bool camber_geometry_serves(const camber_geometry *geometry, const camber_view *view, const camber_plan *plan) {
-    return geometry->network && geometry->key == key_of(view, plan);
+    return geometry->network && geometry->key == key_of(view, plan) && (geometry->measured || plan->dash_count == 0);
 }
 
 /* ---- The network ---- */
@@ -108,7 +108,8 @@ static camber_status make_network(const camber_features *features, const entry_l
                                       .polyline_count = features->polyline_count,
                                       .importance = features->importance,
                                       .entries = entries,
-                                      .entry_count = list->count};
+                                      .entry_count = list->count,
+                                      .measured = geometry->measured};
     camber_context *context = geometry->context;
     if (!(geometry->polylines = camber_alloc(context, list->count, sizeof *geometry->polylines)) ||
         !(geometry->pairs = camber_alloc(context, list->count, sizeof *geometry->pairs)))
@@ -122,8 +123,10 @@ static camber_status make_network(const camber_features *features, const entry_l
 
 camber_status camber_geometry_create(const camber_features *features, const camber_view *view, const camber_plan *plan,
                                      camber_geometry *geometry) {
-    *geometry =
-        (camber_geometry){.context = features->context, .set_count = plan->set_count, .key = key_of(view, plan)};
+    *geometry = (camber_geometry){.context = features->context,
+                                  .set_count = plan->set_count,
+                                  .measured = plan->dash_count > 0,
+                                  .key = key_of(view, plan)};
     const copies worlds = copies_in(view, plan);
     entry_list list = {0};
     camber_status status = CAMBER_OK;

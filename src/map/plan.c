@@ -157,6 +157,7 @@ typedef struct row_table {
     camber_paint *tuple;
     uint32_t *slots;   /* row + 1; 0: free */
     size_t slot_count; /* a power of two */
+    bool failed;       /* no memory for dashes */
 } row_table;
 
 /* By set and class: the row, CAMBER_NO_ROW where the set does not draw the class, and the place in a sorted set. */
@@ -204,6 +205,38 @@ static camber_paint paint_of(const camber_plan_layer *layer, const camber_layer_
                           .translate_y_px = layer->translate_px[1]};
 }
 
+/* The number of a dash among the plan's, from 1; 0 where memory ran out. Styles have few. */
+static uint32_t intern_dash(camber_plan *plan, const camber_layer_dashes *dashes) {
+    for (size_t i = 0; i < plan->dash_count; i++) {
+        const camber_layer_dashes *other = plan->dash_lengths + i;
+        if (other->count == dashes->count &&
+            memcmp(other->lengths, dashes->lengths, dashes->count * sizeof *dashes->lengths) == 0)
+            return (uint32_t)i + 1;
+    }
+    if (!camber_grow(plan->context, &plan->dash_lengths, &plan->dash_capacity, plan->dash_count + 1,
+                     sizeof *plan->dash_lengths))
+        return 0;
+    plan->dash_lengths[plan->dash_count++] = *dashes;
+    return (uint32_t)plan->dash_count;
+}
+
+/* What passes take, once the lengths stay where they are. */
+static camber_status list_dashes(camber_plan *plan) {
+    plan->dashes = camber_alloc(plan->context, plan->dash_count, sizeof *plan->dashes);
+    if (!plan->dashes)
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < plan->dash_count; i++)
+        plan->dashes[i] = (camber_dash){plan->dash_lengths[i].lengths, plan->dash_lengths[i].count};
+    return CAMBER_OK;
+}
+
+/* Other engines draw dashes of the whole zoom below, with its width, and let them grow with the map up to the next. */
+static float dash_unit_px(const camber_plan_layer *layer, const camber_view *view, const camber_feature_view *feature) {
+    const double zoom = camber_view_style_zoom(view), whole = floor(zoom);
+    const double width = camber_style_layer_paint(layer->look.layer, whole, feature).width;
+    return (float)fmin(fmax(width * exp2(zoom - whole) * view->ratio, 1e-3), WIDEST_PX);
+}
+
 /* A limit of 1 bevels every turn, and so do those below; 0 would mean the default. */
 static camber_stroke stroke_of(const camber_layer_paint *paint) {
     return (camber_stroke){0.0f, paint->join, paint->cap, (float)fmin(fmax(paint->miter_limit, 1.0), 1e6)};
@@ -240,6 +273,7 @@ static uint32_t intern_row(camber_plan *plan, camber_plan_set *set, row_table *t
 /* The tuple of a class, and its stroke; false where none of the set's layers draws it. */
 static bool fill_tuple(camber_plan *plan, const camber_plan_set *set, const camber_view *view,
                        const camber_feature_view *feature, row_table *table, double *key) {
+    bool *failed = &table->failed;
     size_t at = set->first_layer;
     table->stroke.width_px = 0.0f;
     for (size_t i = 0; i < set->layer_count; i++, at = plan->layers[at].next) {
@@ -247,6 +281,11 @@ static bool fill_tuple(camber_plan *plan, const camber_plan_set *set, const camb
         const camber_layer_paint paint = camber_layer_look_paint(&layer->look, feature);
         camber_paint *made = table->tuple + layer->slot;
         *made = paint_of(layer, &paint, view->ratio);
+        if (paint.dashes.count && made->width_px > 0.0f) {
+            made->dash = intern_dash(plan, &paint.dashes);
+            made->dash_unit_px = dash_unit_px(layer, view, feature);
+            *failed |= made->dash == 0;
+        }
         const float width_px = fmaxf(table->stroke.width_px, whole_width(made));
         table->stroke = stroke_of(&paint);
         table->stroke.width_px = width_px;
@@ -273,6 +312,8 @@ static camber_status match_set(const camber_features *features, const camber_vie
         const camber_feature_view feature = view_of(features, features->classes + c);
         if (!fill_tuple(plan, set, view, &feature, table, rows->keys + at))
             continue;
+        if (table->failed)
+            return CAMBER_ERROR_MEMORY;
         if (plan->row_count >= MOST_ROWS)
             return camber_fail(plan->context, CAMBER_ERROR_LIMIT,
                                "style: more than %zu different widths and colours; let them depend on fewer properties",
@@ -467,6 +508,8 @@ camber_status camber_plan_create(const camber_features *features, const camber_v
     for (size_t s = 0; s < plan->set_count && status == CAMBER_OK; s++)
         status = match_set(features, view, plan, plan->sets + s, &rows);
     if (status == CAMBER_OK)
+        status = list_dashes(plan);
+    if (status == CAMBER_OK)
         status = number_pairs(features, plan, &rows);
     if (status == CAMBER_OK)
         status = group_by_class(features, plan, rows.rows, &by_class);
@@ -483,6 +526,8 @@ done:
 }
 
 void camber_plan_destroy(camber_plan *plan) {
+    camber_free(plan->context, plan->dashes);
+    camber_free(plan->context, plan->dash_lengths);
     camber_free(plan->context, plan->entries);
     camber_free(plan->context, plan->pair_keys);
     camber_free(plan->context, plan->pair_rows);

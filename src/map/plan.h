@@ -48,7 +48,10 @@ typedef struct camber_plan {
     size_t paint_count, paint_capacity;
     camber_stroke *strokes; /* by row: the widest of its paints, a gap's bands together */
     size_t row_count, stroke_capacity;
-    float translate_px;  /* the farthest */
+    float translate_px;                /* the farthest */
+    camber_layer_dashes *dash_lengths; /* dash_count */
+    camber_dash *dashes;               /* dash_count, of them */
+    size_t dash_count, dash_capacity;
     uint32_t *pair_rows; /* pair_count */
     double *pair_keys;   /* pair_count: their features' places in a sorted set */
     size_t pair_count;

@@ -128,8 +128,11 @@ static void put_paints(const numbering *n, const layer_run *run, camber_paint *p
         bool opaque;
         if (!layer_draws(n, layer, &opaque))
             continue;
-        for (size_t k = first_of(n, set); k < end_of(n, set); k++)
+        for (size_t k = first_of(n, set); k < end_of(n, set); k++) {
             paints[k] = paint_of(n, layer, k);
+            if (!n->by_pair) /* pieces do not know where their lines begin */
+                paints[k].dash = 0;
+        }
     }
 }
 
@@ -157,6 +160,8 @@ static camber_status make_passes(camber_context *context, const numbering *n, si
                                         .polyline_count = runs[i].end_polyline - runs[i].first_polyline,
                                         .paints = paints,
                                         .paint_count = runs[i].end_paint,
+                                        .dashes = n->plan->dashes,
+                                        .dash_count = n->plan->dash_count,
                                         .opacity = runs[i].opacity};
         paints += runs[i].end_paint;
     }
@@ -202,8 +207,10 @@ static camber_camera camera_of(const camber_scene *scene) {
 }
 
 static camber_tessellation_desc desc_of(const camber_scene *scene, camber_method method) {
-    return (camber_tessellation_desc){
-        .strokes = scene->pair_strokes, .stroke_count = scene->plan.pair_count, .method = method};
+    return (camber_tessellation_desc){.strokes = scene->pair_strokes,
+                                      .stroke_count = scene->plan.pair_count,
+                                      .method = method,
+                                      .measured = scene->plan.dash_count > 0};
 }
 
 static void forget(camber_scene *scene) {

@@ -56,11 +56,29 @@ static bool store_pair(const camber_property_row *row, const camber_value *value
     return true;
 }
 
+/* One without lengths above 0, or with one below, is solid; of more lengths than there is room for, the first ones. */
+static bool store_dashes(const camber_property_row *row, const camber_value *value, camber_layer_dashes *dashes) {
+    double sum = 0.0;
+    if (value->type != CAMBER_VALUE_ARRAY)
+        return false;
+    const uint32_t count = value->count < CAMBER_DASH_LENGTHS_MAX ? value->count : CAMBER_DASH_LENGTHS_MAX;
+    for (uint32_t i = 0; i < count; i++) {
+        double length;
+        if (!store_number(row, value->items + i, &length) || value->items[i].number < 0.0)
+            return false;
+        sum += length;
+        dashes->lengths[i] = (float)fmin(length, 1e6);
+    }
+    dashes->count = sum > 0.0 ? count : 0;
+    return true;
+}
+
 static bool store_value(const camber_property_row *row, const camber_value *value, void *field) {
     switch (row->property.type) {
     case CAMBER_TYPE_NUMBER: return store_number(row, value, field);
     case CAMBER_TYPE_STRING: return store_choice(row, value, field);
-    case CAMBER_TYPE_ARRAY: return store_pair(row, value, field);
+    case CAMBER_TYPE_ARRAY:
+        return row->property.length == 0 ? store_dashes(row, value, field) : store_pair(row, value, field);
     default: break;
     }
     if (value->type == CAMBER_VALUE_COLOR)

@@ -121,6 +121,12 @@ typedef enum camber_translate_anchor {
     CAMBER_TRANSLATE_VIEWPORT,
 } camber_translate_anchor;
 
+/* Lengths that are drawn and left out in turn, in widths of the line. */
+typedef struct camber_layer_dashes {
+    uint32_t count; /* 0: solid */
+    float lengths[CAMBER_DASH_LENGTHS_MAX];
+} camber_layer_dashes;
+
 /* How a layer draws a feature at a zoom, in CSS px. Numbers are finite and within the specification's ranges. */
 typedef struct camber_layer_paint {
     camber_cap cap;
@@ -132,6 +138,7 @@ typedef struct camber_layer_paint {
     double opacity;
     double border_width;       /* of the line's own width, on each side */
     camber_color border_color; /* the alpha includes the opacity */
+    camber_layer_dashes dashes;
     /* The same for all features. */
     double layer_opacity;
     double translate[2];

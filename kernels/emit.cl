@@ -85,8 +85,8 @@ kernel __attribute__((reqd_work_group_size(LANES, 1, 1))) void emit(
     /* two indices a record */
     size_t k = ((size_t)bases[2 * get_group_id(0) + 1] + (offsets[get_global_id(0)] >> 16)) / 2;
     for (size_t i = first; i < first + CAMBER_ITEM; i += 4) {
-        if (CAMBER_MEASURED | is_rare(joins[i], info[i]) | is_rare(joins[i + 1], info[i + 1]) | is_rare(joins[i + 2], info[i + 2]) |
-            is_rare(joins[i + 3], info[i + 3])) {
+        if (CAMBER_MEASURED | is_rare(joins[i], info[i]) | is_rare(joins[i + 1], info[i + 1]) |
+            is_rare(joins[i + 2], info[i + 2]) | is_rare(joins[i + 3], info[i + 3])) {
             for (size_t n = i; n < i + 4; n++) {
                 const size_t count = put_any(x, y, n, joins[n], info[n], records, k);
 #if CAMBER_MEASURED

@@ -1,8 +1,8 @@
 /* tally, measure: how far along its polyline each slot lies, px, and how long that polyline is.
  * A work-item a chunk of CAMBER_MEASURE_CHUNK slots. tally reads x, y, info[n + 2]; writes sums[2 * chunks]: of the
  * segments into the chunk's points behind the last first point in it, and of those before the first last one. measure
- * reads what tally reads and carries[2 * chunks], what lies before the chunk of the line that it begins in, and behind it
- * of that it ends in; writes measures[2 * n]: along and in all. */
+ * reads what tally reads and carries[2 * chunks], what lies before the chunk of the line that it begins in, and behind
+ * it of that it ends in; writes measures[2 * n]: along and in all. */
 
 kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK / CAMBER_MEASURE_CHUNK, 1, 1))) void tally(
     global const float *restrict x, global const float *restrict y, global const camber_u32 *restrict info,

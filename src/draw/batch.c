@@ -107,54 +107,18 @@ void camber_batch_forget(camber_renderer *renderer) {
 
 /* ---- Calls ---- */
 
-/* Draws some of the strips that are listed. */
-static void draw_listed(camber_renderer *renderer, size_t first, size_t count, size_t *draw_calls) {
-    const camber_gl *gl = &renderer->share.surface->gl;
-    const camber_batch *batch = &renderer->batch;
-    if (gl->MultiDrawArrays && count > 1) {
-        gl->MultiDrawArrays(GL_TRIANGLE_STRIP, batch->firsts + first, batch->counts + first, (GLsizei)count);
-        ++*draw_calls;
-        return;
-    }
-    for (size_t i = first; i < first + count; i++)
-        gl->DrawArrays(GL_TRIANGLE_STRIP, batch->firsts[i], batch->counts[i]);
-    *draw_calls += count;
-}
-
-/* Draws so many vertices of the strips from the first on, and gives the strip where what is left begins. */
-static size_t draw_share(camber_renderer *renderer, size_t first, size_t vertices, size_t *draw_calls) {
-    camber_batch *batch = &renderer->batch;
-    size_t i = first;
-    while (i < batch->call_count && (size_t)batch->counts[i] <= vertices)
-        vertices -= (size_t)batch->counts[i++];
-    const GLsizei part = (GLsizei)(vertices & ~(size_t)1); /* an even cut keeps the winding */
-    if (i == batch->call_count || part < 4) {
-        draw_listed(renderer, first, i - first, draw_calls);
-        return i;
-    }
-    const GLsizei rest = batch->counts[i] - part + 2; /* the last edge again */
-    batch->counts[i] = part;
-    draw_listed(renderer, first, i - first + 1, draw_calls);
-    batch->firsts[i] += part - 2;
-    batch->counts[i] = rest;
-    return i;
-}
-
-/* Makes the strips that are listed. A software renderer transforms vertices in the calling thread and rasterises what
- * is flushed in others: a first share is flushed early, so that all cores have work soon. */
+/* Makes the strips that are listed. */
 static void draw_strips(camber_renderer *renderer, size_t *draw_calls) {
-    static const size_t sixteenths[] = {1, 3, 6}; /* the rest follows */
-    enum { LARGE = 1 << 15 };
-    const camber_surface *surface = renderer->share.surface;
+    const camber_gl *gl = &renderer->share.surface->gl;
     camber_batch *batch = &renderer->batch;
-    size_t total = 0, first = 0;
-    for (size_t i = 0; i < batch->call_count; i++)
-        total += (size_t)batch->counts[i];
-    for (size_t i = 0; surface->info.software && total > LARGE && i < sizeof sixteenths / sizeof *sixteenths; i++) {
-        first = draw_share(renderer, first, total / 16 * sixteenths[i], draw_calls);
-        surface->gl.Flush();
+    if (gl->MultiDrawArrays && batch->call_count > 1) {
+        gl->MultiDrawArrays(GL_TRIANGLE_STRIP, batch->firsts, batch->counts, (GLsizei)batch->call_count);
+        ++*draw_calls;
+    } else {
+        for (size_t i = 0; i < batch->call_count; i++)
+            gl->DrawArrays(GL_TRIANGLE_STRIP, batch->firsts[i], batch->counts[i]);
+        *draw_calls += batch->call_count;
     }
-    draw_listed(renderer, first, batch->call_count - first, draw_calls);
     batch->call_count = 0;
 }
 

@@ -400,6 +400,8 @@ camber_status camber_features_set_progress(camber_features *features, double fir
         for (size_t n = 1; n <= features->polyline_count; n++)
             if (!grow_progress(features, n))
                 return CAMBER_ERROR_MEMORY;
+    if (!features->progress) /* of no polyline */
+        return CAMBER_OK;
     features->progress[2 * features->polyline_count - 2] = (float)first;
     features->progress[2 * features->polyline_count - 1] = (float)last;
     return CAMBER_OK;

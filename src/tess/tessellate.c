@@ -93,22 +93,27 @@ static camber_status measure(camber_mesh *mesh, camber_mesh_part *part, const ca
     return status;
 }
 
+/* Room in an output buffer, and some more where there is plenty: the next frame of a network may take it. */
+static camber_status reserve_buffer(camber_mesh *mesh, camber_mesh_part *part, size_t which, size_t size_bytes) {
+    camber_buffer *buffer = part->buffers + which;
+    const size_t room = size_bytes + (mesh->held ? size_bytes / 4 : 0);
+    const bool enough = size_bytes <= buffer->capacity_bytes || room > mesh->device->info.largest_buffer_bytes ||
+                        !camber_device_is_roomy(mesh->device, mesh->buffer_copies * room);
+    const camber_status status = camber_part_reserve_output(mesh, part, which, enough ? size_bytes : room);
+    if (status == CAMBER_OK)
+        buffer->used_bytes = size_bytes;
+    return status;
+}
+
 static camber_status reserve_output(camber_mesh *mesh, camber_mesh_part *part) {
-    const size_t records = mesh->mesh_info.strips ? part->record_count : part->slot_count;
+    const bool strips = mesh->mesh_info.strips;
+    const size_t records = strips ? part->record_count : part->slot_count;
     const size_t indices = part->index_count ? part->index_count : 1; /* no buffer is empty */
-    const size_t sizes[2] = {records * camber_record_bytes(&mesh->mesh_info), indices * 4};
-    const size_t count = camber_buffer_count(mesh);
-    for (size_t i = 0; i < count; i++) {
-        /* The next frame of a network may take a little more. */
-        const size_t room = sizes[i] + (mesh->held ? sizes[i] / 4 : 0), most = mesh->device->info.largest_buffer_bytes;
-        const bool enough = sizes[i] <= part->buffers[i].capacity_bytes || room > most ||
-                            !camber_device_is_roomy(mesh->device, mesh->buffer_copies * room);
-        const camber_status status = camber_part_reserve_output(mesh, part, i, enough ? sizes[i] : room);
-        if (status != CAMBER_OK)
-            return status;
-        part->buffers[i].used_bytes = sizes[i];
-    }
-    return mesh->ops->begin(mesh->ops_user, part->buffers, count);
+    camber_status status =
+        reserve_buffer(mesh, part, CAMBER_BUFFER_RECORDS, records * camber_record_bytes(&mesh->mesh_info));
+    if (status == CAMBER_OK && !strips)
+        status = reserve_buffer(mesh, part, CAMBER_BUFFER_INDICES, 4 * indices);
+    return status == CAMBER_OK ? mesh->ops->begin(mesh->ops_user, part->buffers, camber_buffer_count(mesh)) : status;
 }
 
 static camber_status emit(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program) {

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char *const OPTIONS = "-cl-std=CL1.2 -DCAMBER_METHOD=%d%s%s -DCAMBER_ITEM=%zu%s";
+static const char *const OPTIONS = "-cl-std=CL1.2 -w -DCAMBER_METHOD=%d%s%s -DCAMBER_ITEM=%zu%s";
 
 /* Which kernels a program has. */
 typedef enum program_kind {

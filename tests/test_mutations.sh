@@ -110,7 +110,7 @@ grep -q ': pixels, on .*EGL$' "$tmp/tap" && backend=egl
 mutant strip kernels/classify.cl "a neighbour off by one" 'x_before[i - 1]' 'x_before[i]'
 mutant strip kernels/classify.cl "only first points are ends" 'point & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST)' \
     'point & CAMBER_POINT_FIRST'
-mutant strip kernels/scan.cl "runs that begin where they end" 'total[from][lane] - own' 'total[from][lane]'
+mutant strip kernels/scan.cl "runs that begin half as far" 'total[from][lane] - own' '(total[from][lane] - own) / 2u'
 mutant kite kernels/scan.cl "a point in its neighbour's place" 'joins_before[first + n - 1]' 'joins_before[first + n]'
 evidence=(--pictures "$tmp/pictures" --junit "$tmp/junit.xml")
 mutant strip kernels/emit.cl "a missing break" 'CAMBER_RECORD_BREAK};' '0u};'

@@ -17,6 +17,7 @@ static void fill(studio *s, camber_mesh *mesh, int number) {
         camber_tessellate(mesh, polylines, &(camber_tessellation_desc){.strokes = &stroke, .stroke_count = 1}),
         CAMBER_OK);
     camber_polylines_destroy(polylines);
+    scene_free(&lines);
 }
 
 static camber_mesh *make_mesh(studio *s, camber_renderer *renderer) {

@@ -21,7 +21,7 @@ typedef enum reason {
 #define SHORT                                                                                                          \
     "butt ends are not anti-aliased there; bends of segments shorter than the line is wide lose what the segments "    \
     "cover"
-#define ANEW "dashes begin anew with every feature and at tile borders there; camber's run on along merged lines"
+#define ANEW "dashes begin anew where a tile cuts a line there; camber's run on"
 #define DARKER "lines of one opacity darken where they overlap, themselves too; camber flattens them"
 
 /* Pictures that are farther off, and by how much at most. One that has come close must go from here. */

@@ -115,6 +115,8 @@ static void add_layer(camber_plan *plan, const set_table *table, const camber_st
                       const camber_view *view, bool border) {
     camber_plan_layer *made = plan->layers + plan->layer_count;
     *made = (camber_plan_layer){.look = camber_style_layer_look(layer, camber_view_style_zoom(view)), .border = border};
+    if (layer->properties[CAMBER_LINE_DASHARRAY])
+        made->below = camber_style_layer_look(layer, floor(made->look.zoom));
     find_translation(&made->look, view, made->translate_px);
     uint32_t *slot = find_set(plan, table, &made->look);
     if (*slot == 0) {
@@ -232,9 +234,9 @@ static camber_status list_dashes(camber_plan *plan) {
 
 /* Other engines draw dashes of the whole zoom below, with its width, and let them grow with the map up to the next. */
 static float dash_unit_px(const camber_plan_layer *layer, const camber_view *view, const camber_feature_view *feature) {
-    const double zoom = camber_view_style_zoom(view), whole = floor(zoom);
-    const double width = camber_style_layer_paint(layer->look.layer, whole, feature).width;
-    return (float)fmin(fmax(width * exp2(zoom - whole) * view->ratio, 1e-3), WIDEST_PX);
+    const double grown = exp2(camber_view_style_zoom(view) - layer->below.zoom);
+    return (float)fmin(fmax(camber_layer_look_paint(&layer->below, feature).width * grown * view->ratio, 1e-3),
+                       WIDEST_PX);
 }
 
 /* A limit of 1 bevels every turn, and so do those below; 0 would mean the default. */

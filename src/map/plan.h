@@ -23,6 +23,7 @@ typedef struct camber_plan_set {
 
 typedef struct camber_plan_layer {
     camber_layer_look look;
+    camber_layer_look below; /* at the whole zoom below, of a layer with dashes */
     float translate_px[2];
     size_t set;
     size_t slot; /* which of the set's layers it is */

@@ -1,6 +1,7 @@
 #!/bin/bash
 # Breaks kernels, shaders and join maths on purpose, one line at a time, and runs `camber validate` on each build: it
-# must end with 1 and name a check that failed. test_mutations.sh SOURCES [PART OF A ROW'S FILE OR WORDS]
+# must end with 1 and name a check that failed, or be ended by what the broken kernel did.
+# test_mutations.sh SOURCES [PART OF A ROW'S FILE OR WORDS]
 # kernels/join.h and kernels/network.h are compiled into kernels and CPU twin alike, so that pixels and the window tell.
 set -u
 sources=$1
@@ -59,7 +60,11 @@ mutant() {
         validate --method "$method" "${evidence[@]}"
         local status=$? first
         first=$(grep -m 1 '^not ok' "$tmp/tap")
-        if [ "$status" = 1 ] && [ -n "$first" ]; then
+        if [ "$status" -gt 128 ] && [ ${#evidence[@]} = 0 ]; then
+            # What a broken kernel leaves unwritten is whatever lay there: the next one may go anywhere.
+            caught=$((caught + 1))
+            echo "caught: $file: $what: ended by signal $((status - 128))"
+        elif [ "$status" = 1 ] && [ -n "$first" ]; then
             caught=$((caught + 1))
             echo "caught: $file: $what"
             echo "    $(grep -c '^not ok' "$tmp/tap") of $(sed -n 's/^1\.\.//p' "$tmp/tap") checks, the first: ${first#not ok }"

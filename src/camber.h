@@ -355,40 +355,6 @@ typedef struct camber_measure {
     float along_px, total_px; /* from its first point, and to its last */
 } camber_measure;
 
-/* A vertex as the vertex shader makes it from records. A segment runs from A to B, u is its direction, L its length.
- * The vertex lies at P + u * clamp(along * g, -limit_px, +limit_px) + (-u.y, u.x) * across * g with g = half the width
- * that is drawn + CAMBER_PAD_PX, and P = B where at_end, else A. All vertices but those that no triangle ends with (is
- * provoked by) carry the segment that the triangle draws. */
-typedef struct camber_vertex {
-    float x, y;     /* P, px */
-    float dx, dy;   /* B - A, px; 0, 0 for a dot, whose u is 1, 0 */
-    float along;    /* in units of g */
-    float limit_px; /* bound on the offset along the segment; 3e38: none */
-    int16_t across; /* in units of g / 16384 */
-    /* Bits 0-2: camber_end at A; 3-5: camber_end at B; 6: at_end; 7: the segment before A is its line's first, 8: that
-     * behind B is its line's last. */
-    uint16_t flags;
-    int16_t turn_a; /* tan(turn angle / 4) * 32767 at A, positive from x to y (clockwise as drawn); 0: a cap */
-    int16_t turn_b; /* the same at B */
-    uint32_t row;   /* of the polyline */
-} camber_vertex;
-
-/* What the fragment shader does past an end of a segment. */
-typedef enum camber_end {
-    CAMBER_END_ROUND = 0, /* distance to the end point: the paper's arc */
-    CAMBER_END_BUTT,      /* nothing past the end */
-    CAMBER_END_SQUARE,    /* nothing past half a width beyond the end */
-    CAMBER_END_MITER,     /* the edges run on; the geometry is cut at the bisector */
-    CAMBER_END_BEVEL,     /* cut by the line through the two outer corners */
-    /* The same, on this segment's side of the bisector only: where the geometry is not cut along it, at strip's tight
-     * joins and turns past 127 degrees. */
-    CAMBER_END_SPLIT_ROUND,
-    CAMBER_END_SPLIT_BEVEL,
-    CAMBER_END_SPLIT_MITER,
-} camber_end;
-
-#define CAMBER_RESTART_INDEX 0xffffffffu
-
 typedef struct camber_mesh_info {
     camber_method method;
     bool strips;           /* triangle strips; else triangles */
@@ -494,68 +460,6 @@ CAMBER_API camber_status camber_tessellate_network(camber_mesh *mesh, camber_net
 /* Whether the mesh's last tessellation was of this network. */
 CAMBER_API bool camber_mesh_holds(const camber_mesh *mesh, const camber_network *network);
 
-/* The CPU twin: the polylines that camber_tessellate would make the same mesh of, an entry each. Of desc only the
- * strokes matter. */
-CAMBER_API camber_status camber_network_project(const camber_network *network, const camber_camera *camera,
-                                                const camber_tessellation_desc *desc, camber_polylines **polylines);
-/* The same polylines with each piece by itself and without entries of which nothing is seen; a ring that is cut begins
- * at a cut. *entries is the entry of each; free it with camber_entries_free. */
-CAMBER_API camber_status camber_network_lines(const camber_network *network, const camber_camera *camera,
-                                              const camber_tessellation_desc *desc, camber_lines *lines,
-                                              uint32_t **entries);
-CAMBER_API void camber_entries_free(camber_context *context, uint32_t *entries);
-
-/* A mesh in host memory; free with camber_mesh_data_free. */
-typedef struct camber_mesh_data {
-    camber_mesh_info info;
-    /* What the device has: info.record_count, and of kite and fan info.index_count, record << 7 | corner
-     * (CAMBER_CORNER_* in kernels/layout.h); NULL of strips. */
-    camber_record *records;
-    camber_measure *measures; /* as many, of measured meshes. NULL: not measured */
-    uint32_t *corners;
-    /* What is drawn by it: info.vertex_count, and info.index_count. Of strips these are two indices a record, both
-     * CAMBER_RESTART_INDEX where it lies between two strips. At a tight join two records follow each other that have
-     * one index in common: of the two triangles between them one has no area, the other winds the other way and is
-     * culled. */
-    camber_vertex *vertices;
-    uint32_t *indices;
-} camber_mesh_data;
-
-/* Whether the three indices from one on are a triangle that is drawn. Of strips every index begins three, and the
- * triangles at odd ones have their first two corners in the other order. */
-CAMBER_API bool camber_mesh_data_draws(const camber_mesh_data *data, size_t first_index);
-
-CAMBER_API camber_status camber_mesh_read(camber_mesh *mesh, camber_mesh_data *data);
-/* The CPU twin: the same bytes as camber_tessellate where the device rounds correctly. Needs no device. */
-CAMBER_API camber_status camber_tessellate_on_host(camber_context *context, const camber_polylines *polylines,
-                                                   const camber_tessellation_desc *desc, camber_mesh_data *data);
-CAMBER_API void camber_mesh_data_free(camber_context *context, camber_mesh_data *data);
-
-/* ---- Stages: what came before the mesh, for proofs ---- */
-
-/* What classify and scan found for a point that is tessellated. */
-typedef struct camber_point_stages {
-    uint32_t polyline;     /* as given */
-    uint32_t point;        /* of the polyline's kept points */
-    float x, y;            /* px */
-    uint32_t join;         /* classify's word; its bits: CAMBER_JOIN_* in kernels/layout.h */
-    uint32_t first_vertex; /* of the mesh: where emit puts this point's vertices */
-    uint64_t first_index;  /* and its indices */
-} camber_point_stages;
-
-/* Free with camber_stages_free. */
-typedef struct camber_stages {
-    camber_point_stages *points; /* point_count, in input order; rings have their first point again at the end */
-    size_t point_count;
-} camber_stages;
-
-/* Of the last tessellation. Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_DEVICE. */
-CAMBER_API camber_status camber_mesh_read_stages(camber_mesh *mesh, camber_stages *stages);
-/* The CPU twin's. */
-CAMBER_API camber_status camber_stages_on_host(camber_context *context, const camber_polylines *polylines,
-                                               const camber_tessellation_desc *desc, camber_stages *stages);
-CAMBER_API void camber_stages_free(camber_context *context, camber_stages *stages);
-
 /* ---- Drawing --------------------------------------------------------------------------------------- */
 
 /* Straight (not premultiplied), each 0 to 1. */
@@ -657,34 +561,6 @@ CAMBER_API camber_status camber_render(camber_renderer *renderer, const camber_f
 CAMBER_API camber_status camber_render_begin(camber_renderer *renderer, const camber_frame *frame);
 CAMBER_API camber_status camber_render_end(camber_renderer *renderer, camber_rows_fn *rows, void *user,
                                            camber_frame_stats *stats);
-
-/* ---- Overdraw: what the GPU does for a mesh, counted on it ---- */
-
-/* Consecutive indices of a mesh, as camber_mesh_read numbers them: of triangles whole triangles, of strips a part of
- * one or several whole ones, from an even index on. */
-typedef struct camber_index_range {
-    uint64_t first_index, index_count;
-} camber_index_range;
-
-typedef struct camber_overdraw_desc {
-    uint32_t width, height; /* of the picture, px */
-    camber_mesh *mesh;
-    const camber_paint *paints; /* paint_count; only widths matter. A row at or past it is not drawn */
-    size_t paint_count;
-    const camber_index_range *ranges; /* range_count, each counted by itself. NULL: the mesh's polylines */
-    size_t range_count;
-    uint8_t *map; /* width * height: takes in how many ranges a pixel is repeated, up to 255. NULL: not wanted */
-} camber_overdraw_desc;
-
-typedef struct camber_overdraw {
-    uint64_t fragments;       /* shaded: every pixel of every triangle of the ranges, those without coverage too */
-    uint64_t drawn_pixels;    /* with coverage, once a range */
-    uint64_t repeated_pixels; /* with coverage from more than one fragment of a range, once a range */
-} camber_overdraw;
-
-/* Counts with the stencil and additive blending, two draw calls a range. Returns what camber_render returns. */
-CAMBER_API camber_status camber_overdraw_count(camber_renderer *renderer, const camber_overdraw_desc *desc,
-                                               camber_overdraw *overdraw);
 
 /* ---- PNG ------------------------------------------------------------------------------------------- */
 

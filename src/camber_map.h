@@ -7,7 +7,7 @@
 #ifndef CAMBER_MAP_H
 #define CAMBER_MAP_H
 
-#include "camber.h"
+#include "camber_proof.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -8,6 +8,7 @@
 #endif
 
 #include "base/base.h"
+#include "camber_proof.h"
 
 #include <ftw.h>
 #include <setjmp.h>

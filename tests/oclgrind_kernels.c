@@ -1,7 +1,7 @@
 /* Every kernel, method, join, cap, size of a work-group and border of a block on some hundred points, whole and in
  * parts, against the twin: small enough for a simulator that checks bounds and races. Run by test_oclgrind.sh; without
  * the simulator it is a quick test of whatever device there is. */
-#include "camber.h"
+#include "camber_proof.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -8,7 +8,7 @@ trap 'rm -rf "$folder"' EXIT
 cmake --install "$build" --prefix "$folder/usr" >"$folder/log" || { cat "$folder/log"; exit 1; }
 
 cat >"$folder/core.c" <<'C'
-#include <camber.h>
+#include <camber_proof.h>
 #include <stdio.h>
 int main(void) {
     const float points[] = {10, 10, 90, 10, 90, 90};
@@ -84,8 +84,8 @@ for library in "$libdir"/libcamber*.so "$libdir"/camber/*.so; do
     fi
 done
 exported=$(nm -D --defined-only "$libdir/libcamber.so" | awk '{print $3}' | grep '^camber_' | sort)
-declared=$(grep -oE '^CAMBER_API [^(]*\(' "$folder"/usr/include/camber.h | grep -oE 'camber_[a-z_]+\($' | tr -d '(' | sort)
-[ "$exported" = "$declared" ] || { diff <(echo "$exported") <(echo "$declared"); echo "exports and camber.h differ"; exit 1; }
+declared=$(grep -ohE '^CAMBER_API [^(]*\(' "$folder"/usr/include/camber.h "$folder"/usr/include/camber_proof.h | grep -oE 'camber_[a-z_]+\($' | tr -d '(' | sort)
+[ "$exported" = "$declared" ] || { diff <(echo "$exported") <(echo "$declared"); echo "exports and the headers differ"; exit 1; }
 "$folder/usr/bin/camber" --version
 [ "$map" = ON ] || exit 0
 # GDAL comes with the first file, and what is wrong where it cannot come is one line.

@@ -2,6 +2,7 @@
 #ifndef CAMBER_CLI_CHECKS_H
 #define CAMBER_CLI_CHECKS_H
 
+#include "camber_proof.h"
 #include "cli/rigs.h"
 #include "proof/truth.h"
 

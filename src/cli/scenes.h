@@ -2,7 +2,7 @@
 #ifndef CAMBER_CLI_SCENES_H
 #define CAMBER_CLI_SCENES_H
 
-#include "camber.h"
+#include "camber_proof.h"
 
 #define CAMBER_SCENE_ROWS 5
 #define CAMBER_SCENE_WIDTH_ROW 2 /* that is drawn CAMBER_SCENE_WIDTH_PX wide */

@@ -2,7 +2,7 @@
 #ifndef CAMBER_PROOF_BATCHES_H
 #define CAMBER_PROOF_BATCHES_H
 
-#include "camber.h"
+#include "camber_proof.h"
 
 /* What an index of 16 bits reaches beside the restart index. */
 #define CAMBER_BATCH_VERTICES 65535u

@@ -3,7 +3,7 @@
 #ifndef CAMBER_PROOF_JOINS_H
 #define CAMBER_PROOF_JOINS_H
 
-#include "camber.h"
+#include "camber_proof.h"
 
 typedef enum camber_join_room {
     CAMBER_JOIN_PLAIN = 0, /* both segments have room to be cut along the bisector */

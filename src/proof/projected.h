@@ -4,7 +4,7 @@
 #ifndef CAMBER_PROOF_PROJECTED_H
 #define CAMBER_PROOF_PROJECTED_H
 
-#include "camber.h"
+#include "camber_proof.h"
 
 /* Freed with camber_projected_free. */
 typedef struct camber_projected {

@@ -3,6 +3,7 @@
 #define CAMBER_TESS_H
 
 #include "base/base.h"
+#include "camber_proof.h"
 #include "lines/lines.h"
 
 #include <CL/cl.h>

@@ -5,7 +5,7 @@
 #ifndef CAMBER_FUZZ_H
 #define CAMBER_FUZZ_H
 
-#include "camber.h"
+#include "camber_proof.h"
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -11,5 +11,8 @@ highp vec4 edge_of(highp vec2 normal) {
     return vec4(edge_extent(normal), 1.0 / p, q > 1e-4 ? 0.5 / (p * q) : 0.0);
 }
 
+// Whether anything is drawn that depends on how far along its line it lies.
+#define MEASURED (DASH || TRIM)
+
 // Past an end by more px than any fragment lies there.
 const highp float NEVER_PX = 1e6;

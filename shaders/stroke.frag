@@ -5,7 +5,7 @@
 // 255 in place of the colour, and fragments without coverage leave nothing, in the stencil neither. With UNION it leaves,
 // to be summed over all fragments of a pixel, the edge's normal times a (1 - a) and the area a, and a once more, to be
 // gathered one over the other: flatten.frag makes the union of them. GAP: strokes that may be two bands; BLUR: that may fade;
-// DASH: that may be dashed.
+// DASH: that may be dashed; TRIM: that may be drawn in part.
 precision highp float;
 
 flat in vec4 v_segment; // A in the piece, direction
@@ -23,10 +23,15 @@ flat in mediump vec4 v_color;
 flat in vec2 v_band; // half the gap between two bands, below 0 where there is none; blur; px
 #endif
 
+#if MEASURED
+flat in vec4 v_measure; // at A: how far along the line, px, and how fast that grows; length of the line; period of dashes, px
+#endif
 #if DASH
-flat in vec4 v_dash;          // at A: how far along the line, px, and how fast that grows; period; length of the line, px
 flat in highp ivec2 v_dashes; // the first one's texel; twice how many there are, and 1 where they are round
 uniform highp sampler2D u_rows;
+#endif
+#if TRIM
+flat in vec2 v_trim; // from where to where the line is not drawn, px along it
 #endif
 
 layout(location = 0) out mediump vec4 o_color;
@@ -55,10 +60,10 @@ float dashes_cover(float t, vec4 edge) {
     for (int i = 0; i < v_dashes.y >> 1; i++) {
         vec2 dash = dash_at(i);
         area += covered(t - dash.x, edge) - covered(t - dash.y, edge);
-        drawn += max(min(dash.y, v_dash.z) - max(dash.x, 0.0), 0.0);
+        drawn += max(min(dash.y, v_measure.w) - max(dash.x, 0.0), 0.0);
     }
     // Where a pixel holds more than a period, its share that is drawn is all there is to see.
-    return mix(drawn / v_dash.z, area, clamp(v_dash.z - 1.0, 0.0, 1.0));
+    return mix(drawn / v_measure.w, area, clamp(v_measure.w - 1.0, 0.0, 1.0));
 }
 
 // How far it is to the nearest dash.
@@ -154,12 +159,15 @@ void main() {
     float arc = max(ends.x, ends.y);
     // On an arc farther than a pixel from the segment, the distance is all.
     float bent = y - (bend(beyond.x, v_turns.y) + bend(beyond.y, v_turns.w)) * max(1.0 - arc, 0.0);
+#if MEASURED
+    float along = v_measure.x + clamp(x, 0.0, v_shape.x) * v_measure.y;
+#endif
 #if DASH
     bool dashed = v_dashes.y != 0, round_dashes = (v_dashes.y & 1) != 0;
     // The ends of the line are its caps' to cut: up to where they do, dashes go on as they are a little inside.
-    float along = v_dash.x + clamp(x, 0.0, v_shape.x) * v_dash.y, inside = min(0.75, 0.5 * v_dash.w);
-    along = round_dashes ? along : clamp(along, inside, v_dash.w - inside);
-    float place = dashed ? along - v_dash.z * floor(along / v_dash.z) : 0.0;
+    float inside = min(0.75, 0.5 * v_measure.z), period = v_measure.w;
+    float dash_along = round_dashes ? along : clamp(along, inside, v_measure.z - inside);
+    float place = dashed ? dash_along - period * floor(dash_along / period) : 0.0;
     arc += round_dashes ? dash_distance(place) : 0.0;
 #endif
     float d = sqrt(arc * arc + bent * bent);
@@ -201,6 +209,9 @@ void main() {
 #endif
 #if DASH
     area *= dashed && !round_dashes ? dashes_cover(place, edge) : 1.0;
+#endif
+#if TRIM
+    area *= 1.0 - covered(along - v_trim.x, edge) + covered(along - v_trim.y, edge);
 #endif
     // The two sides of a split end know the turn to 16 bits only, 4 / 65534 off at most: between them lies a strip that both
     // draw, so that neither leaves a hole.

@@ -5,9 +5,10 @@ precision highp float;
 precision highp int;
 
 layout(binding = 1) uniform highp usamplerBuffer u_records; // all other samplers are at unit 0
-uniform highp sampler2D u_rows; // four texels a row: half width px, -1 where not drawn, fan's step, translation px;
+uniform highp sampler2D u_rows; // TEXELS_A_ROW texels a row: half width px, -1 where not drawn, fan's step, translation px;
                                 // premultiplied colour; half the gap, below 0 where there is none, blur, px; dashes: the
-                                // first one's texel, how many, twice that and 1 where they are round, period px
+                                // first one's texel, how many, twice that and 1 where they are round, period px;
+                                // from where to where its line is not drawn, shares of its length
 uniform vec2 u_origin;          // of this piece in the picture, px
 uniform vec2 u_corner;          // of the viewport in the picture, px: it reaches past the piece
 uniform int u_table;            // of the rows; of strips the bits of gl_VertexID below the table's number
@@ -31,9 +32,14 @@ flat out mediump vec4 v_color;
 #if GAP || BLUR
 flat out vec2 v_band;
 #endif
+#if MEASURED
+flat out vec4 v_measure;
+#endif
 #if DASH
-flat out vec4 v_dash;
 flat out highp ivec2 v_dashes;
+#endif
+#if TRIM
+flat out vec2 v_trim;
 #endif
 
 const float PAD_PX = 0.75, NO_LIMIT_PX = 3.0e38;
@@ -53,7 +59,7 @@ Record record_at(int i) {
     return Record(uintBitsToFloat(words.xy), words.z, words.w);
 }
 
-#if DASH
+#if MEASURED
 // How far along its line a record lies, and how long that is.
 vec2 measure_at(int i) {
     return uintBitsToFloat(texelFetch(u_records, u_stride * i + 1).xy);
@@ -189,7 +195,7 @@ void main() {
 #endif
     Record other = record_at(o);
 
-    int texel = 4 * (table * u_table_rows + int(here.last >> 8u));
+    int texel = TEXELS_A_ROW * (table * u_table_rows + int(here.last >> 8u));
     vec4 row = row_texel(texel);
     float half_width = row.x;
     v_color = row_texel(texel + 1);
@@ -215,11 +221,17 @@ void main() {
     vec2 place = here.p + row.zw + u * clamp(e.along * reach, -e.limit, e.limit) + vec2(-u.y, u.x) * (e.across * reach);
 
     hand_over(a + row.zw, u, len, half_width, join_a, join_b);
-#if DASH
+#if MEASURED
     vec2 measure_a = measure_at(goes_out ? i : o), measure_b = measure_at(goes_out ? o : i);
+    v_measure = vec4(measure_a.x, len > 0.0 ? (measure_b.x - measure_a.x) / len : 0.0, measure_a.y, 0.0);
+#endif
+#if DASH
     vec4 dashes = row_texel(texel + 3);
-    v_dash = vec4(measure_a.x, len > 0.0 ? (measure_b.x - measure_a.x) / len : 0.0, dashes.z, measure_a.y);
+    v_measure.w = dashes.z;
     v_dashes = ivec2(dashes.xy) + ivec2(u_dashes, 0);
+#endif
+#if TRIM
+    v_trim = row_texel(texel + 4).xy * max(measure_a.y, 1e-6);
 #endif
     // A row that is not drawn leaves no area; what lies outside the viewport would be clipped at some cost.
     gl_Position = vec4(half_width < 0.0 ? vec2(0.0) : (place - u_corner) * u_scale - 1.0, 0.0, 1.0);

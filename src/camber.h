@@ -333,7 +333,8 @@ typedef struct camber_tessellation_desc {
     size_t stroke_count;
     camber_method method;
     float fan_tolerance_px; /* farthest that a fan's chord lies from its arc, up to 64 chords a half turn. 0: 0.25 */
-    bool measured; /* records say how far along their polyline they lie, as dashes need it: 32 bytes a record */
+    bool measured; /* records say how far along their polyline they lie, as dashes and trims need it: 32 bytes a record
+                    */
 } camber_tessellation_desc;
 
 /* How far the geometry reaches past the stroke's edge, so that every pixel an edge touches is shaded: exact
@@ -476,6 +477,9 @@ typedef struct camber_paint {
     float translate_x_px, translate_y_px; /* where it is drawn, from where its polyline lies */
     uint32_t dash;                        /* 0: none; else one of the pass's dashes, counted from 1 */
     float dash_unit_px;                   /* that the dash's lengths are given in. 0: 1 */
+    /* Shares of its line's length, of a mesh that is measured: from the one to the other it is not drawn. What is
+     * trimmed at an end takes the cap too. trim_end not above trim_start: it is whole. */
+    float trim_start, trim_end;
 } camber_paint;
 
 /* Lengths that are drawn and left out in turn, from where a polyline begins; an odd count is gone through twice, as in

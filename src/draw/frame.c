@@ -13,7 +13,7 @@ camber_status camber_renderer_check(camber_renderer *renderer, const char *what)
     return camber_surface_check(renderer->share.surface, what);
 }
 
-static camber_status check_dashes(const camber_renderer *renderer, const camber_pass *pass) {
+static camber_status check_paints(const camber_renderer *renderer, const camber_pass *pass) {
     camber_context *context = renderer->share.device->context;
     for (size_t i = 0; i < pass->dash_count; i++)
         if (!camber_dash_is_valid(pass->dashes + i))
@@ -22,9 +22,10 @@ static camber_status check_dashes(const camber_renderer *renderer, const camber_
                                pass->dashes[i].count, CAMBER_DASH_LENGTHS_MAX);
     for (size_t i = 0; i < pass->paint_count; i++) {
         assert(pass->paints[i].dash <= pass->dash_count);
-        if (pass->paints[i].dash && !pass->mesh->mesh_info.measured && !pass->mesh->empty)
+        const bool trims = pass->paints[i].trim_end > pass->paints[i].trim_start;
+        if ((pass->paints[i].dash || trims) && !pass->mesh->mesh_info.measured && !pass->mesh->empty)
             return camber_fail(context, CAMBER_ERROR_ARGUMENT,
-                               "dashes of a mesh that is not measured; tessellate it measured");
+                               "%s of a mesh that is not measured; tessellate it measured", trims ? "trims" : "dashes");
     }
     return CAMBER_OK;
 }
@@ -37,7 +38,7 @@ static camber_status check_frame(camber_renderer *renderer, const camber_frame *
     for (size_t i = 0; i < frame->pass_count; i++) {
         assert(frame->passes[i].mesh->renderer == renderer);
         assert(frame->passes[i].paint_count == 0 || frame->passes[i].paints);
-        const camber_status status = check_dashes(renderer, frame->passes + i);
+        const camber_status status = check_paints(renderer, frame->passes + i);
         if (status != CAMBER_OK)
             return status;
     }

@@ -90,7 +90,8 @@ static bool same_color(camber_color a, camber_color b) {
 static unsigned bands_of(const camber_paint *paint) {
     return (paint->gap_px > 0.0f ? (unsigned)CAMBER_VARIANT_GAP : 0u) |
            (paint->blur_px > 0.0f ? (unsigned)CAMBER_VARIANT_BLUR : 0u) |
-           (paint->dash ? (unsigned)CAMBER_VARIANT_DASH : 0u);
+           (paint->dash ? (unsigned)CAMBER_VARIANT_DASH : 0u) |
+           (paint->trim_end > paint->trim_start ? (unsigned)CAMBER_VARIANT_TRIM : 0u);
 }
 
 /* The longest run from a polyline on. Rows that are not drawn belong to any run. */

@@ -35,7 +35,7 @@ void camber_renderer_destroy(camber_renderer *renderer) {
     const bool is_current = camber_surface_try_current(renderer->share.surface);
     camber_frames_forget(renderer, is_current);
     if (is_current) {
-        for (int i = 0; i < CAMBER_VARIANTS; i++)
+        for (int i = 0; i < CAMBER_STROKES_MAX; i++)
             gl->DeleteProgram(renderer->strokes[i].program);
         for (int i = 0; i < CAMBER_FLATTEN_KINDS; i++)
             gl->DeleteProgram(renderer->flatten[i].program);

@@ -16,10 +16,14 @@ enum {
     CAMBER_VARIANT_GAP = 128,     /* strokes that may be two bands */
     CAMBER_VARIANT_BLUR = 256,    /* strokes that may fade */
     CAMBER_VARIANT_DASH = 512,    /* strokes that may be dashed */
-    CAMBER_VARIANT_METHOD = 1024, /* times camber_method */
+    CAMBER_VARIANT_TRIM = 1024,   /* strokes that may be drawn in part */
+    CAMBER_VARIANT_METHOD = 2048, /* times camber_method */
     CAMBER_METHODS = 3,
-    CAMBER_VARIANTS = CAMBER_METHODS * CAMBER_VARIANT_METHOD
+    CAMBER_STROKES_MAX = 256 /* variants that are kept built */
 };
+
+/* Of the table of rows; stroke.vert says what is in each. */
+enum { CAMBER_TEXELS_A_ROW = 5 };
 
 /* What a flattened layer holds. */
 typedef enum camber_flatten_kind {
@@ -30,7 +34,8 @@ typedef enum camber_flatten_kind {
 } camber_flatten_kind;
 
 typedef struct camber_shader {
-    GLuint program; /* 0: not built yet */
+    GLuint program;   /* 0: not built yet */
+    unsigned variant; /* of a stroke shader */
     GLint origin, corner, scale, layer_color, table, table_rows, stride, dashes;
 } camber_shader;
 
@@ -63,7 +68,7 @@ typedef struct camber_run {
     bool one_color;    /* its layer holds coverage alone, and color is put over it */
     bool layered;
     camber_color color;
-    unsigned bands; /* CAMBER_VARIANT_GAP, BLUR and DASH, where a paint has them */
+    unsigned bands; /* CAMBER_VARIANT_GAP, BLUR, DASH and TRIM, where a paint has them */
 } camber_run;
 
 typedef struct camber_batch_range {
@@ -107,7 +112,8 @@ typedef struct camber_flight {
 struct camber_renderer {
     camber_share share;
     const camber_share_path *path;
-    camber_shader strokes[CAMBER_VARIANTS];
+    camber_shader strokes[CAMBER_STROKES_MAX]; /* in the order they were built */
+    size_t strokes_built;
     camber_shader flatten[CAMBER_FLATTEN_KINDS];
     camber_shader counts[CAMBER_METHODS]; /* every fragment */
     camber_target targets[CAMBER_TARGETS];

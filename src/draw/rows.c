@@ -6,7 +6,10 @@
 #include <math.h>
 #include <string.h>
 
-enum { ROW_TEXTURE_WIDTH = 2048, TEXELS_A_ROW = 4 }; /* as stroke.vert has them */
+enum { ROW_TEXTURE_WIDTH = 2048, TEXELS_A_ROW = CAMBER_TEXELS_A_ROW }; /* the width as the shaders have it */
+
+/* Progress that no line has. */
+static const float FAR_BEYOND = 1e9f;
 
 /* Of the whole stroke: a gap's bands lie on both sides of it. */
 static float half_width(const camber_paint *paint) {
@@ -75,6 +78,13 @@ static camber_status add_dashes(camber_renderer *renderer, const camber_dash *da
 
 /* ---- Rows ---- */
 
+/* What is trimmed at an end of the line takes its cap as well. */
+static void put_trim(const camber_paint *paint, float texel[4]) {
+    const bool trims = paint->trim_end > paint->trim_start;
+    texel[0] = !trims ? FAR_BEYOND : paint->trim_start <= 0.0f ? -FAR_BEYOND : paint->trim_start;
+    texel[1] = !trims || paint->trim_end >= 1.0f ? FAR_BEYOND : paint->trim_end;
+}
+
 camber_status camber_renderer_fill_rows(camber_renderer *renderer, const camber_run *run, size_t table) {
     const camber_pass *pass = run->pass;
     float *texels = renderer->row_texels + 4 * TEXELS_A_ROW * table * pass->mesh->row_count;
@@ -95,6 +105,7 @@ camber_status camber_renderer_fill_rows(camber_renderer *renderer, const camber_
         texel[9] = fmaxf(paint->blur_px, 0.0f);
         for (int c = 0; c < 4; c++)
             texel[4 + c] = run->layered && run->one_color ? 1.0f : color[c];
+        put_trim(paint, texel + 16);
         const camber_row *row = pass->mesh->host_rows + i;
         const double unit_px = paint->dash_unit_px > 0.0f ? (double)paint->dash_unit_px : 1.0;
         if (paint->dash && add_dashes(renderer, pass->dashes + paint->dash - 1, unit_px, row->cap == CAMBER_CAP_ROUND,

@@ -85,6 +85,7 @@ static camber_status build(camber_renderer *renderer, const char *head, const ch
     camber_log(renderer->share.device->context, CAMBER_LOG_INFO, "shaders: %s in %.0f ms",
                cached ? "from the cache" : "built", camber_now_ms() - begin);
     *shader = (camber_shader){program,
+                              0,
                               gl->GetUniformLocation(program, "u_origin"),
                               gl->GetUniformLocation(program, "u_corner"),
                               gl->GetUniformLocation(program, "u_scale"),
@@ -97,23 +98,33 @@ static camber_status build(camber_renderer *renderer, const char *head, const ch
 }
 
 camber_status camber_renderer_stroke_shader(camber_renderer *renderer, unsigned variant, const camber_shader **shader) {
-    camber_shader *wanted = renderer->strokes + variant;
+    const camber_gl *gl = &renderer->share.surface->gl;
+    camber_shader *wanted = renderer->strokes;
+    while (wanted < renderer->strokes + CAMBER_STROKES_MAX && wanted->program && wanted->variant != variant)
+        wanted++;
+    if (wanted == renderer->strokes + CAMBER_STROKES_MAX) { /* the oldest goes */
+        wanted = renderer->strokes + renderer->strokes_built % CAMBER_STROKES_MAX;
+        gl->DeleteProgram(wanted->program);
+        wanted->program = 0;
+    }
     if (!wanted->program) {
-        char head[256];
+        char head[512];
         snprintf(
             head, sizeof head,
             "#define LINEAR %d\n#define SHARP_JOINS %d\n#define FLAT_CAPS %d\n#define COUNT %d\n"
             "#define UNION %d\n#define METHOD %u\n#define THIN %d\n#define TIPS %d\n#define GAP %d\n#define BLUR %d\n"
-            "#define DASH %d\n",
+            "#define DASH %d\n#define TRIM %d\n#define TEXELS_A_ROW %d\n",
             (variant & CAMBER_VARIANT_LINEAR) != 0, (variant & CAMBER_VARIANT_SHARP_JOINS) != 0,
             (variant & CAMBER_VARIANT_FLAT_CAPS) != 0, (variant & CAMBER_VARIANT_COUNT) != 0,
             (variant & CAMBER_VARIANT_UNION) != 0, variant / CAMBER_VARIANT_METHOD,
             (variant & CAMBER_VARIANT_THIN) != 0, (variant & CAMBER_VARIANT_TIPS) != 0,
             (variant & CAMBER_VARIANT_GAP) != 0, (variant & CAMBER_VARIANT_BLUR) != 0,
-            (variant & CAMBER_VARIANT_DASH) != 0);
+            (variant & CAMBER_VARIANT_DASH) != 0, (variant & CAMBER_VARIANT_TRIM) != 0, (int)CAMBER_TEXELS_A_ROW);
         const camber_status status = build(renderer, head, camber_stroke_vert, camber_stroke_frag, wanted);
         if (status != CAMBER_OK)
             return status;
+        wanted->variant = variant;
+        renderer->strokes_built++;
     }
     *shader = wanted;
     return CAMBER_OK;
@@ -138,11 +149,11 @@ camber_status camber_renderer_count_shader(camber_renderer *renderer, camber_met
                                            const camber_shader **shader) {
     camber_shader *wanted = renderer->counts + method;
     if (!wanted->program) {
-        char head[128];
+        char head[192];
         snprintf(head, sizeof head,
                  "#define METHOD %d\n#define TIPS 0\n#define SHARP_JOINS 0\n#define GAP 0\n#define BLUR 0\n"
-                 "#define DASH 0\n",
-                 (int)method);
+                 "#define DASH 0\n#define TRIM 0\n#define TEXELS_A_ROW %d\n",
+                 (int)method, (int)CAMBER_TEXELS_A_ROW);
         const camber_status status = build(renderer, head, camber_stroke_vert, camber_count_frag, wanted);
         if (status != CAMBER_OK)
             return status;

@@ -32,6 +32,13 @@ CAMBER_API camber_status camber_style_parse(camber_context *context, const char 
 CAMBER_API camber_status camber_style_builtin(camber_context *context, camber_theme theme, camber_style **style);
 CAMBER_API void camber_style_destroy(camber_style *style);
 
+/* Names of the styles that ship with camber: "roads", the built-in one; "openmaptiles", roads, rails, rivers and
+ * borders in tiles of the OpenMapTiles schema, from its own source, openmaptiles.mbtiles in the working folder. NULL
+ * past the last. */
+CAMBER_API const char *camber_style_name(size_t n);
+/* The style document of that name. NULL: there is none. The text is the library's. */
+CAMBER_API const char *camber_style_text(const char *name, camber_theme theme, size_t *size_bytes);
+
 /* Compiles one expression or older function, or a filter where "filter" stands for "expression", and evaluates it over
  * inputs. json is {"expression": ..., "propertySpec":
  * {...}, "inputs": [[{"zoom": ...}, {"properties": {...}, "id": ..., "geometry": ...}], ...], "globalState": {...}}, as
@@ -170,9 +177,7 @@ CAMBER_API camber_view_desc camber_style_get_view(const camber_style *style);
 /* Reads the sources that the style's line layers name, in place of files. Those of type vector (tiles or url: files by
  * a template, TileJSON, MBTiles, PMTiles) give the tiles that the view sees, at the zoom that its zoom asks for (tiles
  * are 512 CSS px wide) within the source's; those of type geojson are read whole. Paths are relative to the folder of
- * base_path, the style's file; NULL: to the working folder. Lines that the style cannot tell apart become one
- * where they go on almost straight, but for a style that names what follows a line's direction. For another view read
- * into another set.
+ * base_path, the style's file; NULL: to the working folder. Lines stay apart. For another view read into another set.
  * A view that fits is that of the sources' bounds, or the whole world where none is known.
  * Returns CAMBER_ERROR_ARGUMENT (the view), CAMBER_ERROR_NOT_FOUND, CAMBER_ERROR_INPUT (a source on the network, a file
  * that does not read), CAMBER_ERROR_IO, CAMBER_ERROR_LIMIT (more than 65536 tiles), CAMBER_ERROR_MEMORY. A tile that is

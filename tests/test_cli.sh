@@ -560,6 +560,16 @@ expect 66 "a style whose source is not there" render --style "$tmp/in/gone.json"
 sed 's|line.geojson|https://example.org/a.geojson|' "$tmp/in/own.json" >"$tmp/in/url.json"
 expect 65 "a style whose source is elsewhere" render --style "$tmp/in/url.json" -o a.png
 says 'example.org'
+expect 0 "the built-in style by its name" render "$tiger" --style roads --theme dark -qo named.png --size 64x64
+expect 0 "the built-in style" render "$tiger" --theme dark -qo builtin.png --size 64x64
+cmp -s named.png builtin.png || fail "roads is not the built-in style"
+rm -f named.png builtin.png
+expect 0 "a style that ships" style check openmaptiles
+expect 66 "a style that ships, without its tiles" render --style openmaptiles --theme dark -o a.png
+says 'openmaptiles.mbtiles'
+cp "$tmp/in/own.json" roads
+expect 2 "a file goes before a style that ships" render "$tiger" --style roads --theme dark -o a.png
+rm -f roads
 expect 2 "a filter on a style's own source" render --style "$tmp/in/own.json" -o a.png --where "a = 1"
 says 'INPUT'
 

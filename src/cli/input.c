@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #define WIDTH_PX 2.0 /* of --polylines without --width-px */
 
@@ -101,21 +102,41 @@ static camber_frame polylines_frame(camber_input *input, camber_mesh *mesh) {
 /* ---- Maps ---- */
 
 #ifdef CAMBER_MAP
+bool camber_input_ships(const char *name) {
+    size_t size_bytes;
+    return camber_style_text(name, CAMBER_THEME_LIGHT, &size_bytes) && access(name, F_OK) != 0;
+}
+
+int camber_input_read_style(camber_session *session, const char *path, camber_theme theme, camber_style_input *style) {
+    *style = (camber_style_input){.name = path};
+    if (camber_input_ships(path)) {
+        style->text = camber_style_text(path, theme, &style->size_bytes);
+        return CAMBER_EXIT_DONE;
+    }
+    const int status = camber_input_read_all(session->report, path, &style->bytes, &style->size_bytes);
+    style->text = style->bytes;
+    style->base_path = path;
+    if (strcmp(path, "-") == 0) {
+        style->name = "standard input";
+        style->base_path = NULL;
+    }
+    return status;
+}
+
 static int open_style(camber_input *input) {
     camber_session *session = input->session;
     const camber_options *options = session->options;
-    if (!options->style) {
-        const camber_theme theme = options->theme < 0 ? CAMBER_THEME_LIGHT : (camber_theme)options->theme;
+    const camber_theme theme = options->theme < 0 ? CAMBER_THEME_LIGHT : (camber_theme)options->theme;
+    if (!options->style)
         return camber_report_status(session->report, camber_style_builtin(session->context, theme, &input->style));
-    }
-    char *bytes = NULL;
-    size_t size_bytes = 0;
-    const int status = camber_input_read_all(session->report, options->style, &bytes, &size_bytes);
+    camber_style_input style;
+    const int status = camber_input_read_style(session, options->style, theme, &style);
     if (status != CAMBER_EXIT_DONE)
         return status;
-    const char *name = strcmp(options->style, "-") == 0 ? "standard input" : options->style;
-    const camber_status parsed = camber_style_parse(session->context, bytes, size_bytes, name, &input->style);
-    free(bytes);
+    input->base_path = style.base_path;
+    const camber_status parsed =
+        camber_style_parse(session->context, style.text, style.size_bytes, style.name, &input->style);
+    free(style.bytes);
     return camber_report_status(session->report, parsed);
 }
 
@@ -138,11 +159,9 @@ static void take_view(camber_input *input) {
 }
 
 static int read_sources(camber_input *input) {
-    const char *style = input->session->options->style;
     take_view(input);
-    return camber_report_status(
-        input->session->report,
-        camber_features_read_sources(input->features, &input->view, strcmp(style, "-") == 0 ? NULL : style));
+    return camber_report_status(input->session->report,
+                                camber_features_read_sources(input->features, &input->view, input->base_path));
 }
 
 static int read_file(camber_input *input, const char *path) {

@@ -22,6 +22,7 @@ typedef struct camber_input {
     /* A map. */
     camber_view_desc view; /* of the options, or where they have none of a style that is drawn from its own sources */
     camber_style *style;
+    const char *base_path; /* of what the style names; NULL: the working folder */
     camber_features *features;
     camber_scene *scene;
 } camber_input;
@@ -48,6 +49,20 @@ bool camber_input_opaque(const camber_input *input);
 
 /* Tessellates with the method of the options. */
 camber_status camber_input_tessellate(const camber_input *input, camber_mesh *mesh);
+
+/* A style document: a file, standard input, or one that ships with camber. */
+typedef struct camber_style_input {
+    const char *name;      /* stands in messages */
+    const char *base_path; /* what its paths are relative to the folder of; NULL: to the working folder */
+    const char *text;
+    size_t size_bytes;
+    char *bytes; /* the text where it was read, to be freed; else NULL */
+} camber_style_input;
+
+/* Whether the name is one of camber_style_name, and no file is called so. */
+bool camber_input_ships(const char *name);
+/* theme: of one that ships. Returns an exit status, its line printed. */
+int camber_input_read_style(camber_session *session, const char *path, camber_theme theme, camber_style_input *style);
 
 /* The whole file or standard input; *bytes is freed with free. Returns an exit status, its line printed. */
 int camber_input_read_all(camber_report *report, const char *path, char **bytes, size_t *size_bytes);

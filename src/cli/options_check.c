@@ -1,3 +1,4 @@
+#include "cli/input.h"
 #include "cli/options.h"
 
 #include <math.h>
@@ -25,6 +26,14 @@ static bool has_extension(const char *path, const char *extension) {
     const size_t length = strlen(path);
     const size_t tail = strlen(extension);
     return length > tail && strcasecmp(path + length - tail, extension) == 0;
+}
+
+static bool ships(const char *style) {
+#ifdef CAMBER_MAP
+    return camber_input_ships(style);
+#else
+    return style == NULL;
+#endif
 }
 
 static int check_output(const checked *p) {
@@ -95,8 +104,9 @@ static int check_inputs(const checked *p) {
                      options->where_count, verb);
     if (options->width_px > 0 && !options->polylines && options->verb != CAMBER_VERB_COMPARE)
         return usage(p, "--width-px: is for --polylines; a map's widths are its style's");
-    if (options->style && options->theme >= 0)
-        return usage(p, "--theme: is for the built-in style; leave it out with --style");
+    if (options->style && options->theme >= 0 && !ships(options->style))
+        return usage(p, "--theme: is for the styles that ship with camber; leave it out with --style %s",
+                     options->style);
     if (options->style && options->input_count == 0 && (options->layer || options->where))
         return usage(p, "--%s: is for INPUT, and the style's own sources are drawn; let its layers name what they draw",
                      options->layer ? "layer" : "where");

@@ -81,17 +81,16 @@ static int check(camber_session *session, const char *name, const char *bytes, s
 }
 
 int camber_verb_style(camber_session *session) {
+    const bool checks = strcmp(session->options->inputs[0], "check") == 0;
     const char *path = session->options->inputs[1];
-    char *bytes = NULL;
-    size_t size_bytes = 0;
+    camber_style_input style = {0};
     int status = camber_session_need(session, CAMBER_NEEDS_CONTEXT);
     if (status == CAMBER_EXIT_DONE)
-        status = camber_input_read_all(session->report, path, &bytes, &size_bytes);
-    const char *name = strcmp(path, "-") == 0 ? "standard input" : path;
+        status = camber_input_read_style(session, path, CAMBER_THEME_LIGHT, &style);
     if (status == CAMBER_EXIT_DONE)
-        status = strcmp(session->options->inputs[0], "check") == 0 ? check(session, name, bytes, size_bytes)
-                                                                   : evaluate(session, name, bytes, size_bytes);
-    free(bytes);
+        status = checks ? check(session, style.name, style.text, style.size_bytes)
+                        : evaluate(session, style.name, style.text, style.size_bytes);
+    free(style.bytes);
     return status;
 }
 

@@ -1,0 +1,35 @@
+/* The styles that ship with camber, as documents: the build makes and embeds them (roads.cmake, openmaptiles.cmake). */
+#include "base/embedded.h"
+#include "camber_map.h"
+
+#include <string.h>
+
+typedef struct shipped_style {
+    const char *name;
+    const char *text[2]; /* by theme */
+    const unsigned long *size_bytes[2];
+} shipped_style;
+
+static const shipped_style styles[] = {
+    {"roads", {camber_style_light, camber_style_dark}, {&camber_style_light_size, &camber_style_dark_size}},
+    {"openmaptiles",
+     {camber_style_openmaptiles_light, camber_style_openmaptiles_dark},
+     {&camber_style_openmaptiles_light_size, &camber_style_openmaptiles_dark_size}},
+};
+
+enum { STYLES = sizeof styles / sizeof *styles };
+
+const char *camber_style_name(size_t n) {
+    return n < STYLES ? styles[n].name : NULL;
+}
+
+const char *camber_style_text(const char *name, camber_theme theme, size_t *size_bytes) {
+    const int which = theme == CAMBER_THEME_DARK;
+    for (size_t i = 0; i < STYLES; i++) {
+        if (strcmp(styles[i].name, name) != 0)
+            continue;
+        *size_bytes = *styles[i].size_bytes[which];
+        return styles[i].text[which];
+    }
+    return NULL;
+}

@@ -1,0 +1,427 @@
+/* The styles that ship: each layer by itself draws what it is for and nothing else, and all of them in their order. */
+#include "picture.h"
+#include "tilemaker.h"
+
+#include "camber_map.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <unistd.h>
+
+/* A picture of one tile's middle: lines from west to east, one under the other. */
+enum { ZOOM = 15, WIDE = 96, HIGH = 1024, EXTENT = 4096, TILE_ZOOM = 14, MIDDLE = 1 << (TILE_ZOOM - 1) };
+
+/* What a feature is, in tiles of the schema. */
+typedef struct thing {
+    const char *name, *layer, *tags;
+} thing;
+
+static const thing things[] = {
+    {"motorway", "transportation", "class=motorway oneway=1"},
+    {"ramp", "transportation", "class=motorway ramp=1"},
+    {"trunk", "transportation", "class=trunk"},
+    {"primary", "transportation", "class=primary"},
+    {"secondary", "transportation", "class=secondary"},
+    {"tertiary", "transportation", "class=tertiary"},
+    {"minor", "transportation", "class=minor"},
+    {"ford", "transportation", "class=minor brunnel=ford"},
+    {"service", "transportation", "class=service"},
+    {"raceway", "transportation", "class=raceway"},
+    {"viaduct", "transportation", "class=motorway brunnel=bridge"},
+    {"overpass", "transportation", "class=minor brunnel=bridge"},
+    {"underpass", "transportation", "class=primary brunnel=tunnel"},
+    {"works", "transportation", "class=primary_construction"},
+    {"path", "transportation", "class=path"},
+    {"footbridge", "transportation", "class=path brunnel=bridge"},
+    {"subway-path", "transportation", "class=path brunnel=tunnel"},
+    {"track", "transportation", "class=track"},
+    {"track-bridge", "transportation", "class=track brunnel=bridge"},
+    {"rail", "transportation", "class=rail"},
+    {"siding", "transportation", "class=rail service=siding"},
+    {"rail-bridge", "transportation", "class=rail brunnel=bridge"},
+    {"rail-tunnel", "transportation", "class=rail brunnel=tunnel"},
+    {"transit", "transportation", "class=transit"},
+    {"tram", "transportation", "class=tram"},
+    {"tram-bridge", "transportation", "class=tram brunnel=bridge"},
+    {"subway", "transportation", "class=transit brunnel=tunnel"},
+    {"ferry", "transportation", "class=ferry"},
+    {"pier", "transportation", "class=pier"},
+    {"gondola", "transportation", "class=gondola"},
+    {"river", "waterway", "class=river"},
+    {"stream", "waterway", "class=stream"},
+    {"ditch", "waterway", "class=ditch intermittent=1"},
+    {"culvert", "waterway", "class=stream brunnel=tunnel"},
+    {"country", "boundary", "admin_level=2 disputed=0 maritime=0"},
+    {"disputed", "boundary", "admin_level=2 disputed=1"},
+    {"state", "boundary", "admin_level=4 disputed=0"},
+    {"town", "boundary", "admin_level=8"},
+    {"quarter", "boundary", "admin_level=10"},
+    {"sea", "boundary", "admin_level=2 maritime=1"},
+    {"runway", "aeroway", "class=runway"},
+    {"taxiway", "aeroway", "class=taxiway"},
+    {"apron", "aeroway", "class=apron"},
+    {"name", "transportation_name", "class=motorway"},
+};
+enum { THINGS = sizeof things / sizeof *things };
+
+/* What each layer draws of these. */
+static const struct {
+    const char *id, *draws;
+} layers[] = {
+    {"waterway-tunnel", "culvert"},
+    {"waterway", "river stream ditch"},
+    {"boundary-band", "country disputed state"},
+    {"boundary", "state town"},
+    {"boundary-country", "country"},
+    {"boundary-disputed", "disputed"},
+    {"aeroway-casing", "runway taxiway"},
+    {"aeroway", "runway taxiway"},
+    {"ferry", "ferry"},
+    {"pier", "pier"},
+    {"tunnel-path", "subway-path"},
+    {"tunnel-rail", "rail-tunnel subway"},
+    {"tunnel-casing", "underpass"},
+    {"tunnel", "underpass"},
+    {"path", "path"},
+    {"track", "track"},
+    {"construction", "works"},
+    {"road-casing", "motorway ramp trunk primary secondary tertiary minor ford service raceway"},
+    {"road", "motorway ramp trunk primary secondary tertiary minor ford service raceway"},
+    {"transit", "transit tram"},
+    {"rail", "rail siding"},
+    {"rail-ties", "rail siding"},
+    {"bridge-path-casing", "footbridge track-bridge"},
+    {"bridge-path-bed", "footbridge track-bridge"},
+    {"bridge-path", "footbridge track-bridge"},
+    {"bridge-casing", "viaduct overpass"},
+    {"bridge", "viaduct overpass"},
+    {"bridge-rail-casing", "rail-bridge tram-bridge"},
+    {"bridge-rail-bed", "rail-bridge tram-bridge"},
+    {"bridge-rail", "rail-bridge tram-bridge"},
+    {"bridge-rail-ties", "rail-bridge"},
+    {"cable", "gondola"},
+};
+enum { LAYERS = sizeof layers / sizeof *layers };
+
+static bool is_in(const char *name, const char *list) {
+    const size_t length = strlen(name);
+    for (const char *at = list; (at = strstr(at, name)) != NULL; at += length)
+        if ((at == list || at[-1] == ' ') && (at[length] == 0 || at[length] == ' '))
+            return true;
+    return false;
+}
+
+/* ---- Tiles ---- */
+
+/* "a=1 b=text" as keys and values of the layer, which has none yet but those of other features. */
+static void put_tags(blob *layer, const char *tags, uint32_t *next, blob *words) {
+    char copy[128], *save = NULL;
+    snprintf(copy, sizeof copy, "%s", tags);
+    for (char *tag = strtok_r(copy, " ", &save); tag; tag = strtok_r(NULL, " ", &save)) {
+        char *value = strchr(tag, '=');
+        *value++ = 0;
+        put_key(layer, tag);
+        if (*value >= '0' && *value <= '9') {
+            blob number = {0};
+            put_number(&number, 4, (uint64_t)atoi(value));
+            put_message(layer, 4, &number);
+        } else {
+            put_text_value(layer, value);
+        }
+        put_varint(words, *next);
+        put_varint(words, (*next)++);
+    }
+}
+
+static void put_thing(blob *layer, const thing *it, const int units[4], uint32_t *next) {
+    uint32_t words[16];
+    int cursor[2] = {0, 0};
+    blob feature = {0}, tags = {0};
+    put_tags(layer, it->tags, next, &tags);
+    put_message(&feature, 2, &tags);
+    put_number(&feature, 3, 2);
+    put_packed(&feature, 4, words, add_path(words, 0, units, 2, false, cursor));
+    put_message(layer, 2, &feature);
+}
+
+static void make_folder(char folder[32], char path[64]) {
+    snprintf(folder, 32, "/tmp/camber-test-XXXXXX");
+    assert_non_null(mkdtemp(folder));
+    snprintf(path, 64, "%s/map.mbtiles", folder);
+}
+
+static void remove_folder(const char *folder, const char *path) {
+    unlink(path);
+    rmdir(folder);
+}
+
+/* A set of one tile; units: the ends of each thing's line. */
+static void write_tiles(const char *path, const thing *list, size_t count, int (*units)[4]) {
+    static const char *const names[] = {"transportation", "waterway", "boundary", "aeroway", "transportation_name"};
+    blob tile = {0};
+    for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
+        blob layer = begin_layer(names[n], EXTENT);
+        uint32_t next = 0;
+        for (size_t i = 0; i < count; i++)
+            if (strcmp(list[i].layer, names[n]) == 0)
+                put_thing(&layer, list + i, units[i], &next);
+        put_layer(&tile, &layer);
+    }
+    made_tile made = {TILE_ZOOM, MIDDLE, MIDDLE, gzip_of(&tile)};
+    unlink(path);
+    assert_true(write_mbtiles(path, &made, 1, "INSERT INTO metadata VALUES ('format', 'pbf'), ('maxzoom', '14');"));
+    blob_free(&made.content);
+    blob_free(&tile);
+}
+
+/* ---- Drawing ---- */
+
+static json_t *style_of(const char *name, camber_theme theme) {
+    size_t size_bytes;
+    const char *text = camber_style_text(name, theme, &size_bytes);
+    assert_non_null(text);
+    json_t *style = json_loadb(text, size_bytes, 0, NULL);
+    assert_non_null(style);
+    return style;
+}
+
+static void set_tiles(json_t *style, const char *path) {
+    json_t *source = json_object_get(json_object_get(style, "sources"), "openmaptiles");
+    json_object_set_new(source, "url", json_sprintf("mbtiles://%s", path));
+}
+
+static picture draw(studio *s, json_t *json, double zoom, uint32_t width, uint32_t height) {
+    camber_style *style = NULL;
+    camber_features *features = NULL;
+    camber_scene *map = NULL;
+    camber_mesh *mesh = NULL;
+    char *text = json_dumps(json, JSON_COMPACT);
+    if (camber_style_parse(s->context, text, strlen(text), "shipped", &style) != CAMBER_OK)
+        fail_msg("%s", s->h.last);
+    free(text);
+    /* The tile is the one south-east of 0, 0; half of it is 0.0109863 degrees. */
+    const double half = 360.0 / (1 << TILE_ZOOM) / 2;
+    const camber_scene_desc desc = {.view = {.kind = CAMBER_VIEW_CENTER,
+                                             .longitude = half,
+                                             .latitude = -half,
+                                             .zoom = zoom,
+                                             .width = width,
+                                             .height = height}};
+    assert_int_equal(camber_features_create(s->context, style, &features), CAMBER_OK);
+    if (camber_features_read_sources(features, &desc.view, NULL) != CAMBER_OK)
+        fail_msg("%s", s->h.last);
+    assert_int_equal(camber_scene_create(features, &desc, &map), CAMBER_OK);
+    assert_int_equal(camber_mesh_create(s->device, studio_any(s), &mesh), CAMBER_OK);
+    assert_int_equal(camber_scene_tessellate(map, mesh, CAMBER_METHOD_STRIP), CAMBER_OK);
+    const camber_frame frame = camber_scene_frame(map, mesh);
+    picture p = picture_draw(studio_any(s), &frame);
+    camber_mesh_destroy(mesh);
+    camber_scene_destroy(map);
+    camber_features_destroy(features);
+    camber_style_destroy(style);
+    return p;
+}
+
+/* ---- Each layer by itself ---- */
+
+static uint32_t row_of(size_t number) {
+    return (uint32_t)(((double)number + 0.5) * HIGH / THINGS);
+}
+
+static json_t *layer_of(json_t *style, const char *id) {
+    size_t i;
+    json_t *layer;
+    json_array_foreach(json_object_get(style, "layers"), i, layer) {
+        if (strcmp(json_string_value(json_object_get(layer, "id")), id) == 0)
+            return layer;
+    }
+    fail_msg("no layer %s", id);
+    return NULL;
+}
+
+/* The pixels of a line's row that are covered, of WIDE. */
+static uint32_t covered(const picture *p, size_t number) {
+    uint32_t count = 0;
+    for (uint32_t x = 0; x < p->width; x++)
+        count += picture_value(p, x, row_of(number), 3) > 0.2;
+    return count;
+}
+
+static void check_layer(studio *s, const json_t *style, size_t number) {
+    json_t *one = json_deep_copy(style);
+    json_t *layer = json_incref(layer_of(one, layers[number].id));
+    const bool dashed = json_object_get(json_object_get(layer, "paint"), "line-dasharray") != NULL;
+    json_object_set_new(one, "layers", json_pack("[o]", layer));
+    picture p = draw(s, one, ZOOM, WIDE, HIGH);
+    for (size_t i = 0; i < THINGS; i++) {
+        const uint32_t count = covered(&p, i);
+        const bool wanted = is_in(things[i].name, layers[number].draws);
+        if (wanted && (count == 0 || dashed != (count < WIDE)))
+            fail_msg("%s: %s: %u of %u pixels", layers[number].id, things[i].name, count, WIDE);
+        if (!wanted && count)
+            fail_msg("%s: draws %s", layers[number].id, things[i].name);
+    }
+    free(p.rgba);
+    json_decref(one);
+}
+
+static void test_layers(void **state) {
+    studio *s = *state;
+    char folder[32], path[64];
+    make_folder(folder, path);
+    int units[THINGS][4];
+    for (size_t i = 0; i < THINGS; i++) {
+        const int y = (int)((row_of(i) + 0.5) * EXTENT / HIGH);
+        memcpy(units[i], (int[]){0, y, EXTENT, y}, sizeof units[i]);
+    }
+    write_tiles(path, things, THINGS, units);
+    for (int theme = 0; theme < 2; theme++) {
+        json_t *style = style_of("openmaptiles", theme ? CAMBER_THEME_DARK : CAMBER_THEME_LIGHT);
+        set_tiles(style, path);
+        /* All but the background. */
+        assert_int_equal(json_array_size(json_object_get(style, "layers")), LAYERS + 1);
+        for (size_t i = 0; i < LAYERS; i++)
+            check_layer(s, style, i);
+        json_decref(style);
+    }
+    remove_folder(folder, path);
+}
+
+/* ---- All layers ---- */
+
+/* Whether two pixels have one colour. */
+static bool same(const picture *p, uint32_t x, uint32_t y, uint32_t other_x, uint32_t other_y) {
+    for (int c = 0; c < 3; c++)
+        if (fabs(picture_value(p, x, y, c) - picture_value(p, other_x, other_y, c)) > 2.5 / 255)
+            return false;
+    return true;
+}
+
+/* What crosses in the middle of the picture: an upper line from west to east, a lower one from north to south. */
+static const struct {
+    const char *upper, *lower;
+} crossings[] = {
+    {"viaduct", "motorway"},  {"overpass", "primary"}, {"overpass", "rail"},     {"minor", "underpass"},
+    {"primary", "secondary"}, {"motorway", "trunk"},   {"minor", "path"},        {"service", "river"},
+    {"rail", "minor"},        {"minor", "state"},      {"rail-bridge", "river"}, {"tram-bridge", "viaduct"},
+};
+
+static const thing *find_thing(const char *name) {
+    for (size_t i = 0; i < THINGS; i++)
+        if (strcmp(things[i].name, name) == 0)
+            return things + i;
+    fail_msg("no thing %s", name);
+    return NULL;
+}
+
+/* The column through the middle has the upper line's colours where the lines cross, as elsewhere along it. */
+static void check_crossing(studio *s, json_t *style, const char *path, size_t number) {
+    enum { SIDE = 256, REACH = 64 };
+    const thing both[] = {*find_thing(crossings[number].upper), *find_thing(crossings[number].lower)};
+    int units[2][4] = {{0, EXTENT / 2, EXTENT, EXTENT / 2}, {EXTENT / 2, 0, EXTENT / 2, EXTENT}};
+    write_tiles(path, both, 2, units);
+    picture p = draw(s, style, 17, SIDE, SIDE);
+    const uint32_t middle = SIDE / 2;
+    /* Dashes and ties are not the same everywhere: any place along the line will do. */
+    bool found = false, is_seen = false, lower_seen = false;
+    for (uint32_t x = REACH / 4; x < REACH; x++) {
+        found = found || same(&p, middle, middle, x, middle);
+        is_seen = is_seen || !same(&p, x, middle, 4, 4);
+        lower_seen = lower_seen || !same(&p, middle, x, 4, 4);
+    }
+    if (!found || !is_seen || !lower_seen)
+        fail_msg("%s over %s: %s", both[0].name, both[1].name, is_seen && lower_seen ? "hidden" : "not drawn");
+    free(p.rgba);
+}
+
+/* How many pixels high the line of a thing is. */
+static uint32_t height_of(const picture *p, const char *name) {
+    const uint32_t y = row_of((size_t)(find_thing(name) - things));
+    uint32_t count = 0;
+    for (uint32_t at = y - 10; at <= y + 10; at++)
+        count += !same(p, WIDE / 2, at, 2, 2);
+    return count;
+}
+
+static void test_crossings(void **state) {
+    studio *s = *state;
+    char folder[32], path[64];
+    make_folder(folder, path);
+    for (int theme = 0; theme < 2; theme++) {
+        json_t *style = style_of("openmaptiles", theme ? CAMBER_THEME_DARK : CAMBER_THEME_LIGHT);
+        set_tiles(style, path);
+        for (size_t i = 0; i < sizeof crossings / sizeof *crossings; i++)
+            check_crossing(s, style, path, i);
+        json_decref(style);
+    }
+    remove_folder(folder, path);
+}
+
+/* The more a road matters the wider it is, at any zoom; a ramp is narrower than its road. */
+static void test_widths(void **state) {
+    studio *s = *state;
+    static const char *const roads[] = {"service", "minor", "tertiary", "secondary", "primary", "trunk", "motorway"};
+    enum { ROADS = sizeof roads / sizeof *roads };
+    char folder[32], path[64];
+    make_folder(folder, path);
+    int units[THINGS][4];
+    for (size_t i = 0; i < THINGS; i++) {
+        const int y = (int)((row_of(i) + 0.5) * EXTENT / HIGH);
+        memcpy(units[i], (int[]){0, y, EXTENT, y}, sizeof units[i]);
+    }
+    write_tiles(path, things, THINGS, units);
+    json_t *style = style_of("openmaptiles", CAMBER_THEME_LIGHT);
+    set_tiles(style, path);
+    picture p = draw(s, style, ZOOM, WIDE, HIGH);
+    for (size_t i = 1; i < ROADS; i++)
+        if (height_of(&p, roads[i]) < height_of(&p, roads[i - 1]) || height_of(&p, roads[i]) < 3)
+            fail_msg("%s: %u px, %s: %u px", roads[i], height_of(&p, roads[i]), roads[i - 1],
+                     height_of(&p, roads[i - 1]));
+    assert_true(height_of(&p, "motorway") > height_of(&p, "minor") + 2);
+    assert_true(height_of(&p, "ramp") < height_of(&p, "motorway"));
+    assert_true(height_of(&p, "siding") < height_of(&p, "rail"));
+    free(p.rgba);
+    json_decref(style);
+    remove_folder(folder, path);
+}
+
+/* ---- Documents ---- */
+
+/* Nothing is wrong with them, and nothing of them is left out. */
+static void test_documents(void **state) {
+    studio *s = *state;
+    size_t size_bytes, count = 0;
+    for (const char *name; (name = camber_style_name(count)) != NULL; count++)
+        for (int theme = 0; theme < 2; theme++) {
+            const char *text = camber_style_text(name, (camber_theme)theme, &size_bytes);
+            camber_style_report *report = NULL;
+            assert_non_null(text);
+            assert_int_equal(camber_style_check(s->context, text, size_bytes, name, &report), CAMBER_OK);
+            /* A style without sources is told so. */
+            for (size_t i = 0; i < report->finding_count && (report->source_count || report->error_count); i++)
+                fail_msg("%s: %s: %s", name, report->findings[i].pointer, report->findings[i].message);
+            for (size_t i = 0; i < report->type_count; i++)
+                assert_true(report->types[i].drawn);
+            for (size_t i = 0; i < report->source_count; i++)
+                assert_null(report->sources[i].trouble);
+            camber_style_report_destroy(report);
+        }
+    assert_true(count >= 2);
+    assert_null(camber_style_name(count));
+    assert_null(camber_style_text("none", CAMBER_THEME_LIGHT, &size_bytes));
+}
+
+int main(void) {
+    char cache[64];
+    if (!studio_begin(cache))
+        return 77;
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_documents),
+        cmocka_unit_test(test_layers),
+        cmocka_unit_test(test_crossings),
+        cmocka_unit_test(test_widths),
+    };
+    const int failed = cmocka_run_group_tests(tests, studio_set_up, studio_tear_down);
+    folder_remove(cache);
+    return failed;
+}

@@ -119,6 +119,23 @@ static void test_order_and_direction(void **state) {
         EXPECT(it, 0, 9000, 300, 8200, 300, 4096, 300, 100, 100);
 }
 
+/* A road of both tiles lies above what either has below it. */
+static void test_order_across_tiles(void **state) {
+    fixture *it = *state;
+    ADD(it, 0, 0, 1, 100, 100, 200, 100);
+    ADD(it, 0, 0, 7, 100, 200, 4200, 200);
+    ADD(it, 0, 0, 2, 100, 300, 200, 300);
+    ADD(it, 1, 0, 3, 5000, 100, 5100, 100);
+    ADD(it, 1, 0, 7, 4000, 200, 5100, 200);
+    ADD(it, 1, 0, 4, 5000, 300, 5100, 300);
+    finish(it, 5, 1);
+    EXPECT(it, 0, 100, 100, 200, 100);
+    EXPECT(it, 1, 5000, 100, 5100, 100);
+    EXPECT(it, 2, 100, 200, 5100, 200);
+    EXPECT(it, 3, 100, 300, 200, 300);
+    EXPECT(it, 4, 5000, 300, 5100, 300);
+}
+
 /* What lies in the buffer only is the neighbour's. */
 static void test_buffer_is_dropped(void **state) {
     fixture *it = *state;
@@ -266,6 +283,7 @@ int main(void) {
         TEST(test_join),
         TEST(test_join_rounded),
         TEST(test_order_and_direction),
+        TEST(test_order_across_tiles),
         TEST(test_buffer_is_dropped),
         TEST(test_different_features_stay_apart),
         TEST(test_without_ids),

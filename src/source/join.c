@@ -5,6 +5,7 @@
  * partners become polylines. All is linear in the number of points.
  */
 #include "source/chains.h"
+#include "source/order.h"
 #include "source/tiles.h"
 
 #include <math.h>
@@ -211,29 +212,94 @@ static bool gather(const joiner *join, uint32_t start, size_t *count, uint32_t *
     return true;
 }
 
-static camber_status add_chains(const joiner *join, const camber_chain *chains, size_t count,
-                                camber_features *features) {
-    uint32_t feature = NONE;
-    for (size_t i = 0; i < count; i++) {
-        const camber_chain *one = &chains[i];
-        camber_status status = CAMBER_OK;
-        if (one->key != feature)
-            status = camber_features_add_feature(features, join->tiles->features[one->key].class_index);
-        feature = one->key;
-        size_t points = 0;
-        uint32_t last = one->start;
-        const camber_tile_piece *pieces = join->tiles->pieces;
-        if (status == CAMBER_OK && !gather(join, one->start, &points, &last))
-            status = CAMBER_ERROR_MEMORY;
-        if (status == CAMBER_OK)
-            status = camber_features_add_polyline(features, join->tiles->scratch, points);
-        if (status == CAMBER_OK && join->tiles->has_progress)
-            status = camber_features_set_progress(features, (double)pieces[one->start / 2].progress[one->start & 1],
-                                                  (double)pieces[last / 2].progress[last & 1]);
-        if (status != CAMBER_OK)
-            return status;
+/* ---- Order ---- */
+
+/* Chains by key; order: the keys in the order of drawing. */
+typedef struct chain_list {
+    camber_chain *chains;
+    size_t count;
+    uint32_t *order;
+    size_t key_count;
+} chain_list;
+
+/* A chain takes the place of each of its pieces. */
+static void key_pieces(const joiner *join, const chain_list *list, uint32_t *keys) {
+    for (size_t i = 0; i < list->count; i++) {
+        uint32_t end = list->chains[i].start;
+        do {
+            keys[end / 2] = list->chains[i].key;
+            end = join->partner[end ^ 1];
+        } while (end != NONE && end != list->chains[i].start);
     }
-    return CAMBER_OK;
+}
+
+static bool same_list(const camber_tiles *tiles, const camber_features *features, size_t a, size_t b) {
+    const camber_tile_piece *p = &tiles->pieces[a], *q = &tiles->pieces[b];
+    const uint32_t classes[2] = {tiles->features[p->feature].class_index, tiles->features[q->feature].class_index};
+    return p->column == q->column && p->row == q->row &&
+           features->classes[classes[0]].layer == features->classes[classes[1]].layer;
+}
+
+/* What lies on top in one tile does so in all: a tile's order of features is its author's, roads of more weight last,
+ * and a road that begins in the first tile must not lie below all of the second. */
+static camber_status find_order(const joiner *join, const camber_features *features, uint32_t *keys, chain_list *list) {
+    const camber_tiles *tiles = join->tiles;
+    camber_context *context = tiles->context;
+    camber_status status = CAMBER_ERROR_MEMORY;
+    uint32_t *lists = camber_alloc(context, 2 * tiles->piece_count, sizeof *lists);
+    if (lists && (list->order = camber_alloc(context, list->key_count, sizeof *list->order))) {
+        camber_order_desc desc = {.count = list->key_count, .lists = lists};
+        size_t last = 0;
+        key_pieces(join, list, keys);
+        for (size_t i = 0; i < tiles->piece_count; i++) {
+            if (tiles->pieces[i].count == 0)
+                continue;
+            if (desc.item_count && !same_list(tiles, features, last, i))
+                lists[desc.item_count++] = CAMBER_LIST_END;
+            lists[desc.item_count++] = keys[i];
+            last = i;
+        }
+        status = camber_order_merge(context, &desc, list->order);
+    }
+    camber_free(context, lists);
+    return status;
+}
+
+/* ---- Features ---- */
+
+static camber_status add_chain(const joiner *join, const camber_chain *chain, camber_features *features) {
+    const camber_tile_piece *pieces = join->tiles->pieces;
+    size_t points = 0;
+    uint32_t last = chain->start;
+    if (!gather(join, chain->start, &points, &last))
+        return CAMBER_ERROR_MEMORY;
+    camber_status status = camber_features_add_polyline(features, join->tiles->scratch, points);
+    if (status == CAMBER_OK && join->tiles->has_progress)
+        status = camber_features_set_progress(features, (double)pieces[chain->start / 2].progress[chain->start & 1],
+                                              (double)pieces[last / 2].progress[last & 1]);
+    return status;
+}
+
+static camber_status add_chains(const joiner *join, const chain_list *list, camber_features *features) {
+    camber_context *context = join->tiles->context;
+    camber_status status = CAMBER_OK;
+    size_t *firsts = camber_alloc_zero(context, list->key_count + 1, sizeof *firsts);
+    if (!firsts)
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < list->count; i++)
+        firsts[list->chains[i].key + 1] = i + 1;
+    for (size_t i = 0; i < list->key_count; i++)
+        firsts[i + 1] = firsts[i + 1] ? firsts[i + 1] : firsts[i];
+    for (size_t k = 0; k < list->key_count && status == CAMBER_OK; k++) {
+        const uint32_t key = list->order[k];
+        if (firsts[key] == firsts[key + 1])
+            continue;
+        status = camber_features_add_feature(features, join->tiles->features[key].class_index);
+        for (size_t i = firsts[key]; i < firsts[key + 1] && status == CAMBER_OK; i++)
+            status = add_chain(join, &list->chains[i], features);
+    }
+    camber_free(context, firsts);
+    return status;
 }
 
 static camber_status emit(const joiner *join, camber_features *features) {
@@ -241,8 +307,8 @@ static camber_status emit(const joiner *join, camber_features *features) {
     camber_context *context = tiles->context;
     camber_chains_desc desc = {
         .partner = join->partner, .piece_count = tiles->piece_count, .key_count = tiles->feature_count};
-    camber_chain *chains = NULL;
-    size_t count = 0, left = 0;
+    chain_list list = {.key_count = tiles->feature_count};
+    size_t left = 0;
     camber_status status = CAMBER_ERROR_MEMORY;
     uint32_t *keys = camber_alloc(context, tiles->piece_count, sizeof *keys);
     desc.keys = keys;
@@ -253,13 +319,16 @@ static camber_status emit(const joiner *join, camber_features *features) {
         desc.visited[i] = tiles->pieces[i].count == 0;
         left += !desc.visited[i];
     }
-    status = camber_chains_find(context, &desc, &chains, &count);
+    status = camber_chains_find(context, &desc, &list.chains, &list.count);
     if (status == CAMBER_OK)
-        status = add_chains(join, chains, count, features);
+        status = find_order(join, features, keys, &list);
     if (status == CAMBER_OK)
-        features->stats.joined_pieces += left - count;
+        status = add_chains(join, &list, features);
+    if (status == CAMBER_OK)
+        features->stats.joined_pieces += left - list.count;
 done:
-    camber_free(context, chains);
+    camber_free(context, list.order);
+    camber_free(context, list.chains);
     camber_free(context, desc.visited);
     camber_free(context, keys);
     return status;

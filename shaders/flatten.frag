@@ -1,8 +1,12 @@
 // A flattened layer onto the picture. COVERAGE: it has one channel and takes a colour; UNION: it has the four that
-// stroke.frag leaves, and takes a colour; neither: it has its own colours.
+// stroke.frag leaves, and takes a colour; neither: it has its own colours. MASKED: these
+// may be translucent by themselves, and their alphas lie beside, so that a line that lies on itself shows once.
 precision highp float;
 
 uniform mediump sampler2D u_layer;
+#if MASKED
+layout(binding = 2) uniform mediump sampler2D u_alphas;
+#endif
 uniform vec4 u_color; // premultiplied; with colours of its own, opacity in all four
 
 layout(location = 0) out mediump vec4 o_color;
@@ -32,6 +36,8 @@ void main() {
     o_color = u_color * united(layer);
 #elif COVERAGE
     o_color = u_color * layer.r;
+#elif MASKED
+    o_color = u_color * vec4(layer.rgb, texelFetch(u_alphas, ivec2(gl_FragCoord.xy), 0).r);
 #else
     o_color = u_color * layer;
 #endif

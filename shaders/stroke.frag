@@ -5,7 +5,9 @@
 // 255 in place of the colour, and fragments without coverage leave nothing, in the stencil neither. With UNION it leaves,
 // to be summed over all fragments of a pixel, the edge's normal times a (1 - a) and the area a, and a once more, to be
 // gathered one over the other: flatten.frag makes the union of them. GAP: strokes that may be two bands; BLUR: that may fade;
-// DASH: that may be dashed; TRIM: that may be drawn in part.
+// DASH: that may be dashed; TRIM: that may be drawn in part; RAMP: whose
+// colour may change along them. With MASK colours that are translucent by themselves replace what lies below them as far as
+// they cover the pixel, and their alpha goes to a second target.
 precision highp float;
 
 flat in vec4 v_segment; // A in the piece, direction
@@ -28,13 +30,21 @@ flat in vec4 v_measure; // at A: how far along the line, px, and how fast that g
 #endif
 #if DASH
 flat in highp ivec2 v_dashes; // the first one's texel; twice how many there are, and 1 where they are round
-uniform highp sampler2D u_rows;
 #endif
 #if TRIM
 flat in vec2 v_trim; // from where to where the line is not drawn, px along it
 #endif
+#if RAMP
+flat in highp ivec2 v_ramp; // the texel of the first stop; how many there are. 0: no ramp
+#endif
+#if DASH || RAMP
+uniform highp sampler2D u_rows;
+#endif
 
 layout(location = 0) out mediump vec4 o_color;
+#if MASK
+layout(location = 1) out mediump vec4 o_alpha;
+#endif
 
 // The area of a pixel whose centre lies s px inside an edge.
 float covered(float s, vec4 edge) {
@@ -48,10 +58,16 @@ float covered(float s, vec4 edge) {
 #endif
 }
 
+#if DASH || RAMP
+vec4 row_texel(int i) {
+    return texelFetch(u_rows, ivec2(i & 2047, i >> 11), 0);
+}
+#endif
+
 #if DASH
 // The dash, from where to where, px; a period's last one stands before it once more, and its first one behind it.
 vec2 dash_at(int i) {
-    return texelFetch(u_rows, ivec2((v_dashes.x + i) & 2047, (v_dashes.x + i) >> 11), 0).xy;
+    return row_texel(v_dashes.x + i).xy;
 }
 
 // The area of a pixel that dashes leave, from its place in their period.
@@ -74,6 +90,52 @@ float dash_distance(float t) {
         nearest = min(nearest, max(dash.x - t, t - dash.y));
     }
     return max(nearest, 0.0);
+}
+#endif
+
+#if RAMP
+// Where a stop lies, px along the line, and its colour.
+float stop_at(int i) {
+    return row_texel(v_ramp.x + 2 * i).x * v_measure.z;
+}
+
+vec4 stop_color(int i) {
+    return row_texel(v_ramp.x + 2 * i + 1);
+}
+
+// The first stop behind a place.
+int stop_behind(float place, int low) {
+    int high = v_ramp.y;
+    while (low < high) {
+        int middle = (low + high) >> 1;
+        bool behind = stop_at(middle) > place;
+        high = behind ? middle : high;
+        low = behind ? low : middle + 1;
+    }
+    return low;
+}
+
+// The mean colour of the ramp over a pixel: the share of it between two stops has the colour in the middle of what the pixel
+// sees of them. Where a pixel sees very many, several are taken for one.
+vec4 ramp_over(float along, vec4 edge) {
+    const int MOST = 16;
+    float from = along - edge.x, to = along + edge.x;
+    int last = v_ramp.y - 1, i = max(stop_behind(from, 0) - 1, 0), beyond = min(i + MOST, last);
+    int stride = stop_at(beyond) > to ? 1 : (min(stop_behind(to, beyond), last) - i + MOST) / MOST;
+    float here = stop_at(i), past = covered(along - here, edge);
+    vec4 color = stop_color(i), sum = color * (1.0 - past);
+    while (i < last && past > 0.0) {
+        i = min(i + stride, last);
+        float next = stop_at(i), past_next = covered(along - next, edge);
+        vec4 next_color = stop_color(i);
+        float middle = 0.5 * (max(here, from) + min(next, to));
+        float part = clamp((middle - here) / max(next - here, 1e-6), 0.0, 1.0);
+        sum += mix(color, next_color, part) * (past - past_next);
+        here = next;
+        past = past_next;
+        color = next_color;
+    }
+    return sum + color * past;
 }
 #endif
 
@@ -217,7 +279,7 @@ void main() {
     // draw, so that neither leaves a hole.
     float tie = 4e-5 * half_width + 4e-5;
     bool foreign = (beyond.x > tie && past.x > v_rest.z) || (beyond.y > tie && past.y > v_rest.w);
-#if (GAP || BLUR) && METHOD == 2
+#if (GAP || BLUR || MEASURED) && METHOD == 2
     // Bodies of fans overlap on the inner side of a join: what one leaves open the other must not fill.
     foreign = foreign || (beyond.x > tie && y * v_turns.y > 0.0) || (beyond.y > tie && y * v_turns.w > 0.0);
 #endif
@@ -232,6 +294,15 @@ void main() {
     o_color = vec4(normal_of(past, y, u, half_width) * (area * (1.0 - area)), area, area);
     o_color.rgb = thick ? o_color.rgb : vec3(0.0);
 #else
-    o_color = v_color * (foreign ? 0.0 : area);
+    area = foreign ? 0.0 : area;
+    o_color = v_color * area;
+#if RAMP
+    if (area > 0.0 && v_ramp.y > 0)
+        o_color *= ramp_over(v_measure.z > 0.0 ? along : -1.0, edge); // a dot has its first
+#endif
+#if MASK
+    o_alpha = vec4(o_color.a, 0.0, 0.0, area);
+    o_color.a = area;
+#endif
 #endif
 }

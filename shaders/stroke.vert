@@ -8,13 +8,14 @@ layout(binding = 1) uniform highp usamplerBuffer u_records; // all other sampler
 uniform highp sampler2D u_rows; // TEXELS_A_ROW texels a row: half width px, -1 where not drawn, fan's step, translation px;
                                 // premultiplied colour; half the gap, below 0 where there is none, blur, px; dashes: the
                                 // first one's texel, how many, twice that and 1 where they are round, period px;
-                                // from where to where its line is not drawn, shares of its length
+                                // from where to where its line is not drawn, shares of its length; its ramp's first
+                                // texel and how many stops that has
 uniform vec2 u_origin;          // of this piece in the picture, px
 uniform vec2 u_corner;          // of the viewport in the picture, px: it reaches past the piece
 uniform int u_table;            // of the rows; of strips the bits of gl_VertexID below the table's number
 uniform int u_table_rows;
 uniform vec2 u_scale;           // 2 / size of the viewport
-uniform int u_dashes;           // the texel that dashes begin at, in the texture of rows
+uniform int u_tail;             // the texel of dashes and ramps that is their first, in the texture of rows
 uniform int u_stride;           // texels a record: measured ones have another, with how far along their line they lie
 
 // What stroke.frag says of them.
@@ -40,6 +41,9 @@ flat out highp ivec2 v_dashes;
 #endif
 #if TRIM
 flat out vec2 v_trim;
+#endif
+#if RAMP
+flat out highp ivec2 v_ramp;
 #endif
 
 const float PAD_PX = 0.75, NO_LIMIT_PX = 3.0e38;
@@ -228,10 +232,16 @@ void main() {
 #if DASH
     vec4 dashes = row_texel(texel + 3);
     v_measure.w = dashes.z;
-    v_dashes = ivec2(dashes.xy) + ivec2(u_dashes, 0);
+    v_dashes = ivec2(dashes.xy) + ivec2(u_tail, 0);
+#endif
+#if TRIM || RAMP
+    vec4 progress = row_texel(texel + 4);
 #endif
 #if TRIM
-    v_trim = row_texel(texel + 4).xy * max(measure_a.y, 1e-6);
+    v_trim = progress.xy * max(measure_a.y, 1e-6);
+#endif
+#if RAMP
+    v_ramp = ivec2(progress.zw) + ivec2(u_tail, 0);
 #endif
     // A row that is not drawn leaves no area; what lies outside the viewport would be clipped at some cost.
     gl_Position = vec4(half_width < 0.0 ? vec2(0.0) : (place - u_corner) * u_scale - 1.0, 0.0, 1.0);

@@ -333,7 +333,8 @@ typedef struct camber_tessellation_desc {
     size_t stroke_count;
     camber_method method;
     float fan_tolerance_px; /* farthest that a fan's chord lies from its arc, up to 64 chords a half turn. 0: 0.25 */
-    bool measured; /* records say how far along their polyline they lie, as dashes and trims need it: 32 bytes a record
+    bool measured; /* records say how far along their polyline they lie, as dashes, trims and ramps need it: 32 bytes a
+                    * record
                     */
 } camber_tessellation_desc;
 
@@ -480,6 +481,7 @@ typedef struct camber_paint {
     /* Shares of its line's length, of a mesh that is measured: from the one to the other it is not drawn. What is
      * trimmed at an end takes the cap too. trim_end not above trim_start: it is whole. */
     float trim_start, trim_end;
+    uint32_t ramp; /* 0: none; else one of the pass's ramps, counted from 1, that color is multiplied by */
 } camber_paint;
 
 /* Lengths that are drawn and left out in turn, from where a polyline begins; an odd count is gone through twice, as in
@@ -490,6 +492,20 @@ typedef struct camber_dash {
 } camber_dash;
 
 #define CAMBER_DASH_LENGTHS_MAX 128
+
+typedef struct camber_ramp_stop {
+    float place; /* a share of the line's length, not below that of the stop before */
+    camber_color color;
+} camber_ramp_stop;
+
+/* Colours along a line, of a mesh that is measured: between stops mixed as premultiplied ones, before the first and
+ * behind the last as there. Two stops at one place are a step, whose edge has the exact area of the pixel. */
+typedef struct camber_ramp {
+    const camber_ramp_stop *stops;
+    size_t count; /* 1 to CAMBER_RAMP_STOPS_MAX */
+} camber_ramp;
+
+#define CAMBER_RAMP_STOPS_MAX 4096
 
 typedef enum camber_overlap {
     /* A translucent pass covers each pixel once, however often its lines cross it: coverage is gathered
@@ -516,6 +532,8 @@ typedef struct camber_pass {
     size_t paint_count;
     const camber_dash *dashes; /* dash_count, of a mesh that is measured. NULL: none */
     size_t dash_count;
+    const camber_ramp *ramps; /* ramp_count, of a mesh that is measured. NULL: none */
+    size_t ramp_count;
     camber_overlap overlap;
     float opacity; /* of all that is drawn, put onto the picture as one layer. 0: 1, and no layer */
 } camber_pass;
@@ -543,8 +561,9 @@ typedef struct camber_frame_stats {
 typedef bool camber_rows_fn(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count);
 
 /* Draws a frame and hands its rows over. rows may be NULL: the frame is drawn and finished, not read back.
- * stats may be NULL. Returns CAMBER_ERROR_ARGUMENT (a size out of range, a dash that is none), CAMBER_ERROR_DEVICE (a
- * shader does not build, or the GL reported an error), CAMBER_ERROR_MEMORY, CAMBER_ERROR_IO (rows returned false). */
+ * stats may be NULL. Returns CAMBER_ERROR_ARGUMENT (a size out of range, a dash or a ramp that is none),
+ * CAMBER_ERROR_DEVICE (a shader does not build, or the GL reported an error), CAMBER_ERROR_MEMORY, CAMBER_ERROR_IO
+ * (rows returned false). */
 CAMBER_API camber_status camber_render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows,
                                        void *user, camber_frame_stats *stats);
 
@@ -556,9 +575,9 @@ CAMBER_API camber_status camber_render(camber_renderer *renderer, const camber_f
  *     tessellate mesh n + 1, begin frame n + 1, end frame n
  *
  * keeps the device and GL at work on two frames. CAMBER_FRAMES_IN_FLIGHT frames at most may have begun and not ended,
- * and none when camber_render is called; the passes' meshes must live until the end. Tessellating one of them before
- * waits for the drawing, and so gains nothing. Where a picture takes several pieces, those after the first are drawn at
- * the end, from the meshes as they are then.
+ * and none when camber_render is called; the passes' meshes, dashes and ramps must live until the end. Tessellating one
+ * of them before waits for the drawing, and so gains nothing. Where a picture takes several pieces, those after the
+ * first are drawn at the end, from the meshes as they are then.
  *
  * They return what camber_render returns. Where begin fails no frame has begun; where end fails the frame is given up.
  * Destroying the renderer gives up what is in flight. */

@@ -102,7 +102,7 @@ camber_status camber_batch_add(camber_renderer *renderer, const camber_run *run,
 void camber_batch_forget(camber_renderer *renderer) {
     renderer->batch.table_count = renderer->batch.range_count = renderer->batch.call_count = 0;
     renderer->batch.bands = 0;
-    renderer->dash_count = 0;
+    camber_tail_forget(renderer);
 }
 
 /* ---- Calls ---- */
@@ -210,7 +210,7 @@ camber_status camber_batch_draw(camber_renderer *renderer, unsigned variant, con
         camber_renderer_use_shader(renderer, shader, mesh, piece);
         gl->Uniform1i(shader->table, mesh->mesh_info.strips ? (GLint)vertex_bits(mesh) : 0);
         gl->Uniform1i(shader->table_rows, (GLint)mesh->row_count);
-        gl->Uniform1i(shader->dashes, camber_renderer_first_dash(batch->table_count * mesh->row_count));
+        gl->Uniform1i(shader->tail, camber_renderer_tail(batch->table_count * mesh->row_count));
         status = draw_ranges(renderer, shader, piece->draw_calls);
         gl->BindVertexArray(0);
     }

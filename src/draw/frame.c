@@ -20,12 +20,19 @@ static camber_status check_paints(const camber_renderer *renderer, const camber_
             return camber_fail(context, CAMBER_ERROR_ARGUMENT,
                                "dash %zu: %zu lengths; give up to %d of 0 and more, and one above 0", i,
                                pass->dashes[i].count, CAMBER_DASH_LENGTHS_MAX);
-    for (size_t i = 0; i < pass->paint_count; i++) {
-        assert(pass->paints[i].dash <= pass->dash_count);
-        const bool trims = pass->paints[i].trim_end > pass->paints[i].trim_start;
-        if ((pass->paints[i].dash || trims) && !pass->mesh->mesh_info.measured && !pass->mesh->empty)
+    for (size_t i = 0; i < pass->ramp_count; i++)
+        if (!camber_ramp_is_valid(pass->ramps + i))
             return camber_fail(context, CAMBER_ERROR_ARGUMENT,
-                               "%s of a mesh that is not measured; tessellate it measured", trims ? "trims" : "dashes");
+                               "ramp %zu: %zu stops; give 1 to %d in ascending places, and finite colours", i,
+                               pass->ramps[i].count, CAMBER_RAMP_STOPS_MAX);
+    for (size_t i = 0; i < pass->paint_count; i++) {
+        const camber_paint *paint = pass->paints + i;
+        assert(paint->dash <= pass->dash_count && paint->ramp <= pass->ramp_count);
+        const char *what = paint->dash ? "dashes" : paint->ramp ? "ramps" : "trims";
+        const bool measured = pass->mesh->mesh_info.measured || pass->mesh->empty;
+        if (!measured && (paint->dash || paint->ramp || paint->trim_end > paint->trim_start))
+            return camber_fail(context, CAMBER_ERROR_ARGUMENT,
+                               "%s of a mesh that is not measured; tessellate it measured", what);
     }
     return CAMBER_OK;
 }

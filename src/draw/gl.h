@@ -80,6 +80,7 @@
     X(void, DeleteRenderbuffers, (GLsizei, const GLuint *))                                                            \
     X(void, BindRenderbuffer, (GLenum, GLuint))                                                                        \
     X(void, RenderbufferStorage, (GLenum, GLenum, GLsizei, GLsizei))                                                   \
+    X(void, DrawBuffers, (GLsizei, const GLenum *))                                                                    \
     X(GLenum, CheckFramebufferStatus, (GLenum))
 
 /* In the driver's extensions, not in every one. */

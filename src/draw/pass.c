@@ -16,6 +16,8 @@ float camber_renderer_thinnest(const camber_frame *frame) {
 
 /* What the layer of a run holds; of one that has none, colours. */
 static camber_flatten_kind kind_of(const camber_renderer *renderer, const camber_run *run) {
+    if (run->layered && run->masked)
+        return CAMBER_FLATTEN_MASKED;
     if (!run->layered || !run->one_color)
         return CAMBER_FLATTEN_COLORS;
     /* The union is of strokes with one edge on each side. */
@@ -44,6 +46,11 @@ static camber_status flatten(camber_renderer *renderer, int layer, camber_flatte
     gl->BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     gl->UseProgram(shader->program);
     gl->Uniform4f(shader->layer_color, color[0], color[1], color[2], color[3]);
+    if (kind == CAMBER_FLATTEN_MASKED) {
+        gl->ActiveTexture(GL_TEXTURE0 + CAMBER_ALPHAS_UNIT);
+        gl->BindTexture(GL_TEXTURE_2D, renderer->targets[layer].alphas);
+        gl->ActiveTexture(GL_TEXTURE0);
+    }
     gl->BindTexture(GL_TEXTURE_2D, renderer->targets[layer].texture);
     gl->BindVertexArray(renderer->vertex_array);
     gl->DrawArrays(GL_TRIANGLES, 0, 3);
@@ -66,15 +73,19 @@ static camber_status begin_layer(camber_renderer *renderer, int layer, const cam
 
 static camber_status draw_layered(camber_renderer *renderer, const camber_run *run, const camber_piece *piece) {
     const camber_gl *gl = &renderer->share.surface->gl;
-    const int layer = run->one_color ? CAMBER_TARGET_COVERAGE : CAMBER_TARGET_LAYER;
+    static const unsigned variants[CAMBER_FLATTEN_KINDS] = {
+        [CAMBER_FLATTEN_UNION] = CAMBER_VARIANT_UNION, [CAMBER_FLATTEN_MASKED] = CAMBER_VARIANT_MASK};
+    static const int layers[CAMBER_FLATTEN_KINDS] = {CAMBER_TARGET_LAYER, CAMBER_TARGET_COVERAGE,
+                                                     CAMBER_TARGET_COVERAGE, CAMBER_TARGET_MASKED};
     const camber_flatten_kind kind = kind_of(renderer, run);
+    const int layer = layers[kind];
     camber_status status = begin_layer(renderer, layer, piece);
     if (status == CAMBER_OK)
         status = camber_batch_add(renderer, run, piece);
     if (status != CAMBER_OK)
         return status;
     set_blending(gl, kind);
-    status = camber_batch_draw(renderer, kind == CAMBER_FLATTEN_UNION ? CAMBER_VARIANT_UNION : 0u, piece);
+    status = camber_batch_draw(renderer, variants[kind], piece);
     if (status != CAMBER_OK)
         return status;
     const float a = run->alpha * run->opacity;
@@ -91,7 +102,15 @@ static unsigned bands_of(const camber_paint *paint) {
     return (paint->gap_px > 0.0f ? (unsigned)CAMBER_VARIANT_GAP : 0u) |
            (paint->blur_px > 0.0f ? (unsigned)CAMBER_VARIANT_BLUR : 0u) |
            (paint->dash ? (unsigned)CAMBER_VARIANT_DASH : 0u) |
-           (paint->trim_end > paint->trim_start ? (unsigned)CAMBER_VARIANT_TRIM : 0u);
+           (paint->trim_end > paint->trim_start ? (unsigned)CAMBER_VARIANT_TRIM : 0u) |
+           (paint->ramp ? (unsigned)CAMBER_VARIANT_RAMP : 0u);
+}
+
+static bool is_translucent(const camber_ramp *ramp) {
+    for (size_t i = 0; i < ramp->count; i++)
+        if (ramp->stops[i].color.a < 1.0f)
+            return true;
+    return false;
 }
 
 /* The longest run from a polyline on. Rows that are not drawn belong to any run. */
@@ -99,24 +118,30 @@ static camber_run next_run(const camber_pass *pass, size_t first, size_t end) {
     const uint32_t *rows = pass->mesh->polyline_rows;
     const bool layered = pass->overlap != CAMBER_OVERLAP_ACCUMULATE;
     camber_run run = {.pass = pass, .first = first, .end = first, .alpha = 1.0f, .opacity = 1.0f, .one_color = true};
+    const camber_ramp *known = NULL;
     bool met = false;
     for (; run.end < end; run.end++) {
         if (!camber_pass_draws(pass, rows[run.end]))
             continue;
-        const camber_color color = pass->paints[rows[run.end]].color;
+        const camber_paint *paint = pass->paints + rows[run.end];
+        const camber_color color = paint->color;
         if (met && layered && color.a != run.alpha)
             break;
         if (!met) {
             run.alpha = layered ? color.a : 1.0f;
             run.color = color;
         }
-        run.one_color = run.one_color && same_color(color, run.color);
-        run.bands |= bands_of(pass->paints + rows[run.end]);
+        run.one_color = run.one_color && same_color(color, run.color) && !paint->ramp;
+        run.bands |= bands_of(paint);
+        if (layered && paint->ramp && !run.masked && pass->ramps + paint->ramp - 1 != known) {
+            known = pass->ramps + paint->ramp - 1;
+            run.masked = is_translucent(known);
+        }
         met = true;
     }
     if (!met)
         run.alpha = 0.0f; /* nothing to draw */
-    run.layered = run.alpha < 1.0f || (pass->overlap == CAMBER_OVERLAP_UNITE && run.one_color);
+    run.layered = run.alpha < 1.0f || run.masked || (pass->overlap == CAMBER_OVERLAP_UNITE && run.one_color);
     return run;
 }
 

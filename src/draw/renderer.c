@@ -49,7 +49,8 @@ void camber_renderer_destroy(camber_renderer *renderer) {
     camber_free(context, renderer->batch.counts);
     camber_free(context, renderer->batch.firsts);
     camber_free(context, renderer->batch.ranges);
-    camber_free(context, renderer->dash_texels);
+    camber_free(context, renderer->ramps);
+    camber_free(context, renderer->tail_texels);
     camber_free(context, renderer->row_texels);
     camber_free(context, renderer);
 }

@@ -17,7 +17,9 @@ enum {
     CAMBER_VARIANT_BLUR = 256,    /* strokes that may fade */
     CAMBER_VARIANT_DASH = 512,    /* strokes that may be dashed */
     CAMBER_VARIANT_TRIM = 1024,   /* strokes that may be drawn in part */
-    CAMBER_VARIANT_METHOD = 2048, /* times camber_method */
+    CAMBER_VARIANT_RAMP = 2048,   /* strokes whose colour may change along them */
+    CAMBER_VARIANT_MASK = 4096,   /* leaves colours that may be translucent, and how much of the pixel they cover */
+    CAMBER_VARIANT_METHOD = 8192, /* times camber_method */
     CAMBER_METHODS = 3,
     CAMBER_STROKES_MAX = 256 /* variants that are kept built */
 };
@@ -30,19 +32,21 @@ typedef enum camber_flatten_kind {
     CAMBER_FLATTEN_COLORS,
     CAMBER_FLATTEN_COVERAGE, /* one channel, gathered one over the other */
     CAMBER_FLATTEN_UNION,    /* four, of which the union is made */
+    CAMBER_FLATTEN_MASKED,   /* colours, and their alphas beside them */
     CAMBER_FLATTEN_KINDS
 } camber_flatten_kind;
 
 typedef struct camber_shader {
     GLuint program;   /* 0: not built yet */
     unsigned variant; /* of a stroke shader */
-    GLint origin, corner, scale, layer_color, table, table_rows, stride, dashes;
+    GLint origin, corner, scale, layer_color, table, table_rows, stride, tail;
 } camber_shader;
 
 /* A texture to draw into, of the size of a piece. */
 typedef struct camber_target {
     GLuint texture, framebuffer;
     GLuint stencil; /* of the counts only */
+    GLuint alphas;  /* of the masked layer only: its own alpha is how much of a pixel is covered */
     GLsizei width, height;
 } camber_target;
 
@@ -51,13 +55,14 @@ enum {
     CAMBER_TARGET_NEXT_PICTURE, /* of the second frame in flight */
     CAMBER_TARGET_COVERAGE,
     CAMBER_TARGET_LAYER,
-    CAMBER_TARGET_GROUP, /* a pass with an opacity of its own */
+    CAMBER_TARGET_MASKED, /* a layer whose colours are translucent by themselves */
+    CAMBER_TARGET_GROUP,  /* a pass with an opacity of its own */
     CAMBER_TARGET_COUNTS,
     CAMBER_TARGETS
 };
 
-/* The texture unit of the records, as stroke.vert has it; all else is at 0. */
-enum { CAMBER_RECORDS_UNIT = 1 };
+/* The texture units of the records, as stroke.vert has it, and of alphas, as flatten.frag has it; all else is at 0. */
+enum { CAMBER_RECORDS_UNIT = 1, CAMBER_ALPHAS_UNIT = 2 };
 
 /* Polylines of equal alpha that follow each other in a pass. */
 typedef struct camber_run {
@@ -67,8 +72,9 @@ typedef struct camber_run {
     float opacity;     /* of its layer, besides */
     bool one_color;    /* its layer holds coverage alone, and color is put over it */
     bool layered;
+    bool masked; /* a ramp has translucent colours */
     camber_color color;
-    unsigned bands; /* CAMBER_VARIANT_GAP, BLUR, DASH and TRIM, where a paint has them */
+    unsigned bands; /* CAMBER_VARIANT_GAP and what follows it, where a paint has them */
 } camber_run;
 
 typedef struct camber_batch_range {
@@ -88,6 +94,12 @@ typedef struct camber_batch {
     GLsizei *counts;
     size_t call_count, first_capacity, count_capacity;
 } camber_batch;
+
+/* Where a pass's ramp lies in the tail. */
+typedef struct camber_ramp_place {
+    const camber_ramp *ramp;
+    size_t texel;
+} camber_ramp_place;
 
 /* One piece of the picture. */
 typedef struct camber_piece {
@@ -123,8 +135,10 @@ struct camber_renderer {
     GLsizei row_height; /* texels */
     float *row_texels;  /* 4 floats a texel */
     size_t row_capacity;
-    float *dash_texels; /* behind the rows' tables: 4 floats a dash, of which two say from where to where it goes */
-    size_t dash_count, dash_capacity;
+    float *tail_texels; /* behind the rows' tables, 4 floats a texel: dashes, and the stops of ramps */
+    size_t tail_count, tail_capacity;
+    camber_ramp_place *ramps; /* that are in the tail */
+    size_t ramp_count, ramp_capacity;
     camber_batch batch;
     camber_flight flights[CAMBER_FRAMES_IN_FLIGHT];
     size_t first_flight, flight_count; /* a ring */
@@ -163,10 +177,15 @@ camber_status camber_renderer_reserve_rows(camber_renderer *renderer, size_t row
 /* A run's table: rows of other alphas are left out, and a layer's rows are drawn opaque. */
 camber_status camber_renderer_fill_rows(camber_renderer *renderer, const camber_run *run, size_t table);
 camber_status camber_renderer_upload_rows(camber_renderer *renderer, size_t row_count);
-/* The texel behind the tables. */
-GLint camber_renderer_first_dash(size_t row_count);
-/* Whether a dash is one that camber.h allows. */
+/* tail.c: what rows name, in the texels behind the tables, the first of which lies here. */
+GLint camber_renderer_tail(size_t row_count);
+void camber_tail_forget(camber_renderer *renderer);
+/* Puts a paint's dash or ramp into the tail, and into a texel of its row where that is. */
+camber_status camber_tail_put_dash(camber_renderer *renderer, const camber_pass *pass, uint32_t row, float texel[4]);
+camber_status camber_tail_put_ramp(camber_renderer *renderer, const camber_ramp *ramp, float texel[2]);
+/* Whether a dash, a ramp is one that camber.h allows. */
 bool camber_dash_is_valid(const camber_dash *dash);
+bool camber_ramp_is_valid(const camber_ramp *ramp);
 /* One table of a mesh with widths alone; a row past the paints is not drawn. */
 camber_status camber_renderer_set_widths(camber_renderer *renderer, const camber_mesh *mesh, const camber_paint *paints,
                                          size_t paint_count);

@@ -1,8 +1,7 @@
 /* The row texture: tables of widths, places and colours, one a pass that is drawn, of which every row of the mesh has
- * its texels. */
+ * its texels, and behind them the tail. */
 #include "draw/renderer.h"
 
-#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -20,63 +19,6 @@ bool camber_renderer_holds_rows(const camber_renderer *renderer, size_t row_coun
     const size_t texels = (size_t)ROW_TEXTURE_WIDTH * renderer->share.surface->info.largest_target_px;
     return row_count <= texels / TEXELS_A_ROW;
 }
-
-/* ---- Dashes ---- */
-
-GLint camber_renderer_first_dash(size_t row_count) {
-    return (GLint)(TEXELS_A_ROW * row_count);
-}
-
-/* In its unit. */
-static double period_of(const camber_dash *dash) {
-    double sum = 0.0;
-    for (size_t i = 0; i < dash->count; i++)
-        sum += (double)dash->lengths[i];
-    return sum * (dash->count % 2 ? 2.0 : 1.0);
-}
-
-bool camber_dash_is_valid(const camber_dash *dash) {
-    if (dash->count == 0 || dash->count > CAMBER_DASH_LENGTHS_MAX)
-        return false;
-    for (size_t i = 0; i < dash->count; i++)
-        if (!(dash->lengths[i] >= 0.0f))
-            return false;
-    const double period = period_of(dash);
-    return period > 0.0 && period <= (double)FLT_MAX;
-}
-
-static void put_dash(camber_renderer *renderer, double from, double to) {
-    float *texel = renderer->dash_texels + 4 * renderer->dash_count++;
-    texel[0] = (float)from;
-    texel[1] = (float)to;
-    texel[2] = texel[3] = 0.0f;
-}
-
-/* The dashes of a row, and its texel that says where they are. A period's last one stands before it once more and its
- * first one behind it, so that the shader need not look around. */
-static camber_status add_dashes(camber_renderer *renderer, const camber_dash *dash, double unit_px, bool round,
-                                float texel[4]) {
-    const size_t lengths = dash->count * (dash->count % 2 ? 2 : 1), count = lengths / 2 + 2;
-    const double period = period_of(dash) * unit_px;
-    const double left_out = (double)dash->lengths[(lengths - 1) % dash->count] * unit_px;
-    double at = 0.0;
-    if (!camber_grow(renderer->share.device->context, &renderer->dash_texels, &renderer->dash_capacity,
-                     renderer->dash_count + count, 4 * sizeof *renderer->dash_texels))
-        return CAMBER_ERROR_MEMORY;
-    texel[0] = (float)renderer->dash_count;
-    texel[1] = (float)(2 * count + round);
-    texel[2] = (float)period;
-    put_dash(renderer, -left_out - (double)dash->lengths[(lengths - 2) % dash->count] * unit_px, -left_out);
-    for (size_t i = 0; i < lengths; i += 2) {
-        const double end = at + (double)dash->lengths[i % dash->count] * unit_px;
-        put_dash(renderer, at, end);
-        at = end + (double)dash->lengths[(i + 1) % dash->count] * unit_px;
-    }
-    put_dash(renderer, period, period + (double)dash->lengths[0] * unit_px);
-    return CAMBER_OK;
-}
-
-/* ---- Rows ---- */
 
 /* What is trimmed at an end of the line takes its cap as well. */
 static void put_trim(const camber_paint *paint, float texel[4]) {
@@ -106,10 +48,9 @@ camber_status camber_renderer_fill_rows(camber_renderer *renderer, const camber_
         for (int c = 0; c < 4; c++)
             texel[4 + c] = run->layered && run->one_color ? 1.0f : color[c];
         put_trim(paint, texel + 16);
-        const camber_row *row = pass->mesh->host_rows + i;
-        const double unit_px = paint->dash_unit_px > 0.0f ? (double)paint->dash_unit_px : 1.0;
-        if (paint->dash && add_dashes(renderer, pass->dashes + paint->dash - 1, unit_px, row->cap == CAMBER_CAP_ROUND,
-                                      texel + 12) != CAMBER_OK)
+        if (paint->dash && camber_tail_put_dash(renderer, pass, (uint32_t)i, texel + 12) != CAMBER_OK)
+            return CAMBER_ERROR_MEMORY;
+        if (paint->ramp && camber_tail_put_ramp(renderer, pass->ramps + paint->ramp - 1, texel + 18) != CAMBER_OK)
             return CAMBER_ERROR_MEMORY;
     }
     return CAMBER_OK;
@@ -117,7 +58,7 @@ camber_status camber_renderer_fill_rows(camber_renderer *renderer, const camber_
 
 camber_status camber_renderer_reserve_rows(camber_renderer *renderer, size_t row_count) {
     const camber_gl *gl = &renderer->share.surface->gl;
-    const size_t texels = TEXELS_A_ROW * (row_count ? row_count : 1) + renderer->dash_count;
+    const size_t texels = TEXELS_A_ROW * (row_count ? row_count : 1) + renderer->tail_count;
     const size_t height = (texels + ROW_TEXTURE_WIDTH - 1) / ROW_TEXTURE_WIDTH;
     if (height > renderer->share.surface->info.largest_target_px)
         return camber_fail(renderer->share.device->context, CAMBER_ERROR_LIMIT, "%zu rows of style; merge equal ones",
@@ -144,13 +85,13 @@ camber_status camber_renderer_reserve_rows(camber_renderer *renderer, size_t row
 
 camber_status camber_renderer_upload_rows(camber_renderer *renderer, size_t row_count) {
     const camber_gl *gl = &renderer->share.surface->gl;
-    const size_t texels = TEXELS_A_ROW * row_count + renderer->dash_count;
+    const size_t texels = TEXELS_A_ROW * row_count + renderer->tail_count;
     const camber_status status = camber_renderer_reserve_rows(renderer, row_count);
     if (status != CAMBER_OK)
         return status;
-    if (renderer->dash_count)
-        memcpy(renderer->row_texels + 4 * TEXELS_A_ROW * row_count, renderer->dash_texels,
-               4 * renderer->dash_count * sizeof *renderer->dash_texels);
+    if (renderer->tail_count)
+        memcpy(renderer->row_texels + 4 * TEXELS_A_ROW * row_count, renderer->tail_texels,
+               4 * renderer->tail_count * sizeof *renderer->tail_texels);
     const GLsizei whole = (GLsizei)(texels / ROW_TEXTURE_WIDTH), rest = (GLsizei)(texels % ROW_TEXTURE_WIDTH);
     gl->BindTexture(GL_TEXTURE_2D, renderer->row_texture);
     if (whole)

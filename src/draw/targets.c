@@ -6,6 +6,7 @@
 static void release(const camber_gl *gl, camber_target *target) {
     gl->DeleteFramebuffers(1, &target->framebuffer);
     gl->DeleteTextures(1, &target->texture);
+    gl->DeleteTextures(1, &target->alphas);
     gl->DeleteRenderbuffers(1, &target->stencil);
     *target = (camber_target){0};
 }
@@ -24,22 +25,37 @@ static GLenum format_of(const camber_renderer *renderer, int which) {
     return renderer->share.surface->half_float_targets ? GL_RGBA16F : GL_R8;
 }
 
+static GLuint make_texture(const camber_gl *gl, GLenum format, GLsizei width, GLsizei height) {
+    GLuint texture;
+    gl->GenTextures(1, &texture);
+    gl->BindTexture(GL_TEXTURE_2D, texture);
+    gl->TexStorage2D(GL_TEXTURE_2D, 1, format, width, height);
+    gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    return texture;
+}
+
+static void add_alphas(const camber_gl *gl, camber_target *target, GLsizei width, GLsizei height) {
+    static const GLenum both[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+    target->alphas = make_texture(gl, GL_R8, width, height);
+    gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT1, GL_TEXTURE_2D, target->alphas, 0);
+    gl->DrawBuffers(2, both);
+}
+
 static camber_status resize(camber_renderer *renderer, int which, GLsizei width, GLsizei height) {
     const camber_gl *gl = &renderer->share.surface->gl;
     camber_target *target = renderer->targets + which;
     if (target->width == width && target->height == height)
         return CAMBER_OK;
     release(gl, target);
-    gl->GenTextures(1, &target->texture);
-    gl->BindTexture(GL_TEXTURE_2D, target->texture);
-    gl->TexStorage2D(GL_TEXTURE_2D, 1, format_of(renderer, which), width, height);
-    gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    target->texture = make_texture(gl, format_of(renderer, which), width, height);
     gl->GenFramebuffers(1, &target->framebuffer);
     gl->BindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
     gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target->texture, 0);
     if (which == CAMBER_TARGET_COUNTS)
         add_stencil(gl, target, width, height);
+    if (which == CAMBER_TARGET_MASKED)
+        add_alphas(gl, target, width, height);
     const GLenum complete = gl->CheckFramebufferStatus(GL_FRAMEBUFFER);
     char what[64];
     snprintf(what, sizeof what, "a target of %d x %d px", (int)width, (int)height);

@@ -177,7 +177,9 @@ CAMBER_API camber_view_desc camber_style_get_view(const camber_style *style);
 /* Reads the sources that the style's line layers name, in place of files. Those of type vector (tiles or url: files by
  * a template, TileJSON, MBTiles, PMTiles) give the tiles that the view sees, at the zoom that its zoom asks for (tiles
  * are 512 CSS px wide) within the source's; those of type geojson are read whole. Paths are relative to the folder of
- * base_path, the style's file; NULL: to the working folder. Lines stay apart. For another view read into another set.
+ * base_path, the style's file; NULL: to the working folder. Lines that the style cannot tell apart become one
+ * where they go on almost straight, but for a style that names what follows a line's direction. For another view read
+ * into another set.
  * A view that fits is that of the sources' bounds, or the whole world where none is known.
  * Returns CAMBER_ERROR_ARGUMENT (the view), CAMBER_ERROR_NOT_FOUND, CAMBER_ERROR_INPUT (a source on the network, a file
  * that does not read), CAMBER_ERROR_IO, CAMBER_ERROR_LIMIT (more than 65536 tiles), CAMBER_ERROR_MEMORY. A tile that is

@@ -126,6 +126,44 @@ static void test_junctions_and_rings(void **state) {
     }
 }
 
+/* By the straight rule the two ends that turn least go on, whatever else meets there; a bend ends both. */
+static void test_straight_on(void **state) {
+    (void)state;
+    fixture it;
+    begin(&it);
+    add(&it, 0, 2, (double[]){0, 0, 10, 0});
+    add(&it, 0, 2, (double[]){10, 0, 20, 5}); /* by 27 degrees */
+    add(&it, 0, 2, (double[]){20, 0, 10, 0}); /* against its direction, and straighter */
+    add(&it, 0, 2, (double[]){10, 9, 10, 0});
+    add(&it, 0, 3, (double[]){10, 0, 10, 0, 10, -9});    /* a point that comes twice has no direction */
+    add(&it, 0, 2, (double[]){20, 0, 20, 4});            /* a corner */
+    add(&it, 1, 2, (double[]){20, 0, 30, 0});            /* another class */
+    add(&it, 2, 4, (double[]){0, 0, 5, 1, 5, -1, 0, 0}); /* its own two ends */
+    add(&it, 2, 2, (double[]){0, 0, -5, 5});             /* by 34 degrees from one of them */
+    assert_int_equal(camber_features_merge(it.features, 0, CAMBER_MERGE_STRAIGHT), CAMBER_OK);
+    assert_int_equal(it.features->polyline_count, 6);
+    expect_line(&it, 0, 3, (double[]){0, 0, 10, 0, 20, 0});
+    expect_line(&it, 1, 2, (double[]){10, 0, 20, 5});
+    expect_line(&it, 2, 4, (double[]){10, 9, 10, 0, 10, 0, 10, -9});
+    expect_line(&it, 3, 2, (double[]){20, 0, 20, 4});
+    expect_line(&it, 4, 2, (double[]){20, 0, 30, 0});
+    assert_int_equal(it.features->feature_counts[0], 2);
+    assert_int_equal(it.features->feature_counts[5], 2);
+    end(&it);
+}
+
+/* More ends than are looked at: those past them stay as they are. */
+static void test_star(void **state) {
+    (void)state;
+    fixture it;
+    begin(&it);
+    for (int i = 0; i < 40; i++)
+        add(&it, 0, 2, (double[]){0, 0, cos(0.1 + i), sin(0.1 + i)});
+    assert_int_equal(camber_features_merge(it.features, 0, CAMBER_MERGE_STRAIGHT), CAMBER_OK);
+    assert_in_range(it.features->polyline_count, 32, 39);
+    end(&it);
+}
+
 /* A feature of two parts counts where its first is, and once. What was read before stays as it is. */
 static void test_counts(void **state) {
     (void)state;
@@ -424,6 +462,7 @@ static void test_cities_against_geos(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_known_lines), cmocka_unit_test(test_junctions_and_rings),
+        cmocka_unit_test(test_straight_on), cmocka_unit_test(test_star),
         cmocka_unit_test(test_counts),      cmocka_unit_test(test_any_network),
         cmocka_unit_test(test_memory),      cmocka_unit_test(test_cities_against_geos),
     };

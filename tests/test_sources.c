@@ -555,6 +555,26 @@ static void test_seams(void **state) {
     expect_bent(it, "\"s\": {\"type\": \"vector\", \"maxzoom\": 1, \"tiles\": [\"{z}-{x}-{y}.mvt\"]}");
 }
 
+/* Features that go straight on are one line, so that no seam shows where butt ends meet; but for what is drawn along
+ * each. */
+static void test_straight_on(void **state) {
+    fixture *it = *state;
+    static const char source[] =
+        "\"s\": {\"type\": \"geojson\", \"data\": {\"type\": \"GeometryCollection\", \"geometries\": ["
+        "{\"type\": \"LineString\", \"coordinates\": [[0, 0], [1, 0]]}, "
+        "{\"type\": \"LineString\", \"coordinates\": [[2, 0], [1, 0]]}, "
+        "{\"type\": \"LineString\", \"coordinates\": [[2, 0], [2, 1]]}]}}";
+    const camber_view_desc view = view_at(1.0, 0.0, 1.0, 1, 300, 300);
+    expect_ok(it, read_view(it, source, LINES, &view));
+    assert_int_equal(it->features->polyline_count, 2);
+    assert_int_equal(it->features->stats.merged_polylines, 1);
+    expect_ok(it, read_view(it, source,
+                            "{\"id\": \"l\", \"type\": \"line\", \"source\": \"s\", "
+                            "\"paint\": {\"line-dasharray\": [2, 1]}}",
+                            &view));
+    assert_int_equal(it->features->polyline_count, 3);
+}
+
 /* What is read is what the sources' bounds show where no camera is given. */
 static void test_fit(void **state) {
     fixture *it = *state;
@@ -580,6 +600,7 @@ int main(void) {
         TEST(test_templates),    TEST(test_archives),        TEST(test_zooms),  TEST(test_seen_tiles),
         TEST(test_antimeridian), TEST(test_damaged_tiles),   TEST(test_errors), TEST(test_endless_database),
         TEST(test_geojson),      TEST(test_geojson_options), TEST(test_seams),  TEST(test_fit),
+        TEST(test_straight_on),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

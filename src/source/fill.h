@@ -20,8 +20,14 @@ camber_status camber_features_add_feature(camber_features *features, uint32_t cl
 camber_status camber_features_add_polyline(camber_features *features, const double *points, size_t point_count);
 /* The progress of the polyline added last. */
 camber_status camber_features_set_progress(camber_features *features, double first, double last);
-/* Merges lines of first_polyline and after it; directed: only the end of one with the start of another. */
-camber_status camber_features_merge(camber_features *features, size_t first_polyline, bool directed);
+typedef enum camber_merge_rule {
+    CAMBER_MERGE_ANY = 0,  /* where exactly two ends of a class meet */
+    CAMBER_MERGE_DIRECTED, /* the same, but only the end of one with the start of another */
+    CAMBER_MERGE_STRAIGHT, /* where two ends go on almost straight, whatever else meets there */
+} camber_merge_rule;
+
+/* Merges lines of first_polyline and after it. */
+camber_status camber_features_merge(camber_features *features, size_t first_polyline, camber_merge_rule rule);
 /* Sets the importance of the points of first_polyline and of those after it. */
 camber_status camber_features_weigh(camber_features *features, size_t first_polyline);
 

@@ -1,11 +1,20 @@
 /* Merges lines of one class that meet end to end, as GEOS's LineMerge does: where exactly two ends of the class meet,
  * they become one line. Lines of one class are drawn alike at every zoom, so only the ends' caps go, and fewer lines
  * have fewer ends, which simplification has to keep.
+ *
+ * Lines of a style's own sources are merged only where they go on almost straight: two butt ends that meet there would
+ * leave a light seam, as each covers a part of the same pixels. Where they bend they end as the style has it.
  */
 #include "source/chains.h"
 #include "source/fill.h"
 
+#include <math.h>
 #include <string.h>
+
+/* Of a turn of 40 degrees. */
+static const double STRAIGHT_COSINE = 0.766;
+/* Ends at a node that are looked at for those that go on straight. */
+enum { NODE_ENDS_MAX = 16 };
 
 /* The lines from first_polyline on, as pieces. */
 typedef struct merger {
@@ -13,6 +22,7 @@ typedef struct merger {
     size_t first_polyline;
     size_t piece_count;
     uint32_t *partner; /* of the ends; CAMBER_NO_END */
+    uint32_t *next;    /* by the straight rule: another end at the same node; CAMBER_NO_END */
     uint8_t *met;      /* ends at the node of which this end was the first, up to 3 */
     uint32_t *slots;   /* the first end at a node, + 1; 0: free. A power of two of them, at most half in use */
     size_t slot_count;
@@ -93,6 +103,70 @@ static void find_partners(merger *m, bool directed) {
     }
 }
 
+/* ---- Lines that go on straight ---- */
+
+/* The direction in which a line leaves its end. */
+static void leave(const merger *m, uint32_t end, double direction[2]) {
+    size_t count;
+    const double *points = piece_points(m, end / 2, &count), *at = points + (end & 1 ? 2 * (count - 1) : 0);
+    direction[0] = direction[1] = 0.0;
+    for (size_t i = 1; i < count && direction[0] == 0.0 && direction[1] == 0.0; i++) {
+        const double *other = points + 2 * (end & 1 ? count - 1 - i : i);
+        direction[0] = other[0] - at[0];
+        direction[1] = other[1] - at[1];
+    }
+    const double length = hypot(direction[0], direction[1]);
+    direction[0] /= length;
+    direction[1] /= length;
+}
+
+/* Makes partners of the ends at a node, of which first is one, those that turn least first. */
+static void pair_straight(merger *m, uint32_t first) {
+    uint32_t ends[NODE_ENDS_MAX];
+    double directions[NODE_ENDS_MAX][2];
+    size_t count = 0;
+    for (uint32_t end = first; end != CAMBER_NO_END && count < NODE_ENDS_MAX; end = m->next[end])
+        ends[count++] = end;
+    for (size_t i = 0; i < count; i++)
+        leave(m, ends[i], directions[i]);
+    for (;;) {
+        size_t a = 0, b = 0;
+        double best = STRAIGHT_COSINE;
+        for (size_t i = 0; i < count; i++)
+            for (size_t k = i + 1; k < count; k++) {
+                const double cosine = -(directions[i][0] * directions[k][0] + directions[i][1] * directions[k][1]);
+                const bool free = m->partner[ends[i]] == CAMBER_NO_END && m->partner[ends[k]] == CAMBER_NO_END;
+                if (!free || ends[i] / 2 == ends[k] / 2 || !(cosine > best))
+                    continue;
+                best = cosine;
+                a = i;
+                b = k;
+            }
+        if (a == b)
+            return;
+        m->partner[ends[a]] = ends[b];
+        m->partner[ends[b]] = ends[a];
+    }
+}
+
+static void find_straight_partners(merger *m) {
+    for (size_t i = 0; i < m->piece_count; i++) {
+        if (!has_ends(m, i))
+            continue;
+        for (uint32_t end = (uint32_t)(2 * i); end <= 2 * i + 1; end++) {
+            const uint32_t first = find_node(m, end);
+            m->met[first] = 1;
+            if (first == end)
+                continue;
+            m->next[end] = m->next[first];
+            m->next[first] = end;
+        }
+    }
+    for (uint32_t end = 0; end < 2 * m->piece_count; end++)
+        if (m->met[end] && m->next[end] != CAMBER_NO_END)
+            pair_straight(m, end);
+}
+
 /* ---- The merged lines ---- */
 
 typedef struct merged {
@@ -158,7 +232,7 @@ done:
     return status;
 }
 
-camber_status camber_features_merge(camber_features *features, size_t first_polyline, bool directed) {
+camber_status camber_features_merge(camber_features *features, size_t first_polyline, camber_merge_rule rule) {
     camber_context *context = features->context;
     merger m = {.features = features,
                 .first_polyline = first_polyline,
@@ -175,10 +249,16 @@ camber_status camber_features_merge(camber_features *features, size_t first_poly
     if (!(m.partner = camber_alloc(context, 2 * m.piece_count, sizeof *m.partner)) ||
         !(m.met = camber_alloc_zero(context, 2 * m.piece_count, sizeof *m.met)) ||
         !(m.slots = camber_alloc_zero(context, m.slot_count, sizeof *m.slots)) ||
-        !(m.visited = camber_alloc_zero(context, m.piece_count, sizeof *m.visited)))
+        !(m.visited = camber_alloc_zero(context, m.piece_count, sizeof *m.visited)) ||
+        !(m.next = camber_alloc(context, rule == CAMBER_MERGE_STRAIGHT ? 2 * m.piece_count : 1, sizeof *m.next)))
         goto done;
     memset(m.partner, 0xff, 2 * m.piece_count * sizeof *m.partner);
-    find_partners(&m, directed);
+    if (rule == CAMBER_MERGE_STRAIGHT) {
+        memset(m.next, 0xff, 2 * m.piece_count * sizeof *m.next);
+        find_straight_partners(&m);
+    } else {
+        find_partners(&m, rule == CAMBER_MERGE_DIRECTED);
+    }
     const camber_chains_desc chains = {
         .partner = m.partner, .piece_count = m.piece_count, .key_count = m.piece_count, .visited = m.visited};
     status = camber_chains_find(context, &chains, &m.chains, &m.chain_count);
@@ -186,6 +266,7 @@ camber_status camber_features_merge(camber_features *features, size_t first_poly
         status = write_chains(&m);
 done:
     camber_free(context, m.chains);
+    camber_free(context, m.next);
     camber_free(context, m.visited);
     camber_free(context, m.slots);
     camber_free(context, m.met);

@@ -332,7 +332,8 @@ static camber_status finish(camber_features *features, const camber_source_desc 
     const double start_ms = camber_now_ms();
     camber_status status = CAMBER_OK;
     if (!desc->keep_apart)
-        status = camber_features_merge(features, first_polyline, features->style->directed);
+        status = camber_features_merge(features, first_polyline,
+                                       features->style->directed ? CAMBER_MERGE_DIRECTED : CAMBER_MERGE_ANY);
     const double merged_ms = camber_now_ms();
     if (status == CAMBER_OK)
         status = camber_features_weigh(features, first_polyline);

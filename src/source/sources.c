@@ -176,11 +176,17 @@ done:
 
 /* ---- All of them ---- */
 
-/* The lines added since, of one source. */
+/* The lines added since, of one source. Dashes and what follows a line's progress begin with each feature. */
 static camber_status finish(camber_features *features, size_t first_polyline) {
     const double start_ms = camber_now_ms();
-    const camber_status status = camber_features_weigh(features, first_polyline);
-    features->times.weigh_ms += camber_now_ms() - start_ms;
+    camber_status status = CAMBER_OK;
+    if (!features->style->directed && !features->progress)
+        status = camber_features_merge(features, first_polyline, CAMBER_MERGE_STRAIGHT);
+    const double merged_ms = camber_now_ms();
+    if (status == CAMBER_OK)
+        status = camber_features_weigh(features, first_polyline);
+    features->times.merge_ms += merged_ms - start_ms;
+    features->times.weigh_ms += camber_now_ms() - merged_ms;
     features->stats.features = features->feature_count;
     features->stats.polylines = features->polyline_count;
     features->stats.points = features->point_count;
@@ -305,7 +311,7 @@ static camber_status read_tiles(camber_sources *sources, const source *one, cons
                                         .layers = names,
                                         .layer_count = list_layers(style, one->index, names),
                                         .wants_polygons = true,
-                                        .wants_progress = true,
+                                        .wants_progress = style->directed,
                                         .promote_id = json_object_get(one->style->json, "promoteId")};
         status = read_places(sources, one, &reading);
     }
@@ -315,13 +321,14 @@ static camber_status read_tiles(camber_sources *sources, const source *one, cons
 }
 
 camber_status camber_sources_read(camber_sources *sources, const camber_cover *cover) {
-    const double start_ms = camber_now_ms(), weighed_ms = sources->features->times.weigh_ms;
+    const double start_ms = camber_now_ms(),
+                 others_ms = sources->features->times.weigh_ms + sources->features->times.merge_ms;
     camber_status status = CAMBER_OK;
     for (size_t i = 0; i < sources->count && status == CAMBER_OK; i++)
         if (sources->items[i].set)
             status = read_tiles(sources, &sources->items[i], cover);
     camber_features_times *times = &sources->features->times;
-    times->file_ms += camber_now_ms() - start_ms - (times->weigh_ms - weighed_ms);
+    times->file_ms += camber_now_ms() - start_ms - (times->weigh_ms + times->merge_ms - others_ms);
     sources->features->source = CAMBER_NO_SOURCE;
     return status;
 }

@@ -280,7 +280,8 @@ static camber_status finish(const input *self, size_t first_polyline) {
     const double start_ms = camber_now_ms();
     camber_status status = CAMBER_OK;
     if (!self->desc->keep_apart)
-        status = camber_features_merge(features, first_polyline, features->style->directed);
+        status = camber_features_merge(features, first_polyline,
+                                       features->style->directed ? CAMBER_MERGE_DIRECTED : CAMBER_MERGE_ANY);
     const double merged_ms = camber_now_ms();
     if (status == CAMBER_OK)
         status = camber_features_weigh(features, first_polyline);

@@ -185,6 +185,41 @@ static void test_layer_opacity(void **state) {
     close_map(&m);
 }
 
+/* Lines over and beside each other, as the layer's metadata has it. Where opacity changes with the feature, those of
+ * one opacity that follow each other are flattened together. */
+static void test_overlap(void **state) {
+    studio *s = *state;
+    static const struct {
+        const char *overlap;
+        double over,
+            beside; /* where two translucent ones lie over each other; where opaque ones have half a pixel each */
+    } cases[] = {{"", 0.5, 0.75}, {"flatten", 0.5, 0.75}, {"accumulate", 0.75, 0.75}, {"unite", 0.5, 1}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char metadata[64] = "", layer[512];
+        if (*cases[i].overlap)
+            snprintf(metadata, sizeof metadata, "\"metadata\": {\"camber:overlap\": \"%s\"}, ", cases[i].overlap);
+        snprintf(layer, sizeof layer,
+                 "{\"id\": \"a\", \"type\": \"line\", \"source\": \"s\", %s\"paint\": {\"line-width\": 21, "
+                 "\"line-opacity\": [\"get\", \"o\"]}}",
+                 metadata);
+        /* 21 px are 0.922852 degrees. */
+        map m = open_map(s,
+                         "\"s\": " LINES(LINE(0, "\"o\": 0.5") "," LINE(0.2, "\"o\": 0.5") "," LINE(
+                             -0.922852, "\"o\": 0.5") "," LINE(-0.7, "\"o\": 0.4")),
+                         layer, 0);
+        picture p = draw(s, &m);
+        assert_pixel(&p, 64, 60, 0, 0, 0, cases[i].over);
+        assert_pixel(&p, 64, 80, 0, 0, 0, 0.7); /* of two opacities, whatever the overlap */
+        picture_free(&p);
+        close_map(&m);
+        m = open_map(s, "\"s\": " LINES(LINE(0, "\"o\": 1") "," LINE(-0.922852, "\"o\": 1")), layer, 0);
+        p = draw(s, &m);
+        assert_pixel(&p, 64, 74, 0, 0, 0, cases[i].beside);
+        picture_free(&p);
+        close_map(&m);
+    }
+}
+
 /* Of the line's own width; where the line is translucent, it is not seen through the border, nor the border through it.
  */
 static void test_border(void **state) {
@@ -337,6 +372,7 @@ int main(void) {
         cmocka_unit_test(test_sources),       cmocka_unit_test(test_translate),
         cmocka_unit_test(test_layer_opacity), cmocka_unit_test(test_many_layers),
         cmocka_unit_test(test_border),        cmocka_unit_test(test_sharing),
+        cmocka_unit_test(test_overlap),
     };
     const int failed = cmocka_run_group_tests(tests, studio_set_up, studio_tear_down);
     folder_remove(cache);

@@ -21,7 +21,9 @@ typedef enum reason {
 #define SHORT                                                                                                          \
     "butt ends are not anti-aliased there; bends of segments shorter than the line is wide lose what the segments "    \
     "cover"
-#define ANEW "dashes begin anew where a tile cuts a line there; camber's run on"
+#define ANEW                                                                                                           \
+    "dashes begin anew where a tile cuts a line there, and at a polygon's first point with the length of its last "    \
+    "side behind them; camber's run on, from the first point"
 #define DARKER "lines of one opacity darken where they overlap, themselves too; camber flattens them"
 
 /* Pictures that are farther off, and by how much at most. One that has come close must go from here. */
@@ -56,10 +58,28 @@ static const struct {
     {"line-translate/default", FLAW, 0.0002, BUTTS},
     {"line-translate/literal", FLAW, 0.0002, BUTTS},
     {"line-width/function", FLAW, 0.001, SHORT},
-    {"line-width/very-overscaled", FLAW, 0.03,
-     "its lines lie 60 px from where the tile has them, and bend where that has no point"},
+    {"line-width/very-overscaled", FLAW, 0.03, "the style asks for zoom 21; that engine draws none beyond 20"},
 };
 enum { EXCEPTIONS = sizeof exceptions / sizeof *exceptions };
+
+typedef enum style_change {
+    NO_CHANGE = 0,
+    DARKENED, /* overlaps darken */
+    HELD,     /* the zoom is 20 at most */
+} style_change;
+
+/* What shows that a reason holds: with this changed in its style camber's picture comes so close. */
+static const struct {
+    const char *name;
+    style_change change;
+    double share; /* 0: what the style asks for */
+} proofs[] = {
+    {"line-join/round-transparent", DARKENED, 0.0045}, /* a round join is drawn twice there */
+    {"line-opacity/literal", DARKENED, 0},
+    {"line-opacity/property-function", DARKENED, 0.002}, /* butt ends, and bends of short segments */
+    {"line-width/very-overscaled", HELD, 0},
+};
+enum { PROOFS = sizeof proofs / sizeof *proofs };
 
 typedef struct style_case {
     char name[256]; /* "line-join/round" */
@@ -161,8 +181,21 @@ static uint32_t count_of(const json_t *test, const char *key, uint32_t usual) {
     return json_is_number(json) ? (uint32_t)json_number_value(json) : usual;
 }
 
+static void change_style(json_t *style, style_change change) {
+    const json_t *zoom = json_object_get(style, "zoom");
+    json_t *layer;
+    size_t i;
+    if (change == HELD && json_number_value(zoom) > 20)
+        json_object_set_new(style, "zoom", json_integer(20));
+    if (change != DARKENED)
+        return;
+    json_array_foreach(json_object_get(style, "layers"), i, layer) {
+        json_object_set_new(layer, "metadata", json_pack("{s:s}", "camber:overlap", "accumulate"));
+    }
+}
+
 /* Writes the style where camber reads it, and what it asks for. */
-static void prepare(style_case *c, const char *folder, const char *out) {
+static void prepare(style_case *c, const char *folder, style_change change, const char *out) {
     char path[2 * PATH_SIZE];
     snprintf(path, sizeof path, "%s/tests/%s/style.json", folder, c->name);
     json_t *style = json_load_file(path, 0, NULL);
@@ -175,6 +208,7 @@ static void prepare(style_case *c, const char *folder, const char *out) {
     c->ratio = json_is_number(ratio) ? json_number_value(ratio) : 1;
     c->share = json_is_number(diff) ? json_number_value(diff) : USUAL_SHARE;
     localize(style, folder);
+    change_style(style, change);
     assert_int_equal(json_dump_file(style, out, 0), 0);
     json_decref(style);
 }
@@ -205,6 +239,16 @@ static int exception_of(const char *name) {
     return -1;
 }
 
+static bool judge_proof(const style_case *c, style_change change, double share) {
+    double most = c->share;
+    for (int i = 0; i < PROOFS; i++)
+        if (strcmp(proofs[i].name, c->name) == 0 && proofs[i].share > 0)
+            most = proofs[i].share;
+    printf("%-36s %.5f of %.5f: %s: %s\n", "", share, most, change == HELD ? "at zoom 20" : "where overlaps darken",
+           share <= most ? "close" : "BUT THAT IS NOT WHY");
+    return share <= most;
+}
+
 static bool judge(const style_case *c, double share) {
     const int e = exception_of(c->name);
     if (e < 0) {
@@ -220,7 +264,7 @@ static bool judge(const style_case *c, double share) {
     return kept;
 }
 
-static bool compare(const style_case *c, const char *folder, const char *base) {
+static bool compare(const style_case *c, const char *folder, style_change change, const char *base) {
     char path[2 * PATH_SIZE];
     rgba expected = {0}, actual = {0};
     snprintf(path, sizeof path, "%s/tests/%s/expected.png", folder, c->name);
@@ -235,7 +279,7 @@ static bool compare(const style_case *c, const char *folder, const char *base) {
     const pixelmatch_pair pair = {expected.pixels, actual.pixels, (int)expected.width, (int)expected.height,
                                   difference.pixels};
     const double share = (double)pixelmatch_count(&pair, THRESHOLD) / (double)count;
-    if (share > c->share) {
+    if (share > c->share && !change) {
         snprintf(path, sizeof path, "%s.expected.png", base);
         write_png(path, &expected);
         snprintf(path, sizeof path, "%s.difference.png", base);
@@ -246,7 +290,7 @@ static bool compare(const style_case *c, const char *folder, const char *base) {
     free(difference.pixels);
     free(actual.pixels);
     free(expected.pixels);
-    return judge(c, share);
+    return change ? judge_proof(c, change, share) : judge(c, share);
 }
 
 static void print_file(const char *path) {
@@ -258,23 +302,31 @@ static void print_file(const char *path) {
         fclose(file);
 }
 
-static bool draw(style_case *c, const char *folder) {
+static bool draw(style_case *c, const char *folder, style_change change) {
     char base[PATH_SIZE], style[2 * PATH_SIZE], picture[2 * PATH_SIZE], log[2 * PATH_SIZE];
     snprintf(base, sizeof base, "%s/%s", CAMBER_LINE_PICTURES, c->name);
     for (char *at = base + strlen(CAMBER_LINE_PICTURES) + 1; *at; at++)
         *at = *at == '/' ? '-' : *at;
-    snprintf(style, sizeof style, "%s.json", base);
+    snprintf(style, sizeof style, "%s%s.json", base, change ? ".changed" : "");
     snprintf(picture, sizeof picture, "%s.actual.png", base);
     snprintf(log, sizeof log, "%s.log", base);
     remove(picture);
-    prepare(c, folder, style);
+    prepare(c, folder, change, style);
     const int status = run(c, style, picture, log);
     if (status == 0)
-        return compare(c, folder, base);
+        return compare(c, folder, change, base);
     const int e = exception_of(c->name);
     printf("%-36s exit status %d%s%s\n", c->name, status, e >= 0 ? ": not yet: " : "", e >= 0 ? exceptions[e].why : "");
     print_file(log);
     return e >= 0 && exceptions[e].reason == NOT_YET;
+}
+
+static bool draw_case(style_case *c, const char *folder) {
+    bool proven = true;
+    for (int i = 0; i < PROOFS; i++)
+        if (strcmp(proofs[i].name, c->name) == 0)
+            proven &= draw(c, folder, proofs[i].change);
+    return draw(c, folder, NO_CHANGE) && proven;
 }
 
 /* ---- All of them ---- */
@@ -312,7 +364,7 @@ static void test_pictures(void **state) {
     size_t bad = 0;
     assert_in_range(count, 1, STYLES_MAX - 1);
     for (size_t i = 0; i < count; i++)
-        bad += !draw(cases + i, folder);
+        bad += !draw_case(cases + i, folder);
     size_t seen = 0; /* of the exceptions */
     for (size_t i = 0; i < count; i++)
         seen += exception_of(cases[i].name) >= 0;

@@ -74,6 +74,7 @@ typedef struct layer_run {
     size_t first_polyline, end_polyline;
     size_t end_paint;
     float opacity; /* of the layer; 1: of runs of several */
+    camber_overlap overlap;
     bool opaque;
 } layer_run;
 
@@ -107,13 +108,14 @@ static size_t find_runs(const numbering *n, layer_run *runs, size_t *layer_count
         const float opacity = (float)plan->layers[i].look.paint.layer_opacity;
         opaque = opaque && opacity >= 1.0f;
         const size_t first = n->first_polylines[plan->layers[i].set], end = n->first_polylines[plan->layers[i].set + 1];
+        const camber_overlap overlap = plan->layers[i].look.layer->overlap;
         layer_run *last = count ? runs + count - 1 : NULL;
-        if (last && last->opaque && opaque && last->end_polyline == first) {
+        if (last && last->opaque && opaque && last->overlap == overlap && last->end_polyline == first) {
             last->end_layer = i + 1;
             last->end_polyline = end;
             last->end_paint = end_of(n, set);
         } else {
-            runs[count++] = (layer_run){i, i + 1, first, end, end_of(n, set), opacity, opaque};
+            runs[count++] = (layer_run){i, i + 1, first, end, end_of(n, set), opacity, overlap, opaque};
         }
     }
     return count;
@@ -162,6 +164,7 @@ static camber_status make_passes(camber_context *context, const numbering *n, si
                                         .paint_count = runs[i].end_paint,
                                         .dashes = n->plan->dashes,
                                         .dash_count = n->plan->dash_count,
+                                        .overlap = runs[i].overlap,
                                         .opacity = runs[i].opacity};
         paints += runs[i].end_paint;
     }

@@ -176,11 +176,12 @@ done:
 
 /* ---- All of them ---- */
 
-/* The lines added since, of one source. Dashes and what follows a line's progress begin with each feature. */
+/* The lines added since, of one source. Dashes and what follows a line's progress begin with each feature, and ends
+ * that darken each other are for the style to have. */
 static camber_status finish(camber_features *features, size_t first_polyline) {
     const double start_ms = camber_now_ms();
     camber_status status = CAMBER_OK;
-    if (!features->style->directed && !features->progress)
+    if (!features->style->directed && !features->style->accumulates && !features->progress)
         status = camber_features_merge(features, first_polyline, CAMBER_MERGE_STRAIGHT);
     const double merged_ms = camber_now_ms();
     if (status == CAMBER_OK)

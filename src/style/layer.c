@@ -98,6 +98,28 @@ static bool read_layer_visibility(camber_document *d, const json_t *json, camber
     return true;
 }
 
+/* {"camber:overlap": ...} */
+static bool read_metadata(camber_document *d, const json_t *json, camber_style_layer *layer) {
+    static const char *const names[] = {[CAMBER_OVERLAP_FLATTEN] = "flatten",
+                                        [CAMBER_OVERLAP_ACCUMULATE] = "accumulate",
+                                        [CAMBER_OVERLAP_UNITE] = "unite"};
+    static const char key[] = "camber:overlap";
+    const json_t *overlap = json_object_get(json_object_get(json, "metadata"), key);
+    const size_t depth = d->compiler.path_length;
+    if (!overlap)
+        return true;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (json_is_string(overlap) && strcmp(json_string_value(overlap), names[i]) == 0) {
+            layer->overlap = (camber_overlap)i;
+            d->compiler.style->accumulates |= layer->overlap == CAMBER_OVERLAP_ACCUMULATE;
+            return true;
+        }
+    camber_compiler_enter_key(&d->compiler, "metadata");
+    camber_compiler_enter_key(&d->compiler, key);
+    camber_compiler_fail(&d->compiler, "expected \"flatten\", \"accumulate\" or \"unite\"; write one of them");
+    return camber_document_goes_on(d, depth);
+}
+
 /* ---- Filters ---- */
 
 static bool write_filter_key(camber_compiler *c, const json_t *filter, char **key) {
@@ -156,8 +178,9 @@ static bool read_layer(camber_document *d, const json_t *json, camber_style_laye
         !camber_document_read_number(d, json, "minzoom", 0.0, 24.0, &layer->min_zoom) ||
         !camber_document_read_number(d, json, "maxzoom", 0.0, 24.0, &layer->max_zoom))
         return false;
-    return read_layer_visibility(d, json, layer) && find_source(d, layer) && read_filter(d, json, layer) &&
-           read_properties(d, json, "layout", layer) && read_properties(d, json, "paint", layer);
+    return read_layer_visibility(d, json, layer) && read_metadata(d, json, layer) && find_source(d, layer) &&
+           read_filter(d, json, layer) && read_properties(d, json, "layout", layer) &&
+           read_properties(d, json, "paint", layer);
 }
 
 void camber_style_layer_free(camber_context *context, camber_style_layer *layer) {

@@ -65,6 +65,7 @@ typedef struct camber_style_layer {
     char *filter_key;          /* the filter as compact JSON, "" for none: equal keys draw equal features */
     double min_zoom, max_zoom; /* drawn where min <= zoom < max; 0 and 24 by default; 24: no end */
     bool visible;
+    camber_overlap overlap;                           /* of its metadata: no property of the specification says it */
     camber_expression *filter;                        /* NULL: everything */
     camber_expression *properties[CAMBER_PROPERTIES]; /* NULL: the specification's default */
 } camber_style_layer;
@@ -105,7 +106,8 @@ struct camber_style {
     size_t property_count;
     bool wants_id;             /* an expression reads the feature's id */
     bool wants_all_properties; /* an expression reads properties that it does not name */
-    bool directed; /* a line layer names what follows its lines' direction: dashes, offsets, gradients, patterns */
+    bool directed;    /* a line layer names what follows its lines' direction: dashes, offsets, gradients, patterns */
+    bool accumulates; /* a line layer's lines are seen through each other, their ends too */
     bool wants_polygons; /* a line layer's filter asks for outlines: it names the geometry type Polygon */
 };
 

@@ -33,8 +33,8 @@ CAMBER_API camber_status camber_style_builtin(camber_context *context, camber_th
 CAMBER_API void camber_style_destroy(camber_style *style);
 
 /* Names of the styles that ship with camber: "roads", the built-in one; "openmaptiles", roads, rails, rivers and
- * borders in tiles of the OpenMapTiles schema, from its own source, openmaptiles.mbtiles in the working folder. NULL
- * past the last. */
+ * borders in tiles of the OpenMapTiles schema, of openmaptiles.mbtiles in the working folder; "transit", lines of
+ * public transport side by side, of transit.geojson there. NULL past the last. */
 CAMBER_API const char *camber_style_name(size_t n);
 /* The style document of that name. NULL: there is none. The text is the library's. */
 CAMBER_API const char *camber_style_text(const char *name, camber_theme theme, size_t *size_bytes);

@@ -88,7 +88,7 @@ declared=$(grep -ohE '^CAMBER_API [^(]*\(' "$folder"/usr/include/camber.h "$fold
 [ "$exported" = "$declared" ] || { diff <(echo "$exported") <(echo "$declared"); echo "exports and the headers differ"; exit 1; }
 "$folder/usr/bin/camber" --version
 [ "$map" = ON ] || exit 0
-for style in roads-light roads-dark openmaptiles-light openmaptiles-dark; do
+for style in roads-light roads-dark openmaptiles-light openmaptiles-dark transit-light transit-dark; do
     "$folder/usr/bin/camber" style check "$folder/usr/share/camber/styles/$style.json"
 done
 # GDAL comes with the first file, and what is wrong where it cannot come is one line.

@@ -82,6 +82,8 @@ static camber_status read_geojson(camber_sources *sources, source *one) {
     json_decref(loaded);
     if (status != CAMBER_OK)
         return status;
+    const char *attribution = json_string_value(json_object_get(one->style->json, "attribution"));
+    sources->features->is_osm |= attribution && strstr(attribution, "OpenStreetMap");
     memcpy(one->bounds, stats.bounds, sizeof one->bounds);
     sources->features->stats.skipped_features += stats.skipped_features;
     sources->features->stats.damaged_features += stats.damaged_features;

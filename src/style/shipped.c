@@ -1,4 +1,5 @@
-/* The styles that ship with camber, as documents: the build makes and embeds them (roads.cmake, openmaptiles.cmake). */
+/* The styles that ship with camber, as documents: the build makes and embeds them (roads.cmake, openmaptiles.cmake,
+ * transit.cmake). */
 #include "base/embedded.h"
 #include "camber_map.h"
 
@@ -15,6 +16,9 @@ static const shipped_style styles[] = {
     {"openmaptiles",
      {camber_style_openmaptiles_light, camber_style_openmaptiles_dark},
      {&camber_style_openmaptiles_light_size, &camber_style_openmaptiles_dark_size}},
+    {"transit",
+     {camber_style_transit_light, camber_style_transit_dark},
+     {&camber_style_transit_light_size, &camber_style_transit_dark_size}},
 };
 
 enum { STYLES = sizeof styles / sizeof *styles };

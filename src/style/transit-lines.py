@@ -1,0 +1,256 @@
+#!/usr/bin/env python3
+"""Makes the lines that the style "transit" draws of OpenStreetMap's route relations: those that share a street get
+slots beside each other.
+
+    osmium tags-filter city.osm.pbf r/route=subway,tram,light_rail,train,ferry -f osm -o routes.osm
+    python3 transit-lines.py routes.osm > transit.geojson
+
+Ways that lie within 25 m of each other, as the tracks of a line do, become one, with the routes of all of them. A stretch
+with n routes gives n features, each with its "slot": 0 is the middle, and the routes stand in the order of mode, colour
+and number from the left of the stretch's direction to its right. Stretches that go on into each other have one
+direction. Only Python's standard library is needed."""
+
+import collections
+import json
+import math
+import re
+import sys
+import xml.etree.ElementTree as xml
+
+SNAP_M = 25.0  # what lies closer is one street
+SHORT_M = 250.0  # what is together for less only crosses
+STEP_M = 20.0  # between points of a street
+SAMPLE_M = 5.0
+ALONG = math.cos(math.radians(30))  # what runs more across than this only crosses
+GROUPS = {"metro": ["subway", "light_rail", "monorail", "funicular"], "train": ["train"], "tram": ["tram"],
+          "ferry": ["ferry"], "bus": ["bus", "trolleybus"]}  # each has slots of its own
+GROUP_OF = {mode: group for group, modes in GROUPS.items() for mode in modes}
+ORDER = [mode for modes in GROUPS.values() for mode in modes]
+
+Route = collections.namedtuple("Route", "mode colour ref network state")
+
+
+def tags_of(element):
+    return {tag.get("k"): tag.get("v") for tag in element.findall("tag")}
+
+
+def read(path):
+    """Ways as lists of places with their tags, and the ways of each route; both directions are one route."""
+    places, ways, routes = {}, {}, collections.defaultdict(set)
+    for element in xml.parse(path).getroot():
+        if element.tag == "node" and element.get("lon"):
+            places[element.get("id")] = (float(element.get("lon")), float(element.get("lat")))
+        elif element.tag == "way":
+            line = [places[nd.get("ref")] for nd in element.findall("nd") if nd.get("ref") in places]
+            if len(line) > 1:
+                ways[element.get("id")] = (line, tags_of(element))
+        elif element.tag == "relation":
+            tags = tags_of(element)
+            if tags.get("type") != "route" or tags.get("route") not in GROUP_OF:
+                continue
+            works = tags.get("state") in ("proposed", "construction")
+            route = Route(tags["route"], tags.get("colour", "").lower(), (tags.get("ref") or tags.get("name", "")).strip("<>"),
+                          tags.get("network", ""), "construction" if works else "")
+            for member in element.findall("member"):
+                if member.get("type") == "way" and not re.match("platform|stop", member.get("role", "")):
+                    routes[route].add(member.get("ref"))
+    return ways, routes
+
+
+def natural(text):
+    return [(0, int(part), "") if part.isdigit() else (1, 0, part) for part in re.findall(r"\d+|\D+", text)]
+
+
+def order_of(route):
+    return (ORDER.index(route.mode), route.colour, natural(route.ref), route.network, route.state)
+
+
+class Streets:
+    """A graph of places STEP_M apart; its edges know the routes along them."""
+
+    def __init__(self):
+        self.at, self.heading, self.weight, self.cells = [], [], [], collections.defaultdict(list)
+        self.edges = {}  # (smaller place, larger place): [routes, length in tunnels, length]
+
+    def near(self, x, y, heading, without):
+        best, best_m = None, SNAP_M
+        cell_x, cell_y = int(x // SNAP_M), int(y // SNAP_M)
+        for i in range(cell_x - 1, cell_x + 2):
+            for j in range(cell_y - 1, cell_y + 2):
+                for place in self.cells[i, j]:
+                    far_m = math.dist(self.at[place], (x, y))
+                    along = heading is None or abs(math.cos(self.heading[place] - heading)) > ALONG
+                    if far_m < best_m and along and place not in without:
+                        best, best_m = place, far_m
+        return best
+
+    def new(self, x, y, heading):
+        self.at.append((x, y))
+        self.heading.append(heading)
+        self.weight.append(1)
+        self.cells[int(x // SNAP_M), int(y // SNAP_M)].append(len(self.at) - 1)
+        return len(self.at) - 1
+
+    def draw_to(self, place, x, y):
+        """The middle of all that has come to lie here; the cell stays, as it is but a little off."""
+        n = self.weight[place]
+        self.at[place] = ((self.at[place][0] * n + x) / (n + 1), (self.at[place][1] * n + y) / (n + 1))
+        self.weight[place] = n + 1
+
+    def add(self, line, routes, in_tunnel):
+        own, last, last_own = set(), None, None
+        samples = list(sampled(line))
+        for number, (x, y) in enumerate(samples):
+            (ax, ay), (bx, by) = samples[max(number - 3, 0)], samples[min(number + 3, len(samples) - 1)]
+            heading = math.atan2(by - ay, bx - ax)
+            is_end = number in (0, len(samples) - 1)
+            place = self.near(x, y, None if is_end else heading, own)
+            if place is None:
+                if last_own is not None and math.dist(self.at[last_own], (x, y)) < (1 if is_end else STEP_M):
+                    continue
+                place = last_own = self.new(x, y, heading)
+                own.add(place)
+            elif place != last:
+                self.draw_to(place, x, y)
+            if last is not None and place != last:
+                edge = self.edges.setdefault((min(last, place), max(last, place)), [set(), 0, 0])
+                edge[0].update(routes)
+                edge[1] += in_tunnel
+                edge[2] += 1
+            last = place
+
+
+def sampled(line):
+    yield line[0]
+    for a, b in zip(line, line[1:]):
+        count = max(1, math.ceil(math.dist(a, b) / SAMPLE_M))
+        for i in range(1, count + 1):
+            yield (a[0] + (b[0] - a[0]) * i / count, a[1] + (b[1] - a[1]) * i / count)
+
+
+def trace(pieces):
+    """Lists of places along which routes stay the same; a piece is two places, routes and whether it is a tunnel. What
+    shares no route with a piece only crosses it."""
+    around = collections.defaultdict(list)
+    for number, (a, b, _, _) in enumerate(pieces):
+        around[a].append(number)
+        around[b].append(number)
+
+    def next_of(number, place):
+        kind = pieces[number][2:]
+        others = [n for n in around[place] if n != number and pieces[n][2] & kind[0]]
+        return others[0] if len(others) == 1 and pieces[others[0]][2:] == kind else None
+
+    def other_end(number, place):
+        return pieces[number][0] if pieces[number][1] == place else pieces[number][1]
+
+    done, lines = set(), []
+    for first in range(len(pieces)):
+        if first in done:
+            continue
+        number, place = first, pieces[first][0]  # back to where the stretch begins, or around a ring
+        while (before := next_of(number, place)) is not None and before != first:
+            number, place = before, other_end(before, place)
+        line, numbers = [place], []
+        while number is not None and number not in done:
+            done.add(number)
+            numbers.append(number)
+            place = other_end(number, place)
+            line.append(place)
+            number = next_of(number, place)
+        lines.append((line, pieces[first][2:], numbers))
+    return lines
+
+
+def stretches(streets):
+    pieces = [(a, b, frozenset(it[0]), 2 * it[1] >= it[2]) for (a, b), it in sorted(streets.edges.items())]
+    lines = trace(pieces)
+    at = collections.defaultdict(list)
+    for line, (routes, _), _ in lines:
+        at[line[0]].append(routes)
+        at[line[-1]].append(routes)
+    crossed = {}
+    for line, (routes, in_tunnel), numbers in lines:
+        if len(numbers) * STEP_M > SHORT_M:
+            continue
+        through = {it for it in at[line[0]] if it < routes} & {it for it in at[line[-1]] if it < routes}
+        if sum(map(len, through)) == len(routes) and frozenset().union(*through) == routes:
+            crossed.update({number: through for number in numbers})
+    return trace([(a, b, it, in_tunnel) for number, (a, b, routes, in_tunnel) in enumerate(pieces)
+                  for it in sorted(crossed.get(number, [routes]), key=sorted)])
+
+
+def direct(lines, streets):
+    """Turns stretches so that one goes on where another one that shares a route and runs straight on ends."""
+    ends = collections.defaultdict(list)
+    for number, (line, _, _) in enumerate(lines):
+        ends[line[0]].append((number, 0))
+        ends[line[-1]].append((number, 1))
+
+    def heading(number, end):
+        line = lines[number][0]
+        reach = min(3, len(line) - 1)
+        a, b = (line[0], line[reach]) if end == 0 else (line[-1], line[-1 - reach])
+        (ax, ay), (bx, by) = streets.at[a], streets.at[b]
+        return math.atan2(by - ay, bx - ax)
+
+    turned = {}
+    for first in sorted(range(len(lines)), key=lambda n: (-len(lines[n][1][0]), -len(lines[n][0]), n)):
+        if first in turned:
+            continue
+        turned[first] = False
+        queue = collections.deque([first])
+        while queue:
+            number = queue.popleft()
+            for end in (0, 1):
+                for other, other_end in ends[lines[number][0][-end]]:
+                    if other in turned or not lines[other][1][0] & lines[number][1][0]:
+                        continue
+                    turn = math.cos(heading(number, end) - heading(other, other_end))
+                    if turn < 0:  # straight on: both lead away from their place
+                        turned[other] = turned[number] if end != other_end else not turned[number]
+                        queue.append(other)
+    return [(line[::-1] if turned[n] else line, kind) for n, (line, kind, _) in enumerate(lines)]
+
+
+def smooth(points):
+    for _ in range(6):
+        points = points[:1] + [((a[0] + 2 * b[0] + c[0]) / 4, (a[1] + 2 * b[1] + c[1]) / 4)
+                               for a, b, c in zip(points, points[1:], points[2:])] + points[-1:]
+    return points
+
+
+def features(ways, routes):
+    if not ways:
+        return
+    latitude = sum(line[0][1] for line, _ in ways.values()) / len(ways)
+    east_m, north_m = 111320 * math.cos(math.radians(latitude)), 111320
+    for group in GROUPS:
+        along = collections.defaultdict(set)
+        for route, members in routes.items():
+            if GROUP_OF[route.mode] == group:
+                for way in members & ways.keys():
+                    along[way].add(route)
+        streets = Streets()
+        for way in sorted(along, key=lambda it: (-len(along[it]), int(it))):
+            line, tags = ways[way]
+            in_tunnel = tags.get("tunnel", "no") != "no"
+            streets.add([(x * east_m, y * north_m) for x, y in line], along[way], in_tunnel)
+        for line, (here, in_tunnel) in direct(stretches(streets), streets):
+            points = smooth([streets.at[place] for place in line])
+            coordinates = [[round(x / east_m, 6), round(y / north_m, 6)] for x, y in points]
+            for i, route in enumerate(sorted(here, key=order_of)):
+                properties = {key: value for key, value in route._asdict().items() if value}
+                properties.update(slot=i - (len(here) - 1) / 2, routes=len(here), tunnel=in_tunnel)
+                yield {"type": "Feature", "properties": properties,
+                       "geometry": {"type": "LineString", "coordinates": coordinates}}
+
+
+def main():
+    if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
+        sys.exit(__doc__)
+    json.dump({"type": "FeatureCollection", "features": list(features(*read(sys.argv[1])))}, sys.stdout,
+              ensure_ascii=False, separators=(",", ":"))
+
+
+main()

@@ -12,7 +12,7 @@ highp vec4 edge_of(highp vec2 normal) {
 }
 
 // Whether anything is drawn that depends on how far along its line it lies.
-#define MEASURED (DASH || TRIM || RAMP)
+#define MEASURED (DASH || TRIM || RAMP || PATTERN)
 
 // Past an end by more px than any fragment lies there.
 const highp float NEVER_PX = 1e6;

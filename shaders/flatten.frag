@@ -1,11 +1,20 @@
 // A flattened layer onto the picture. COVERAGE: it has one channel and takes a colour; UNION: it has the four that
 // stroke.frag leaves, and takes a colour; neither: it has its own colours. MASKED: these
-// may be translucent by themselves, and their alphas lie beside, so that a line that lies on itself shows once.
+// may be translucent by themselves, and their alphas lie beside, so that a line that lies on itself shows once. FILL: there
+// is no layer, but a colour, and with IMAGES images side by side.
 precision highp float;
 
+#if !FILL
 uniform mediump sampler2D u_layer;
+#endif
 #if MASKED
 layout(binding = 2) uniform mediump sampler2D u_alphas;
+#endif
+#if IMAGES
+layout(binding = 3) uniform mediump sampler2D u_patterns;
+uniform vec4 u_place;            // of the image in the texture, and how far it reaches
+uniform vec2 u_origin;           // of this piece from a corner of an image, px
+uniform vec2 u_axis_x, u_axis_y; // images a px, along the image's x and y
 #endif
 uniform vec4 u_color; // premultiplied; with colours of its own, opacity in all four
 
@@ -30,6 +39,15 @@ float united(vec4 layer) {
 }
 #endif
 
+#if FILL
+void main() {
+    o_color = u_color;
+#if IMAGES
+    vec2 p = gl_FragCoord.xy + u_origin;
+    o_color *= textureLod(u_patterns, u_place.xy + fract(vec2(dot(u_axis_x, p), dot(u_axis_y, p))) * u_place.zw, 0.0);
+#endif
+}
+#else
 void main() {
     vec4 layer = texelFetch(u_layer, ivec2(gl_FragCoord.xy), 0);
 #if UNION
@@ -42,3 +60,4 @@ void main() {
     o_color = u_color * layer;
 #endif
 }
+#endif

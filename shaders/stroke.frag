@@ -6,7 +6,7 @@
 // to be summed over all fragments of a pixel, the edge's normal times a (1 - a) and the area a, and a once more, to be
 // gathered one over the other: flatten.frag makes the union of them. GAP: strokes that may be two bands; BLUR: that may fade;
 // DASH: that may be dashed; TRIM: that may be drawn in part; RAMP: whose
-// colour may change along them. With MASK colours that are translucent by themselves replace what lies below them as far as
+// colour may change along them; PATTERN: that may be of images. With MASK colours that are translucent by themselves replace what lies below them as far as
 // they cover the pixel, and their alpha goes to a second target.
 precision highp float;
 
@@ -39,6 +39,11 @@ flat in highp ivec2 v_ramp; // the texel of the first stop; how many there are. 
 #endif
 #if DASH || RAMP
 uniform highp sampler2D u_rows;
+#endif
+#if PATTERN
+flat in vec4 v_image;   // where the image lies in the texture, how far it reaches
+flat in vec4 v_pattern; // at A: how far in the image, and how fast that grows, in images; tangents of half the turns at A, at B
+layout(binding = 3) uniform mediump sampler2D u_patterns;
 #endif
 
 layout(location = 0) out mediump vec4 o_color;
@@ -208,6 +213,24 @@ vec2 normal_of(vec2 past, float y, vec2 u, float half_width) {
 }
 #endif
 
+#if PATTERN
+// How far from a joint a place t px before it lies on a line that bends there: the bisector is the joint, and up to two
+// widths from it, or half the segment, what lies between is drawn out or pushed together. Past a cap the line goes on.
+float before_joint(float t, float tangent, float y) {
+    float near = min(0.5 * v_shape.x, 4.0 * v_shape.y), bisector = tangent * y;
+    return tangent == 0.0 || t > near ? t : near * clamp((t - bisector) / max(near - bisector, 1e-3), 0.0, 1.0);
+}
+
+// The image at x along and y across the segment; past a round join it is swept around.
+vec4 image_at(float x, float y, float d) {
+    float t = v_shape.x - x;
+    x = x < t ? before_joint(x, v_pattern.z, y) : v_shape.x - before_joint(t, v_pattern.w, y);
+    float across = x < 0.0 || x > v_shape.x ? abs(y) : d;
+    vec2 place = vec2(fract(v_pattern.x + x * v_pattern.y), 0.5 - sign(y) * min(0.5 * across / v_shape.y, 0.5));
+    return textureLod(u_patterns, v_image.xy + place * v_image.zw, 0.0);
+}
+#endif
+
 void main() {
     vec2 u = v_segment.zw, q = gl_FragCoord.xy - v_segment.xy;
     float half_width = v_shape.y;
@@ -299,6 +322,9 @@ void main() {
 #if RAMP
     if (area > 0.0 && v_ramp.y > 0)
         o_color *= ramp_over(v_measure.z > 0.0 ? along : -1.0, edge); // a dot has its first
+#endif
+#if PATTERN
+    o_color *= v_image.z > 0.0 ? image_at(x, y, sqrt(dot(ends, ends) + y * y)) : vec4(1.0);
 #endif
 #if MASK
     o_alpha = vec4(o_color.a, 0.0, 0.0, area);

@@ -9,7 +9,8 @@ uniform highp sampler2D u_rows; // TEXELS_A_ROW texels a row: half width px, -1 
                                 // premultiplied colour; half the gap, below 0 where there is none, blur, px; dashes: the
                                 // first one's texel, how many, twice that and 1 where they are round, period px;
                                 // from where to where its line is not drawn, shares of its length; its ramp's first
-                                // texel and how many stops that has
+                                // texel and how many stops that has; where its image lies in the texture of patterns, and
+                                // how far it reaches, 0 where there is none; px of the line that one takes
 uniform vec2 u_origin;          // of this piece in the picture, px
 uniform vec2 u_corner;          // of the viewport in the picture, px: it reaches past the piece
 uniform int u_table;            // of the rows; of strips the bits of gl_VertexID below the table's number
@@ -44,6 +45,10 @@ flat out vec2 v_trim;
 #endif
 #if RAMP
 flat out highp ivec2 v_ramp;
+#endif
+#if PATTERN
+flat out vec4 v_image;
+flat out vec4 v_pattern;
 #endif
 
 const float PAD_PX = 0.75, NO_LIMIT_PX = 3.0e38;
@@ -242,6 +247,13 @@ void main() {
 #endif
 #if RAMP
     v_ramp = ivec2(progress.zw) + ivec2(u_tail, 0);
+#endif
+#if PATTERN
+    v_image = row_texel(texel + 5);
+    float one_px = max(row_texel(texel + 6).x, 1e-3);
+    float first = measure_a.x - one_px * floor(measure_a.x / one_px);
+    vec4 turns = vec4(half_turn(turn_of(join_a)), half_turn(turn_of(join_b)));
+    v_pattern = vec4(first / one_px, v_measure.y / one_px, turns.yw / max(turns.xz, 1e-3));
 #endif
     // A row that is not drawn leaves no area; what lies outside the viewport would be clipped at some cost.
     gl_Position = vec4(half_width < 0.0 ? vec2(0.0) : (place - u_corner) * u_scale - 1.0, 0.0, 1.0);

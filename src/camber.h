@@ -482,6 +482,11 @@ typedef struct camber_paint {
      * trimmed at an end takes the cap too. trim_end not above trim_start: it is whole. */
     float trim_start, trim_end;
     uint32_t ramp; /* 0: none; else one of the pass's ramps, counted from 1, that color is multiplied by */
+    /* 0: none; else one of the pass's images, counted from 1, of a mesh that is measured: in place of the colour, whose
+     * alpha it takes. It is as high as the stroke is wide, a gap with it, its top to the right of the line's direction,
+     * and follows upon itself from where the line begins. */
+    uint32_t pattern;
+    float pattern_px; /* along the line, that one takes. 0: as many as keep the image's shape */
 } camber_paint;
 
 /* Lengths that are drawn and left out in turn, from where a polyline begins; an odd count is gone through twice, as in
@@ -507,6 +512,24 @@ typedef struct camber_ramp {
 
 #define CAMBER_RAMP_STOPS_MAX 4096
 
+/* A picture to draw with: premultiplied RGBA8, rows from the top down. */
+typedef struct camber_image {
+    const uint8_t *rgba;
+    uint32_t width, height; /* px; 1 to CAMBER_IMAGE_SIDE_MAX each */
+    size_t stride_bytes;    /* from row to row. 0: 4 * width */
+} camber_image;
+
+#define CAMBER_IMAGE_SIDE_MAX 16384
+
+/* The whole picture in one colour, or in one image side by side. */
+typedef struct camber_fill {
+    camber_color color;
+    uint32_t pattern;          /* 0: none; else one of the pass's images, counted from 1, with the colour's alpha */
+    float width_px, height_px; /* of one image in the picture. 0: as it is */
+    float x_px, y_px;          /* where the top left corner of one lies in the picture */
+    double bearing_deg;        /* as a camera's, of the map that the images lie on */
+} camber_fill;
+
 typedef enum camber_overlap {
     /* A translucent pass covers each pixel once, however often its lines cross it: coverage is gathered
      * first and composited once. A run of polylines with equal alpha is flattened together. */
@@ -523,9 +546,9 @@ typedef enum camber_coverage {
     CAMBER_COVERAGE_LINEAR,    /* a ramp one pixel wide across the edge: cheaper, about twice the error */
 } camber_coverage;
 
-/* Draws polylines [first_polyline, first_polyline + polyline_count) of a mesh, in order. */
+/* Draws polylines [first_polyline, first_polyline + polyline_count) of a mesh, in order; or fills the picture. */
 typedef struct camber_pass {
-    camber_mesh *mesh;
+    camber_mesh *mesh; /* NULL: the pass is a fill, and of what else is here only the images matter */
     size_t first_polyline;
     size_t polyline_count;      /* 0: to the last */
     const camber_paint *paints; /* paint_count; a row at or past it is not drawn */
@@ -534,6 +557,9 @@ typedef struct camber_pass {
     size_t dash_count;
     const camber_ramp *ramps; /* ramp_count, of a mesh that is measured. NULL: none */
     size_t ramp_count;
+    const camber_image *images; /* image_count. NULL: none */
+    size_t image_count;
+    camber_fill fill;
     camber_overlap overlap;
     float opacity; /* of all that is drawn, put onto the picture as one layer. 0: 1, and no layer */
 } camber_pass;

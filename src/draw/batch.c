@@ -76,6 +76,12 @@ camber_status camber_batch_add(camber_renderer *renderer, const camber_run *run,
     camber_batch *batch = &renderer->batch;
     camber_context *context = renderer->share.device->context;
     const camber_mesh *mesh = run->pass->mesh;
+    const bool again = batch->table_count && batch->pass == run->pass;
+    if (run->bands & CAMBER_VARIANT_PATTERN && !again) {
+        const camber_status held = camber_patterns_hold(renderer, run->pass, piece);
+        if (held != CAMBER_OK)
+            return held;
+    }
     const bool same_mesh = batch->table_count == 0 || batch->mesh == mesh;
     const bool same_table = batch->table_count && same_mesh && batch->pass == run->pass;
     camber_status status = CAMBER_OK;
@@ -211,6 +217,8 @@ camber_status camber_batch_draw(camber_renderer *renderer, unsigned variant, con
         gl->Uniform1i(shader->table, mesh->mesh_info.strips ? (GLint)vertex_bits(mesh) : 0);
         gl->Uniform1i(shader->table_rows, (GLint)mesh->row_count);
         gl->Uniform1i(shader->tail, camber_renderer_tail(batch->table_count * mesh->row_count));
+        if (variant & CAMBER_VARIANT_PATTERN)
+            camber_patterns_bind(renderer);
         status = draw_ranges(renderer, shader, piece->draw_calls);
         gl->BindVertexArray(0);
     }

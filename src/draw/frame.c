@@ -13,6 +13,16 @@ camber_status camber_renderer_check(camber_renderer *renderer, const char *what)
     return camber_surface_check(renderer->share.surface, what);
 }
 
+static camber_status check_images(const camber_renderer *renderer, const camber_pass *pass) {
+    for (size_t i = 0; i < pass->image_count; i++)
+        if (!camber_image_is_valid(pass->images + i))
+            return camber_fail(renderer->share.device->context, CAMBER_ERROR_ARGUMENT,
+                               "image %zu: %u x %u px; give 1 to %d a side, and rows that do not overlap", i,
+                               pass->images[i].width, pass->images[i].height, CAMBER_IMAGE_SIDE_MAX);
+    assert(pass->fill.pattern <= pass->image_count);
+    return CAMBER_OK;
+}
+
 static camber_status check_paints(const camber_renderer *renderer, const camber_pass *pass) {
     camber_context *context = renderer->share.device->context;
     for (size_t i = 0; i < pass->dash_count; i++)
@@ -27,10 +37,12 @@ static camber_status check_paints(const camber_renderer *renderer, const camber_
                                pass->ramps[i].count, CAMBER_RAMP_STOPS_MAX);
     for (size_t i = 0; i < pass->paint_count; i++) {
         const camber_paint *paint = pass->paints + i;
-        assert(paint->dash <= pass->dash_count && paint->ramp <= pass->ramp_count);
-        const char *what = paint->dash ? "dashes" : paint->ramp ? "ramps" : "trims";
+        assert(paint->dash <= pass->dash_count && paint->ramp <= pass->ramp_count &&
+               paint->pattern <= pass->image_count);
+        const char *what = paint->pattern ? "patterns" : paint->dash ? "dashes" : paint->ramp ? "ramps" : "trims";
+        const bool trims = paint->trim_end > paint->trim_start;
         const bool measured = pass->mesh->mesh_info.measured || pass->mesh->empty;
-        if (!measured && (paint->dash || paint->ramp || paint->trim_end > paint->trim_start))
+        if (!measured && (paint->dash || paint->ramp || paint->pattern || trims))
             return camber_fail(context, CAMBER_ERROR_ARGUMENT,
                                "%s of a mesh that is not measured; tessellate it measured", what);
     }
@@ -43,9 +55,12 @@ static camber_status check_frame(camber_renderer *renderer, const camber_frame *
                            "a picture of %u x %u px; each side must be 1 to %d", frame->width, frame->height,
                            SIDE_MAX_PX);
     for (size_t i = 0; i < frame->pass_count; i++) {
-        assert(frame->passes[i].mesh->renderer == renderer);
-        assert(frame->passes[i].paint_count == 0 || frame->passes[i].paints);
-        const camber_status status = check_paints(renderer, frame->passes + i);
+        const camber_pass *pass = frame->passes + i;
+        assert(!pass->mesh || pass->mesh->renderer == renderer);
+        assert(pass->paint_count == 0 || pass->paints);
+        camber_status status = check_images(renderer, pass);
+        if (status == CAMBER_OK && pass->mesh)
+            status = check_paints(renderer, pass);
         if (status != CAMBER_OK)
             return status;
     }
@@ -81,6 +96,7 @@ static camber_status draw_piece(camber_renderer *renderer, camber_flight *flight
     gl->ClearColor(back.r * back.a, back.g * back.a, back.b * back.a, back.a);
     gl->Clear(GL_COLOR_BUFFER_BIT);
     camber_batch_forget(renderer); /* of a frame that failed */
+    camber_patterns_forget_images(renderer);
     for (size_t i = 0; i < frame->pass_count && status == CAMBER_OK; i++)
         status = camber_renderer_draw_pass(renderer, frame->passes + i, piece);
     if (status == CAMBER_OK)

@@ -33,7 +33,8 @@ static void set_blending(const camber_gl *gl, camber_flatten_kind kind) {
         gl->BlendFunc(GL_ONE, kind == CAMBER_FLATTEN_COVERAGE ? GL_ONE_MINUS_SRC_COLOR : GL_ONE_MINUS_SRC_ALPHA);
 }
 
-/* Puts a layer over what the piece draws into; color is premultiplied, or of colours the opacity four times. */
+/* Puts a layer (below 0: a fill) over what the piece draws into; color is premultiplied, or of colours the opacity four
+ * times. */
 static camber_status flatten(camber_renderer *renderer, int layer, camber_flatten_kind kind, const float color[4],
                              const camber_piece *piece) {
     const camber_gl *gl = &renderer->share.surface->gl;
@@ -51,7 +52,7 @@ static camber_status flatten(camber_renderer *renderer, int layer, camber_flatte
         gl->BindTexture(GL_TEXTURE_2D, renderer->targets[layer].alphas);
         gl->ActiveTexture(GL_TEXTURE0);
     }
-    gl->BindTexture(GL_TEXTURE_2D, renderer->targets[layer].texture);
+    gl->BindTexture(GL_TEXTURE_2D, layer >= 0 ? renderer->targets[layer].texture : 0);
     gl->BindVertexArray(renderer->vertex_array);
     gl->DrawArrays(GL_TRIANGLES, 0, 3);
     gl->BindVertexArray(0);
@@ -103,7 +104,8 @@ static unsigned bands_of(const camber_paint *paint) {
            (paint->blur_px > 0.0f ? (unsigned)CAMBER_VARIANT_BLUR : 0u) |
            (paint->dash ? (unsigned)CAMBER_VARIANT_DASH : 0u) |
            (paint->trim_end > paint->trim_start ? (unsigned)CAMBER_VARIANT_TRIM : 0u) |
-           (paint->ramp ? (unsigned)CAMBER_VARIANT_RAMP : 0u);
+           (paint->ramp ? (unsigned)CAMBER_VARIANT_RAMP : 0u) |
+           (paint->pattern ? (unsigned)CAMBER_VARIANT_PATTERN : 0u);
 }
 
 static bool is_translucent(const camber_ramp *ramp) {
@@ -131,7 +133,7 @@ static camber_run next_run(const camber_pass *pass, size_t first, size_t end) {
             run.alpha = layered ? color.a : 1.0f;
             run.color = color;
         }
-        run.one_color = run.one_color && same_color(color, run.color) && !paint->ramp;
+        run.one_color = run.one_color && same_color(color, run.color) && !paint->ramp && !paint->pattern;
         run.bands |= bands_of(paint);
         if (layered && paint->ramp && !run.masked && pass->ramps + paint->ramp - 1 != known) {
             known = pass->ramps + paint->ramp - 1;
@@ -187,8 +189,44 @@ static camber_status draw_group(camber_renderer *renderer, const camber_pass *pa
     return status == CAMBER_OK ? flatten(renderer, group.target, CAMBER_FLATTEN_COLORS, color, piece) : status;
 }
 
+static camber_status draw_fill(camber_renderer *renderer, const camber_pass *pass, const camber_piece *piece) {
+    const camber_gl *gl = &renderer->share.surface->gl;
+    const camber_fill *fill = &pass->fill;
+    const camber_shader *shader;
+    const bool images = fill->pattern != 0;
+    const float a = fill->color.a * (pass->opacity > 0.0f ? pass->opacity : 1.0f);
+    const float color[4] = {images ? a : fill->color.r * a, images ? a : fill->color.g * a,
+                            images ? a : fill->color.b * a, a};
+    float place[4], size_px[2];
+    if (!(a > 0.0f))
+        return CAMBER_OK;
+    camber_status status = camber_batch_draw(renderer, 0, piece); /* what waits lies below */
+    if (status == CAMBER_OK && images)
+        status = camber_patterns_hold(renderer, pass, piece);
+    if (status == CAMBER_OK && images)
+        status = camber_patterns_put_fill(renderer, pass, place, size_px);
+    const camber_flatten_kind kind = images ? CAMBER_FLATTEN_IMAGES : CAMBER_FLATTEN_FILL;
+    if (status == CAMBER_OK)
+        status = camber_renderer_flatten_shader(renderer, kind, &shader);
+    if (status != CAMBER_OK)
+        return status;
+    if (images) {
+        const double angle = fill->bearing_deg * (3.14159265358979323846 / 180.0);
+        const float cosine = (float)cos(angle), sine = (float)sin(angle);
+        camber_patterns_bind(renderer);
+        gl->UseProgram(shader->program);
+        gl->Uniform4f(shader->place, place[0], place[1], place[2], place[3]);
+        gl->Uniform2f(shader->origin, (float)piece->x - fill->x_px, (float)piece->y - fill->y_px);
+        gl->Uniform2f(shader->axis_x, cosine / size_px[0], -sine / size_px[0]);
+        gl->Uniform2f(shader->axis_y, sine / size_px[1], cosine / size_px[1]);
+    }
+    return flatten(renderer, -1, kind, color, piece);
+}
+
 camber_status camber_renderer_draw_pass(camber_renderer *renderer, const camber_pass *pass, const camber_piece *piece) {
     const camber_mesh *mesh = pass->mesh;
+    if (!mesh)
+        return draw_fill(renderer, pass, piece);
     if (mesh->empty)
         return CAMBER_OK;
     size_t end = pass->polyline_count ? pass->first_polyline + pass->polyline_count : mesh->polyline_count;

@@ -34,6 +34,7 @@ void camber_renderer_destroy(camber_renderer *renderer) {
     const camber_gl *gl = &renderer->share.surface->gl;
     const bool is_current = camber_surface_try_current(renderer->share.surface);
     camber_frames_forget(renderer, is_current);
+    camber_patterns_release(renderer, is_current);
     if (is_current) {
         for (int i = 0; i < CAMBER_STROKES_MAX; i++)
             gl->DeleteProgram(renderer->strokes[i].program);

@@ -9,23 +9,24 @@ enum {
     CAMBER_VARIANT_LINEAR = 1,
     CAMBER_VARIANT_SHARP_JOINS = 2,
     CAMBER_VARIANT_FLAT_CAPS = 4,
-    CAMBER_VARIANT_COUNT = 8,     /* counts the fragments with coverage instead of drawing them */
-    CAMBER_VARIANT_UNION = 16,    /* leaves what the union of a layer's strokes is made from */
-    CAMBER_VARIANT_THIN = 32,     /* strokes with both edges in a pixel */
-    CAMBER_VARIANT_TIPS = 64,     /* round caps that are hardly wider than a pixel */
-    CAMBER_VARIANT_GAP = 128,     /* strokes that may be two bands */
-    CAMBER_VARIANT_BLUR = 256,    /* strokes that may fade */
-    CAMBER_VARIANT_DASH = 512,    /* strokes that may be dashed */
-    CAMBER_VARIANT_TRIM = 1024,   /* strokes that may be drawn in part */
-    CAMBER_VARIANT_RAMP = 2048,   /* strokes whose colour may change along them */
-    CAMBER_VARIANT_MASK = 4096,   /* leaves colours that may be translucent, and how much of the pixel they cover */
-    CAMBER_VARIANT_METHOD = 8192, /* times camber_method */
+    CAMBER_VARIANT_COUNT = 8,      /* counts the fragments with coverage instead of drawing them */
+    CAMBER_VARIANT_UNION = 16,     /* leaves what the union of a layer's strokes is made from */
+    CAMBER_VARIANT_THIN = 32,      /* strokes with both edges in a pixel */
+    CAMBER_VARIANT_TIPS = 64,      /* round caps that are hardly wider than a pixel */
+    CAMBER_VARIANT_GAP = 128,      /* strokes that may be two bands */
+    CAMBER_VARIANT_BLUR = 256,     /* strokes that may fade */
+    CAMBER_VARIANT_DASH = 512,     /* strokes that may be dashed */
+    CAMBER_VARIANT_TRIM = 1024,    /* strokes that may be drawn in part */
+    CAMBER_VARIANT_RAMP = 2048,    /* strokes whose colour may change along them */
+    CAMBER_VARIANT_MASK = 4096,    /* leaves colours that may be translucent, and how much of the pixel they cover */
+    CAMBER_VARIANT_PATTERN = 8192, /* strokes that may be of images */
+    CAMBER_VARIANT_METHOD = 16384, /* times camber_method */
     CAMBER_METHODS = 3,
     CAMBER_STROKES_MAX = 256 /* variants that are kept built */
 };
 
 /* Of the table of rows; stroke.vert says what is in each. */
-enum { CAMBER_TEXELS_A_ROW = 5 };
+enum { CAMBER_TEXELS_A_ROW = 7 };
 
 /* What a flattened layer holds. */
 typedef enum camber_flatten_kind {
@@ -33,6 +34,8 @@ typedef enum camber_flatten_kind {
     CAMBER_FLATTEN_COVERAGE, /* one channel, gathered one over the other */
     CAMBER_FLATTEN_UNION,    /* four, of which the union is made */
     CAMBER_FLATTEN_MASKED,   /* colours, and their alphas beside them */
+    CAMBER_FLATTEN_FILL,     /* nothing: one colour, */
+    CAMBER_FLATTEN_IMAGES,   /* or images side by side */
     CAMBER_FLATTEN_KINDS
 } camber_flatten_kind;
 
@@ -40,6 +43,7 @@ typedef struct camber_shader {
     GLuint program;   /* 0: not built yet */
     unsigned variant; /* of a stroke shader */
     GLint origin, corner, scale, layer_color, table, table_rows, stride, tail;
+    GLint place, axis_x, axis_y; /* of images side by side */
 } camber_shader;
 
 /* A texture to draw into, of the size of a piece. */
@@ -61,8 +65,8 @@ enum {
     CAMBER_TARGETS
 };
 
-/* The texture units of the records, as stroke.vert has it, and of alphas, as flatten.frag has it; all else is at 0. */
-enum { CAMBER_RECORDS_UNIT = 1, CAMBER_ALPHAS_UNIT = 2 };
+/* Texture units, as the shaders have them; all else is at 0. */
+enum { CAMBER_RECORDS_UNIT = 1, CAMBER_ALPHAS_UNIT = 2, CAMBER_PATTERNS_UNIT = 3 };
 
 /* Polylines of equal alpha that follow each other in a pass. */
 typedef struct camber_run {
@@ -100,6 +104,25 @@ typedef struct camber_ramp_place {
     const camber_ramp *ramp;
     size_t texel;
 } camber_ramp_place;
+
+/* An image in the texture of patterns. */
+typedef struct camber_placed {
+    uint64_t hash;          /* of the image */
+    uint32_t width, height; /* texels that it takes */
+    bool tiled;             /* with its other edge above and below */
+    GLint x, y;             /* of its first texel */
+} camber_placed;
+
+typedef struct camber_patterns {
+    GLuint texture; /* 0: none yet */
+    GLsizei height;
+    camber_placed *placed;
+    size_t count, capacity;
+    GLint shelf_x, shelf_y, shelf_height; /* where the next one goes */
+    const camber_image *hashed;           /* a pass's images, whose hashes are known or 0 */
+    uint64_t *hashes;
+    size_t hashed_count, hash_capacity;
+} camber_patterns;
 
 /* One piece of the picture. */
 typedef struct camber_piece {
@@ -139,6 +162,7 @@ struct camber_renderer {
     size_t tail_count, tail_capacity;
     camber_ramp_place *ramps; /* that are in the tail */
     size_t ramp_count, ramp_capacity;
+    camber_patterns patterns;
     camber_batch batch;
     camber_flight flights[CAMBER_FRAMES_IN_FLIGHT];
     size_t first_flight, flight_count; /* a ring */
@@ -170,6 +194,27 @@ camber_status camber_renderer_draw_pass(camber_renderer *renderer, const camber_
 static inline bool camber_pass_draws(const camber_pass *pass, uint32_t row) {
     return row < pass->paint_count && pass->paints[row].width_px > 0.0f && pass->paints[row].color.a > 0.0f;
 }
+
+/* Half of what a paint takes: a gap's bands lie on both sides of it. */
+static inline float camber_paint_half_width(const camber_paint *paint) {
+    return paint->gap_px > 0.0f ? 0.5f * paint->gap_px + paint->width_px : 0.5f * paint->width_px;
+}
+
+/* patterns.c */
+bool camber_image_is_valid(const camber_image *image);
+/* Puts all images that the pass draws into the texture; draws what waits before another of them has to go. Returns
+ * CAMBER_ERROR_LIMIT where they do not fit at once. */
+camber_status camber_patterns_hold(camber_renderer *renderer, const camber_pass *pass, const camber_piece *piece);
+/* Of a row of a pass that is held: where in the texture, as coordinates there, and px along the line. */
+camber_status camber_patterns_put(camber_renderer *renderer, const camber_pass *pass, const camber_paint *paint,
+                                  float texels[8]);
+/* Of a fill that is held. */
+camber_status camber_patterns_put_fill(camber_renderer *renderer, const camber_pass *pass, float texel[4],
+                                       float size_px[2]);
+void camber_patterns_bind(camber_renderer *renderer);
+/* The caller's images may be others from here on. */
+void camber_patterns_forget_images(camber_renderer *renderer);
+void camber_patterns_release(camber_renderer *renderer, bool is_current);
 
 /* rows.c: the row texture. */
 bool camber_renderer_holds_rows(const camber_renderer *renderer, size_t row_count);

@@ -10,11 +10,6 @@ enum { ROW_TEXTURE_WIDTH = 2048, TEXELS_A_ROW = CAMBER_TEXELS_A_ROW }; /* the wi
 /* Progress that no line has. */
 static const float FAR_BEYOND = 1e9f;
 
-/* Of the whole stroke: a gap's bands lie on both sides of it. */
-static float half_width(const camber_paint *paint) {
-    return paint->gap_px > 0.0f ? 0.5f * paint->gap_px + paint->width_px : 0.5f * paint->width_px;
-}
-
 bool camber_renderer_holds_rows(const camber_renderer *renderer, size_t row_count) {
     const size_t texels = (size_t)ROW_TEXTURE_WIDTH * renderer->share.surface->info.largest_target_px;
     return row_count <= texels / TEXELS_A_ROW;
@@ -38,8 +33,10 @@ camber_status camber_renderer_fill_rows(camber_renderer *renderer, const camber_
         if (!camber_pass_draws(pass, (uint32_t)i) || (run->layered && paint->color.a != run->alpha))
             continue;
         const float alpha = run->layered ? 1.0f : paint->color.a;
-        const float color[4] = {paint->color.r * alpha, paint->color.g * alpha, paint->color.b * alpha, alpha};
-        texel[0] = half_width(paint);
+        const bool image = paint->pattern != 0;
+        const float color[4] = {image ? alpha : paint->color.r * alpha, image ? alpha : paint->color.g * alpha,
+                                image ? alpha : paint->color.b * alpha, alpha};
+        texel[0] = camber_paint_half_width(paint);
         texel[1] = pass->mesh->host_rows[i].fan_step;
         texel[2] = paint->translate_x_px;
         texel[3] = paint->translate_y_px;
@@ -52,6 +49,9 @@ camber_status camber_renderer_fill_rows(camber_renderer *renderer, const camber_
             return CAMBER_ERROR_MEMORY;
         if (paint->ramp && camber_tail_put_ramp(renderer, pass->ramps + paint->ramp - 1, texel + 18) != CAMBER_OK)
             return CAMBER_ERROR_MEMORY;
+        const camber_status status = image ? camber_patterns_put(renderer, pass, paint, texel + 20) : CAMBER_OK;
+        if (status != CAMBER_OK)
+            return status;
     }
     return CAMBER_OK;
 }
@@ -110,7 +110,7 @@ camber_status camber_renderer_set_widths(camber_renderer *renderer, const camber
     memset(renderer->row_texels, 0, 4 * TEXELS_A_ROW * mesh->row_count * sizeof *renderer->row_texels);
     for (size_t i = 0; i < mesh->row_count; i++) {
         const bool drawn = i < paint_count && paints[i].width_px > 0.0f;
-        renderer->row_texels[4 * TEXELS_A_ROW * i] = drawn ? half_width(paints + i) : -1.0f;
+        renderer->row_texels[4 * TEXELS_A_ROW * i] = drawn ? camber_paint_half_width(paints + i) : -1.0f;
         renderer->row_texels[4 * TEXELS_A_ROW * i + 1] = mesh->host_rows[i].fan_step;
     }
     return camber_renderer_upload_rows(renderer, mesh->row_count);

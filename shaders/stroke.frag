@@ -7,10 +7,11 @@
 // gathered one over the other: flatten.frag makes the union of them. GAP: strokes that may be two bands; BLUR: that may fade;
 // DASH: that may be dashed; TRIM: that may be drawn in part; RAMP: whose
 // colour may change along them; PATTERN: that may be of images. With MASK colours that are translucent by themselves replace what lies below them as far as
-// they cover the pixel, and their alpha goes to a second target.
+// they cover the pixel, and their alpha goes to a second target. PITCHED: the plane of the lines is seen at an angle; what is
+// measured is measured in the plane then, and each edge by itself becomes one of the picture.
 precision highp float;
 
-flat in vec4 v_segment; // A in the piece, direction
+flat in vec4 v_segment; // A in the piece, of PITCHED from where the camera looks at; direction
 flat in vec4 v_shape;   // length, half width; at A and B: where a flat cap lies, px past the end
 flat in vec4 v_turns;   // cosine and sine of half the turn at A, at B; the sine > 0 where it turns towards +y
 flat in vec4 v_rest;    // slope and curve of the edge; at A and B: foreign from here on, px past the end
@@ -45,6 +46,12 @@ flat in vec4 v_image;   // where the image lies in the texture, how far it reach
 flat in vec4 v_pattern; // at A: how far in the image, and how fast that grows, in images; tangents of half the turns at A, at B
 layout(binding = 3) uniform mediump sampler2D u_patterns;
 #endif
+#if PITCHED
+flat in vec2 v_end; // B, as A
+flat in vec4 v_cut_a, v_cut_b; // joins narrower than a pixel: what lies past them in the picture, and 0; to 1 where they are wide
+uniform vec2 u_origin;
+uniform vec4 u_eye; // as stroke.vert has them
+#endif
 
 layout(location = 0) out mediump vec4 o_color;
 #if MASK
@@ -69,22 +76,76 @@ vec4 row_texel(int i) {
 }
 #endif
 
+#if PITCHED
+vec2 ground; // of the plane that the pixel's centre shows
+vec2 seen;   // its place in the picture, from the middle
+float depth;
+
+void look() {
+    seen = gl_FragCoord.xy + u_origin - u_eye.xy;
+    depth = u_eye.z / (u_eye.z + u_eye.w * seen.y);
+    ground = vec2(seen.x, seen.y / u_eye.z) * depth;
+}
+
+// How an edge of the plane looks that lies s px from this place along its unit normal: the normal in the picture, by what a
+// px of the plane across the edge measures there, times depth. All of an edge has the same.
+vec2 seen_normal(vec2 normal, float s) {
+    return vec2(normal.x, (normal.y - u_eye.w * (dot(normal, ground) + s)) / u_eye.z);
+}
+
+// The area of a pixel whose centre shows a place s px of the plane inside an edge, with the normal out of it.
+float covered_plane(float s, vec2 normal) {
+    vec2 seen = seen_normal(normal, s);
+    float scale = inversesqrt(max(dot(seen, seen), 1e-30));
+    return covered(s * scale / depth, edge_of(seen * scale));
+}
+
+// Px of the picture that a px of the plane takes, across an edge with this normal here.
+float scale_of(vec2 normal) {
+    vec2 seen = seen_normal(normal, 0.0);
+    return inversesqrt(max(dot(seen, seen), 1e-30)) / depth;
+}
+
+// How much of a pixel belongs to a segment at an end. Where the line is wide, all where its centre lies before the join.
+// Where it is not, many segments may meet in one pixel, and each takes the share that lies between its ends.
+float own_share(vec4 cut, bool foreign) {
+    float share = cut.w < 1.0 ? covered(cut.z - dot(cut.xy, seen), edge_of(cut.xy)) : 1.0;
+    return mix(share, foreign ? 0.0 : 1.0, cut.w);
+}
+
+#define SIDE vec2 // the normal out of the stroke
+float covered_side(float s, vec2 side) {
+    return covered_plane(s, side);
+}
+float covered_band(float t, float d, vec2 side) {
+    return max(covered_plane(t - d, side) + covered_plane(t + d, -side) - 1.0, 0.0);
+}
+#else
+#define SIDE vec4 // edge_of
+float covered_side(float s, vec4 side) {
+    return covered(s, side);
+}
+float covered_band(float t, float d, vec4 side) {
+    return max(covered(t - d, side) + covered(t + d, side) - 1.0, 0.0);
+}
+#endif
+
 #if DASH
 // The dash, from where to where, px; a period's last one stands before it once more, and its first one behind it.
 vec2 dash_at(int i) {
     return row_texel(v_dashes.x + i).xy;
 }
 
-// The area of a pixel that dashes leave, from its place in their period.
-float dashes_cover(float t, vec4 edge) {
+// The area of a pixel that dashes leave, from its place in their period; scale: px of the picture a px along.
+float dashes_cover(float t, vec4 edge, float scale) {
     float area = 0.0, drawn = 0.0;
     for (int i = 0; i < v_dashes.y >> 1; i++) {
         vec2 dash = dash_at(i);
-        area += covered(t - dash.x, edge) - covered(t - dash.y, edge);
+        area += covered((t - dash.x) * scale, edge) - covered((t - dash.y) * scale, edge);
         drawn += max(min(dash.y, v_measure.w) - max(dash.x, 0.0), 0.0);
     }
     // Where a pixel holds more than a period, its share that is drawn is all there is to see.
-    return mix(drawn / v_measure.w, area, clamp(v_measure.w - 1.0, 0.0, 1.0));
+    return mix(drawn / v_measure.w, area, clamp(v_measure.w * scale - 1.0, 0.0, 1.0));
 }
 
 // How far it is to the nearest dash.
@@ -96,6 +157,29 @@ float dash_distance(float t) {
     }
     return max(nearest, 0.0);
 }
+
+#if PITCHED
+// The same, below 0 where the dash lies ahead.
+float dash_offset(float t) {
+    float nearest = 1e6;
+    for (int i = 0; i < v_dashes.y >> 1; i++) {
+        vec2 dash = dash_at(i);
+        float off = t - clamp(t, dash.x, dash.y);
+        nearest = abs(off) < abs(nearest) ? off : nearest;
+    }
+    return nearest;
+}
+
+// The area of a line with round dashes that hold less than a pixel each, of that of the whole line.
+float dashes_share(float half_width) {
+    float drawn = 0.0;
+    for (int i = 0; i < v_dashes.y >> 1; i++) {
+        vec2 dash = dash_at(i);
+        drawn += dash.x >= 0.0 && dash.y <= v_measure.w ? dash.y - dash.x + 1.570796 * half_width : 0.0;
+    }
+    return min(drawn / v_measure.w, 1.0);
+}
+#endif
 #endif
 
 #if RAMP
@@ -122,16 +206,16 @@ int stop_behind(float place, int low) {
 
 // The mean colour of the ramp over a pixel: the share of it between two stops has the colour in the middle of what the pixel
 // sees of them. Where a pixel sees very many, several are taken for one.
-vec4 ramp_over(float along, vec4 edge) {
+vec4 ramp_over(float along, vec4 edge, float scale) {
     const int MOST = 16;
-    float from = along - edge.x, to = along + edge.x;
+    float from = along - edge.x / scale, to = along + edge.x / scale;
     int last = v_ramp.y - 1, i = max(stop_behind(from, 0) - 1, 0), beyond = min(i + MOST, last);
     int stride = stop_at(beyond) > to ? 1 : (min(stop_behind(to, beyond), last) - i + MOST) / MOST;
-    float here = stop_at(i), past = covered(along - here, edge);
+    float here = stop_at(i), past = covered((along - here) * scale, edge);
     vec4 color = stop_color(i), sum = color * (1.0 - past);
     while (i < last && past > 0.0) {
         i = min(i + stride, last);
-        float next = stop_at(i), past_next = covered(along - next, edge);
+        float next = stop_at(i), past_next = covered((along - next) * scale, edge);
         vec4 next_color = stop_color(i);
         float middle = 0.5 * (max(here, from) + min(next, to));
         float part = clamp((middle - here) / max(next - here, 1e-6), 0.0, 1.0);
@@ -144,15 +228,18 @@ vec4 ramp_over(float along, vec4 edge) {
 }
 #endif
 
-#if SHARP_JOINS
-const uint MITER = 3u, BEVEL = 4u, SPLIT_BEVEL = 6u, SPLIT_MITER = 7u;
-
+#if SHARP_JOINS || (PITCHED && FLAT_CAPS)
 // The area inside two edges that each leave a and b of the pixel, from the cosine of the angle between their normals:
 // the smaller where they are parallel, the product at a right angle, what both leave where they face each other.
 float inside_both(float a, float b, float cosine) {
     float smaller = min(a, b), product = a * b, least = max(a + b - 1.0, 0.0);
     return mix(product, cosine > 0.0 ? smaller : least, abs(cosine));
 }
+
+#endif
+
+#if SHARP_JOINS
+const uint MITER = 3u, BEVEL = 4u, SPLIT_BEVEL = 6u, SPLIT_MITER = 7u;
 
 // The second line across the join, by its normal in the segment's frame (along, across): a bevel's looks along the bisector,
 // a miter's is the neighbour's edge, a whole turn away. inside: px from it, on the stroke's side.
@@ -172,12 +259,55 @@ Second second_line(uint kind, float past, vec2 turn, float y, float half_width) 
     return Second(normal, inside, outer, bevel || (miter && past > -1.0 && y * outer > 0.0));
 }
 
+#if PITCHED
+// u: of the segment; end: 1 at B, -1 at A.
+float cut_join_plane(float area, uint kind, float past, vec2 turn, float y, vec2 u, float end, vec2 side, float half_width) {
+    Second line = second_line(kind, past, turn, y, half_width);
+    vec2 normal = line.normal.x * end * u + line.normal.y * vec2(-u.y, u.x);
+    float second = covered_plane(line.inside, normal);
+    float cosine = dot(normalize(seen_normal(normal, line.inside)), normalize(seen_normal(side, 0.0)));
+    return line.applies ? inside_both(area, second, cosine) : area;
+}
+#endif
+
 float cut_join(float area, uint kind, float past, vec2 turn, float y, vec2 u, float half_width) {
     Second line = second_line(kind, past, turn, y, half_width);
     // The frame of an end looks out of it; the pixel's own axes are a rotation away, mirrored at A.
     vec2 seen = vec2(line.normal.x * u.x - line.normal.y * u.y, line.normal.x * u.y + line.normal.y * u.x);
     float second = covered(line.inside, edge_of(seen));
     return line.applies ? inside_both(area, second, line.outer * line.normal.y) : area;
+}
+#endif
+
+#if SHARP_JOINS
+// The joins at both ends.
+float cut_joins(float area, vec2 past, float y, vec2 u, SIDE side, float half_width) {
+#if PITCHED
+    area = cut_join_plane(area, v_ends.x & 7u, past.x, v_turns.xy, y, u, -1.0, side, half_width);
+    return cut_join_plane(area, v_ends.x >> 3, past.y, v_turns.zw, y, u, 1.0, side, half_width);
+#else
+    area = cut_join(area, v_ends.x & 7u, past.x, v_turns.xy, y, vec2(-u.x, u.y), half_width);
+    return cut_join(area, v_ends.x >> 3, past.y, v_turns.zw, y, u, half_width);
+#endif
+}
+#endif
+
+#if FLAT_CAPS
+#if PITCHED
+// A cap meets the sides at any angle, as it is seen. A line with both sides in the pixel has none.
+float cut_cap(float area, float s, vec2 normal, vec2 side, bool thick) {
+    float cosine = dot(normalize(seen_normal(normal, s)), normalize(seen_normal(side, 0.0)));
+    return s > 1e5 ? area : inside_both(area, covered_plane(s, normal), thick ? cosine : 0.0);
+}
+#endif
+
+// px inside both caps
+float cut_caps(float area, vec2 inside, vec2 u, SIDE side, vec4 edge, bool thick) {
+#if PITCHED
+    return cut_cap(cut_cap(area, inside.x, -u, side, thick), inside.y, u, side, thick);
+#else
+    return area * max(covered(inside.x, edge) + covered(inside.y, edge) - 1.0, 0.0);
+#endif
 }
 #endif
 
@@ -201,7 +331,15 @@ vec2 arcs(vec2 past) {
 
 #if UNION
 // Into the stroke, across the edge that is nearest, in the picture.
-vec2 normal_of(vec2 past, float y, vec2 u, float half_width) {
+vec2 normal_of(vec2 past, float y, vec2 u, SIDE side, float half_width) {
+#if PITCHED
+    vec2 outward = side;
+#if FLAT_CAPS
+    vec2 cap = v_shape.zw - past;
+    outward = min(cap.x, cap.y) * scale_of(u) < (half_width - abs(y)) * scale_of(side) ? (cap.x < cap.y ? -u : u) : side;
+#endif
+    return -normalize(seen_normal(outward, 0.0));
+#else
     vec2 arc = arcs(past);
     vec2 off = vec2(arc.y - arc.x, y);
     vec2 inward = -off / max(length(off), 1e-3);
@@ -210,6 +348,7 @@ vec2 normal_of(vec2 past, float y, vec2 u, float half_width) {
     inward = min(cap.x, cap.y) < half_width - abs(y) ? vec2(cap.x < cap.y ? 1.0 : -1.0, 0.0) : inward;
 #endif
     return inward.x * u + inward.y * vec2(-u.y, u.x);
+#endif
 }
 #endif
 
@@ -232,18 +371,34 @@ vec4 image_at(float x, float y, float d) {
 #endif
 
 void main() {
-    vec2 u = v_segment.zw, q = gl_FragCoord.xy - v_segment.xy;
     float half_width = v_shape.y;
+#if PITCHED
+    look();
+    vec2 u = v_segment.zw, q = ground - v_segment.xy;
+    float x = dot(q, u), y = q.y * u.x - q.x * u.y;
+    vec2 past = vec2(-x, dot(ground - v_end, u)); // the ends, along the segment
+    float scale = scale_of(u); // along
+    vec4 edge = edge_of(normalize(seen_normal(u, 0.0)));
+#else
+    vec2 u = v_segment.zw, q = gl_FragCoord.xy - v_segment.xy;
     // Of the sides and, turned by a right angle, of flat caps.
     vec4 edge = vec4(edge_extent(u), v_rest.xy);
     float x = dot(q, u), y = q.y * u.x - q.x * u.y;
     vec2 past = vec2(-x, x - v_shape.x); // the ends, along the segment
+    const float scale = 1.0;
+#endif
     vec2 beyond = v_turns.xz * past + v_turns.yw * y;         // the bisectors
 
     vec2 ends = arcs(past);
     float arc = max(ends.x, ends.y);
     // On an arc farther than a pixel from the segment, the distance is all.
+#if PITCHED
+    // A segment that is shorter than a pixel does not know how the line goes on.
+    vec2 bends = vec2(bend(beyond.x * scale, v_turns.y), bend(beyond.y * scale, v_turns.w));
+    float bent = y - (bends.x + bends.y) / scale * max(1.0 - arc * scale, 0.0) * clamp(v_shape.x * scale - 1.0, 0.0, 1.0);
+#else
     float bent = y - (bend(beyond.x, v_turns.y) + bend(beyond.y, v_turns.w)) * max(1.0 - arc, 0.0);
+#endif
 #if MEASURED
     float along = v_measure.x + clamp(x, 0.0, v_shape.x) * v_measure.y;
 #endif
@@ -253,27 +408,59 @@ void main() {
     float inside = min(0.75, 0.5 * v_measure.z), period = v_measure.w;
     float dash_along = round_dashes ? along : clamp(along, inside, v_measure.z - inside);
     float place = dashed ? dash_along - period * floor(dash_along / period) : 0.0;
+#if PITCHED
+    float dash_off = round_dashes ? dash_offset(place) : 0.0;
+#else
     arc += round_dashes ? dash_distance(place) : 0.0;
 #endif
+#endif
+#if PITCHED
+    // From the nearest place of the line to here.
+    vec2 off = vec2(ends.y * v_cut_b.w - ends.x * v_cut_a.w, bent);
+#if TIPS
+    // Round caps that are no pixel long end like flat ones of the same area.
+    float cap_length = half_width * scale;
+    off.x *= min(v_tips.x - past.x, v_tips.y - past.y) < 0.0 ? clamp(2.0 * cap_length - 1.0, 0.0, 1.0) : 1.0;
+#endif
+#if DASH
+    off.x += dash_off;
+#endif
+    float d = length(off);
+    vec2 side = d > 1e-4 ? (off.x * u + off.y * vec2(-u.y, u.x)) / d : vec2(-u.y, u.x);
+    float across = scale_of(side);
+#else
     float d = sqrt(arc * arc + bent * bent);
-    float area = covered(half_width - d, edge);
+    const float across = 1.0;
+    vec4 side = edge;
+#endif
 #if THIN
-    area = max(area + covered(half_width + d, edge) - 1.0, 0.0);
+    float area = covered_band(half_width, d, side);
+#else
+    float area = covered_side(half_width - d, side);
+#endif
+#if DASH && PITCHED
+    if (round_dashes && period * scale < 2.0) {
+        vec2 lateral = vec2(-u.y, u.x) * (y < 0.0 ? -1.0 : 1.0);
+        float whole = covered_band(half_width, abs(y), lateral) * dashes_share(half_width);
+        area = mix(whole, area, clamp(period * scale - 1.0, 0.0, 1.0));
+    }
 #endif
 #if TIPS
     // How much of the pixel round caps leave along the line.
+#if PITCHED
+    vec2 tip = clamp(v_tips - past * scale + 0.5 + 0.785398 * cap_length + 1.2 * max(cap_length - 0.5, 0.0), 0.0, 1.0);
+#else
     vec2 tip = clamp(v_tips - past, 0.0, 1.0);
+#endif
     area *= max(tip.x + tip.y - 1.0, 0.0);
 #endif
 #if SHARP_JOINS
-    area = cut_join(area, v_ends.x & 7u, past.x, v_turns.xy, y, vec2(-u.x, u.y), half_width);
-    area = cut_join(area, v_ends.x >> 3, past.y, v_turns.zw, y, u, half_width);
+    area = cut_joins(area, past, y, u, side, half_width);
 #endif
 #if GAP
-    float gap = max(covered(v_band.x - d, edge) + covered(v_band.x + d, edge) - 1.0, 0.0);
+    float gap = covered_band(v_band.x, d, side);
 #if SHARP_JOINS
-    gap = cut_join(gap, v_ends.x & 7u, past.x, v_turns.xy, y, vec2(-u.x, u.y), v_band.x);
-    gap = cut_join(gap, v_ends.x >> 3, past.y, v_turns.zw, y, u, v_band.x);
+    gap = cut_joins(gap, past, y, u, side, v_band.x);
 #endif
     area = v_band.x > 0.0 ? max(area - gap, 0.0) : area;
 #endif
@@ -285,24 +472,34 @@ void main() {
     Second at_b = second_line(v_ends.x >> 3, past.y, v_turns.zw, y, half_width);
     rim = min(rim, min(at_a.applies ? at_a.inside : rim, at_b.applies ? at_b.inside : rim));
 #endif
-    float fade = v_band.y + 1.0, inner = v_band.x > 0.0 ? d - v_band.x + v_band.y : rim;
+    rim *= across;
+    float fade = v_band.y + 1.0, inner = v_band.x > 0.0 ? (d - v_band.x) * across + v_band.y : rim;
     area = v_band.y > 0.0 ? clamp((min(rim, inner) + 0.5) / fade, 0.0, 1.0) : area;
 #endif
 #if FLAT_CAPS
-    vec2 cap = v_shape.zw - past;
-    area *= max(covered(cap.x, edge) + covered(cap.y, edge) - 1.0, 0.0);
+    area = cut_caps(area, v_shape.zw - past, u, side, edge, half_width * across > 0.5);
 #endif
 #if DASH
-    area *= dashed && !round_dashes ? dashes_cover(place, edge) : 1.0;
+    area *= dashed && !round_dashes ? dashes_cover(place, edge, scale) : 1.0;
 #endif
 #if TRIM
-    area *= 1.0 - covered(along - v_trim.x, edge) + covered(along - v_trim.y, edge);
+    area *= 1.0 - covered((along - v_trim.x) * scale, edge) + covered((along - v_trim.y) * scale, edge);
 #endif
     // The two sides of a split end know the turn to 16 bits only, 4 / 65534 off at most: between them lies a strip that both
     // draw, so that neither leaves a hole.
+#if PITCHED
+    float tie = 6e-5 * (abs(y) + depth);
+#else
     float tie = 4e-5 * half_width + 4e-5;
+#endif
     bool foreign = (beyond.x > tie && past.x > v_rest.z) || (beyond.y > tie && past.y > v_rest.w);
-#if (GAP || BLUR || MEASURED) && METHOD == 2
+#if PITCHED
+    float share = own_share(v_cut_a, beyond.x > tie && past.x > v_rest.z) +
+                  own_share(v_cut_b, beyond.y > tie && past.y > v_rest.w) - 1.0;
+    area *= max(share, 0.0);
+    foreign = share <= 0.0;
+#endif
+#if (GAP || BLUR || MEASURED) && METHOD == 2 && !PITCHED
     // Bodies of fans overlap on the inner side of a join: what one leaves open the other must not fill.
     foreign = foreign || (beyond.x > tie && y * v_turns.y > 0.0) || (beyond.y > tie && y * v_turns.w > 0.0);
 #endif
@@ -312,16 +509,16 @@ void main() {
     o_color = vec4(1.0 / 255.0, 0.0, 0.0, 0.0);
 #elif UNION
     // Lines thinner than this have both edges in a pixel, and no one normal.
-    bool thick = half_width > 0.4;
+    bool thick = half_width * across > 0.4;
     area = foreign ? 0.0 : area;
-    o_color = vec4(normal_of(past, y, u, half_width) * (area * (1.0 - area)), area, area);
+    o_color = vec4(normal_of(past, y, u, side, half_width) * (area * (1.0 - area)), area, area);
     o_color.rgb = thick ? o_color.rgb : vec3(0.0);
 #else
     area = foreign ? 0.0 : area;
     o_color = v_color * area;
 #if RAMP
     if (area > 0.0 && v_ramp.y > 0)
-        o_color *= ramp_over(v_measure.z > 0.0 ? along : -1.0, edge); // a dot has its first
+        o_color *= ramp_over(v_measure.z > 0.0 ? along : -1.0, edge, scale); // a dot has its first
 #endif
 #if PATTERN
     o_color *= v_image.z > 0.0 ? image_at(x, y, sqrt(dot(ends, ends) + y * y)) : vec4(1.0);

@@ -17,6 +17,9 @@ uniform int u_table;            // of the rows; of strips the bits of gl_VertexI
 uniform int u_table_rows;
 uniform vec2 u_scale;           // 2 / size of the viewport
 uniform int u_tail;             // the texel of dashes and ramps that is their first, in the texture of rows
+#if PITCHED
+uniform vec4 u_eye;             // half the picture's size, px; cosine of the pitch; depth lost a px towards the viewer
+#endif
 uniform int u_stride;           // texels a record: measured ones have another, with how far along their line they lie
 
 // What stroke.frag says of them.
@@ -50,12 +53,16 @@ flat out highp ivec2 v_ramp;
 flat out vec4 v_image;
 flat out vec4 v_pattern;
 #endif
+#if PITCHED
+flat out vec2 v_end;
+flat out vec4 v_cut_a, v_cut_b;
+#endif
 
 const float PAD_PX = 0.75, NO_LIMIT_PX = 3.0e38;
 const uint FIRST = 2u, RING = 8u, BREAK = 16u, START = 32u; // of a record
 const uint AFTER_FIRST = 1u << 26u, BEFORE_LAST = 1u << 27u; // of a join
-const uint DOT = 1u, CUT = 3u, TIGHT = 4u; // kinds of joins
-const uint ROUND = 0u, BUTT = 1u, SQUARE = 2u, SPLIT_ROUND = 5u; // camber_end
+const uint GHOST = 0u, DOT = 1u, CUT = 3u, TIGHT = 4u, SPLIT = 5u; // kinds of joins
+const uint ROUND = 0u, BUTT = 1u, SQUARE = 2u, MITER = 3u, SPLIT_ROUND = 5u, SPLIT_MITER = 7u; // camber_end
 const float ALWAYS_PX = -1e30;
 
 struct Record {
@@ -88,7 +95,12 @@ uint kind_of(uint join) {
 }
 
 uint end_of(uint join) {
-    return join >> 16u & 7u;
+    uint end = join >> 16u & 7u;
+#if PITCHED && METHOD != 0
+    // Of kite and fan the triangles say what belongs to a segment; here they do not.
+    end = kind_of(join) > CUT ? (end == ROUND ? SPLIT_ROUND : 10u - end) : end;
+#endif
+    return end;
 }
 
 float tan_half(float q) {
@@ -158,19 +170,125 @@ float flat_cap(uint end, float half_width) {
 // The arc alone takes a line thinner than the pixel for one that crosses it. A cap as thin as that ends like a flat one of
 // the same area, pi / 4 of half the width further on.
 float tip(uint join, float half_width) {
-    float reach = 0.785398 * half_width + 1.2 * max(half_width - 0.5, 0.0);
-    return kind_of(join) < CUT && end_of(join) == ROUND ? 0.5 + reach : NEVER_PX;
+#if PITCHED
+    const float until = 0.0; // how wide it is seen differs from place to place
+#else
+    float until = 0.5 + 0.785398 * half_width + 1.2 * max(half_width - 0.5, 0.0);
+#endif
+    return kind_of(join) < CUT && end_of(join) == ROUND ? until : NEVER_PX;
 }
 
+#if PITCHED
+float depth_at(vec2 p) {
+    return 1.0 - u_eye.w * p.y;
+}
+
+// No triangle is cut along a bisector: all joins say what belongs to a segment as split ones do.
+float own_until(vec2 p, uint join, vec2 turn, bool ends_soon, float half_width) {
+    float seen = half_width / max(depth_at(p), 1e-3);
+    return kind_of(join) == CUT ? ALWAYS_PX : foreign_from(end_of(join), turn, ends_soon, seen);
+}
+
+vec2 seen_of(vec2 p) {
+    return vec2(p.x, p.y * u_eye.z) / depth_at(p);
+}
+
+// The direction that u has in the picture, at a place of the plane.
+vec2 seen_direction(vec2 p, vec2 u) {
+    vec2 seen = vec2(u.x * depth_at(p) + u_eye.w * p.x * u.y, u_eye.z * u.y);
+    return seen / max(length(seen), 1e-20);
+}
+
+// Px of the picture that a line through a place of the plane is wide.
+float seen_width(vec2 p, vec2 u, float half_width) {
+    vec2 normal = vec2(-u.y, u.x);
+    return 2.0 * half_width / (depth_at(p) * length(vec2(normal.x, (normal.y - u_eye.w * dot(normal, p)) / u_eye.z)));
+}
+
+// A join that is narrower than a pixel as it is seen: the line between the two segments in the picture, by its normal and
+// where it lies, and 1 where it is wide and the bisector in the plane parts them, down to 0.
+vec4 seen_cut(vec2 p, vec2 u, float turns, uint join, float half_width) {
+    vec2 half_turned = half_turn(turn_of(join));
+    float c = half_turned.x * half_turned.x - half_turned.y * half_turned.y, s = 2.0 * turns * half_turned.x * half_turned.y;
+    vec2 other = vec2(u.x * c - u.y * s, u.x * s + u.y * c);
+    if (kind_of(join) < CUT || depth_at(p) < 1e-3)
+        return vec4(0.0, 0.0, 0.0, 1.0);
+    vec2 along = seen_direction(p, u), sum = along + seen_direction(p, other);
+    vec2 normal = length(sum) > 1e-5 ? normalize(sum) : along;
+    float narrowest = min(seen_width(p, u, half_width), seen_width(p, other, half_width));
+    return vec4(turns * normal, turns * dot(normal, seen_of(p)), clamp(1.5 * narrowest - 0.75, 0.0, 1.0));
+}
+
+// How far the stroke reaches past an end of its segment.
+float end_reach(uint join, float half_width) {
+    uint kind = kind_of(join), end = end_of(join);
+    vec2 turn = half_turn(turn_of(join));
+    float sine = abs(turn.y), tip = end == MITER || end == SPLIT_MITER ? sine / max(turn.x, 1e-5) : sine;
+    return half_width * (kind < CUT ? (end == BUTT ? 0.0 : 1.0) : kind == SPLIT ? max(tip, 1.0) : tip);
+}
+
+// A corner of what the segment's part of the stroke takes of the picture and half a pixel around it, px from its middle: a
+// trapezoid along the segment as it is seen. false: nothing is seen.
+bool surround(vec2 a, vec2 u, float len, float half_width, uint join_a, uint join_b, int corner, out vec2 place) {
+    float from = -end_reach(join_a, half_width), to = len + end_reach(join_b, half_width);
+    // What lies less deep than the picture's bottom is not seen, and what does by half cannot be projected well.
+    float nearest = u_eye.z / (u_eye.z + u_eye.w * u_eye.y), hidden = 0.5 * nearest;
+    float spread = u_eye.w * abs(u.x) * half_width, rate = u_eye.w * u.y, room = depth_at(a) - spread - hidden;
+    bool right = (corner & 1) != 0, far = corner > 1;
+    place = vec2(0.0);
+    if (2.0 * spread > nearest - hidden) { // wider than that: a line whose one side is behind the camera may be seen
+        place = u_eye.xy * vec2(right ? 1.0 : -1.0, far ? 1.0 : -1.0);
+        if (min(room - rate * from, room - rate * to) < 0.0)
+            return true;
+    }
+    to = rate > 0.0 ? min(to, room / rate) : to;
+    from = rate < 0.0 ? max(from, room / rate) : from;
+    if (from > to || (rate == 0.0 && room < 0.0))
+        return false;
+    vec2 side = vec2(-u.y, u.x) * half_width, start = seen_of(a + u * from), run = seen_of(a + u * to) - start;
+    float seen_length = length(run);
+    vec2 axis = seen_length > 1e-3 ? run / seen_length : vec2(1.0, 0.0);
+    mat2 turned = mat2(axis.x, -axis.y, axis.y, axis.x); // along, across
+    vec2 left_a = turned * (seen_of(a + u * from + side) - start), left_b = turned * (seen_of(a + u * to + side) - start);
+    vec2 right_a = turned * (seen_of(a + u * from - side) - start), right_b = turned * (seen_of(a + u * to - side) - start);
+    float begin = min(min(left_a.x, left_b.x), min(right_a.x, right_b.x)) - PAD_PX;
+    float end = max(max(left_a.x, left_b.x), max(right_a.x, right_b.x)) + PAD_PX;
+    vec2 near_side = right ? right_a : left_a, far_side = right ? right_b : left_b;
+    float low = right ? -1.0 : 1.0; // of the two sides in the picture, as in the plane
+    float slope = (far_side.y - near_side.y) / max(abs(far_side.x - near_side.x), 1e-3) * sign(far_side.x - near_side.x);
+    float at = far ? end : begin;
+    vec2 own = far ? vec2(left_b.y, right_b.y) : vec2(left_a.y, right_a.y);
+    float widest = max(low * own.x, low * own.y);
+    bool tapers = abs(far_side.x - near_side.x) > 4.0 && abs(slope) < 1.0;
+    float other = max(low * (far ? left_a.y : left_b.y), low * (far ? right_a.y : right_b.y));
+    float across = tapers ? max(widest, low * (near_side.y + slope * (at - near_side.x))) : max(widest, other);
+    vec2 found = vec2(at, low * (across + (tapers ? 1.4143 : 1.0) * PAD_PX));
+    place = start + axis * found.x + vec2(-axis.y, axis.x) * found.y;
+    return true;
+}
+#endif
+
 // All that is constant over a segment.
-void hand_over(vec2 a, vec2 u, float len, float half_width, uint join_a, uint join_b) {
+void hand_over(vec2 a, vec2 b, vec2 u, float len, float half_width, uint join_a, uint join_b) {
     uint end_a = end_of(join_a), end_b = end_of(join_b);
     vec2 turn_a = half_turn(turn_of(join_a)), turn_b = half_turn(turn_of(join_b));
+#if PITCHED
+    v_segment = vec4(a, u);
+    v_end = b;
+    v_cut_a = seen_cut(a, u, -1.0, join_a, half_width);
+    v_cut_b = seen_cut(b, u, 1.0, join_b, half_width);
+#else
     v_segment = vec4(a - u_origin, u);
+#endif
     v_shape = vec4(len, half_width, flat_cap(end_a, half_width), flat_cap(end_b, half_width));
     v_turns = vec4(turn_a, turn_b);
+#if PITCHED
+    v_rest = vec4(0.0, 0.0, own_until(a, join_a, turn_a, (join_a & AFTER_FIRST) != 0u, half_width),
+                  own_until(b, join_b, turn_b, (join_b & BEFORE_LAST) != 0u, half_width));
+#else
     v_rest = vec4(edge_of(u).zw, foreign_from(end_a, turn_a, (join_a & AFTER_FIRST) != 0u, half_width),
                   foreign_from(end_b, turn_b, (join_b & BEFORE_LAST) != 0u, half_width));
+#endif
 #if TIPS
     v_tips = vec2(tip(join_a, half_width), tip(join_b, half_width));
 #endif
@@ -179,8 +297,23 @@ void hand_over(vec2 a, vec2 u, float len, float half_width, uint join_a, uint jo
 #endif
 }
 
+#if PITCHED
+// Whether a segment ends at a record, from the record before it; of a dot of kite and fan, at itself.
+bool ends_segment(Record r) {
+    bool first = (r.last & FIRST) != 0u && (METHOD == 0 || kind_of(r.join) != DOT);
+    return kind_of(r.join) != GHOST && (r.last & (BREAK | START)) == 0u && !first;
+}
+#endif
+
 void main() {
-#if METHOD == 0
+#if PITCHED
+    // Two triangles a record, of the segment that ends there.
+    int table = gl_VertexID >> u_table, id = gl_VertexID - (table << u_table), i = id / 6, place_in = id - 6 * i;
+    int seen_corner = place_in < 3 ? place_in : 6 - place_in;
+    Record here = record_at(i);
+    const bool goes_out = false;
+    int o = (METHOD != 0 && kind_of(here.join) == DOT) || i == 0 ? i : i - 1;
+#elif METHOD == 0
     int table = gl_VertexID >> u_table, id = gl_VertexID - (table << u_table), i = id >> 1;
     bool right = (id & 1) != 0;
     Record here = record_at(i);
@@ -212,7 +345,9 @@ void main() {
     v_band = row_texel(texel + 2).xy;
 #endif
 
-#if METHOD == 0
+#if PITCHED
+    bool is_drawn = ends_segment(here);
+#elif METHOD == 0
     Extrusion e = edge_at(here.join, goes_out ? -1.0 : 1.0, right ? -1.0 : 1.0);
 #else
     bool is_edge = corner >= IN_LEFT_CORNER && corner <= OUT_RIGHT_CORNER;
@@ -226,10 +361,16 @@ void main() {
     uint join_a = goes_out ? here.join : other.join, join_b = goes_out ? other.join : here.join;
     float len = length(segment);
     vec2 u = len > 0.0 ? segment / len : vec2(1.0, 0.0);
+#if PITCHED
+    vec2 middle = row.zw - u_eye.xy, place;
+    is_drawn = is_drawn && surround(a + middle, u, len, max(half_width, 0.0), join_a, join_b, seen_corner, place);
+    hand_over(a + middle, here.p + middle, u, len, half_width, join_a, join_b);
+#else
     float reach = half_width + PAD_PX;
     vec2 place = here.p + row.zw + u * clamp(e.along * reach, -e.limit, e.limit) + vec2(-u.y, u.x) * (e.across * reach);
 
-    hand_over(a + row.zw, u, len, half_width, join_a, join_b);
+    hand_over(a + row.zw, here.p, u, len, half_width, join_a, join_b);
+#endif
 #if MEASURED
     vec2 measure_a = measure_at(goes_out ? i : o), measure_b = measure_at(goes_out ? o : i);
     v_measure = vec4(measure_a.x, len > 0.0 ? (measure_b.x - measure_a.x) / len : 0.0, measure_a.y, 0.0);
@@ -256,5 +397,9 @@ void main() {
     v_pattern = vec4(first / one_px, v_measure.y / one_px, turns.yw / max(turns.xz, 1e-3));
 #endif
     // A row that is not drawn leaves no area; what lies outside the viewport would be clipped at some cost.
+#if PITCHED
+    place += u_eye.xy;
+    half_width = is_drawn ? half_width : -1.0;
+#endif
     gl_Position = vec4(half_width < 0.0 ? vec2(0.0) : (place - u_corner) * u_scale - 1.0, 0.0, 1.0);
 }

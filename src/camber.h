@@ -448,6 +448,7 @@ typedef struct camber_camera {
     uint32_t width, height; /* of the picture, px */
     double simplify_px;     /* points of less importance than this are left out. 0: none */
     double translate_px;    /* farthest that a paint translates what is drawn: so far around the picture it is seen */
+    double pitch_deg;       /* as the frame that draws the mesh has it */
 } camber_camera;
 
 /* Tessellates what the camera sees of a network. The device projects, leaves out, cuts and compacts; of this the host
@@ -573,6 +574,11 @@ typedef struct camber_frame {
     /* The picture is drawn in pieces where a side is longer than this. 0: the largest target, or less where
      * that would take more than 64 MB; a layer that is united takes 128 MB more. */
     uint32_t largest_piece_px;
+    /* 0 to 85: polylines lie in a plane that is seen at this angle, from straight above at 0. The camera looks at the
+     * picture's centre, where a px of the plane is one of the picture, and sees 36.87 degrees from the bottom to the top.
+     * Widths, dashes and translations lie in the plane; blurs do not. What is farther than 6.7 times the distance of
+     * the centre is not drawn: at 85 % of the way from there to the horizon. */
+    double pitch_deg;
 } camber_frame;
 
 typedef struct camber_frame_stats {

@@ -164,12 +164,13 @@ typedef struct camber_view_desc {
     double longitude, latitude;      /* of the centre, degrees */
     double zoom;                     /* MapLibre's: the world is 512 CSS px wide at 0 */
     double bearing_deg;              /* clockwise: the direction that is up in the picture */
+    double pitch_deg;                /* 0 to 85: as camber_frame has it. FIT and BBOX are of a pitch of 0 */
     uint32_t width, height;          /* CSS px. 0: 1024 */
     double ratio;                    /* device px a CSS px. 0: 1 */
 } camber_view_desc;
 
-/* The view that the style's document asks for, centre, zoom and bearing: what it leaves out is longitude and latitude
- * 0, the whole world, north. Sizes and ratio are 0. */
+/* The view that the style's document asks for, centre, zoom, bearing and pitch, 85 at most: what it leaves out is
+ * longitude and latitude 0, the whole world, north, from above. Sizes and ratio are 0. */
 CAMBER_API camber_view_desc camber_style_get_view(const camber_style *style);
 
 /* ---- Sources: what a style itself names ----------------------------------------------------------- */
@@ -200,6 +201,7 @@ typedef struct camber_scene_desc {
 
 typedef struct camber_scene_info {
     double longitude, latitude, zoom; /* of the view's centre */
+    double bearing_deg, pitch_deg;
     uint32_t width, height;           /* device px */
     bool opaque;                      /* the background covers the picture */
     size_t layers;                    /* of the style that draw something here */

@@ -105,7 +105,11 @@ done
 expect 2 "center without zoom" render "$osm" -o a.png --center -122,37
 expect 2 "zoom without center" render "$osm" -o a.png --zoom 12
 expect 2 "bbox and center" render "$osm" -o a.png --bbox 0,0,1,1 --center 0,0 --zoom 3
-expect 2 "pitch" render "$osm" -o a.png --pitch 30
+for pitch in -1 85.1 90 nan x ''; do
+    expect 2 "pitch '$pitch'" render "$osm" -o a.png --pitch "$pitch"
+done
+expect 2 "pitch of a mesh" tessellate "$osm" -o a.glb --pitch 30
+expect 2 "pitch of a comparison" compare "$osm" --pitch 30
 expect 2 "theme and style" render "$osm" -o a.png --theme dark --style x.json
 expect 2 "unknown method" render "$osm" -o a.png --method star
 expect 2 "prefix of a method" render "$osm" -o a.png --method stri
@@ -234,6 +238,7 @@ if command -v taskset >/dev/null && [ "$(nproc)" -gt 1 ]; then
 fi
 expect 0 "two inputs" render "$osm" "$tiger" -o two.png --size 64x64
 has two.png 'OpenStreetMap contributors'
+expect 0 "pitch" render "$osm" -o tilted.png --center -122.03,36.974 --zoom 14 --bearing 30 --pitch 85 --size 99x77
 expect 0 "centre and zoom" render "$osm" -o close.png --center -122.03,36.974 --zoom 14 --bearing 30 --size 99x77
 is_png close.png 99 77
 expect 0 "nothing in the view" render "$osm" -o nothing.png --bbox 10,10,11,11 --size 50x50

@@ -147,6 +147,8 @@ static void take_view(camber_input *input) {
     camber_view_desc *view = &input->view;
     if (isnan(options->bearing_deg))
         view->bearing_deg = own.bearing_deg;
+    if (isnan(options->pitch_deg) && (options->verb == CAMBER_VERB_RENDER || options->verb == CAMBER_VERB_BENCH))
+        view->pitch_deg = own.pitch_deg;
     if (options->has_bbox)
         return;
     view->kind = CAMBER_VIEW_CENTER;

@@ -91,7 +91,8 @@ static const option_spec specs[] = {
     {"center", 0, KIND_CENTER, MAPS, 0, "LON,LAT", "show what lies around this place, with --zoom", 0, 0},
     {"zoom", 0, KIND_NUMBER, MAPS, FIELD(zoom), "Z", "MapLibre's: the world is 512 CSS px wide at 0", -2, 30},
     {"bearing", 0, KIND_NUMBER, MAPS, FIELD(bearing_deg), "DEG", "the direction that is up, clockwise (0)", -1e6, 1e6},
-    {"pitch", 0, KIND_NUMBER, MAPS, FIELD(pitch_deg), "DEG", "0: this version draws maps flat", -90, 90},
+    {"pitch", 0, KIND_NUMBER, MAPS, FIELD(pitch_deg), "DEG", "how far the camera is tilted, to 85; render, bench (0)",
+     0, 85},
     {"style", 0, KIND_TEXT, STYLED, FIELD(style), "NAME|FILE", "a style that ships, or a MapLibre style (roads)", 0, 0},
     {"theme", 0, KIND_CHOICE, STYLED, FIELD(theme), "light|dark", "of a style that ships (light)", 0, 0},
     {"layer", 0, KIND_TEXT, MAPS, FIELD(layer), "NAME", "read this layer of INPUT only", 0, 0},
@@ -407,6 +408,7 @@ int camber_options_parse(int argc, char **argv, camber_options *options, char *m
                                 .view = {.ratio = 1},
                                 .zoom = NAN,
                                 .bearing_deg = NAN,
+                                .pitch_deg = NAN,
                                 .simplify_px = NAN,
                                 .runs = 9,
                                 .windows = 24};

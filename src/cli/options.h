@@ -46,7 +46,7 @@ typedef struct camber_options {
     int theme, method, coverage, backend, sharing;
     camber_view_desc view; /* width and height are set by camber_options_parse */
     bool has_bbox, has_center;
-    double zoom, bearing_deg, pitch_deg; /* zoom, bearing: NAN where not given */
+    double zoom, bearing_deg, pitch_deg; /* NAN where not given */
     double simplify_px, width_px, fan_tolerance_px;
     uint32_t threads;      /* 0: as many as there are */
     uint64_t memory_bytes; /* of meshes. 0: no bound */

@@ -70,11 +70,14 @@ static int check_view(const checked *p) {
     if (!own && options->has_center != !isnan(options->zoom))
         return usage(p, "--%s alone: give --center LON,LAT and --zoom Z together",
                      options->has_center ? "center" : "zoom");
-    if (options->pitch_deg < 0 || options->pitch_deg > 0)
-        return usage(p, "--pitch %g: this version draws maps flat; leave it out", options->pitch_deg);
+    const bool tilts = options->verb == CAMBER_VERB_RENDER || options->verb == CAMBER_VERB_BENCH;
+    if (options->pitch_deg > 0 && !tilts)
+        return usage(p, "--pitch %g: camber %s works on the map's plane, which has no pitch; leave it out",
+                     options->pitch_deg, p->verb);
     view->kind = options->has_bbox ? CAMBER_VIEW_BBOX : options->has_center ? CAMBER_VIEW_CENTER : CAMBER_VIEW_FIT;
     view->zoom = isnan(options->zoom) ? 0 : options->zoom;
     view->bearing_deg = isnan(options->bearing_deg) ? 0 : options->bearing_deg;
+    view->pitch_deg = isnan(options->pitch_deg) ? 0 : options->pitch_deg;
     if (view->width == 0)
         view->width = view->height = options->polylines ? 2048 : 1024;
     const double width = floor(view->width * view->ratio + 0.5);
@@ -96,8 +99,9 @@ static int check_inputs(const checked *p) {
         return usage(p, "%s: info takes no input; leave it out", options->inputs[0]);
     if (options->polylines && options->input_count)
         return usage(p, "--polylines and %s: both are inputs; give one of them", options->inputs[0]);
-    if (options->polylines && (options->style || options->theme >= 0 || options->layer || options->where ||
-                               options->has_bbox || options->has_center || !isnan(options->bearing_deg)))
+    if (options->polylines &&
+        (options->style || options->theme >= 0 || options->layer || options->where || options->has_bbox ||
+         options->has_center || !isnan(options->bearing_deg) || !isnan(options->pitch_deg)))
         return usage(p, "--polylines: is in pixels already and has no style, layer or view; leave those out");
     if (options->where_count > 1 && options->verb != CAMBER_VERB_COMPARE)
         return usage(p, "--where: given %zu times; camber %s takes one, so join them with AND or OR",

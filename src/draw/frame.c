@@ -1,5 +1,6 @@
 /* The frame: pieces of the picture, drawn one after the other, waited for, and read back into bands of rows. The first
  * piece of a frame is drawn when it begins; what is left is done when it ends. */
+#include "base/perspective.h"
 #include "draw/renderer.h"
 
 #include <assert.h>
@@ -54,6 +55,10 @@ static camber_status check_frame(camber_renderer *renderer, const camber_frame *
         return camber_fail(renderer->share.device->context, CAMBER_ERROR_ARGUMENT,
                            "a picture of %u x %u px; each side must be 1 to %d", frame->width, frame->height,
                            SIDE_MAX_PX);
+    if (!camber_pitch_is_valid(frame->pitch_deg))
+        return camber_fail(renderer->share.device->context, CAMBER_ERROR_ARGUMENT,
+                           "a picture with a pitch of %g degrees; choose 0 to %g", frame->pitch_deg,
+                           CAMBER_PITCH_MAX_DEG);
     for (size_t i = 0; i < frame->pass_count; i++) {
         const camber_pass *pass = frame->passes + i;
         assert(!pass->mesh || pass->mesh->renderer == renderer);
@@ -77,6 +82,19 @@ static camber_piece first_piece(const camber_renderer *renderer, const camber_fr
     const uint32_t rows = fitting < side ? fitting : side;
     return (camber_piece){
         .width = width, .height = frame->height < rows ? frame->height : rows, .coverage = frame->coverage};
+}
+
+static void pitch_piece(const camber_frame *frame, camber_piece *piece) {
+    if (!(frame->pitch_deg > 0.0))
+        return;
+    const camber_perspective p = camber_perspective_of(frame->pitch_deg, frame->height);
+    const double horizon = floor(0.5 * frame->height + p.far_y + 0.5);
+    piece->pitched = true;
+    piece->eye[0] = 0.5f * (float)frame->width;
+    piece->eye[1] = 0.5f * (float)frame->height;
+    piece->eye[2] = (float)p.cosine;
+    piece->eye[3] = (float)p.fall;
+    piece->horizon = horizon > 0.0 ? (uint32_t)horizon : 0;
 }
 
 /* ---- A piece ---- */
@@ -178,6 +196,7 @@ static camber_status begin(camber_renderer *renderer, const camber_frame *frame,
         return status;
     const double start = camber_now_ms();
     made.first.thinnest_px = camber_renderer_thinnest(frame);
+    pitch_piece(frame, &made.first);
     made.first.target = target;
     made.number = ++renderer->share.frames_begun;
     camber_piece piece = made.first;

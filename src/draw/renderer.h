@@ -9,18 +9,19 @@ enum {
     CAMBER_VARIANT_LINEAR = 1,
     CAMBER_VARIANT_SHARP_JOINS = 2,
     CAMBER_VARIANT_FLAT_CAPS = 4,
-    CAMBER_VARIANT_COUNT = 8,      /* counts the fragments with coverage instead of drawing them */
-    CAMBER_VARIANT_UNION = 16,     /* leaves what the union of a layer's strokes is made from */
-    CAMBER_VARIANT_THIN = 32,      /* strokes with both edges in a pixel */
-    CAMBER_VARIANT_TIPS = 64,      /* round caps that are hardly wider than a pixel */
-    CAMBER_VARIANT_GAP = 128,      /* strokes that may be two bands */
-    CAMBER_VARIANT_BLUR = 256,     /* strokes that may fade */
-    CAMBER_VARIANT_DASH = 512,     /* strokes that may be dashed */
-    CAMBER_VARIANT_TRIM = 1024,    /* strokes that may be drawn in part */
-    CAMBER_VARIANT_RAMP = 2048,    /* strokes whose colour may change along them */
-    CAMBER_VARIANT_MASK = 4096,    /* leaves colours that may be translucent, and how much of the pixel they cover */
-    CAMBER_VARIANT_PATTERN = 8192, /* strokes that may be of images */
-    CAMBER_VARIANT_METHOD = 16384, /* times camber_method */
+    CAMBER_VARIANT_COUNT = 8,       /* counts the fragments with coverage instead of drawing them */
+    CAMBER_VARIANT_UNION = 16,      /* leaves what the union of a layer's strokes is made from */
+    CAMBER_VARIANT_THIN = 32,       /* strokes with both edges in a pixel */
+    CAMBER_VARIANT_TIPS = 64,       /* round caps that are hardly wider than a pixel */
+    CAMBER_VARIANT_GAP = 128,       /* strokes that may be two bands */
+    CAMBER_VARIANT_BLUR = 256,      /* strokes that may fade */
+    CAMBER_VARIANT_DASH = 512,      /* strokes that may be dashed */
+    CAMBER_VARIANT_TRIM = 1024,     /* strokes that may be drawn in part */
+    CAMBER_VARIANT_RAMP = 2048,     /* strokes whose colour may change along them */
+    CAMBER_VARIANT_MASK = 4096,     /* leaves colours that may be translucent, and how much of the pixel they cover */
+    CAMBER_VARIANT_PATTERN = 8192,  /* strokes that may be of images */
+    CAMBER_VARIANT_PITCHED = 16384, /* the plane of the lines is seen at an angle */
+    CAMBER_VARIANT_METHOD = 32768,  /* times camber_method */
     CAMBER_METHODS = 3,
     CAMBER_STROKES_MAX = 256 /* variants that are kept built */
 };
@@ -42,7 +43,7 @@ typedef enum camber_flatten_kind {
 typedef struct camber_shader {
     GLuint program;   /* 0: not built yet */
     unsigned variant; /* of a stroke shader */
-    GLint origin, corner, scale, layer_color, table, table_rows, stride, tail;
+    GLint origin, corner, scale, layer_color, table, table_rows, stride, tail, eye;
     GLint place, axis_x, axis_y; /* of images side by side */
 } camber_shader;
 
@@ -130,6 +131,9 @@ typedef struct camber_piece {
     camber_coverage coverage;
     float thinnest_px; /* that is drawn in the frame */
     int target;        /* that runs are drawn into */
+    bool pitched;
+    float eye[4];     /* as stroke.vert has it, where it is pitched */
+    uint32_t horizon; /* rows of the picture that lie past it; 0 where it is not pitched */
     size_t *draw_calls;
 } camber_piece;
 

@@ -94,6 +94,7 @@ static camber_status build(camber_renderer *renderer, const char *head, const ch
                               gl->GetUniformLocation(program, "u_table_rows"),
                               gl->GetUniformLocation(program, "u_stride"),
                               gl->GetUniformLocation(program, "u_tail"),
+                              gl->GetUniformLocation(program, "u_eye"),
                               gl->GetUniformLocation(program, "u_place"),
                               gl->GetUniformLocation(program, "u_axis_x"),
                               gl->GetUniformLocation(program, "u_axis_y")};
@@ -116,8 +117,8 @@ camber_status camber_renderer_stroke_shader(camber_renderer *renderer, unsigned 
             head, sizeof head,
             "#define LINEAR %d\n#define SHARP_JOINS %d\n#define FLAT_CAPS %d\n#define COUNT %d\n"
             "#define UNION %d\n#define METHOD %u\n#define THIN %d\n#define TIPS %d\n#define GAP %d\n#define BLUR %d\n"
-            "#define DASH %d\n#define TRIM %d\n#define RAMP %d\n#define MASK %d\n#define PATTERN %d\n#define "
-            "TEXELS_A_ROW %d\n",
+            "#define DASH %d\n#define TRIM %d\n#define RAMP %d\n#define MASK %d\n#define PATTERN %d\n"
+            "#define PITCHED %d\n#define TEXELS_A_ROW %d\n",
             (variant & CAMBER_VARIANT_LINEAR) != 0, (variant & CAMBER_VARIANT_SHARP_JOINS) != 0,
             (variant & CAMBER_VARIANT_FLAT_CAPS) != 0, (variant & CAMBER_VARIANT_COUNT) != 0,
             (variant & CAMBER_VARIANT_UNION) != 0, variant / CAMBER_VARIANT_METHOD,
@@ -125,7 +126,7 @@ camber_status camber_renderer_stroke_shader(camber_renderer *renderer, unsigned 
             (variant & CAMBER_VARIANT_GAP) != 0, (variant & CAMBER_VARIANT_BLUR) != 0,
             (variant & CAMBER_VARIANT_DASH) != 0, (variant & CAMBER_VARIANT_TRIM) != 0,
             (variant & CAMBER_VARIANT_RAMP) != 0, (variant & CAMBER_VARIANT_MASK) != 0,
-            (variant & CAMBER_VARIANT_PATTERN) != 0, (int)CAMBER_TEXELS_A_ROW);
+            (variant & CAMBER_VARIANT_PATTERN) != 0, (variant & CAMBER_VARIANT_PITCHED) != 0, (int)CAMBER_TEXELS_A_ROW);
         const camber_status status = build(renderer, head, camber_stroke_vert, camber_stroke_frag, wanted);
         if (status != CAMBER_OK)
             return status;
@@ -162,7 +163,8 @@ camber_status camber_renderer_count_shader(camber_renderer *renderer, camber_met
         char head[256];
         snprintf(head, sizeof head,
                  "#define METHOD %d\n#define TIPS 0\n#define SHARP_JOINS 0\n#define GAP 0\n#define BLUR 0\n"
-                 "#define DASH 0\n#define TRIM 0\n#define RAMP 0\n#define PATTERN 0\n#define TEXELS_A_ROW %d\n",
+                 "#define DASH 0\n#define TRIM 0\n#define RAMP 0\n#define PATTERN 0\n#define PITCHED 0\n"
+                 "#define TEXELS_A_ROW %d\n",
                  (int)method, (int)CAMBER_TEXELS_A_ROW);
         const camber_status status = build(renderer, head, camber_stroke_vert, camber_count_frag, wanted);
         if (status != CAMBER_OK)

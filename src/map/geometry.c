@@ -29,7 +29,11 @@ typedef struct copies {
 } copies;
 
 static copies copies_in(const camber_view *view, const camber_plan *plan) {
-    const double radius = (0.5 * hypot(view->width, view->height) + camber_plan_reach(plan) + 1.0) / view->scale_px;
+    double corners[8], radius = 0.0;
+    camber_view_corners(view, corners);
+    for (int i = 0; i < 4; i++)
+        radius = fmax(radius, hypot(corners[2 * i] - view->x, corners[2 * i + 1] - view->y));
+    radius += (camber_plan_reach(plan) + 1.0) / view->scale_px;
     if (radius >= 0.5)
         return (copies){0.0, -1.0, view->x};
     return (copies){floor(view->x - radius), floor(view->x + radius), 0.0};

@@ -203,6 +203,7 @@ static camber_camera camera_of(const camber_scene *scene) {
                            .y = view->y,
                            .scale_px = view->scale_px,
                            .bearing_deg = view->bearing_deg,
+                           .pitch_deg = view->pitch_deg,
                            .width = view->width,
                            .height = view->height,
                            .simplify_px = scene->simplify_px,
@@ -368,6 +369,8 @@ void camber_scene_destroy(camber_scene *scene) {
 
 camber_scene_info camber_scene_get_view(const camber_scene *scene) {
     camber_scene_info info = {.zoom = scene->view.zoom,
+                              .bearing_deg = scene->view.bearing_deg,
+                              .pitch_deg = scene->view.pitch_deg,
                               .width = scene->view.width,
                               .height = scene->view.height,
                               .opaque = scene->plan.background.a >= 1.0f};
@@ -415,5 +418,6 @@ camber_frame camber_scene_frame(camber_scene *scene, camber_mesh *mesh) {
                           .height = scene->view.height,
                           .background = scene->plan.background,
                           .passes = list->passes,
-                          .pass_count = list->count};
+                          .pass_count = list->count,
+                          .pitch_deg = scene->view.pitch_deg};
 }

@@ -21,12 +21,7 @@ static void fit(const camber_sources *sources, camber_view *view) {
 
 static camber_cover cover_of(const camber_view *view) {
     camber_cover cover = {.zoom = view->zoom};
-    for (int i = 0; i < 4; i++) {
-        const double right = (i == 1 || i == 2 ? 0.5 : -0.5) * view->width / view->scale_px;
-        const double down = (i >= 2 ? 0.5 : -0.5) * view->height / view->scale_px;
-        cover.corners[2 * i] = view->x + right * view->cosine - down * view->sine;
-        cover.corners[2 * i + 1] = view->y + right * view->sine + down * view->cosine;
-    }
+    camber_view_corners(view, cover.corners);
     return cover;
 }
 

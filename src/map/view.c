@@ -1,5 +1,6 @@
 #include "map/view.h"
 
+#include "base/perspective.h"
 #include "source/mercator.h"
 #include "style/style.h"
 
@@ -111,7 +112,8 @@ camber_view_desc camber_style_get_view(const camber_style *style) {
                               .latitude =
                                   fmin(fmax(style->camera.latitude, -LARGEST_LATITUDE_DEG), LARGEST_LATITUDE_DEG),
                               .zoom = style->camera.zoom,
-                              .bearing_deg = style->camera.bearing_deg};
+                              .bearing_deg = style->camera.bearing_deg,
+                              .pitch_deg = fmin(style->camera.pitch_deg, CAMBER_PITCH_MAX_DEG)};
 }
 
 camber_status camber_view_create(camber_context *context, const camber_view_desc *desc, camber_view *view) {
@@ -122,6 +124,10 @@ camber_status camber_view_create(camber_context *context, const camber_view_desc
     if (!isfinite(desc->bearing_deg))
         return camber_fail(context, CAMBER_ERROR_ARGUMENT, "view: the bearing is %g; choose an angle in degrees",
                            desc->bearing_deg);
+    status = check_range(context, "the pitch", desc->pitch_deg, 0.0, CAMBER_PITCH_MAX_DEG);
+    if (status != CAMBER_OK)
+        return status;
+    made.pitch_deg = desc->pitch_deg;
     set_bearing(&made, desc->bearing_deg);
     set_zoom(&made, 0.0);
     switch (desc->kind) {
@@ -144,6 +150,27 @@ void camber_view_frame(camber_view *view, camber_box bounds, double fill, double
     /* A single point divides by 0: infinite, and cut to the largest zoom. */
     const double zoom = log2(fmin(across, down) / (WORLD_CSS_PX * view->ratio));
     set_zoom(view, zoom < max_zoom ? zoom : max_zoom);
+}
+
+void camber_view_corners(const camber_view *view, double corners[8]) {
+    const double half_x = 0.5 * view->width, half_y = 0.5 * view->height;
+    double down[2] = {-half_y, half_y}, wide[2] = {half_x, half_x};
+    if (view->pitch_deg > 0.0) {
+        const camber_perspective p = camber_perspective_of(view->pitch_deg, view->height);
+        const double seen[2] = {fmax(p.far_y, -half_y), half_y};
+        for (int i = 0; i < 2; i++) {
+            const double depth = camber_perspective_depth(&p, seen[i]);
+            down[i] = seen[i] * depth / p.cosine;
+            wide[i] = half_x * depth;
+        }
+    }
+    for (int i = 0; i < 4; i++) {
+        const int row = i / 2;
+        const double right = (i == 1 || i == 2 ? 1.0 : -1.0) * wide[row] / view->scale_px;
+        const double below = down[row] / view->scale_px;
+        corners[2 * i] = view->x + right * view->cosine - below * view->sine;
+        corners[2 * i + 1] = view->y + right * view->sine + below * view->cosine;
+    }
 }
 
 double camber_view_style_zoom(const camber_view *view) {

@@ -17,7 +17,8 @@ typedef struct camber_view {
     double zoom;     /* MapLibre's; below 0 where a fitted world is smaller than 512 CSS px */
     double scale_px; /* device px that the world is wide */
     double bearing_deg;
-    double cosine, sine;    /* of the bearing */
+    double cosine, sine; /* of the bearing */
+    double pitch_deg;
     double ratio;           /* device px a CSS px */
     uint32_t width, height; /* device px */
 } camber_view;
@@ -29,6 +30,9 @@ camber_status camber_view_create(camber_context *context, const camber_view_desc
 /* Moves and zooms the view so that bounds take fill (0 to 1) of the tighter side, at most at max_zoom. The bounds
  * are in the view's turned axes: u = x cos + y sin, v = y cos - x sin of world coordinates. */
 void camber_view_frame(camber_view *view, camber_box bounds, double fill, double max_zoom);
+
+/* The quadrangle of the world that is seen, as pairs of x, y: of a view with a pitch up to the far plane. */
+void camber_view_corners(const camber_view *view, double corners[8]);
 
 /* The zoom to evaluate styles at: 0 to 24, the range of theirs. */
 double camber_view_style_zoom(const camber_view *view);

@@ -198,6 +198,9 @@ static bool read_version(camber_document *d) {
            camber_document_goes_on(d, depth);
 }
 
+/* As the map's view has it. */
+static const double PITCH_MAX_DEG = 85.0;
+
 static bool read_camera(camber_document *d) {
     camber_compiler *c = &d->compiler;
     camber_style_camera *camera = &c->style->camera;
@@ -221,9 +224,9 @@ static bool read_camera(camber_document *d) {
         !camber_document_read_number(d, d->root, "bearing", -1e6, 1e6, &camera->bearing_deg) ||
         !camber_document_read_number(d, d->root, "pitch", 0.0, 180.0, &camera->pitch_deg))
         return false;
-    if (camera->pitch_deg > 0.0 && camber_document_first_time(d, "pitch")) {
+    if (camera->pitch_deg > PITCH_MAX_DEG && camber_document_first_time(d, "pitch")) {
         camber_compiler_enter_key(c, "pitch");
-        camber_compiler_warn(c, "a pitch is not drawn; the map is flat");
+        camber_compiler_warn(c, "a pitch above 85 is drawn as 85; write 0 to 85");
         camber_compiler_leave(c);
     }
     return true;

@@ -1,5 +1,6 @@
 /* Networks: cleaning polylines in world coordinates into steps of their box, and aiming a camera at them. */
 #include "tess/network.h"
+#include "base/perspective.h"
 
 #include <assert.h>
 #include <math.h>
@@ -249,6 +250,9 @@ static camber_status check_camera(const camber_network *network, const camber_ca
     if (!(camera->simplify_px >= 0.0 && isfinite(camera->simplify_px)))
         return camber_fail(context, CAMBER_ERROR_ARGUMENT,
                            "camera: a simplification of %g px; choose 0 or a distance in pixels", camera->simplify_px);
+    if (!camber_pitch_is_valid(camera->pitch_deg))
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "camera: a pitch of %g degrees; choose 0 to %g",
+                           camera->pitch_deg, CAMBER_PITCH_MAX_DEG);
     if (sides < 1.0 || camera->width > 65535u || camera->height > 65535u)
         return camber_fail(context, CAMBER_ERROR_ARGUMENT,
                            "camera: a picture of %u x %u px; choose sides of 1 to 65535", camera->width,
@@ -278,6 +282,55 @@ static double origin_of(double offset, double step) {
 
 static double bound_px(double px) {
     return fmin(fmax(px, -FARTHEST_PX), FARTHEST_PX);
+}
+
+/* What is seen of the plane, px from where the camera looks at: |x| up to side - slope * y, y from far to near. */
+typedef struct trapezoid {
+    double side, slope, far_y, near_y;
+} trapezoid;
+
+/* With what reaches into the picture from outside. A pixel more on each side; and past the far plane no more than twice
+ * its depth, since a pixel may reach the horizon. */
+static trapezoid trapezoid_of(const camber_camera *camera, const camber_perspective *p, double reach) {
+    const double half_x = 0.5 * camera->width + 1.0, half_y = 0.5 * camera->height + 1.0, slope = p->fall * half_x;
+    const double seen_y = p->far_y - 1.5, near = half_y * camber_perspective_depth(p, half_y) / p->cosine;
+    const bool is_below = p->cosine + p->fall * seen_y > 0.5 * p->cosine / p->farthest;
+    const double far_depth = is_below ? camber_perspective_depth(p, seen_y) : 2.0 * p->farthest;
+    return (trapezoid){.side = half_x + (reach + 4.0) * hypot(1.0, slope),
+                       .slope = slope,
+                       .far_y = (1.0 - far_depth) / p->fall - reach - 4.0,
+                       .near_y = near + reach + 4.0};
+}
+
+/* The box of the trapezoid is the window; points are left out as the nearest part of the picture bears it. */
+static void aim_pitched(const camber_network *network, const camber_camera *camera, double reach,
+                        camber_projection *p) {
+    const camber_perspective perspective = camber_perspective_of(camera->pitch_deg, camera->height);
+    const trapezoid seen = trapezoid_of(camera, &perspective, reach);
+    const double half_x = 0.5 * camera->width, half_y = 0.5 * camera->height, step = network->step;
+    const double widest = seen.side - seen.slope * seen.far_y, narrowest = seen.side - seen.slope * seen.near_y;
+    const double largest = fmax(1.0, perspective.cosine / perspective.nearest) / perspective.nearest;
+    const double cosine = (double)p->across_x / (step * camera->scale_px),
+                 sine = (double)p->down_x / (step * camera->scale_px);
+    double x0 = INFINITY, y0 = INFINITY, x1 = -INFINITY, y1 = -INFINITY;
+    for (int i = 0; i < 4; i++) {
+        const double v = i < 2 ? seen.far_y : seen.near_y,
+                     u = (i % 2 ? 1.0 : -1.0) * (i < 2 ? widest : fmax(narrowest, 0.0));
+        const double x = (u * cosine - v * sine) / camera->scale_px, y = (u * sine + v * cosine) / camera->scale_px;
+        x0 = fmin(x0, x);
+        x1 = fmax(x1, x);
+        y0 = fmin(y0, y);
+        y1 = fmax(y1, y);
+    }
+    p->tolerance = (float)(camera->simplify_px / camera->scale_px / largest);
+    p->window_x0 = (float)(half_x - widest);
+    p->window_x1 = (float)(half_x + widest);
+    p->window_y0 = (float)(half_y + seen.far_y);
+    p->window_y1 = (float)(half_y + seen.near_y);
+    p->seen_x0 = outwards(camera->x + x0 - network->x0, step, -2.0);
+    p->seen_y0 = outwards(camera->y + y0 - network->y0, step, -2.0);
+    p->seen_x1 = outwards(camera->x + x1 - network->x0, step, 3.0);
+    p->seen_y1 = outwards(camera->y + y1 - network->y0, step, 3.0);
 }
 
 camber_status camber_network_aim(const camber_network *network, const camber_camera *camera,
@@ -327,5 +380,7 @@ camber_status camber_network_aim(const camber_network *network, const camber_cam
         .end = (uint32_t)network->point_count,
         .step_px = (float)scale,
     };
+    if (camera->pitch_deg > 0.0)
+        aim_pitched(network, camera, reach, projection);
     return CAMBER_OK;
 }

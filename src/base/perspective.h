@@ -1,0 +1,42 @@
+/* A camera that looks at the plane of the map at an angle, as MapLibre's does: it turns about the picture's centre,
+ * where a px of the plane is one of the picture, and sees so many degrees from the picture's bottom to its top.
+ *
+ *     x, y   px of the plane, from the centre, y down          seen_x = x / depth
+ *     depth  1 - fall * y: 1 in the middle, more behind it     seen_y = cosine * y / depth
+ */
+#ifndef CAMBER_PERSPECTIVE_H
+#define CAMBER_PERSPECTIVE_H
+
+#include <math.h>
+#include <stdbool.h>
+
+#define CAMBER_PITCH_MAX_DEG 85.0
+
+typedef struct camber_perspective {
+    double cosine, fall;
+    double nearest, farthest; /* depths of what is seen: at the picture's bottom, and past which nothing is drawn */
+    double far_y;             /* where that lies in the picture, px from its centre: below 0 */
+} camber_perspective;
+
+static inline double camber_perspective_depth(const camber_perspective *p, double seen_y) {
+    return p->cosine / (p->cosine + p->fall * seen_y);
+}
+
+/* Of a picture that is so high; a pitch above 0. The far plane is MapLibre's: at 85 % of the way from the centre to the
+ * horizon, or at the picture's top where that is nearer, and 1 % on. */
+static inline camber_perspective camber_perspective_of(double pitch_deg, double height_px) {
+    const double tan_half_view = 1.0 / 3.0; /* of 0.6435011087932844 rad */
+    const double angle = pitch_deg * (3.14159265358979323846 / 180.0), half = 0.5 * height_px;
+    camber_perspective p = {.cosine = cos(angle), .fall = sin(angle) * tan_half_view / half};
+    const double top = p.cosine - p.fall * half, horizon = 1.0 / (1.0 - 0.85);
+    p.nearest = camber_perspective_depth(&p, half);
+    p.farthest = 1.01 * (top * horizon > p.cosine ? p.cosine / top : horizon);
+    p.far_y = -(p.cosine / p.fall) * (1.0 - 1.0 / p.farthest);
+    return p;
+}
+
+static inline bool camber_pitch_is_valid(double pitch_deg) {
+    return pitch_deg >= 0.0 && pitch_deg <= CAMBER_PITCH_MAX_DEG; /* false for NaN */
+}
+
+#endif

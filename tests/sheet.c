@@ -149,7 +149,11 @@ static camber_status draw(sheet *s) {
         status = camber_tessellate(s->mesh, polylines, &tessellation);
     if (status == CAMBER_OK) {
         const camber_pass pass = {.mesh = s->mesh, .paints = s->paints, .paint_count = s->figure_count};
-        const camber_frame frame = {SIDE_PX, SIDE_PX, {paper, paper, paper, 1}, &pass, 1, CAMBER_COVERAGE_EXACT, 0};
+        const camber_frame frame = {.width = SIDE_PX,
+                                    .height = SIDE_PX,
+                                    .background = {paper, paper, paper, 1},
+                                    .passes = &pass,
+                                    .pass_count = 1};
         status = camber_render(s->renderer, &frame, keep_rows, s, NULL);
     }
     camber_polylines_destroy(polylines);

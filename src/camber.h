@@ -575,9 +575,9 @@ typedef struct camber_frame {
      * that would take more than 64 MB; a layer that is united takes 128 MB more. */
     uint32_t largest_piece_px;
     /* 0 to 85: polylines lie in a plane that is seen at this angle, from straight above at 0. The camera looks at the
-     * picture's centre, where a px of the plane is one of the picture, and sees 36.87 degrees from the bottom to the top.
-     * Widths, dashes and translations lie in the plane; blurs do not. What is farther than 6.7 times the distance of
-     * the centre is not drawn: at 85 % of the way from there to the horizon. */
+     * picture's centre, where a px of the plane is one of the picture, and sees 36.87 degrees from the bottom to the
+     * top. Widths, dashes and translations lie in the plane; blurs do not. What is farther than 6.7 times the distance
+     * of the centre is not drawn: at 85 % of the way from there to the horizon. */
     double pitch_deg;
 } camber_frame;
 

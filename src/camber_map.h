@@ -202,13 +202,13 @@ typedef struct camber_scene_desc {
 typedef struct camber_scene_info {
     double longitude, latitude, zoom; /* of the view's centre */
     double bearing_deg, pitch_deg;
-    uint32_t width, height;           /* device px */
-    bool opaque;                      /* the background covers the picture */
-    size_t layers;                    /* of the style that draw something here */
-    size_t features;                  /* of the polylines of which something lies in the view, once for layers that
-                                       * share lines; a merged polyline counts for all features that are in it */
-    size_t polylines, points;         /* to tessellate */
-    size_t points_in;                 /* of these features' polylines, before simplification and clipping */
+    uint32_t width, height;   /* device px */
+    bool opaque;              /* the background covers the picture */
+    size_t layers;            /* of the style that draw something here */
+    size_t features;          /* of the polylines of which something lies in the view, once for layers that
+                               * share lines; a merged polyline counts for all features that are in it */
+    size_t polylines, points; /* to tessellate */
+    size_t points_in;         /* of these features' polylines, before simplification and clipping */
 } camber_scene_info;
 
 typedef struct camber_scene camber_scene;

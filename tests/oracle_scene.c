@@ -175,11 +175,8 @@ static bool draw(const core *c, const network *n, source from, double width_px, 
     }
     if (status == CAMBER_OK) {
         const camber_pass pass = {.mesh = c->mesh, .paints = &paint, .paint_count = 1, .overlap = overlap};
-        const camber_frame frame = {.width = SIDE_PX,
-                                    .height = SIDE_PX,
-                                    .background = {1, 1, 1, 1},
-                                    .passes = &pass,
-                                    .pass_count = 1};
+        const camber_frame frame = {
+            .width = SIDE_PX, .height = SIDE_PX, .background = {1, 1, 1, 1}, .passes = &pass, .pass_count = 1};
         status = camber_render(c->renderer, &frame, keep_rows, levels, NULL);
     }
     camber_polylines_destroy(polylines);

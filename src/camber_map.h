@@ -93,7 +93,8 @@ typedef struct camber_source_desc {
     /* Anything OGR opens, "/vsigzip/..." included; a .gz is opened through it. Vector tiles in MBTiles and PMTiles, by
      * their endings, are read without GDAL, those of the highest zoom, unless there is a filter. */
     const char *path;
-    const char *layer; /* NULL: OSM's "lines"; a vector tile set's road layer; else every layer with lines */
+    const char *layer; /* NULL: OSM's "lines"; of a vector tile set the layers that the style names, where it has
+                        * one of them, or else the road layer; of others every layer with lines */
     const char *where; /* OGR attribute filter; PMTiles have none. NULL: none */
     /* Leaves all lines apart. By default lines that the style cannot tell apart become one where two of them, and no
      * third, meet end to end; against their direction too, but for a style that names line-dasharray, line-offset,

@@ -477,6 +477,37 @@ static void test_widths(void **state) {
     remove_folder(folder, path);
 }
 
+/* ---- The tiles as input ---- */
+
+static size_t read_file(studio *s, const char *path, const char *layer) {
+    camber_style *style = NULL;
+    camber_features *features = NULL;
+    size_t size_bytes;
+    const char *text = camber_style_text("openmaptiles", CAMBER_THEME_LIGHT, &size_bytes);
+    assert_int_equal(camber_style_parse(s->context, text, size_bytes, "shipped", &style), CAMBER_OK);
+    assert_int_equal(camber_features_create(s->context, style, &features), CAMBER_OK);
+    const camber_source_desc desc = {.path = path, .layer = layer, .keep_apart = true};
+    assert_int_equal(camber_features_read(features, &desc), CAMBER_OK);
+    const size_t count = camber_features_get_stats(features).features;
+    camber_features_destroy(features);
+    camber_style_destroy(style);
+    return count;
+}
+
+/* A file that is given beside the style has its layers read that the style names, all but transportation_name. */
+static void test_file(void **state) {
+    studio *s = *state;
+    char folder[32], path[64];
+    size_t rivers = 0;
+    make_folder(folder, path);
+    write_sheet(path);
+    for (size_t i = 0; i < THINGS; i++)
+        rivers += strcmp(things[i].layer, "waterway") == 0;
+    assert_int_equal(read_file(s, path, NULL), THINGS - 1);
+    assert_int_equal(read_file(s, path, "waterway"), rivers);
+    remove_folder(folder, path);
+}
+
 /* ---- Documents ---- */
 
 /* Nothing is wrong with them, and nothing of them is left out. */
@@ -511,6 +542,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_documents),   cmocka_unit_test(test_layers),    cmocka_unit_test(test_line_layers),
         cmocka_unit_test(test_line_colors), cmocka_unit_test(test_crossings), cmocka_unit_test(test_widths),
+        cmocka_unit_test(test_file),
     };
     const int failed = cmocka_run_group_tests(tests, studio_set_up, studio_tear_down);
     folder_remove(cache);

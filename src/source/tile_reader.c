@@ -108,7 +108,9 @@ typedef struct input {
     int zoom;
     camber_mvt_place *places;
     size_t place_count;
-    char *layer;
+    const char **layers; /* to read */
+    size_t layer_count;
+    char *layer; /* the one of them that the style does not name. NULL: it names all */
 } input;
 
 /* Every tile of the highest zoom. */
@@ -174,9 +176,9 @@ static const char *find_roads(const input *self) {
     return NULL;
 }
 
-static const char *find_named(const input *self) {
+static const char *find_named(const input *self, const char *name) {
     for (size_t i = 0; i < json_array_size(self->set->layers); i++)
-        if (layer_name(self, i) && strcmp(layer_name(self, i), self->desc->layer) == 0)
+        if (layer_name(self, i) && strcmp(layer_name(self, i), name) == 0)
             return layer_name(self, i);
     return NULL;
 }
@@ -200,21 +202,60 @@ static camber_status fail_layer(const input *self) {
                        self->desc->path, used ? names : "(none)");
 }
 
-static camber_status choose_layer(input *self) {
-    const char *name = self->desc->layer ? find_named(self) : find_roads(self);
+static const char *find_one(const input *self) {
+    const char *named = self->desc->layer;
+    return named ? find_named(self, named) : find_roads(self);
+}
+
+static camber_status choose_one(input *self) {
+    const char *name = find_one(self);
     if (!name) {
         const camber_status status = look_for_layers(self);
         if (status != CAMBER_OK)
             return status;
-        name = self->desc->layer ? find_named(self) : find_roads(self);
+        name = find_one(self);
         const json_t *first = json_array_get(self->set->layers, 0);
         if (!name && !self->desc->layer && json_is_true(json_object_get(first, "lines")))
             name = layer_name(self, 0);
     }
     if (!name)
         return fail_layer(self);
-    self->layer = camber_copy_string(self->context, name);
-    return self->layer ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    if (!(self->layer = camber_copy_string(self->context, name)))
+        return CAMBER_ERROR_MEMORY;
+    self->layers[self->layer_count++] = self->layer;
+    return CAMBER_OK;
+}
+
+static bool names_layers(const camber_style *style) {
+    for (size_t i = 0; i < style->layer_count; i++)
+        if (style->layers[i].visible && style->layers[i].source_layer)
+            return true;
+    return false;
+}
+
+/* Those of the set that the style's layers name. */
+static void list_named(input *self) {
+    const camber_style *style = self->features->style;
+    for (size_t i = 0; i < style->layer_count; i++) {
+        const char *name = style->layers[i].visible ? style->layers[i].source_layer : NULL;
+        size_t k = 0;
+        while (name && k < self->layer_count && strcmp(self->layers[k], name) != 0)
+            k++;
+        if (name && k == self->layer_count && find_named(self, name))
+            self->layers[self->layer_count++] = name;
+    }
+}
+
+static camber_status choose_layers(input *self) {
+    if (!(self->layers = camber_alloc(self->context, self->features->style->layer_count + 1, sizeof *self->layers)))
+        return CAMBER_ERROR_MEMORY;
+    if (!self->desc->layer && names_layers(self->features->style)) {
+        const camber_status status = json_array_size(self->set->layers) ? CAMBER_OK : look_for_layers(self);
+        if (status != CAMBER_OK)
+            return status;
+        list_named(self);
+    }
+    return self->layer_count ? CAMBER_OK : choose_one(self);
 }
 
 static bool wants_plain(const camber_style *style) {
@@ -230,17 +271,16 @@ static camber_status read_input(input *self, camber_tile_result *result) {
     if (status == CAMBER_OK)
         status = list_places(self);
     if (status == CAMBER_OK)
-        status = choose_layer(self);
+        status = choose_layers(self);
     if (status != CAMBER_OK)
         return status;
-    const char *const layers[] = {self->layer};
     const camber_tile_reading reading = {.set = self->set,
                                          .zoom = self->zoom,
                                          .places = self->places,
                                          .place_count = self->place_count,
                                          .mvt = {.features = self->features,
-                                                 .layers = layers,
-                                                 .layer_count = 1,
+                                                 .layers = self->layers,
+                                                 .layer_count = self->layer_count,
                                                  .wants_polygons = style->wants_polygons,
                                                  .plain = wants_plain(style)}};
     return camber_tiles_read(self->features, &reading, result);
@@ -301,6 +341,7 @@ camber_status camber_tiles_read_file(camber_features *features, const camber_sou
     if (status == CAMBER_OK)
         features->is_osm |= result.stats.names_osm || self.set->is_osm;
     camber_tile_set_close(self.set);
+    camber_free(self.context, self.layers);
     camber_free(self.context, self.layer);
     camber_free(self.context, self.places);
     features->times.file_ms += camber_now_ms() - start_ms;

@@ -67,6 +67,9 @@ typedef struct camber_walk {
 #if CAMBER_WALK_MEASURES
     CAMBER_GLOBAL const float *lengths; /* of each point along its run, steps. NULL: not measured */
     CAMBER_GLOBAL float *slot_measures; /* camber_measure of each slot */
+    CAMBER_GLOBAL const float *totals;  /* of the runs: how long the line is that each is a part of, steps */
+    CAMBER_GLOBAL const camber_run *runs;
+    float total; /* of the run */
 #endif
 } camber_walk;
 
@@ -181,7 +184,7 @@ CAMBER_FN void camber_put_slot(camber_walk *w, float x, float y, camber_u32 info
 CAMBER_FN void camber_put_measure(const camber_walk *w, const camber_projection *p, float along) {
     if (w->puts && w->lengths) {
         w->slot_measures[2 * (w->at - 2u)] = along * p->step_px;
-        w->slot_measures[2 * (w->at - 2u) + 1u] = w->lengths[w->end - 1u] * p->step_px;
+        w->slot_measures[2 * (w->at - 2u) + 1u] = w->total * p->step_px;
     }
 }
 #endif
@@ -306,6 +309,9 @@ CAMBER_FN void camber_walk_chunk(camber_walk *w, const camber_projection *p, CAM
         w->first = run->first - p->first_point;
         w->end = run[1].first - p->first_point;
         w->word = run->word;
+#if CAMBER_WALK_MEASURES
+        w->total = w->lengths ? w->totals[run - w->runs] : 0.0f;
+#endif
         camber_walk_run(w, p, w->first > begin ? w->first : begin, w->end < end ? w->end : end);
     }
 }

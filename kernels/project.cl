@@ -1,10 +1,11 @@
 /* project: the slots of a network that the camera sees, in px, as classify reads them.
  * Reads what survey reads and bases[chunks + 1], the slots before each chunk and all of them; writes x, y, info[s + 2]
  * with s these rounded up to CAMBER_BLOCK, a ghost before them and ghosts behind, and the joins of the first ghost and
- * the last, which classify leaves. Measured, it reads lengths[n] as well and writes slot_measures[2 * s]. A work-item a
- * chunk. */
+ * the last, which classify leaves. Measured, it reads lengths[n] and totals[runs] as well and writes slot_measures[2 *
+ * s]. A work-item a chunk. */
 #if CAMBER_MEASURED
-#define MEASURES , global const float *restrict lengths, global float *restrict slot_measures
+#define MEASURES                                                                                                       \
+    , global const float *restrict lengths, global const float *restrict totals, global float *restrict slot_measures
 #else
 #define MEASURES
 #endif
@@ -24,6 +25,8 @@ kernel __attribute__((reqd_work_group_size(CAMBER_WALKERS, 1, 1))) void project(
 #if CAMBER_MEASURED
     w.lengths = lengths;
     w.slot_measures = slot_measures;
+    w.totals = totals;
+    w.runs = runs;
 #endif
     if (item == 0u) {
         slot_x[0] = slot_y[0] = 0.0f;

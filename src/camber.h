@@ -422,6 +422,9 @@ typedef struct camber_network_desc {
     size_t entry_count;
     bool keep_open; /* as in camber_polylines_desc */
     bool measured;  /* points know how far along their polyline they lie, for measured meshes: 4 bytes a point */
+    /* Of measured ones, pairs by polyline: it is a part of a longer line, from this share of that one's length to this
+     * one, and its measures are those of the whole. NULL: 0 and 1 for all. */
+    const float *progress;
 } camber_network_desc;
 
 /* Polylines in world coordinates, kept on the device from frame to frame. What a mesh and its passes call polyline is

@@ -144,6 +144,7 @@ static int check_networks(camber_context *context, camber_mesh *mesh, const scen
     static float importance[POINTS_MAX];
     static size_t offsets[LINES_MAX + 1];
     static camber_network_entry entries[LINES_MAX];
+    static float progress[2 * LINES_MAX]; /* parts of lines, and whole ones */
     static const camber_camera cameras[] = {
         {.x = 400, .y = 400, .scale_px = 1, .width = 2000, .height = 1500},
         {.x = 150, .y = 120, .scale_px = 3, .bearing_deg = 30, .width = 100, .height = 60, .simplify_px = 2},
@@ -158,7 +159,18 @@ static int check_networks(camber_context *context, camber_mesh *mesh, const scen
         offsets[i] = s->offsets[i];
     for (size_t i = 0; i < s->line_count; i++)
         entries[i] = (camber_network_entry){.polyline = (uint32_t)i, .row = s->rows[i]};
-    const camber_network_desc desc = {points, offsets, s->line_count, importance, entries, s->line_count, false, true};
+    for (size_t i = 0; i < s->line_count; i++) {
+        progress[2 * i] = (float)(i % 4) * 0.2f;
+        progress[2 * i + 1] = i % 3 ? 1.0f : 0.8f;
+    }
+    const camber_network_desc desc = {.points = points,
+                                      .offsets = offsets,
+                                      .polyline_count = s->line_count,
+                                      .importance = importance,
+                                      .entries = entries,
+                                      .entry_count = s->line_count,
+                                      .measured = true,
+                                      .progress = progress};
     const camber_tessellation_desc strips = {.strokes = strokes, .stroke_count = ROWS, .measured = true};
     camber_network *network = NULL;
     int failures = camber_network_create(context, &desc, &network) != CAMBER_OK;

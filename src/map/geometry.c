@@ -75,7 +75,7 @@ static uint64_t key_of(const camber_view *view, const camber_plan *plan) {
 }
 
 bool camber_geometry_serves(const camber_geometry *geometry, const camber_view *view, const camber_plan *plan) {
-    return geometry->network && geometry->key == key_of(view, plan) && (geometry->measured || plan->dash_count == 0);
+    return geometry->network && geometry->key == key_of(view, plan) && (geometry->measured || !plan->measured);
 }
 
 /* ---- The network ---- */
@@ -113,6 +113,7 @@ static camber_status make_network(const camber_features *features, const entry_l
                                       .importance = features->importance,
                                       .entries = entries,
                                       .entry_count = list->count,
+                                      .progress = geometry->measured ? features->progress : NULL,
                                       .measured = geometry->measured};
     camber_context *context = geometry->context;
     if (!(geometry->polylines = camber_alloc(context, list->count, sizeof *geometry->polylines)) ||
@@ -129,7 +130,7 @@ camber_status camber_geometry_create(const camber_features *features, const camb
                                      camber_geometry *geometry) {
     *geometry = (camber_geometry){.context = features->context,
                                   .set_count = plan->set_count,
-                                  .measured = plan->dash_count > 0,
+                                  .measured = plan->measured,
                                   .key = key_of(view, plan)};
     const copies worlds = copies_in(view, plan);
     entry_list list = {0};

@@ -111,6 +111,16 @@ static void find_translation(const camber_layer_look *look, const camber_view *v
     translate_px[1] = (float)fmin(fmax(y * cosine - x * sine, -WIDEST_PX), WIDEST_PX);
 }
 
+static void find_ramp(camber_plan *plan, camber_plan_layer *layer) {
+    const camber_style_layer *from = layer->look.layer;
+    const camber_layer_ramp *ramp = layer->border ? &from->border_ramp : &from->ramp;
+    layer->translucent_ramp = from->ramp.translucent;
+    if (!ramp->count)
+        return;
+    plan->ramps[plan->ramp_count] = (camber_ramp){ramp->stops, ramp->count};
+    layer->ramp = (uint32_t)++plan->ramp_count;
+}
+
 static void add_layer(camber_plan *plan, const set_table *table, const camber_style_layer *layer,
                       const camber_view *view, bool border) {
     camber_plan_layer *made = plan->layers + plan->layer_count;
@@ -118,6 +128,7 @@ static void add_layer(camber_plan *plan, const set_table *table, const camber_st
     if (layer->properties[CAMBER_LINE_DASHARRAY])
         made->below = camber_style_layer_look(layer, floor(made->look.zoom));
     find_translation(&made->look, view, made->translate_px);
+    find_ramp(plan, made);
     uint32_t *slot = find_set(plan, table, &made->look);
     if (*slot == 0) {
         plan->sets[plan->set_count] =
@@ -136,6 +147,7 @@ static camber_status group_layers(camber_plan *plan, const camber_style *style, 
     while (table.slot_count / 2 < style->layer_count)
         table.slot_count *= 2;
     if (!(plan->layers = camber_alloc(plan->context, style->layer_count, 2 * sizeof *plan->layers)) ||
+        !(plan->ramps = camber_alloc(plan->context, style->layer_count, 2 * sizeof *plan->ramps)) ||
         !(plan->sets = camber_alloc_zero(plan->context, style->layer_count, sizeof *plan->sets)) ||
         !(table.slots = camber_alloc_zero(plan->context, table.slot_count, sizeof *table.slots)))
         return CAMBER_ERROR_MEMORY;
@@ -179,9 +191,12 @@ static float whole_width(const camber_paint *paint) {
 static camber_layer_paint part_of(const camber_plan_layer *layer, const camber_layer_paint *whole) {
     camber_layer_paint part = *whole;
     const double border = fmin(whole->border_width, 0.5 * whole->width), inside = whole->width - 2.0 * border;
-    const bool seen_through = whole->color.a < 1.0f || whole->layer_opacity < 1.0;
+    const float alpha = layer->ramp ? (float)whole->opacity : whole->color.a;
+    const bool seen_through = alpha < 1.0f || layer->translucent_ramp || whole->layer_opacity < 1.0;
+    if (layer->ramp)
+        part.color = (camber_color){1.0f, 1.0f, 1.0f, (float)whole->opacity};
     if (layer->border) {
-        part.color = whole->border_color;
+        part.color = layer->ramp ? part.color : whole->border_color;
         part.width = border > 0.0 ? whole->width : 0.0;
         if (seen_through && !(whole->gap_width > 0.0) && inside > 0.0 && border > 0.0) {
             part.width = border;
@@ -204,7 +219,10 @@ static camber_paint paint_of(const camber_plan_layer *layer, const camber_layer_
                           .gap_px = (float)fmin(part.gap_width * ratio, widest_px),
                           .blur_px = (float)fmin(part.blur * ratio, WIDEST_PX),
                           .translate_x_px = layer->translate_px[0],
-                          .translate_y_px = layer->translate_px[1]};
+                          .translate_y_px = layer->translate_px[1],
+                          .trim_start = (float)whole->trim[0],
+                          .trim_end = (float)whole->trim[1],
+                          .ramp = layer->ramp};
 }
 
 /* The number of a dash among the plan's, from 1; 0 where memory ran out. Styles have few. */
@@ -292,6 +310,7 @@ static bool fill_tuple(camber_plan *plan, const camber_plan_set *set, const camb
         table->stroke = stroke_of(&paint);
         table->stroke.width_px = width_px;
         *key = paint.sort_key;
+        plan->measured |= made->dash || made->ramp || made->trim_end > made->trim_start;
         if (made->width_px > 0.0f)
             plan->translate_px = fmaxf(plan->translate_px, hypotf(made->translate_x_px, made->translate_y_px));
     }
@@ -528,6 +547,7 @@ done:
 }
 
 void camber_plan_destroy(camber_plan *plan) {
+    camber_free(plan->context, plan->ramps);
     camber_free(plan->context, plan->dashes);
     camber_free(plan->context, plan->dash_lengths);
     camber_free(plan->context, plan->entries);

@@ -26,8 +26,10 @@ typedef struct camber_plan_layer {
     camber_layer_look below; /* at the whole zoom below, of a layer with dashes */
     float translate_px[2];
     size_t set;
-    size_t slot; /* which of the set's layers it is */
-    bool border; /* of the layer that comes next; it is the same in the style */
+    size_t slot;   /* which of the set's layers it is */
+    bool border;   /* of the layer that comes next; it is the same in the style */
+    uint32_t ramp; /* of the plan, + 1; 0: none */
+    bool translucent_ramp;
     size_t next; /* layer of the set */
 } camber_plan_layer;
 
@@ -53,6 +55,9 @@ typedef struct camber_plan {
     camber_layer_dashes *dash_lengths; /* dash_count */
     camber_dash *dashes;               /* dash_count, of them */
     size_t dash_count, dash_capacity;
+    camber_ramp *ramps; /* ramp_count: the style's */
+    size_t ramp_count;
+    bool measured;       /* a paint has what lies along its lines */
     uint32_t *pair_rows; /* pair_count */
     double *pair_keys;   /* pair_count: their features' places in a sorted set */
     size_t pair_count;

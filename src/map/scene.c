@@ -88,7 +88,7 @@ static bool layer_draws(const numbering *n, const camber_plan_layer *layer, bool
         if (!n->used[i] || !(paint.width_px > 0.0f))
             continue;
         draws = true;
-        *opaque &= paint.color.a >= 1.0f;
+        *opaque &= paint.color.a >= 1.0f && !(paint.ramp && layer->translucent_ramp);
     }
     return draws;
 }
@@ -133,7 +133,7 @@ static void put_paints(const numbering *n, const layer_run *run, camber_paint *p
         for (size_t k = first_of(n, set); k < end_of(n, set); k++) {
             paints[k] = paint_of(n, layer, k);
             if (!n->by_pair) /* pieces do not know where their lines begin */
-                paints[k].dash = 0;
+                paints[k].dash = paints[k].ramp = 0;
         }
     }
 }
@@ -165,6 +165,8 @@ static camber_status make_passes(camber_context *context, const numbering *n, si
                                         .dashes = n->plan->dashes,
                                         .dash_count = n->plan->dash_count,
                                         .overlap = runs[i].overlap,
+                                        .ramps = n->plan->ramps,
+                                        .ramp_count = n->plan->ramp_count,
                                         .opacity = runs[i].opacity};
         paints += runs[i].end_paint;
     }
@@ -214,7 +216,7 @@ static camber_tessellation_desc desc_of(const camber_scene *scene, camber_method
     return (camber_tessellation_desc){.strokes = scene->pair_strokes,
                                       .stroke_count = scene->plan.pair_count,
                                       .method = method,
-                                      .measured = scene->plan.dash_count > 0};
+                                      .measured = scene->plan.measured};
 }
 
 static void forget(camber_scene *scene) {

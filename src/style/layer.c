@@ -1,5 +1,6 @@
 /* Layers of a style document: what any layer has, its filter, and its layout and paint by the table of properties. */
 #include "style/document.h"
+#include "style/ramp.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -153,6 +154,41 @@ static bool read_filter(camber_document *d, const json_t *json, camber_style_lay
     return true;
 }
 
+/* ---- Gradients ---- */
+
+static camber_color opaque_border(camber_color color) {
+    camber_color border = camber_border_color(color);
+    border.a = color.a;
+    return border;
+}
+
+/* A border that has no colour takes it from the line's. */
+static camber_status make_ramps(camber_compiler *c, camber_style_layer *layer) {
+    const char *cause;
+    double at = 0.0;
+    camber_status status = camber_layer_ramp_create(layer->properties[CAMBER_LINE_GRADIENT], &layer->ramp, &cause, &at);
+    if (status == CAMBER_OK && cause)
+        camber_compiler_warn(c, "at a progress of %.6g: %s; nothing is drawn there", at, cause);
+    if (status == CAMBER_OK && layer->properties[CAMBER_LINE_BORDER_WIDTH] &&
+        !layer->properties[CAMBER_LINE_BORDER_COLOR])
+        status = camber_layer_ramp_copy(c->context, &layer->ramp, opaque_border, &layer->border_ramp);
+    return status;
+}
+
+static bool read_gradient(camber_document *d, camber_style_layer *layer) {
+    camber_compiler *c = &d->compiler;
+    if (layer->kind != CAMBER_LAYER_LINE || !layer->properties[CAMBER_LINE_GRADIENT])
+        return true;
+    camber_compiler_enter_key(c, "paint");
+    camber_compiler_enter_key(c, "line-gradient");
+    const camber_status status = make_ramps(c, layer);
+    camber_compiler_leave(c);
+    camber_compiler_leave(c);
+    if (status != CAMBER_OK)
+        c->status = status;
+    return status == CAMBER_OK;
+}
+
 /* ---- Layers ---- */
 
 static bool find_source(camber_document *d, camber_style_layer *layer) {
@@ -180,12 +216,14 @@ static bool read_layer(camber_document *d, const json_t *json, camber_style_laye
         return false;
     return read_layer_visibility(d, json, layer) && read_metadata(d, json, layer) && find_source(d, layer) &&
            read_filter(d, json, layer) && read_properties(d, json, "layout", layer) &&
-           read_properties(d, json, "paint", layer);
+           read_properties(d, json, "paint", layer) && read_gradient(d, layer);
 }
 
 void camber_style_layer_free(camber_context *context, camber_style_layer *layer) {
     for (size_t i = 0; i < CAMBER_PROPERTIES; i++)
         camber_expression_destroy(context, layer->properties[i]);
+    camber_free(context, layer->ramp.stops);
+    camber_free(context, layer->border_ramp.stops);
     camber_expression_destroy(context, layer->filter);
     camber_free(context, layer->filter_key);
     camber_free(context, layer->source_layer);

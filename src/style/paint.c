@@ -113,7 +113,7 @@ camber_layer_look camber_style_layer_look(const camber_style_layer *layer, doubl
 }
 
 /* Where a border has no colour of its own: darker than the line, of dark ones brighter. */
-static camber_color border_of(camber_color color) {
+camber_color camber_border_color(camber_color color) {
     const float luminance = 0.2126f * color.r + 0.7152f * color.g + 0.0722f * color.b;
     const bool dark = luminance < 0.25f, black = luminance <= 0.0f;
     const float factor = !dark ? 0.6f : black ? 0.0f : 1.0f + 0.5f / luminance, more = black ? 0.45f : 0.0f;
@@ -132,7 +132,7 @@ camber_layer_paint camber_layer_look_paint(const camber_layer_look *look, const 
         camber_evaluation_end(&evaluation);
     }
     if (paint.border_width > 0.0 && paint.border_color.a <= 0.0f) {
-        paint.border_color = border_of(paint.color);
+        paint.border_color = camber_border_color(paint.color);
         paint.border_color.a = paint.color.a;
     }
     paint.border_color.a *= (float)paint.opacity;

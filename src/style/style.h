@@ -56,6 +56,13 @@ typedef enum camber_property_id {
     CAMBER_PROPERTIES
 } camber_property_id;
 
+/* The colours of a line-gradient. */
+typedef struct camber_layer_ramp {
+    camber_ramp_stop *stops; /* count. None: no gradient */
+    size_t count;
+    bool translucent; /* a stop is */
+} camber_layer_ramp;
+
 typedef struct camber_style_layer {
     char *id;
     camber_layer_kind kind;
@@ -68,6 +75,7 @@ typedef struct camber_style_layer {
     camber_overlap overlap;                           /* of its metadata: no property of the specification says it */
     camber_expression *filter;                        /* NULL: everything */
     camber_expression *properties[CAMBER_PROPERTIES]; /* NULL: the specification's default */
+    camber_layer_ramp ramp, border_ramp;              /* of line-gradient, and of its border where that has no colour */
 } camber_style_layer;
 
 /* What no layer names: any input. */
@@ -144,6 +152,7 @@ typedef struct camber_layer_paint {
     /* The same for all features. */
     double layer_opacity;
     double translate[2];
+    double trim[2]; /* from where to where the line is not drawn, shares of its length */
     camber_translate_anchor translate_anchor;
 } camber_layer_paint;
 
@@ -161,6 +170,8 @@ camber_layer_paint camber_layer_look_paint(const camber_layer_look *look, const 
 /* Both at once. */
 camber_layer_paint camber_style_layer_paint(const camber_style_layer *layer, double zoom,
                                             const camber_feature_view *feature);
+/* Of a line without a colour for its border. */
+camber_color camber_border_color(camber_color color);
 /* Whether two layers give each feature the same geometry: caps, joins, limits, offset, order. */
 bool camber_layer_look_shares(const camber_layer_look *a, const camber_layer_look *b);
 

@@ -17,6 +17,9 @@ static const double LARGEST_REACH_PX = 65536.0;
 /* No pixel of a projected point is infinite. */
 static const double LARGEST_STEP_PX = 1e9, FARTHEST_PX = 1e30;
 
+/* Shorter parts of a line do not tell how long that is. */
+static const double LEAST_PART = 1e-6;
+
 /* ---- Making ---- */
 
 static camber_status check_entry(camber_context *context, const camber_network_desc *desc,
@@ -146,18 +149,34 @@ static camber_status put_entry(camber_network *n, const camber_network_desc *des
     return CAMBER_OK;
 }
 
-static camber_status measure_runs(camber_network *n) {
-    n->lengths = camber_alloc(n->context, n->point_count, sizeof *n->lengths);
-    if (!n->lengths)
-        return CAMBER_ERROR_MEMORY;
-    for (size_t r = 0; r < n->run_count; r++) {
-        double along = 0.0;
-        for (size_t i = n->runs[r].first; i < n->runs[r + 1].first; i++) {
-            if (i > n->runs[r].first)
-                along += hypot((double)n->x[i] - n->x[i - 1], (double)n->y[i] - n->y[i - 1]);
-            n->lengths[i] = (float)along;
-        }
+static double length_into(const camber_network *n, size_t point) {
+    return hypot((double)n->x[point] - n->x[point - 1], (double)n->y[point] - n->y[point - 1]);
+}
+
+/* A run that is all of its line, or, by two shares of that one's length, a part of it. */
+static void measure_run(camber_network *n, size_t run, const float *progress) {
+    const size_t first = n->runs[run].first, end = n->runs[run + 1].first;
+    const double from = progress ? (double)progress[0] : 0.0, part = progress ? (double)progress[1] - from : 1.0;
+    const bool is_part = from >= 0.0 && from < 1.0 && part > LEAST_PART && part <= 1.0 - from + LEAST_PART;
+    double length = 0.0;
+    for (size_t i = first + 1; i < end; i++)
+        length += length_into(n, i);
+    const double total = is_part ? length / part : length;
+    double along = is_part ? from * total : 0.0;
+    for (size_t i = first; i < end; i++) {
+        along += i > first ? length_into(n, i) : 0.0;
+        n->lengths[i] = (float)along;
     }
+    n->totals[run] = (float)total;
+}
+
+static camber_status measure_runs(camber_network *n, const camber_network_desc *desc) {
+    if (!(n->lengths = camber_alloc(n->context, n->point_count, sizeof *n->lengths)) ||
+        !(n->totals = camber_alloc(n->context, n->run_count, sizeof *n->totals)))
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < n->entry_count; i++)
+        for (size_t r = n->entry_runs[i]; r < n->entry_runs[i + 1]; r++)
+            measure_run(n, r, desc->progress ? desc->progress + 2 * entry_of(desc, i).polyline : NULL);
     return CAMBER_OK;
 }
 
@@ -183,7 +202,7 @@ static camber_status fill(camber_network *n, const camber_network_desc *desc) {
     }
     n->entry_runs[n->entry_count] = (uint32_t)n->run_count;
     n->runs[n->run_count] = (camber_run){.first = (uint32_t)n->point_count};
-    return desc->measured ? measure_runs(n) : CAMBER_OK;
+    return desc->measured ? measure_runs(n, desc) : CAMBER_OK;
 }
 
 camber_status camber_network_create(camber_context *context, const camber_network_desc *desc,
@@ -218,6 +237,7 @@ void camber_network_destroy(camber_network *network) {
     camber_free(context, network->entry_rows);
     camber_free(context, network->entry_runs);
     camber_free(context, network->runs);
+    camber_free(context, network->totals);
     camber_free(context, network->lengths);
     camber_free(context, network->importance);
     camber_free(context, network->y);

@@ -13,7 +13,8 @@ struct camber_network {
     double x0, y0, step;
     int32_t *x, *y; /* point_count, in 0 to 2^31 - 2 */
     float *importance;
-    float *lengths; /* along its run, steps. NULL: not measured */
+    float *lengths; /* of the points: along the line of their run, steps. NULL: not measured */
+    float *totals;  /* of the runs, as many: how long that line is */
     size_t point_count;
     camber_run *runs; /* run_count and one behind them */
     size_t run_count;
@@ -42,7 +43,7 @@ typedef struct camber_section {
     size_t first_entry, end_entry;
     size_t first_point, end_point;
     cl_mem x, y, importance, runs, chunk_runs; /* NULL: not there */
-    cl_mem lengths;                            /* NULL where the network is not measured */
+    cl_mem lengths, totals;                    /* NULL where the network is not measured */
     uint64_t held_bytes;
 } camber_section;
 

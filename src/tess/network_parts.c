@@ -12,8 +12,8 @@ static void release_mem(cl_mem *mem) {
 }
 
 void camber_section_release(const camber_mesh *mesh, camber_section *section) {
-    cl_mem *mems[] = {&section->x,    &section->y,          &section->importance,
-                      &section->runs, &section->chunk_runs, &section->lengths};
+    cl_mem *mems[] = {&section->x,          &section->y,       &section->importance, &section->runs,
+                      &section->chunk_runs, &section->lengths, &section->totals};
     for (size_t i = 0; i < sizeof mems / sizeof *mems; i++)
         release_mem(mems[i]);
     camber_section_count(mesh, section);
@@ -95,6 +95,8 @@ static camber_status upload_section(camber_mesh *mesh, camber_mesh_part *part) {
         status = upload(device, network->runs + first_run, runs * sizeof *network->runs, true, &section->runs);
     if (status == CAMBER_OK && network->lengths)
         status = upload(device, network->lengths + first, 4 * points, true, &section->lengths);
+    if (status == CAMBER_OK && network->lengths)
+        status = upload(device, network->totals + first_run, 4 * (runs - 1), true, &section->totals);
     if (status == CAMBER_OK)
         status = upload_chunk_runs(device, network, section);
     if (status == CAMBER_OK)
@@ -115,7 +117,7 @@ static camber_section make_section(const camber_network *network, size_t first, 
 
 static uint64_t bytes_of_runs(const camber_network *network, const camber_section *section) {
     return ((uint64_t)network->entry_runs[section->end_entry] - network->entry_runs[section->first_entry] + 1) *
-           sizeof(camber_run);
+           (sizeof(camber_run) + (network->lengths ? sizeof *network->totals : 0));
 }
 
 static uint64_t larger_bytes(const camber_network *network, const camber_section *section) {
@@ -382,9 +384,9 @@ camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, boo
         return status;
     const camber_section *section = mesh->held->sections + part->section;
     const cl_mem mems[] = {
-        section->x, section->y, section->importance, section->runs, section->chunk_runs, mesh->held->bases,
-        part->x,    part->y,    part->info,          part->joins,   section->lengths,    part->measures};
-    const cl_uint mem_count = mesh->mesh_info.measured ? 12 : 10;
+        section->x, section->y, section->importance, section->runs,    section->chunk_runs, mesh->held->bases, part->x,
+        part->y,    part->info, part->joins,         section->lengths, section->totals,     part->measures};
+    const cl_uint mem_count = mesh->mesh_info.measured ? 13 : 10;
     return run_stage(device, &p, (stage){"project", mesh->held->program->project, mems, mem_count},
                      &mesh->held->projected);
 }

@@ -4,8 +4,12 @@
 #include <string.h>
 
 camber_walk camber_network_walk(const camber_network *network) {
-    return (camber_walk){
-        .x = network->x, .y = network->y, .importance = network->importance, .lengths = network->lengths};
+    return (camber_walk){.x = network->x,
+                         .y = network->y,
+                         .importance = network->importance,
+                         .lengths = network->lengths,
+                         .totals = network->totals,
+                         .runs = network->runs};
 }
 
 /* The run that has a point. */

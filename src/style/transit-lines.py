@@ -21,6 +21,7 @@ SNAP_M = 25.0  # what lies closer is one street
 SHORT_M = 250.0  # what is together for less only crosses
 STEP_M = 20.0  # between points of a street
 SAMPLE_M = 5.0
+FINE_M = 0.1
 ALONG = math.cos(math.radians(30))  # what runs more across than this only crosses
 GROUPS = {"metro": ["subway", "light_rail", "monorail", "funicular"], "train": ["train"], "tram": ["tram"],
           "ferry": ["ferry"], "bus": ["bus", "trolleybus"]}  # each has slots of its own
@@ -213,11 +214,49 @@ def direct(lines, streets):
     return [(line[::-1] if turned[n] else line, kind) for n, (line, kind, _) in enumerate(lines)]
 
 
-def smooth(points):
+def smooth(streets):
+    """Each place moves towards the middle of the two neighbours that it lies between the most."""
+    around = collections.defaultdict(list)
+    for a, b in sorted(streets.edges):
+        around[a].append(b)
+        around[b].append(a)
     for _ in range(6):
-        points = points[:1] + [((a[0] + 2 * b[0] + c[0]) / 4, (a[1] + 2 * b[1] + c[1]) / 4)
+        at = list(streets.at)
+        for place, others in around.items():
+            turns = [(turn_at(at, a, place, b), a, b) for i, a in enumerate(others) for b in others[:i]]
+            if turns and min(turns)[0] < -0.5:
+                _, a, b = min(turns)
+                streets.at[place] = tuple((at[a][i] + 2 * at[place][i] + at[b][i]) / 4 for i in (0, 1))
+
+
+def turn_at(at, a, b, c):
+    """The cosine of the angle at b: -1 is straight on."""
+    ux, uy, vx, vy = at[a][0] - at[b][0], at[a][1] - at[b][1], at[c][0] - at[b][0], at[c][1] - at[b][1]
+    return (ux * vx + uy * vy) / (math.hypot(ux, uy) * math.hypot(vx, vy) or 1)
+
+
+def rounded(points):
+    """Evened out, corners cut twice, without what lies within FINE_M of a straight line."""
+    for _ in range(6):
+        points = points[:1] + [tuple((a[i] + 2 * b[i] + c[i]) / 4 for i in (0, 1))
                                for a, b, c in zip(points, points[1:], points[2:])] + points[-1:]
-    return points
+    for _ in range(2):
+        cut = [points[0]]
+        for a, b in zip(points, points[1:]):
+            cut += [tuple(a[i] + (b[i] - a[i]) * t for i in (0, 1)) for t in (0.25, 0.75)]
+        points = cut + [points[-1]]
+    return simplified(points)
+
+
+def simplified(points):
+    (ax, ay), (bx, by) = points[0], points[-1]
+    length = math.hypot(bx - ax, by - ay)
+    far = [abs((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / length if length else math.hypot(x - ax, y - ay)
+           for x, y in points[1:-1]]
+    if not far or max(far) < FINE_M:
+        return [points[0], points[-1]]
+    middle = far.index(max(far)) + 1
+    return simplified(points[:middle + 1])[:-1] + simplified(points[middle:])
 
 
 def features(ways, routes):
@@ -236,9 +275,10 @@ def features(ways, routes):
             line, tags = ways[way]
             in_tunnel = tags.get("tunnel", "no") != "no"
             streets.add([(x * east_m, y * north_m) for x, y in line], along[way], in_tunnel)
+        smooth(streets)
         for line, (here, in_tunnel) in direct(stretches(streets), streets):
-            points = smooth([streets.at[place] for place in line])
-            coordinates = [[round(x / east_m, 6), round(y / north_m, 6)] for x, y in points]
+            points = rounded([streets.at[place] for place in line])
+            coordinates = [[round(x / east_m, 7), round(y / north_m, 7)] for x, y in points]
             for i, route in enumerate(sorted(here, key=order_of)):
                 properties = {key: value for key, value in route._asdict().items() if value}
                 properties.update(slot=i - (len(here) - 1) / 2, routes=len(here), tunnel=in_tunnel)

@@ -183,6 +183,10 @@ typedef struct camber_stroke {
     camber_cap cap;
     /* Miter length over width, as in SVG: 1 / cos(turn / 2). 0: 2. */
     float miter_limit;
+    /* How far beside its polyline it is drawn: to the right of the polyline's direction as seen, to the left where
+     * below 0. Its corners follow the join: arcs (to 1/8 px), miters within the limit, or bevels; what has no room on
+     * the inner side of a bend goes. Not of dots. -16384 to 16384 px. */
+    float offset_px;
 } camber_stroke;
 
 /* ---- OpenCL devices ------------------------------------------------------------------------------- */
@@ -372,6 +376,7 @@ typedef struct camber_mesh_info {
     size_t undrawn_dots;   /* dots with butt caps, which have no area */
     double classify_ms, scan_ms, emit_ms; /* of the last tessellation, on the device's queue */
     double survey_ms, project_ms;         /* of a network */
+    double offset_ms;                     /* of lines with an offset */
 } camber_mesh_info;
 
 typedef struct camber_mesh camber_mesh;

@@ -149,7 +149,7 @@ static void compare_part(const bench *b, size_t which, const camber_mesh_part *p
     assert_int_equal(part->slot_count, (end - first + b->devices[which]->block - 1) / b->devices[which]->block *
                                            b->devices[which]->block);
     for (size_t i = 0; i <= part->polyline_count; i += i + 1 < part->polyline_count && i % 7 == 0 ? 2 : 1)
-        assert_int_equal(camber_part_slot(mesh, part, part->first_polyline + i),
+        assert_int_equal(camber_part_given_slot(mesh, part, part->first_polyline + i),
                          twin->first_slots[part->first_polyline + i] - first);
     if (part->slot_count == 0)
         return;

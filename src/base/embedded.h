@@ -8,6 +8,8 @@ extern const char camber_network_kernels_source[]; /* those of networks, as anot
 extern const unsigned long camber_network_kernels_source_size;
 extern const char camber_measure_kernels_source[]; /* those of measures */
 extern const unsigned long camber_measure_kernels_source_size;
+extern const char camber_offset_kernels_source[]; /* those of offsets */
+extern const unsigned long camber_offset_kernels_source_size;
 extern const char camber_edge_glsl[]; /* shaders/ without their #version line */
 extern const unsigned long camber_edge_glsl_size;
 extern const char camber_stroke_vert[], camber_stroke_frag[];

@@ -164,8 +164,10 @@ static camber_status list_strip(camber_renderer *renderer, GLint first, GLsizei 
 static camber_status first_of(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline, bool pitched,
                               uint64_t *first) {
     if (pitched && !mesh->mesh_info.strips) {
-        *first = (uint64_t)RECORD_VERTICES * camber_part_slot(mesh, part, polyline);
-        return CAMBER_OK;
+        size_t slot = 0;
+        const camber_status found = camber_part_slot(mesh, part, polyline, &slot);
+        *first = (uint64_t)RECORD_VERTICES * slot;
+        return found;
     }
     const camber_status status = camber_part_first_index(mesh, part, polyline, first);
     if (status == CAMBER_OK && pitched)

@@ -258,8 +258,11 @@ static float dash_unit_px(const camber_plan_layer *layer, const camber_view *vie
 }
 
 /* A limit of 1 bevels every turn, and so do those below; 0 would mean the default. */
-static camber_stroke stroke_of(const camber_layer_paint *paint) {
-    return (camber_stroke){0.0f, paint->join, paint->cap, (float)fmin(fmax(paint->miter_limit, 1.0), 1e6)};
+static camber_stroke stroke_of(const camber_layer_paint *paint, double ratio) {
+    return (camber_stroke){.join = paint->join,
+                           .cap = paint->cap,
+                           .miter_limit = (float)fmin(fmax(paint->miter_limit, 1.0), 1e6),
+                           .offset_px = (float)fmin(fmax(paint->offset * ratio, -WIDEST_PX), WIDEST_PX)};
 }
 
 static bool same_row(const camber_plan *plan, const camber_plan_set *set, const row_table *table, size_t row) {
@@ -307,7 +310,7 @@ static bool fill_tuple(camber_plan *plan, const camber_plan_set *set, const camb
             *failed |= made->dash == 0;
         }
         const float width_px = fmaxf(table->stroke.width_px, whole_width(made));
-        table->stroke = stroke_of(&paint);
+        table->stroke = stroke_of(&paint, view->ratio);
         table->stroke.width_px = width_px;
         *key = paint.sort_key;
         plan->measured |= made->dash || made->ramp || made->trim_end > made->trim_start;

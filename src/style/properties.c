@@ -60,7 +60,6 @@ const camber_property_row camber_property_rows[CAMBER_PROPERTIES] = {
     [CAMBER_LINE_OFFSET] = {.kind = CAMBER_LAYER_LINE,
                             .directed = true,
                             AT(offset),
-                            .not_drawn = "its lines are drawn where they are",
                             .property = {.name = "line-offset",
                                          .type = CAMBER_TYPE_NUMBER,
                                          .fallback = "0",

@@ -40,15 +40,17 @@ camber_status camber_part_measure(camber_mesh *mesh, camber_mesh_part *part) {
     camber_status status = camber_device_measures(mesh->device, &program);
     if (status != CAMBER_OK)
         return status;
-    const cl_mem tally[] = {part->x, part->y, part->info, part->lengths};
-    const cl_mem measure[] = {part->x, part->y, part->info, part->lengths, part->measures};
-    const camber_stage stages[] = {{"tally", program->tally, tally, 4, CAMBER_MEASURE_CHUNK},
-                                   {"measure", program->measure, measure, 5, CAMBER_MEASURE_CHUNK}};
-    status = camber_part_run(device, part, stages[0], NULL);
+    const camber_part_course *c = &part->course;
+    const cl_mem mems[] = {mesh->offsets ? c->x : part->x, mesh->offsets ? c->y : part->y,
+                           mesh->offsets ? c->info : part->info, mesh->offsets ? c->lengths : part->lengths,
+                           mesh->offsets ? c->measures : part->measures};
+    const camber_stage stages[] = {{"tally", program->tally, mems, 4, CAMBER_MEASURE_CHUNK, part->given_count},
+                                   {"measure", program->measure, mems, 5, CAMBER_MEASURE_CHUNK, part->given_count}};
+    status = camber_stage_run(device, stages[0], NULL);
     if (status == CAMBER_OK)
-        status = carry_sums(device, part->lengths, part->slot_count / CAMBER_MEASURE_CHUNK);
+        status = carry_sums(device, mems[3], part->given_count / CAMBER_MEASURE_CHUNK);
     if (status == CAMBER_OK)
-        status = camber_part_run(device, part, stages[1], NULL);
+        status = camber_stage_run(device, stages[1], NULL);
     if (status == CAMBER_OK && program->to_save && clFinish(device->queue) == CL_SUCCESS)
         camber_program_save(mesh->device, program);
     return status;

@@ -5,6 +5,7 @@
  * polylines take one, so that what is there need not all go for the next. */
 #include "kernels/measure.h"
 #include "tess/network.h"
+#include "tess/offset.h"
 
 uint64_t camber_device_share(const camber_device *device, unsigned eighths) {
     return device->memory_bytes ? device->memory_bytes / 8 * eighths : UINT64_MAX;
@@ -29,8 +30,16 @@ uint64_t camber_input_bytes(const camber_device *device, bool measured, size_t s
     return (measured ? measures : 0) + 16 * words + 4 * ((uint64_t)slots / device->item) + (4 + 16) * blocks;
 }
 
+uint64_t camber_course_bytes(bool measured, size_t slots) {
+    const uint64_t words = slots ? (uint64_t)slots + 2 : 0;
+    const uint64_t measures = sizeof(camber_measure) * (uint64_t)slots + 16 * ((uint64_t)slots / CAMBER_MEASURE_CHUNK);
+    return (measured ? measures : 0) + (12 + sizeof(camber_span)) * words + 4 * (uint64_t)slots +
+           (slots ? 4 * ((uint64_t)slots / CAMBER_OFFSET_CHUNK + 1) : 0);
+}
+
 void camber_part_count(const camber_mesh *mesh, camber_mesh_part *part) {
     uint64_t bytes = camber_input_bytes(mesh->device, part->measures != NULL, part->slot_capacity);
+    bytes += camber_course_bytes(part->course.measures != NULL, part->course.slot_capacity);
     bytes += part->base_capacity * sizeof *part->host_bases + part->chunk_capacity * sizeof *part->chunk_bases;
     for (int i = 0; i < 2; i++)
         bytes += mesh->buffer_copies * (uint64_t)part->buffers[i].capacity_bytes;
@@ -45,6 +54,7 @@ void camber_section_count(const camber_mesh *mesh, camber_section *section) {
 
 void camber_mesh_count(camber_mesh *mesh) {
     uint64_t bytes = mesh->row_capacity * sizeof *mesh->host_rows + mesh->host_row_capacity * sizeof *mesh->host_rows;
+    bytes += mesh->shift_capacity * sizeof(camber_shift);
     if (mesh->held)
         bytes += 8 * (uint64_t)mesh->held->chunk_capacity;
     count(mesh->device, &mesh->held_bytes, bytes);

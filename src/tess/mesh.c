@@ -69,12 +69,14 @@ void camber_mesh_destroy(camber_mesh *mesh) {
     camber_mesh_let_go(mesh);
     if (mesh->rows)
         clReleaseMemObject(mesh->rows);
+    if (mesh->shifts)
+        clReleaseMemObject(mesh->shifts);
     camber_mesh **link = &mesh->device->meshes;
     while (*link != mesh)
         link = &(*link)->next;
     *link = mesh->next;
     camber_free(context, mesh->host_rows);
-    mesh->row_capacity = mesh->host_row_capacity = 0;
+    mesh->row_capacity = mesh->host_row_capacity = mesh->shift_capacity = 0;
     camber_mesh_count(mesh);
     camber_free(context, mesh->polyline_rows);
     camber_free(context, mesh->first_slots);
@@ -140,7 +142,11 @@ camber_mesh_info camber_mesh_get_info(camber_mesh *mesh) {
 
 camber_status camber_part_first_index(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline,
                                       uint64_t *first_index) {
-    const size_t slot = camber_part_slot(mesh, part, polyline), block = slot / mesh->device->block;
+    size_t slot = 0;
+    const camber_status found = camber_part_slot(mesh, part, polyline, &slot);
+    if (found != CAMBER_OK)
+        return found;
+    const size_t block = slot / mesh->device->block;
     uint32_t packed = 0;
     if (slot < part->slot_count && slot % mesh->device->block != 0) {
         camber_offsets offsets;

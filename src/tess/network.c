@@ -2,6 +2,8 @@
 #include "tess/network.h"
 #include "base/perspective.h"
 
+#include "kernels/offset.h"
+
 #include <assert.h>
 #include <math.h>
 
@@ -13,6 +15,9 @@ static const double FARTHEST = 1e300;
 static const size_t MOST_POINTS = INT32_MAX;
 /* A miter limit without reason must not undo the cutting. */
 static const double LARGEST_REACH_PX = 65536.0;
+/* How far from a place of an offset line, in offsets, lies what decides whether it is there: as far as a leg's end may
+ * lie from what it hides, and what is looked at from there. kernels/offset.h */
+static const double LOOKS = 2.0 * (double)CAMBER_OFFSET_REACH + 1.0;
 
 /* No pixel of a projected point is infinite. */
 static const double LARGEST_STEP_PX = 1e9, FARTHEST_PX = 1e30;
@@ -289,6 +294,15 @@ static double reach_of(const camber_stroke *stroke) {
     return fmin(half * factor, fmax(half, LARGEST_REACH_PX));
 }
 
+/* How far from its polyline a stroke with an offset runs. */
+static double offset_of(const camber_stroke *stroke) {
+    const double limit = stroke->miter_limit > 0.0f ? (double)stroke->miter_limit : 2.0;
+    const double far = fabs((double)stroke->offset_px);
+    if (!(far > 0.0))
+        return 0.0;
+    return fmin(far * (stroke->join == CAMBER_JOIN_MITER ? fmax(limit, 1.1) : 1.1), fmax(far, LARGEST_REACH_PX));
+}
+
 /* Steps of the network, rounded outwards and bound to 32 bits. */
 static int32_t outwards(double offset, double step, double by) {
     const double steps = floor(offset / step) + by;
@@ -370,11 +384,13 @@ camber_status camber_network_aim(const camber_network *network, const camber_cam
     const double dx = bound_px((network->x0 + origin_x * step - camera->x) * camera->scale_px);
     const double dy = bound_px((network->y0 + origin_y * step - camera->y) * camera->scale_px);
     const double half_x = 0.5 * camera->width, half_y = 0.5 * camera->height;
-    double reach = 0.0;
-    for (size_t i = 0; i < desc->stroke_count; i++)
-        reach = fmax(reach, reach_of(desc->strokes + i));
+    double reach = 0.0, looks = 0.0;
+    for (size_t i = 0; i < desc->stroke_count; i++) {
+        reach = fmax(reach, reach_of(desc->strokes + i) + offset_of(desc->strokes + i));
+        looks = fmax(looks, LOOKS * fabs((double)desc->strokes[i].offset_px));
+    }
     reach += camera->translate_px;
-    const double margin = fmax(reach + 16.0, 64.0);
+    const double margin = fmax(reach + looks + 16.0, 64.0);
     /* Half the box of the turned picture and what strokes reach around it, in world units. */
     const double across = half_x + reach + 1.0, down = half_y + reach + 1.0;
     const double seen_x = (across * fabs(cosine) + down * fabs(sine)) / camera->scale_px;

@@ -1,5 +1,6 @@
 /* What a mesh holds of a network on the device, and survey -> project, which make a part's slots of it. */
 #include "tess/network.h"
+#include "tess/offset.h"
 
 #include <string.h>
 
@@ -256,8 +257,8 @@ static size_t part_chunks(const camber_projection *p) {
 size_t camber_part_network_slot(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline) {
     const camber_projection p = projection_of(mesh, part);
     const size_t point = camber_network_first_point(mesh->held->network, polyline);
-    if (part->slot_count == 0 || point >= part->end_point)
-        return part->slot_count ? part->chunk_bases[part_chunks(&p)] : 0;
+    if (part->given_count == 0 || point >= part->end_point)
+        return part->given_count ? part->chunk_bases[part_chunks(&p)] : 0;
     const size_t chunk = (point - p.first_point) / CAMBER_CHUNK, start = p.first_point + chunk * CAMBER_CHUNK;
     const size_t begin = start > part->first_point ? start : part->first_point;
     return part->chunk_bases[chunk - p.begin / CAMBER_CHUNK] +
@@ -357,7 +358,7 @@ camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, boo
     const camber_projection p = projection_of(mesh, part);
     const size_t block = device->block;
     uint64_t slots = 0;
-    part->slot_count = part->record_count = part->vertex_count = part->index_count = 0;
+    part->given_count = part->slot_count = part->record_count = part->vertex_count = part->index_count = 0;
     if (p.begin == p.end)
         return CAMBER_OK;
     camber_status status = upload_section(mesh, part);
@@ -373,19 +374,36 @@ camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, boo
         *fits = false;
         return part->polyline_count > 1 ? CAMBER_OK : camber_fail_polyline(mesh, part->first_polyline, size_bytes);
     }
+    part->given_count = (size_t)padded;
+    status = camber_part_check_course(mesh, part, padded, fits);
+    if (status != CAMBER_OK || !*fits)
+        return status;
     if (!camber_part_may_hold(mesh, part, padded)) {
         *fits = false;
         return CAMBER_OK;
     }
-    status = reserve_slots(mesh, part, (size_t)padded);
+    status = mesh->offsets ? camber_part_reserve_course(mesh, part, (size_t)padded)
+                           : reserve_slots(mesh, part, (size_t)padded);
     if (status == CAMBER_OK)
         status = camber_write_buffer(device, mesh->held->bases, 0, 4 * (part_chunks(&p) + 1), part->chunk_bases);
     if (status != CAMBER_OK)
         return status;
     const camber_section *section = mesh->held->sections + part->section;
-    const cl_mem mems[] = {
-        section->x, section->y, section->importance, section->runs,    section->chunk_runs, mesh->held->bases, part->x,
-        part->y,    part->info, part->joins,         section->lengths, section->totals,     part->measures};
+    /* Of lines that others lie beside nobody reads the joins: what comes behind overwrites them. */
+    const camber_part_course *course = &part->course;
+    const cl_mem mems[] = {section->x,
+                           section->y,
+                           section->importance,
+                           section->runs,
+                           section->chunk_runs,
+                           mesh->held->bases,
+                           mesh->offsets ? course->x : part->x,
+                           mesh->offsets ? course->y : part->y,
+                           mesh->offsets ? course->info : part->info,
+                           mesh->offsets ? course->spans : part->joins,
+                           section->lengths,
+                           section->totals,
+                           mesh->offsets ? course->measures : part->measures};
     const cl_uint mem_count = mesh->mesh_info.measured ? 13 : 10;
     return run_stage(device, &p, (stage){"project", mesh->held->program->project, mems, mem_count},
                      &mesh->held->projected);

@@ -1,6 +1,7 @@
 /* The parts of a mesh: which polylines each has, its buffers, and what is uploaded to them. */
 #include "kernels/measure.h"
 #include "tess/network.h"
+#include "tess/offset.h"
 
 #include <string.h>
 
@@ -30,7 +31,7 @@ static void list_input(camber_mesh_part *part, cl_mem *mems[INPUTS]) {
     memcpy(mems, list, sizeof list);
 }
 
-static void release_input(camber_mesh_part *part) {
+static void release_slots(camber_mesh_part *part) {
     cl_mem *mems[INPUTS];
     list_input(part, mems);
     for (size_t i = 0; i < INPUTS; i++) {
@@ -40,6 +41,11 @@ static void release_input(camber_mesh_part *part) {
     }
     part->slot_capacity = 0;
     part->uploaded = part->made = false;
+}
+
+static void release_input(camber_mesh_part *part) {
+    release_slots(part);
+    camber_course_release(&part->course);
 }
 
 void camber_part_take(camber_mesh_part *part, camber_mesh_part *from) {
@@ -55,6 +61,8 @@ void camber_part_take(camber_mesh_part *part, camber_mesh_part *from) {
         from->buffers[i] = (camber_buffer){0};
     }
     part->slot_capacity = from->slot_capacity;
+    part->course = from->course;
+    from->course = (camber_part_course){0};
     part->host_bases = from->host_bases;
     part->base_capacity = from->base_capacity;
     part->chunk_bases = from->chunk_bases;
@@ -72,7 +80,9 @@ static bool has_input(const camber_mesh_part *part, bool measured, size_t slots)
 static camber_status reserve_input(const camber_device *device, bool measured, camber_mesh_part *part, size_t slots) {
     if (has_input(part, measured, slots))
         return CAMBER_OK;
-    release_input(part);
+    const bool uploaded = part->uploaded && part->course.x; /* to the course, which stays */
+    release_slots(part);
+    part->uploaded = uploaded;
     const size_t blocks = slots / device->block, words = slots + 2;
     camber_status status = CAMBER_OK;
     const struct {
@@ -93,7 +103,7 @@ static camber_status reserve_input(const camber_device *device, bool measured, c
     for (size_t i = 0; i < count && status == CAMBER_OK; i++)
         status = camber_make_buffer(device, wanted[i].size_bytes, wanted[i].mem);
     if (status != CAMBER_OK) {
-        release_input(part);
+        release_slots(part);
         return status;
     }
     part->slot_capacity = slots;
@@ -181,15 +191,28 @@ static void set_polylines(const camber_mesh *mesh, camber_mesh_part *part, size_
     part->first_polyline = first;
     part->polyline_count = end - first;
     part->first_slot = mesh->held ? 0 : mesh->first_slots[first];
-    part->slot_count = (slots + block - 1) / block * block;
+    part->given_count = part->slot_count = (slots + block - 1) / block * block;
     part->record_count = part->vertex_count = part->index_count = 0;
     part->uploaded = part->made = false;
     if (mesh->held)
         camber_part_set_points(mesh, part);
 }
 
-size_t camber_part_slot(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline) {
+size_t camber_part_given_slot(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline) {
     return mesh->held ? camber_part_network_slot(mesh, part, polyline) : mesh->first_slots[polyline] - part->first_slot;
+}
+
+camber_status camber_part_slot(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline, size_t *slot) {
+    const size_t given = camber_part_given_slot(mesh, part, polyline);
+    const camber_device *device = mesh->device;
+    cl_uint place = 0;
+    cl_int code = CL_SUCCESS;
+    if (mesh->offsets && polyline >= part->first_polyline + part->polyline_count)
+        place = (cl_uint)part->course.made_count;
+    else if (mesh->offsets && given < part->given_count && part->slot_count > 0)
+        code = clEnqueueReadBuffer(device->queue, part->course.places, CL_TRUE, 4 * given, 4, &place, 0, NULL, NULL);
+    *slot = mesh->offsets ? place : given;
+    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(device->context, "clEnqueueReadBuffer", code);
 }
 
 camber_status camber_fail_polyline(const camber_mesh *mesh, size_t polyline, uint64_t size_bytes) {
@@ -233,8 +256,9 @@ void camber_mesh_trim_parts(camber_mesh *mesh) {
 /* Slots of a part that its share of memory takes, with a record each or a little more: a block at least. */
 static uint64_t shared_slots(const camber_mesh *mesh) {
     const size_t block = mesh->device->block;
-    const uint64_t block_bytes =
-        camber_input_bytes(mesh->device, mesh->mesh_info.measured, block) + 20 * mesh->buffer_copies * block;
+    const uint64_t block_bytes = camber_input_bytes(mesh->device, mesh->mesh_info.measured, block) +
+                                 20 * mesh->buffer_copies * block +
+                                 (mesh->offsets ? camber_course_bytes(mesh->mesh_info.measured, block) : 0);
     const uint64_t blocks = camber_device_share(mesh->device, 1) / block_bytes;
     return (blocks ? blocks : 1) * block;
 }
@@ -293,14 +317,22 @@ camber_status camber_mesh_plan(camber_mesh *mesh, const camber_polylines *polyli
     return status;
 }
 
+/* Whether the buffers that are uploaded to have those of measures beside them, if these are wanted now. */
+static bool has_uploaded(const camber_mesh *mesh, const camber_mesh_part *part) {
+    return !mesh->mesh_info.measured || (mesh->offsets ? part->course.measures : part->measures);
+}
+
 camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part) {
     static const cl_uint zeros[CAMBER_BLOCK + 2];
     const camber_device *device = mesh->device;
     const camber_polylines *polylines = mesh->polylines;
-    if (part->uploaded || part->slot_count == 0)
+    part->slot_count = part->given_count;
+    if (part->given_count == 0 || (part->uploaded && has_uploaded(mesh, part)))
         return CAMBER_OK;
-    camber_status status = camber_part_reserve(mesh, part, part->slot_count);
-    const size_t words = part->slot_count + 2, first = part->first_slot;
+    camber_status status = mesh->offsets ? camber_part_reserve_course(mesh, part, part->given_count)
+                                         : camber_part_reserve(mesh, part, part->given_count);
+    const camber_part_course *course = &part->course;
+    const size_t words = part->given_count + 2, first = part->first_slot;
     const size_t end = part->first_polyline + part->polyline_count;
     /* The neighbour before, the part's slots, and ghosts: the polylines' own padding, or zeros. */
     size_t given = end < mesh->polyline_count ? mesh->first_slots[end] - first + 1 : polylines->slot_count + 2 - first;
@@ -308,8 +340,9 @@ camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part) {
     const struct {
         cl_mem mem;
         const void *bytes;
-    } arrays[] = {
-        {part->x, polylines->x + first}, {part->y, polylines->y + first}, {part->info, polylines->info + first}};
+    } arrays[] = {{mesh->offsets ? course->x : part->x, polylines->x + first},
+                  {mesh->offsets ? course->y : part->y, polylines->y + first},
+                  {mesh->offsets ? course->info : part->info, polylines->info + first}};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         if (status == CAMBER_OK)
             status = camber_write_buffer(device, arrays[i].mem, 0, 4 * given, arrays[i].bytes);
@@ -317,9 +350,9 @@ camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part) {
             status = camber_write_buffer(device, arrays[i].mem, 4 * given, 4 * (words - given), zeros);
     }
     /* The words before and behind the points' are read by neighbours and written by nobody. */
-    if (status == CAMBER_OK)
+    if (status == CAMBER_OK && !mesh->offsets)
         status = camber_write_buffer(device, part->joins, 0, 4, zeros);
-    if (status == CAMBER_OK)
+    if (status == CAMBER_OK && !mesh->offsets)
         status = camber_write_buffer(device, part->joins, 4 * (words - 1), 4, zeros);
     part->uploaded = status == CAMBER_OK;
     return status;
@@ -329,6 +362,7 @@ camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part) {
 
 typedef struct part_size {
     uint64_t slots, records, indices;
+    uint64_t given; /* slots that those are made of, where lines lie beside others */
 } part_size;
 
 static uint64_t whole_blocks(const camber_mesh *mesh, uint64_t slots) {
@@ -347,16 +381,18 @@ static uint64_t index_bytes(const camber_mesh *mesh, part_size size) {
 }
 
 static uint64_t need(const camber_mesh *mesh, const camber_mesh_part *part, part_size size) {
-    return bytes_of_slots(mesh, part, (size_t)whole_blocks(mesh, size.slots)) +
+    const size_t given = (size_t)whole_blocks(mesh, size.given);
+    return (mesh->offsets ? camber_course_bytes(mesh->mesh_info.measured, given) : 0) +
+           bytes_of_slots(mesh, part, (size_t)whole_blocks(mesh, size.slots)) +
            mesh->buffer_copies * (record_bytes(mesh, size) + index_bytes(mesh, size));
 }
 
 uint64_t camber_part_need(const camber_mesh *mesh, const camber_mesh_part *part) {
-    return need(mesh, part, (part_size){part->slot_count, part->record_count, part->index_count});
+    return need(mesh, part, (part_size){part->slot_count, part->record_count, part->index_count, part->given_count});
 }
 
 uint64_t camber_part_output_lacks(const camber_mesh *mesh, const camber_mesh_part *part) {
-    const part_size size = {part->slot_count, part->record_count, part->index_count};
+    const part_size size = {part->slot_count, part->record_count, part->index_count, part->given_count};
     const uint64_t sizes[2] = {record_bytes(mesh, size), index_bytes(mesh, size)};
     uint64_t lacks = 0;
     for (size_t i = 0; i < camber_buffer_count(mesh); i++)
@@ -376,8 +412,8 @@ static bool is_too_large(const camber_mesh *mesh, const camber_mesh_part *part, 
 enum { ALONE = 4, TOGETHER = 1 };
 
 bool camber_part_may_hold(const camber_mesh *mesh, const camber_mesh_part *part, uint64_t slots) {
-    return part->polyline_count == 1 ||
-           need(mesh, part, (part_size){slots, slots, 0}) <= camber_device_share(mesh->device, TOGETHER);
+    return part->polyline_count == 1 || need(mesh, part, (part_size){slots, slots, 0, part->given_count}) <=
+                                            camber_device_share(mesh->device, TOGETHER);
 }
 
 static camber_status fail_alone(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline,
@@ -389,27 +425,34 @@ static camber_status fail_alone(const camber_mesh *mesh, const camber_mesh_part 
                : camber_fail_memory(mesh, polyline, need(mesh, part, size));
 }
 
-size_t camber_part_records(const camber_mesh *mesh, const camber_mesh_part *part) {
-    return mesh->mesh_info.strips ? part->index_count / 2
-                                  : camber_part_slot(mesh, part, part->first_polyline + part->polyline_count);
+camber_status camber_part_records(const camber_mesh *mesh, const camber_mesh_part *part, size_t *count) {
+    *count = part->index_count / 2;
+    return mesh->mesh_info.strips ? CAMBER_OK
+                                  : camber_part_slot(mesh, part, part->first_polyline + part->polyline_count, count);
 }
 
 bool camber_part_fits(const camber_mesh *mesh, const camber_mesh_part *part) {
-    const part_size size = {part->slot_count, part->record_count, part->index_count};
+    const part_size size = {part->slot_count, part->record_count, part->index_count, part->given_count};
     return !is_too_large(mesh, part, size, part->polyline_count > 1 ? TOGETHER : ALONE);
 }
 
 /* What the part has before a polyline. */
-static part_size size_before(const camber_mesh *mesh, const camber_mesh_part *part, camber_offsets *offsets,
-                             size_t polyline) {
-    const size_t slot = camber_part_slot(mesh, part, polyline), block = slot / mesh->device->block;
+static camber_status size_before(const camber_mesh *mesh, const camber_mesh_part *part, camber_offsets *offsets,
+                                 size_t polyline, part_size *size) {
+    size_t slot = 0;
+    const camber_status status = camber_part_slot(mesh, part, polyline, &slot);
+    if (status != CAMBER_OK)
+        return status;
+    const size_t block = slot / mesh->device->block;
     const uint32_t packed = slot < part->slot_count ? camber_offset_before(offsets, slot) : 0;
     const uint64_t indices = part->host_bases[2 * block + 1] + (packed >> 16);
-    return (part_size){slot, mesh->mesh_info.strips ? indices / 2 : slot, indices};
+    const size_t given = mesh->offsets ? camber_part_given_slot(mesh, part, polyline) : 0;
+    *size = (part_size){slot, mesh->mesh_info.strips ? indices / 2 : slot, indices, given};
+    return CAMBER_OK;
 }
 
 static part_size less(part_size a, part_size b) {
-    return (part_size){a.slots - b.slots, a.records - b.records, a.indices - b.indices};
+    return (part_size){a.slots - b.slots, a.records - b.records, a.indices - b.indices, a.given - b.given};
 }
 
 /* The polylines that parts after the first begin with: as many in each part as its output buffers take. */
@@ -417,9 +460,12 @@ static camber_status find_cuts(const camber_mesh *mesh, const camber_mesh_part *
                                size_t **cuts, size_t *cut_count) {
     const size_t end = part->first_polyline + part->polyline_count;
     size_t capacity = 0, first = part->first_polyline;
-    part_size start = {0, 0, 0}, before = {0, 0, 0};
+    part_size start = {0, 0, 0, 0}, before = start, after = start;
     for (size_t i = first; i < end; i++) {
-        const part_size after = size_before(mesh, part, offsets, i + 1), alone = less(after, before);
+        const camber_status status = size_before(mesh, part, offsets, i + 1, &after);
+        if (status != CAMBER_OK)
+            return status;
+        const part_size alone = less(after, before);
         if (is_too_large(mesh, part, alone, ALONE))
             return fail_alone(mesh, part, i, alone);
         if (i > first && is_too_large(mesh, part, less(after, start), TOGETHER)) {
@@ -475,7 +521,7 @@ void camber_mesh_tidy(camber_mesh *mesh) {
     for (size_t i = 0; i + 1 < mesh->part_count; i++) {
         const camber_mesh_part *part = mesh->parts + i;
         const part_size both = {part[0].slot_count + part[1].slot_count, part[0].record_count + part[1].record_count,
-                                part[0].index_count + part[1].index_count};
+                                part[0].index_count + part[1].index_count, part[0].given_count + part[1].given_count};
         const camber_mesh_part joint = {.first_point = part[0].first_point, .end_point = part[1].end_point};
         /* What it then has is not known before the next frame: it waits for that before it takes up more. */
         if (part[0].section == part[1].section && need(mesh, &joint, both) <= most)

@@ -13,6 +13,7 @@ typedef enum program_kind {
     PROGRAM_METHOD,
     PROGRAM_NETWORK,
     PROGRAM_MEASURES,
+    PROGRAM_OFFSETS,
 } program_kind;
 
 /* What a program is made of. */
@@ -108,7 +109,8 @@ static camber_status make_kernels(camber_device *device, camber_program *program
     } stages[] = {{"survey", &program->survey, PROGRAM_NETWORK},    {"project", &program->project, PROGRAM_NETWORK},
                   {"classify", &program->classify, PROGRAM_METHOD}, {"scan", &program->scan, PROGRAM_METHOD},
                   {"emit", &program->emit, PROGRAM_METHOD},         {"tally", &program->tally, PROGRAM_MEASURES},
-                  {"measure", &program->measure, PROGRAM_MEASURES}};
+                  {"measure", &program->measure, PROGRAM_MEASURES}, {"span", &program->span, PROGRAM_OFFSETS},
+                  {"tell", &program->tell, PROGRAM_OFFSETS},        {"shift", &program->shift, PROGRAM_OFFSETS}};
     for (size_t i = 0; i < sizeof stages / sizeof *stages; i++) {
         cl_int code;
         if (stages[i].kind != kind)
@@ -173,6 +175,12 @@ camber_status camber_device_measures(camber_device *device, camber_program **pro
     return use_program(device, &from, &device->measures, program);
 }
 
+camber_status camber_device_offsets(camber_device *device, bool measured, camber_program **program) {
+    recipe from = {PROGRAM_OFFSETS, "offsets", camber_offset_kernels_source, camber_offset_kernels_source_size, ""};
+    set_options(device, -1, measured, &from);
+    return use_program(device, &from, &device->offset_programs[measured], program);
+}
+
 camber_status camber_device_network_program(camber_device *device, bool measured, camber_program **program) {
     recipe from = {PROGRAM_NETWORK, "networks", camber_network_kernels_source, camber_network_kernels_source_size, ""};
     set_options(device, -1, measured, &from);
@@ -206,8 +214,8 @@ void camber_program_save(camber_device *device, camber_program *program) {
 void camber_program_destroy(camber_context *context, camber_program *program) {
     if (!program)
         return;
-    cl_kernel kernels[] = {program->survey, program->project, program->classify, program->scan,
-                           program->emit,   program->tally,   program->measure};
+    cl_kernel kernels[] = {program->survey, program->project, program->classify, program->scan, program->emit,
+                           program->tally,  program->measure, program->span,     program->tell, program->shift};
     for (size_t i = 0; i < sizeof kernels / sizeof *kernels; i++)
         if (kernels[i])
             clReleaseKernel(kernels[i]);

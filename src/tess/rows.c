@@ -14,6 +14,9 @@ static camber_status check_stroke(camber_context *context, const camber_stroke *
     if (!(stroke->miter_limit >= 0.0f))
         return camber_fail(context, CAMBER_ERROR_ARGUMENT, "stroke %zu: a miter limit of %g; it must be 0 or more", row,
                            (double)stroke->miter_limit);
+    if (!(fabsf(stroke->offset_px) <= WIDEST_PX))
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "stroke %zu: an offset of %g px; it must be %g to %g", row,
+                           (double)stroke->offset_px, -(double)WIDEST_PX, (double)WIDEST_PX);
     if ((unsigned)stroke->join > CAMBER_JOIN_BEVEL || (unsigned)stroke->cap > CAMBER_CAP_SQUARE)
         return camber_fail(context, CAMBER_ERROR_ARGUMENT,
                            "stroke %zu: join %d, cap %d; see camber_join and camber_cap", row, (int)stroke->join,

@@ -37,8 +37,13 @@ static camber_status append_points(const camber_mesh *mesh, const camber_mesh_pa
                      sizeof *stages->points))
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0, slot = 0; i < part->polyline_count; i++) {
-        const size_t polyline = part->first_polyline + i, begin = camber_part_slot(mesh, part, polyline);
-        const size_t wanted = camber_part_slot(mesh, part, polyline + 1);
+        const size_t polyline = part->first_polyline + i;
+        size_t begin = 0, wanted = 0;
+        camber_status status = camber_part_slot(mesh, part, polyline, &begin);
+        if (status == CAMBER_OK)
+            status = camber_part_slot(mesh, part, polyline + 1, &wanted);
+        if (status != CAMBER_OK)
+            return status;
         const size_t end = wanted < part->slot_count ? wanted : part->slot_count;
         uint32_t point = 0;
         for (slot = begin > slot ? begin : slot; slot < end; slot++) {

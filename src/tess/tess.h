@@ -26,6 +26,7 @@ struct camber_device {
     struct camber_program *programs[2][3]; /* by camber_method */
     struct camber_program *network_programs[2];
     struct camber_program *measures;
+    struct camber_program *offset_programs[2];
     /* What its meshes may hold (0: what they want), hold, and held at most. */
     uint64_t memory_bytes, held_bytes, most_held_bytes;
     camber_mesh *meshes; /* each knows the next */
@@ -49,8 +50,9 @@ typedef struct camber_program {
     cl_kernel classify, scan, emit; /* of a method */
     cl_kernel survey, project;      /* of networks */
     cl_kernel tally, measure;
-    uint64_t key; /* of the cache */
-    bool to_save; /* built from source: its binary is saved once the kernels have run */
+    cl_kernel span, tell, shift; /* of offsets */
+    uint64_t key;                /* of the cache */
+    bool to_save;                /* built from source: its binary is saved once the kernels have run */
 } camber_program;
 
 /* The kernels of a method, built or loaded at first use. */
@@ -58,6 +60,7 @@ camber_status camber_device_program(camber_device *device, camber_method method,
                                     camber_program **program);
 camber_status camber_device_network_program(camber_device *device, bool measured, camber_program **program);
 camber_status camber_device_measures(camber_device *device, camber_program **program);
+camber_status camber_device_offsets(camber_device *device, bool measured, camber_program **program);
 /* Saves the binary if it is new. Called after the kernels have run: only then does PoCL's hold machine code. */
 void camber_program_save(camber_device *device, camber_program *program);
 void camber_program_destroy(camber_context *context, camber_program *program);
@@ -85,12 +88,21 @@ typedef struct camber_buffer_ops {
 
 /* ---- Meshes ---- */
 
+/* Of lines with an offset: the slots of the lines that they lie beside, and what becomes of each. */
+typedef struct camber_part_course {
+    cl_mem x, y, info, spans, counts, places;
+    cl_mem lengths, measures; /* of what is measured */
+    size_t slot_capacity;
+    size_t made_count; /* slots beside, without padding */
+} camber_part_course;
+
 /* A run of polylines that is tessellated by itself, its vertices numbered from 0. Most meshes are one part; where
  * the device makes no buffer that is large enough, several in the order of their polylines. */
 typedef struct camber_mesh_part {
     camber_buffer buffers[2]; /* records, indices: of strips none */
     size_t first_polyline, polyline_count;
-    size_t first_slot, slot_count; /* of the polylines; slot_count is padded to whole blocks */
+    size_t first_slot, given_count; /* slots of the polylines; given_count is padded to whole blocks */
+    size_t slot_count;              /* that are classified: those given, or of lines beside them */
     /* Of a network: which of its sections, the points of it, and the slots before each of their chunks. */
     size_t section, first_point, end_point;
     uint32_t *chunk_bases; /* the chunks and one behind them */
@@ -99,6 +111,7 @@ typedef struct camber_mesh_part {
     cl_mem x, y, info, joins, offsets, sums, bases;
     cl_mem lengths, measures; /* of what is measured: sums of chunks, and a camber_measure a slot */
     size_t slot_capacity;
+    camber_part_course course;
     uint64_t *host_bases; /* first vertex and first index of each block, and the totals behind the last */
     size_t base_capacity;
     bool made; /* its buffers hold what the last tessellation made of it */
@@ -133,6 +146,9 @@ struct camber_mesh {
     cl_mem rows;
     camber_row *host_rows; /* the same */
     size_t row_capacity, host_row_capacity;
+    bool offsets;  /* a row has an offset: parts have a course */
+    cl_mem shifts; /* what of each row offsets need */
+    size_t shift_capacity;
     camber_mesh_info mesh_info;
     bool joins_counted; /* mesh_info's counts of joins and triangles are there */
     bool sharp_joins;   /* a row has miter or bevel joins */
@@ -148,8 +164,11 @@ camber_status camber_mesh_create_on(camber_device *device, const camber_buffer_o
                                     camber_mesh **mesh);
 /* Makes a part, a pointer into mesh->parts, again unless its buffers hold it. Others may go. */
 camber_status camber_part_use(camber_mesh *mesh, camber_mesh_part *part);
-/* First slot of a polyline in its part; the part's first polyline + polyline_count gives the end. */
-size_t camber_part_slot(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline);
+/* First slot of a polyline in its part, which lies in its buffers; the part's first polyline + polyline_count gives the
+ * end. */
+camber_status camber_part_slot(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline, size_t *slot);
+/* The same of the slots that are given. */
+size_t camber_part_given_slot(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline);
 /* How many of a part's output buffers there are. */
 static inline size_t camber_buffer_count(const camber_mesh *mesh) {
     return mesh->mesh_info.strips ? 1 : 2;
@@ -188,7 +207,7 @@ camber_status camber_mesh_plan(camber_mesh *mesh, const camber_polylines *polyli
 /* Cuts a part that has been scanned, and whose output is too large, into parts whose output fits. The part's place is
  * taken by the first of them. */
 camber_status camber_mesh_split(camber_mesh *mesh, size_t which);
-size_t camber_part_records(const camber_mesh *mesh, const camber_mesh_part *part);
+camber_status camber_part_records(const camber_mesh *mesh, const camber_mesh_part *part, size_t *count);
 bool camber_part_fits(const camber_mesh *mesh, const camber_mesh_part *part);
 camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part);
 void camber_mesh_release_parts(camber_mesh *mesh);
@@ -228,18 +247,18 @@ void camber_part_set_points(const camber_mesh *mesh, camber_mesh_part *part);
  * is large enough. */
 camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, bool *fits);
 size_t camber_part_network_slot(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline);
-/* A stage: a kernel, its arguments, and how many points a work-item takes. */
+/* A stage: a kernel, its arguments, how many points a work-item takes, and of how many. */
 typedef struct camber_stage {
     const char *name;
     cl_kernel kernel;
     const cl_mem *mems;
     cl_uint mem_count;
     size_t points;
+    size_t slots;
 } camber_stage;
 
-/* Runs a stage over a part's slots, a work-group a block. */
-camber_status camber_part_run(const camber_device *device, const camber_mesh_part *part, camber_stage stage,
-                              cl_event *event);
+/* Runs a stage over slots, a work-group a block. */
+camber_status camber_stage_run(const camber_device *device, camber_stage stage, cl_event *event);
 /* Adds the time of a command to ms and releases the event, which may be NULL. */
 void camber_add_ms(cl_event event, double *ms);
 camber_status camber_fail_stage(const camber_device *device, const char *call, const char *name, cl_int code);
@@ -253,6 +272,8 @@ void camber_part_count(const camber_mesh *mesh, camber_mesh_part *part);
 void camber_mesh_count(camber_mesh *mesh);
 /* Of a part's input for so many slots. */
 uint64_t camber_input_bytes(const camber_device *device, bool measured, size_t slots);
+/* Of the course of a part for so many slots. */
+uint64_t camber_course_bytes(bool measured, size_t slots);
 /* Lets parts and sections go, those of other meshes before the mesh's own, until so many more bytes can be held. keep
  * and its section stay, and with spare_made all parts of the mesh that are made. */
 bool camber_mesh_has_room(camber_mesh *mesh, const camber_mesh_part *keep, uint64_t more_bytes, bool spare_made);

@@ -2,6 +2,7 @@
 #include "kernels/layout.h"
 #include "tess/measures.h"
 #include "tess/network.h"
+#include "tess/offset.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -14,9 +15,8 @@ camber_status camber_fail_stage(const camber_device *device, const char *call, c
     return camber_fail_cl(device->context, what, code);
 }
 
-camber_status camber_part_run(const camber_device *device, const camber_mesh_part *part, camber_stage s,
-                              cl_event *event) {
-    const size_t global = part->slot_count / s.points, local = device->block / s.points;
+camber_status camber_stage_run(const camber_device *device, camber_stage s, cl_event *event) {
+    const size_t global = s.slots / s.points, local = device->block / s.points;
     for (cl_uint i = 0; i < s.mem_count; i++) {
         const cl_int code = clSetKernelArg(s.kernel, i, sizeof *s.mems, s.mems + i);
         if (code != CL_SUCCESS)
@@ -60,8 +60,7 @@ static camber_status scan_blocks(const camber_mesh *mesh, camber_mesh_part *part
     clEnqueueUnmapMemObject(device->queue, part->sums, sums, 0, NULL, NULL);
     part->vertex_count = (size_t)part->host_bases[2 * blocks];
     part->index_count = (size_t)part->host_bases[2 * blocks + 1];
-    part->record_count = camber_part_records(mesh, part);
-    return CAMBER_OK;
+    return camber_part_records(mesh, part, &part->record_count);
 }
 
 void camber_add_ms(cl_event event, double *ms) {
@@ -81,11 +80,11 @@ static camber_status measure(camber_mesh *mesh, camber_mesh_part *part, const ca
     const cl_mem classify[] = {part->x,    part->y,    part->x,    part->y,    part->x,    part->y,
                                part->info, part->info, part->info, mesh->rows, part->joins};
     const cl_mem scan[] = {part->joins, part->joins, part->info, part->offsets, part->sums};
-    const size_t item = device->item;
+    const size_t item = device->item, slots = part->slot_count;
     camber_status status =
-        camber_part_run(device, part, (camber_stage){"classify", program->classify, classify, 11, item}, events);
+        camber_stage_run(device, (camber_stage){"classify", program->classify, classify, 11, item, slots}, events);
     if (status == CAMBER_OK)
-        status = camber_part_run(device, part, (camber_stage){"scan", program->scan, scan, 5, item}, events + 1);
+        status = camber_stage_run(device, (camber_stage){"scan", program->scan, scan, 5, item, slots}, events + 1);
     if (status == CAMBER_OK)
         status = scan_blocks(mesh, part);
     camber_add_ms(events[0], &mesh->mesh_info.classify_ms);
@@ -136,8 +135,8 @@ static camber_status emit(camber_mesh *mesh, camber_mesh_part *part, const cambe
                            part->buffers[mesh->mesh_info.strips ? CAMBER_BUFFER_RECORDS : CAMBER_BUFFER_INDICES].mem,
                            part->measures};
     const cl_uint mem_count = mesh->mesh_info.measured ? 10 : 9;
-    status =
-        camber_part_run(device, part, (camber_stage){"emit", program->emit, mems, mem_count, device->item}, &event);
+    status = camber_stage_run(
+        device, (camber_stage){"emit", program->emit, mems, mem_count, device->item, part->slot_count}, &event);
     const cl_int code = clFinish(device->queue);
     if (status == CAMBER_OK && code != CL_SUCCESS)
         status = camber_fail_cl(device->context, "clFinish", code);
@@ -191,9 +190,14 @@ static camber_status upload_rows(camber_mesh *mesh, const camber_row *rows, size
 
 /* A part's slots, and what its output takes. *fits is false where the slots are too many. */
 static camber_status prepare(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program, bool *fits) {
-    camber_status status = mesh->held ? camber_part_project(mesh, part, fits) : camber_part_upload(mesh, part);
-    if (status == CAMBER_OK && mesh->mesh_info.measured && !mesh->held && part->slot_count > 0)
+    camber_status status = mesh->held ? camber_part_project(mesh, part, fits)
+                                      : camber_part_check_course(mesh, part, part->given_count, fits);
+    if (status == CAMBER_OK && *fits && !mesh->held)
+        status = camber_part_upload(mesh, part);
+    if (status == CAMBER_OK && *fits && mesh->mesh_info.measured && !mesh->held && part->given_count > 0)
         status = camber_part_measure(mesh, part);
+    if (status == CAMBER_OK && *fits && mesh->offsets && part->given_count > 0)
+        status = camber_part_offset(mesh, part, fits);
     if (status == CAMBER_OK && *fits && part->slot_count > 0)
         status = measure(mesh, part, program);
     if (mesh->held) {
@@ -321,6 +325,8 @@ static camber_status tessellate(camber_mesh *mesh, const source *from, const cam
     for (size_t i = 0; i < mesh->part_capacity; i++)
         mesh->parts[i].made = false;
     camber_status status = camber_rows_create(context, from->row_count, desc, &rows);
+    if (status == CAMBER_OK)
+        status = camber_mesh_set_offsets(mesh, desc);
     if (status == CAMBER_OK)
         status = plan(mesh, from, desc);
     if (status == CAMBER_OK && mesh->part_count > 0) {

@@ -1,6 +1,7 @@
 /* The CPU twin: what the kernels are held against. It walks each polyline from its first point to its last and appends,
  * with no counts, scans or offsets, and shares only the formulas of kernels/join.h with the device. */
 #include "tess/measures.h"
+#include "tess/offset.h"
 
 #include "kernels/join.h"
 
@@ -253,15 +254,21 @@ static camber_status run(camber_context *context, const camber_polylines *polyli
     if (status != CAMBER_OK)
         return status;
     camber_measure *measures = NULL;
+    camber_polylines *beside = NULL;
     if (desc->measured)
         status = camber_polylines_measure(polylines, &measures);
+    if (status == CAMBER_OK && camber_desc_has_offsets(desc)) {
+        status = camber_polylines_offset(polylines, desc, measures, &beside);
+        if (beside)
+            polylines = beside;
+    }
     data->info = (camber_mesh_info){
         .method = desc->method, .strips = desc->method == CAMBER_METHOD_STRIP, .measured = desc->measured};
     twin t = {.polylines = polylines,
               .rows = rows,
               .method = (camber_u32)desc->method,
               .data = data,
-              .measures = measures,
+              .measures = beside ? beside->measures : measures,
               .stages = stages};
     if (status == CAMBER_OK)
         walk(&t);
@@ -276,6 +283,7 @@ static camber_status run(camber_context *context, const camber_polylines *polyli
         status = camber_mesh_expand(context, rows, data);
     if (status == CAMBER_OK && stages && !info->strips)
         status = number_vertices(context, data, stages);
+    camber_polylines_destroy(beside);
     camber_free(context, measures);
     camber_free(context, rows);
     if (status == CAMBER_OK)

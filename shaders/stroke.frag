@@ -418,9 +418,11 @@ void main() {
     // From the nearest place of the line to here.
     vec2 off = vec2(ends.y * v_cut_b.w - ends.x * v_cut_a.w, bent);
 #if TIPS
-    // Round caps that are no pixel long end like flat ones of the same area.
+    // Round caps that are no pixel long, and not seen aslant, end like flat ones of the same area.
     float cap_length = half_width * scale;
-    off.x *= min(v_tips.x - past.x, v_tips.y - past.y) < 0.0 ? clamp(2.0 * cap_length - 1.0, 0.0, 1.0) : 1.0;
+    float cosine = dot(normalize(seen_normal(u, 0.0)), normalize(seen_normal(vec2(-u.y, u.x), 0.0)));
+    float flat_cap = (1.0 - clamp(2.0 * cap_length - 1.0, 0.0, 1.0)) * max(1.0 - 2.0 * abs(cosine), 0.0);
+    off.x *= min(v_tips.x - past.x, v_tips.y - past.y) < 0.0 ? 1.0 - flat_cap : 1.0;
 #endif
 #if DASH
     off.x += dash_off;
@@ -449,6 +451,7 @@ void main() {
     // How much of the pixel round caps leave along the line.
 #if PITCHED
     vec2 tip = clamp(v_tips - past * scale + 0.5 + 0.785398 * cap_length + 1.2 * max(cap_length - 0.5, 0.0), 0.0, 1.0);
+    tip = mix(vec2(1.0), tip, max(1.0 - 2.0 * abs(cosine), 0.0));
 #else
     vec2 tip = clamp(v_tips - past, 0.0, 1.0);
 #endif

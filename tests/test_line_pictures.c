@@ -53,6 +53,7 @@ static const struct {
     {"line-pattern/literal", NOT_YET, 1, "patterns"},
     {"line-pattern/pitch", NOT_YET, 1, "patterns and pitch"},
     {"line-pitch/default", FLAW, 0.0005, SHORT},
+    {"line-pitch/pitch30", FLAW, 0.0008, SHORT "; lines that are seen small are blurred inwards, and so are thinner"},
     {"line-translate-anchor/map", FLAW, 0.0006,
      "tiles are cut off at their borders after the translation: it leaves a white stripe"},
     {"line-translate/default", FLAW, 0.0002, BUTTS},

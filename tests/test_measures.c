@@ -218,12 +218,81 @@ static void test_networks(void **state) {
     camber_network_destroy(network);
 }
 
+/* Every line, and that it is a part of one that is longer: how far along differs by what lies before it. On a device
+ * whose buffers hold a few lines each, so that there are sections. */
+static void test_parts_of_lines(void **state) {
+    enum { COUNT = 100, LINES = 120 };
+    bench *b = *state;
+    static double points[2 * COUNT * LINES];
+    static float progress[2 * LINES];
+    size_t offsets[LINES + 1];
+    uint64_t seed = 21;
+    for (size_t line = 0; line <= LINES; line++)
+        offsets[line] = line * COUNT;
+    for (size_t i = 0; i < 2 * COUNT * LINES; i++)
+        points[i] = random_between(&seed, 0, 10);
+    for (size_t line = 0; line < LINES; line++) {
+        progress[2 * line] = line % 3 ? (float)random_between(&seed, 0, 0.5) : 0.0f;
+        progress[2 * line + 1] = line % 4 ? (float)random_between(&seed, 0.6, 1) : 1.0f;
+    }
+    progress[2] = NAN;  /* as if nothing were said */
+    progress[4] = 0.9f; /* no longer */
+    progress[5] = 0.1f;
+    const camber_device_desc small = {.largest_buffer_bytes = 16384};
+    const camber_stroke stroke = {2, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0};
+    const camber_tessellation_desc desc = {&stroke, 1, CAMBER_METHOD_STRIP, 0, true};
+    const camber_camera camera = {.x = 5, .y = 5, .scale_px = 30, .width = 400, .height = 400};
+    camber_mesh_data data[3];
+    camber_polylines *seen[2];
+    for (int part = 0; part < 2; part++) {
+        const camber_network_desc network_desc = {.points = points,
+                                                  .offsets = offsets,
+                                                  .polyline_count = LINES,
+                                                  .measured = true,
+                                                  .progress = part ? progress : NULL};
+        camber_network *network = NULL;
+        assert_int_equal(camber_network_create(b->context, &network_desc, &network), CAMBER_OK);
+        assert_int_equal(camber_network_project(network, &camera, &desc, seen + part), CAMBER_OK);
+        assert_int_equal(camber_tessellate_on_host(b->context, seen[part], &desc, data + part), CAMBER_OK);
+        if (part) {
+            camber_device *device = NULL;
+            camber_mesh *mesh = NULL;
+            assert_int_equal(camber_device_create(b->context, &small, NULL, &device), CAMBER_OK);
+            assert_int_equal(camber_mesh_create(device, NULL, &mesh), CAMBER_OK);
+            assert_int_equal(camber_tessellate_network(mesh, network, &camera, &desc), CAMBER_OK);
+            assert_true(camber_mesh_get_memory(mesh).parts > 2);
+            assert_int_equal(camber_mesh_read(mesh, data + 2), CAMBER_OK);
+            if (b->rounds)
+                assert_same(data + 1, data + 2);
+            camber_mesh_data_free(b->context, data + 2);
+            camber_mesh_destroy(mesh);
+            camber_device_destroy(device);
+        }
+        camber_network_destroy(network);
+    }
+    assert_int_equal(data[0].info.record_count, data[1].info.record_count);
+    for (size_t line = 0; line < LINES; line++)
+        for (size_t slot = seen[0]->first_slots[line]; slot < seen[0]->first_slots[line + 1]; slot++) {
+            if (!(seen[0]->info[slot + 1] & CAMBER_POINT_REAL))
+                continue;
+            const camber_measure whole = seen[0]->measures[slot], part = seen[1]->measures[slot];
+            const bool said = line != 1 && line != 2;
+            const double from = said ? (double)progress[2 * line] : 0, to = said ? (double)progress[2 * line + 1] : 1;
+            const double total = (double)whole.total_px / (to - from), along = from * total + (double)whole.along_px;
+            assert_true(fabs((double)part.total_px - total) <= 1e-5 * total);
+            assert_true(fabs((double)part.along_px - along) <= 1e-5 * total);
+        }
+    for (int part = 0; part < 2; part++) {
+        camber_mesh_data_free(b->context, data + part);
+        camber_polylines_destroy(seen[part]);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_against_doubles),
-        cmocka_unit_test(test_device_equals_twin),
-        cmocka_unit_test(test_in_turn),
-        cmocka_unit_test(test_networks),
+        cmocka_unit_test(test_against_doubles), cmocka_unit_test(test_device_equals_twin),
+        cmocka_unit_test(test_in_turn),         cmocka_unit_test(test_networks),
+        cmocka_unit_test(test_parts_of_lines),
     };
     char pocl_cache[64];
     pocl_cache_apart(pocl_cache);

@@ -179,12 +179,9 @@ static void test_clips(void **state) {
         .features = it->features, .tiles = it->tiles, .layers = layers, .layer_count = 1, .wants_progress = true};
     camber_mvt_destroy(it->mvt);
     assert_int_equal(camber_mvt_create(it->context, &desc, &it->mvt), CAMBER_OK);
-    blob tile = {0}, layer = begin_layer("road", 4096), value = {0};
-    const double quarter = 0.25;
+    blob tile = {0}, layer = begin_layer("road", 4096);
     put_key(&layer, "mapbox_clip_end");
-    put_varint(&value, 3 << 3 | 1);
-    blob_put(&value, &quarter, 8);
-    put_message(&layer, 4, &value);
+    put_double_value(&layer, 0.25);
     put_feature(&layer, 1, 0, 0, false, (int[]){10, 20, 30, 5}, 2);
     put_layer(&tile, &layer);
     read_tile(it, &tile);

@@ -9,7 +9,7 @@
 
 /* Wide and half transparent, so that what is drawn twice is darker. */
 static const char PAINT[] = "\"layout\": {\"line-cap\": \"%s\", \"line-join\": \"round\"}, \"paint\": {\"line-width\": "
-                            "%d, \"line-opacity\": 0.5}";
+                            "%d, \"line-opacity\": 0.5%s}";
 
 typedef struct sheet {
     camber_style *style;
@@ -18,10 +18,12 @@ typedef struct sheet {
     camber_mesh *mesh;
 } sheet;
 
-static void sheet_open(sheet *it, const studio *s, const char *source, const char *cap, int width_px) {
-    char text[2048], paint[256];
+/* more: of the paint. */
+static void sheet_open(sheet *it, const studio *s, const char *source, const char *cap, int width_px,
+                       const char *more) {
+    char text[4096], paint[1024];
     *it = (sheet){0};
-    snprintf(paint, sizeof paint, PAINT, cap, width_px);
+    snprintf(paint, sizeof paint, PAINT, cap, width_px, more);
     snprintf(text, sizeof text,
              "{\"version\": 8, \"sources\": {\"s\": %s}, \"layers\": [{\"id\": \"l\", \"type\": \"line\", \"source\": "
              "\"s\", "
@@ -47,9 +49,10 @@ static void sheet_close(sheet *it) {
     camber_style_destroy(it->style);
 }
 
-static picture draw_sources(const studio *s, const char *source, const char *cap, const camber_view_desc *view) {
+static picture draw_sources(const studio *s, const char *source, const char *cap, const char *more,
+                            const camber_view_desc *view) {
     sheet it;
-    sheet_open(&it, s, source, cap, 40);
+    sheet_open(&it, s, source, cap, 40, more);
     assert_int_equal(camber_features_read_sources(it.features, view, NULL), CAMBER_OK);
     const picture drawn = sheet_draw(&it, s, view);
     sheet_close(&it);
@@ -84,19 +87,24 @@ static void write_tiles(const char *path, uint64_t id) {
         blob_free(&tiles[i].content);
 }
 
+/* A GeoJSON source of a line in units of 1/8192 of the world. */
+static void write_line(char *text, size_t size, const int *units, size_t count) {
+    size_t used = (size_t)snprintf(text, size,
+                                   "{\"type\": \"geojson\", \"lineMetrics\": true, \"data\": {\"type\": "
+                                   "\"LineString\", \"coordinates\": [");
+    for (size_t i = 0; i < count; i++) {
+        double longitude, latitude;
+        camber_mercator_unproject(units[2 * i] / 8192.0, units[2 * i + 1] / 8192.0, &longitude, &latitude);
+        used += (size_t)snprintf(text + used, size - used, "%s[%.15g, %.15g]", i ? ", " : "", longitude, latitude);
+    }
+    snprintf(text + used, size - used, "]}}");
+}
+
 static void test_uncut(void **state) {
     const studio *s = *state;
     static const char *const caps[] = {"butt", "round", "square"};
     char whole[1024], cut[256], path[64];
-    size_t used = (size_t)snprintf(whole, sizeof whole,
-                                   "{\"type\": \"geojson\", \"data\": {\"type\": \"LineString\", \"coordinates\": [");
-    for (int i = 0; i < 4; i++) {
-        double longitude, latitude;
-        camber_mercator_unproject(BENT[2 * i] / 8192.0, BENT[2 * i + 1] / 8192.0, &longitude, &latitude);
-        used +=
-            (size_t)snprintf(whole + used, sizeof whole - used, "%s[%.15g, %.15g]", i ? ", " : "", longitude, latitude);
-    }
-    snprintf(whole + used, sizeof whole - used, "]}}");
+    write_line(whole, sizeof whole, BENT, 4);
     snprintf(path, sizeof path, "/tmp/camber-test-%ld.mbtiles", (long)getpid());
     snprintf(cut, sizeof cut, "{\"type\": \"vector\", \"url\": \"mbtiles://%s\"}", path);
     for (uint64_t id = 0; id < 2; id++) {
@@ -109,11 +117,76 @@ static void test_uncut(void **state) {
                                            .bearing_deg = i < 3 ? 0 : 20,
                                            .width = 400,
                                            .height = 300};
-            picture a = draw_sources(s, whole, caps[i % 3], &view), b = draw_sources(s, cut, caps[i % 3], &view);
+            picture a = draw_sources(s, whole, caps[i % 3], "", &view),
+                    b = draw_sources(s, cut, caps[i % 3], "", &view);
             expect_alike(&a, &b);
             picture_free(&a);
             picture_free(&b);
         }
+    }
+    unlink(path);
+}
+
+/* ---- Progress ---- */
+
+/* The middle of a longer line, whose ends no view here sees. */
+static const int LONG[] = {600, 2000, 3000, 3900, 4000, 3950, 4300, 4020, 4400, 5000, 7000, 7100};
+static const char *const ALONG[] = {
+    ", \"line-gradient\": [\"interpolate\", [\"linear\"], [\"line-progress\"], 0, \"red\", 0.45, \"lime\", 0.5, "
+    "\"blue\", "
+    "1, \"white\"]",
+    ", \"line-gradient\": [\"step\", [\"line-progress\"], \"red\", 0.42, \"lime\", 0.46, \"blue\", 0.465, \"black\"]",
+    ", \"line-trim-offset\": [0.44, 0.47]", ", \"line-dasharray\": [1.3, 0.9]"};
+
+/* As tiles made of GeoJSON have it: each knows which part of the line its piece is. */
+static void write_progress_tiles(const char *path) {
+    double along[6] = {0};
+    made_tile tiles[3];
+    for (size_t i = 1; i < 6; i++)
+        along[i] = along[i - 1] + hypot(LONG[2 * i] - LONG[2 * i - 2], LONG[2 * i + 1] - LONG[2 * i - 1]);
+    for (uint32_t i = 0; i < 3; i++) {
+        const uint32_t column = i > 0, row = i > 1;
+        int local[8];
+        for (int k = 0; k < 8; k++)
+            local[k] = LONG[2 + k] - 4096 * (int)(k & 1 ? row : column);
+        blob tile = {0}, layer = begin_layer("roads", 4096);
+        put_key(&layer, "mapbox_clip_start");
+        put_key(&layer, "mapbox_clip_end");
+        put_double_value(&layer, along[1] / along[5]);
+        put_double_value(&layer, along[4] / along[5]);
+        put_tagged(&layer, 1, (uint32_t[]){0, 0, 1, 1}, 4, false, local, 4);
+        put_layer(&tile, &layer);
+        tiles[i] = (made_tile){1, column, row, tile};
+    }
+    unlink(path);
+    assert_true(write_mbtiles(path, tiles, 3, NULL));
+    for (int i = 0; i < 3; i++)
+        blob_free(&tiles[i].content);
+}
+
+/* Gradients, trims and dashes run over what tiles cut, and tell the line that was there before. */
+static void test_progress(void **state) {
+    const studio *s = *state;
+    char whole[1024], cut[256], path[64];
+    write_line(whole, sizeof whole, LONG, 6);
+    snprintf(path, sizeof path, "/tmp/camber-test-%ld.mbtiles", (long)getpid());
+    snprintf(cut, sizeof cut, "{\"type\": \"vector\", \"url\": \"mbtiles://%s\"}", path);
+    write_progress_tiles(path);
+    for (size_t i = 0; i < sizeof ALONG / sizeof *ALONG; i++) {
+        const camber_view_desc view = {.kind = CAMBER_VIEW_CENTER,
+                                       .longitude = 0.5,
+                                       .latitude = 1,
+                                       .zoom = 3.5,
+                                       .bearing_deg = 20,
+                                       .width = 400,
+                                       .height = 300};
+        picture a = draw_sources(s, whole, "butt", ALONG[i], &view), b = draw_sources(s, cut, "butt", ALONG[i], &view);
+        const difference d = picture_compare(&a, &b);
+        assert_true(d.drawn > 1000);
+        if (d.most > 4) /* an edge's place is known to some hundredths of a pixel */
+            fail_msg("%s: %zu of %zu pixels differ by more than 8, by %d at most", ALONG[i], d.past_8, d.drawn, d.most);
+        picture_free(&a);
+        picture_free(&b);
     }
     unlink(path);
 }
@@ -139,8 +212,8 @@ static void test_all_tiles(void **state) {
             camber_mercator_unproject(5275.5 / 32768, 12757.5 / 32768, &view.longitude, &view.latitude);
         }
         sheet whole, seen;
-        sheet_open(&whole, s, source, i ? "round" : "butt", 6);
-        sheet_open(&seen, s, source, i ? "round" : "butt", 6);
+        sheet_open(&whole, s, source, i ? "round" : "butt", 6, "");
+        sheet_open(&seen, s, source, i ? "round" : "butt", 6, "");
         assert_int_equal(camber_features_read(whole.features, &all), CAMBER_OK);
         assert_int_equal(camber_features_read_sources(seen.features, &view, NULL), CAMBER_OK);
         assert_true(camber_features_get_stats(seen.features).polylines <
@@ -162,7 +235,8 @@ int main(void) {
     char cache[64];
     if (!studio_begin(cache))
         return 77;
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_uncut), cmocka_unit_test(test_all_tiles)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_uncut), cmocka_unit_test(test_progress),
+                                       cmocka_unit_test(test_all_tiles)};
     const int failed = cmocka_run_group_tests(tests, studio_set_up, studio_tear_down);
     folder_remove(cache);
     return failed;

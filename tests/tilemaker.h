@@ -80,20 +80,25 @@ static inline size_t add_path(uint32_t *words, size_t at, const int *units, size
     return at;
 }
 
-/* A feature of a line, or of a ring without its last point. id 0: none; key and value: those of its one tag, below 0:
- * none. */
-static inline void put_feature(blob *layer, uint64_t id, int key, int value, bool ring, const int *units,
-                               size_t count) {
+/* A feature of a line, or of a ring without its last point. id 0: none; tags: tag_words keys and values in turn. */
+static inline void put_tagged(blob *layer, uint64_t id, const uint32_t *tags, size_t tag_words, bool ring,
+                              const int *units, size_t count) {
     uint32_t words[512];
     int cursor[2] = {0, 0};
     blob feature = {0};
     if (id)
         put_number(&feature, 1, id);
-    if (key >= 0)
-        put_packed(&feature, 2, (uint32_t[]){(uint32_t)key, (uint32_t)value}, 2);
+    if (tag_words)
+        put_packed(&feature, 2, tags, tag_words);
     put_number(&feature, 3, ring ? 3 : 2);
     put_packed(&feature, 4, words, add_path(words, 0, units, count, ring, cursor));
     put_message(layer, 2, &feature);
+}
+
+/* The same with one tag; below 0: none. */
+static inline void put_feature(blob *layer, uint64_t id, int key, int value, bool ring, const int *units,
+                               size_t count) {
+    put_tagged(layer, id, (uint32_t[]){(uint32_t)key, (uint32_t)value}, key >= 0 ? 2 : 0, ring, units, count);
 }
 
 /* extent 0: none is written. */
@@ -113,6 +118,13 @@ static inline void put_key(blob *layer, const char *key) {
 static inline void put_text_value(blob *layer, const char *text) {
     blob value = {0};
     put_bytes(&value, 1, text, strlen(text));
+    put_message(layer, 4, &value);
+}
+
+static inline void put_double_value(blob *layer, double number) {
+    blob value = {0};
+    put_varint(&value, 3 << 3 | 1);
+    blob_put(&value, &number, 8);
     put_message(layer, 4, &value);
 }
 

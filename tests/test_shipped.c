@@ -30,6 +30,7 @@ static const thing things[] = {
     {"viaduct", "transportation", "class=motorway brunnel=bridge"},
     {"overpass", "transportation", "class=minor brunnel=bridge"},
     {"underpass", "transportation", "class=primary brunnel=tunnel"},
+    {"high-bridge", "transportation", "class=minor brunnel=bridge layer=2"},
     {"works", "transportation", "class=primary_construction"},
     {"path", "transportation", "class=path"},
     {"footbridge", "transportation", "class=path brunnel=bridge"},
@@ -95,8 +96,8 @@ static const drawn_by layers[] = {
     {"bridge-path-casing", "footbridge track-bridge"},
     {"bridge-path-bed", "footbridge track-bridge"},
     {"bridge-path", "footbridge track-bridge"},
-    {"bridge-casing", "viaduct overpass"},
-    {"bridge", "viaduct overpass"},
+    {"bridge-casing", "viaduct overpass high-bridge"},
+    {"bridge", "viaduct overpass high-bridge"},
     {"bridge-rail-casing", "rail-bridge tram-bridge"},
     {"bridge-rail-bed", "rail-bridge tram-bridge"},
     {"bridge-rail", "rail-bridge tram-bridge"},
@@ -398,9 +399,10 @@ static bool same(const picture *p, uint32_t x, uint32_t y, uint32_t other_x, uin
 static const struct {
     const char *upper, *lower;
 } crossings[] = {
-    {"viaduct", "motorway"},  {"overpass", "primary"}, {"overpass", "rail"},     {"minor", "underpass"},
-    {"primary", "secondary"}, {"motorway", "trunk"},   {"minor", "path"},        {"service", "river"},
-    {"rail", "minor"},        {"minor", "state"},      {"rail-bridge", "river"}, {"tram-bridge", "viaduct"},
+    {"viaduct", "motorway"},    {"overpass", "primary"}, {"overpass", "rail"},     {"minor", "underpass"},
+    {"primary", "secondary"},   {"motorway", "trunk"},   {"minor", "path"},        {"service", "river"},
+    {"rail", "minor"},          {"minor", "state"},      {"rail-bridge", "river"}, {"tram-bridge", "viaduct"},
+    {"high-bridge", "viaduct"}, {"primary", "ramp"},     {"ramp", "minor"},
 };
 
 static const thing *find_thing(const char *name) {

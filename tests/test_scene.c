@@ -314,10 +314,26 @@ static void test_backgrounds(void **state) {
     camber_scene_destroy(scene);
     close_town(&t);
 
-    open_town(&t, LINE("line", KIND("a"), "#000", "8") "," BACKGROUND("half", "rgba(255,0,0,0.5)"));
-    scene = make_scene(&t, (camber_view_desc){0});
-    assert_int_equal(t.warnings, 1);
-    assert_false(camber_scene_get_info(scene).opaque);
+    /* Those above lines are passes between theirs. */
+    open_town(
+        &t,
+        BACKGROUND("land", "#0000ff") "," LINE("line", KIND("a"), "#000", "8") "," BACKGROUND(
+            "half",
+            "rgba(255,0,0,0.5)") "," BACKGROUND("none",
+                                                "rgba(255,0,0,0)") "," LINE("upper", KIND("a"), "#fff",
+                                                                            "4") "," BACKGROUND("veil",
+                                                                                                "rgba(0,255,0,0.25)"));
+    add_px(&t, add_class(&t, "a", 0), (double[]){100, 100, 200, 100}, 2);
+    scene = make_scene(&t, WORLD);
+    const camber_frame four = frame_of(scene);
+    assert_int_equal(t.warnings, 0);
+    assert_true(camber_scene_get_info(scene).opaque);
+    assert_int_equal(four.pass_count, 4);
+    assert_true(four.background.b == 1.0f && four.background.r == 0.0f);
+    assert_near(width_in(&four, 0, 0), 8, 0);
+    assert_true(four.passes[1].fill.color.r == 1.0f && four.passes[1].fill.color.a == 0.5f);
+    assert_near(width_in(&four, 2, 0), 4, 0);
+    assert_true(four.passes[3].fill.color.g == 1.0f && four.passes[3].fill.color.a == 0.25f);
     camber_scene_destroy(scene);
     close_town(&t);
 }

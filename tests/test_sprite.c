@@ -61,9 +61,9 @@ static void close_desk(desk *d) {
     host_done(&d->h, d->context);
 }
 
-static const char *const good =
-    "{\"b\": {\"x\": 4, \"y\": 0, \"width\": 4, \"height\": 4, \"pixelRatio\": 1},"
-    " \"a\": {\"x\": 0, \"y\": 1, \"width\": 4, \"height\": 3, \"sdf\": true}, \"dot\": {\"x\": 12, \"y\": 4}}";
+static const char *const good = "{\"b\": {\"x\": 4, \"y\": 0, \"width\": 4, \"height\": 4, \"pixelRatio\": 1},"
+                                " \"a\": {\"x\": 0, \"y\": 1, \"width\": 4, \"height\": 3, \"sdf\": true}, \"dot\": "
+                                "{\"x\": 11, \"y\": 3, \"width\": 1, \"height\": 1}}";
 
 static void test_sheet_and_index(void **state) {
     (void)state;
@@ -129,6 +129,14 @@ static void test_lies(void **state) {
         {NULL, "{\"a\": {\"x\": \"0\", \"y\": 0, \"width\": 4, \"height\": 4}}", "whole pixels"},
         {NULL, "{\"a\": {\"x\": 0, \"y\": 0, \"width\": 4, \"height\": 4, \"pixelRatio\": 0}}", "pixelRatio"},
         {NULL, "{\"a\": {\"x\": 0, \"y\": 0, \"width\": 4, \"height\": 4, \"pixelRatio\": \"2\"}}", "pixelRatio"},
+        {NULL, "{\"a\": {\"x\": 0, \"y\": 0, \"width\": 0, \"height\": 4}}", "from 1 on"},
+        {NULL, "{\"a\": {\"x\": 0, \"y\": 0, \"width\": 4, \"height\": -4}}", "from 1 on"},
+        {NULL, "{\"a\": {\"x\": 0, \"y\": 0, \"width\": 4}}", "from 1 on"},
+        {NULL, "{\"a\": {\"x\": 0, \"y\": 0, \"width\": 1e300, \"height\": 4}}", "from 1 on"},
+        {NULL, "{\"a\": {\"x\": 0, \"y\": 0, \"width\": 4, \"height\": 4, \"pixelRatio\": 1e-300}}", "pixelRatio"},
+        {NULL, "{\"a\": {\"x\": 0, \"y\": 0, \"width\": 4, \"height\": 4, \"pixelRatio\": -1}}", "pixelRatio"},
+        {NULL, "{\"a\": 7}", "from 1 on"},
+        {NULL, "{\"a\": {\"x\": NaN, \"y\": 0, \"width\": 4, \"height\": 4}}", "line 1, column"},
         {NULL, "[1]", "an object of images"},
         {NULL, "{\"a\": ", "line 1, column"},
         {"", "{}", "no PNG"},
@@ -174,8 +182,10 @@ static void test_false_sizes(void **state) {
     assert_story(&d.h, NULL);
     close_desk(&d);
     open_desk(&d, "\"none\"");
-    assert_int_equal(camber_sprites_load(d.context, d.style, d.base, 1, &sprites), CAMBER_ERROR_NOT_FOUND);
-    assert_story(&d.h, "none.png");
+    assert_int_equal(camber_sprites_load(d.context, d.style, d.base, 1, &sprites), CAMBER_OK);
+    assert_int_equal(sprites->image_count, 0);
+    assert_int_equal(d.h.warnings, 1);
+    camber_sprites_destroy(sprites);
     close_desk(&d);
     open_desk(&d, "\"https://example.org/sprite\"");
     assert_int_equal(camber_sprites_load(d.context, d.style, d.base, 1, &sprites), CAMBER_ERROR_INPUT);

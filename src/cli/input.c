@@ -194,6 +194,9 @@ static int open_map(camber_input *input) {
         status = read_file(input, session->options->inputs[i]);
     if (status == CAMBER_EXIT_DONE && session->options->input_count == 0)
         status = read_sources(input);
+    if (status == CAMBER_EXIT_DONE)
+        status = camber_report_status(
+            session->report, camber_features_read_sprites(input->features, input->view.ratio, input->base_path));
     if (status != CAMBER_EXIT_DONE)
         return status;
     input->osm = camber_features_is_osm(input->features);

@@ -34,36 +34,16 @@ static bool draws_class(const camber_features *features, const camber_style_laye
 
 /* ---- Background ---- */
 
-static camber_color over(camber_color top, camber_color below) {
-    const float rest = below.a * (1.0f - top.a), a = top.a + rest;
-    if (a <= 0.0f)
-        return (camber_color){0};
-    return (camber_color){(top.r * top.a + below.r * rest) / a, (top.g * top.a + below.g * rest) / a,
-                          (top.b * top.a + below.b * rest) / a, a};
-}
-
-/* Composes the backgrounds. An opaque one hides all layers before it, so the first layer to draw is returned. */
-static size_t compose_background(camber_plan *plan, const camber_style *style, double zoom) {
-    size_t first = 0, first_line = SIZE_MAX;
-    for (size_t i = 0; i < style->layer_count; i++) {
+/* An opaque one hides all layers before it: the first layer to draw. */
+static size_t find_first(const camber_style *style, double zoom) {
+    for (size_t i = style->layer_count; i-- > 0;) {
         const camber_style_layer *layer = style->layers + i;
-        if (!is_active(layer, zoom))
-            continue;
-        if (layer->kind == CAMBER_LAYER_LINE)
-            first_line = first_line < i ? first_line : i;
-        if (layer->kind != CAMBER_LAYER_BACKGROUND)
-            continue;
-        const camber_color color = camber_style_layer_paint(layer, zoom, NULL).color;
-        plan->background = over(color, plan->background);
-        if (color.a >= 1.0f) {
-            first = i + 1;
-            first_line = SIZE_MAX;
-            plan->misplaced_background = false;
-        } else if (color.a > 0.0f && first_line < i) {
-            plan->misplaced_background = true;
-        }
+        if (layer->kind == CAMBER_LAYER_BACKGROUND && is_active(layer, zoom) &&
+            !layer->properties[CAMBER_BACKGROUND_PATTERN] &&
+            camber_style_layer_paint(layer, zoom, NULL).color.a >= 1.0f)
+            return i;
     }
-    return first;
+    return 0;
 }
 
 /* ---- Sets ---- */
@@ -125,7 +105,7 @@ static void add_layer(camber_plan *plan, const set_table *table, const camber_st
                       const camber_view *view, bool border) {
     camber_plan_layer *made = plan->layers + plan->layer_count;
     *made = (camber_plan_layer){.look = camber_style_layer_look(layer, camber_view_style_zoom(view)), .border = border};
-    if (layer->properties[CAMBER_LINE_DASHARRAY])
+    if (layer->properties[CAMBER_LINE_DASHARRAY] || layer->properties[CAMBER_LINE_PATTERN])
         made->below = camber_style_layer_look(layer, floor(made->look.zoom));
     find_translation(&made->look, view, made->translate_px);
     find_ramp(plan, made);
@@ -142,7 +122,8 @@ static void add_layer(camber_plan *plan, const set_table *table, const camber_st
     set->last_layer = plan->layer_count++;
 }
 
-static camber_status group_layers(camber_plan *plan, const camber_style *style, size_t first, const camber_view *view) {
+static camber_status group_layers(camber_plan *plan, const camber_style *style, const camber_view *view) {
+    const double zoom = camber_view_style_zoom(view);
     set_table table = {.slot_count = 16};
     while (table.slot_count / 2 < style->layer_count)
         table.slot_count *= 2;
@@ -151,16 +132,20 @@ static camber_status group_layers(camber_plan *plan, const camber_style *style, 
         !(plan->sets = camber_alloc_zero(plan->context, style->layer_count, sizeof *plan->sets)) ||
         !(table.slots = camber_alloc_zero(plan->context, table.slot_count, sizeof *table.slots)))
         return CAMBER_ERROR_MEMORY;
-    for (size_t i = first; i < style->layer_count; i++) {
+    for (size_t i = find_first(style, zoom); i < style->layer_count; i++) {
         const camber_style_layer *layer = style->layers + i;
-        if (layer->kind != CAMBER_LAYER_LINE || !is_active(layer, camber_view_style_zoom(view)))
+        if (!is_active(layer, zoom))
             continue;
+        if (layer->kind == CAMBER_LAYER_BACKGROUND) {
+            camber_plan_patterns_add_background(&plan->patterns, layer, view, plan->layer_count, &plan->background);
+            continue;
+        }
         if (layer->properties[CAMBER_LINE_BORDER_WIDTH])
             add_layer(plan, &table, layer, view, true);
         add_layer(plan, &table, layer, view, false);
     }
     camber_free(plan->context, table.slots);
-    return CAMBER_OK;
+    return plan->patterns.failed ? CAMBER_ERROR_MEMORY : CAMBER_OK;
 }
 
 /* ---- Rows ---- */
@@ -171,7 +156,7 @@ typedef struct row_table {
     camber_paint *tuple;
     uint32_t *slots;   /* row + 1; 0: free */
     size_t slot_count; /* a power of two */
-    bool failed;       /* no memory for dashes */
+    bool failed;       /* no memory for dashes or patterns */
 } row_table;
 
 /* By set and class: the row, CAMBER_NO_ROW where the set does not draw the class, and the place in a sorted set. */
@@ -192,7 +177,8 @@ static camber_layer_paint part_of(const camber_plan_layer *layer, const camber_l
     camber_layer_paint part = *whole;
     const double border = fmin(whole->border_width, 0.5 * whole->width), inside = whole->width - 2.0 * border;
     const float alpha = layer->ramp ? (float)whole->opacity : whole->color.a;
-    const bool seen_through = alpha < 1.0f || layer->translucent_ramp || whole->layer_opacity < 1.0;
+    const bool seen_through = alpha < 1.0f || layer->translucent_ramp || whole->layer_opacity < 1.0 ||
+                              layer->look.layer->properties[CAMBER_LINE_PATTERN];
     if (layer->ramp)
         part.color = (camber_color){1.0f, 1.0f, 1.0f, (float)whole->opacity};
     if (layer->border) {
@@ -250,11 +236,44 @@ static camber_status list_dashes(camber_plan *plan) {
     return CAMBER_OK;
 }
 
-/* Other engines draw dashes of the whole zoom below, with its width, and let them grow with the map up to the next. */
-static float dash_unit_px(const camber_plan_layer *layer, const camber_view *view, const camber_feature_view *feature) {
+/* The width at the whole zoom below, grown with the map: other engines draw dashes and patterns of that width up to the
+ * next. */
+static float whole_zoom_px(const camber_plan_layer *layer, const camber_view *view,
+                           const camber_feature_view *feature) {
     const double grown = exp2(camber_view_style_zoom(view) - layer->below.zoom);
     return (float)fmin(fmax(camber_layer_look_paint(&layer->below, feature).width * grown * view->ratio, 1e-3),
                        WIDEST_PX);
+}
+
+typedef struct pattern_choice {
+    bool patterned; /* by the style */
+    uint32_t image; /* 0: one that is not there */
+    float one_px;   /* along the line */
+} pattern_choice;
+
+/* A pattern leaves of the colour only the opacity, and of dashes nothing. */
+static pattern_choice choose_pattern(camber_plan *plan, const camber_plan_layer *layer, const camber_view *view,
+                                     const camber_feature_view *feature, camber_layer_paint *paint) {
+    pattern_choice choice = {0};
+    float aspect;
+    choice.patterned = camber_plan_patterns_find(&plan->patterns, layer->look.layer, floor(layer->look.zoom), feature,
+                                                 &choice.image, &aspect);
+    if (!choice.patterned)
+        return choice;
+    paint->color.a = (float)paint->opacity;
+    if (choice.image)
+        choice.one_px = aspect * whole_zoom_px(layer, view, feature);
+    return choice;
+}
+
+static void put_pattern(const camber_plan_layer *layer, const pattern_choice *choice, camber_paint *paint) {
+    if (!choice->image)
+        *paint = (camber_paint){0};
+    if (layer->border || !(paint->width_px > 0.0f))
+        return;
+    paint->pattern = choice->image;
+    paint->ramp = 0;
+    paint->pattern_px = choice->one_px;
 }
 
 /* A limit of 1 bevels every turn, and so do those below; 0 would mean the default. */
@@ -301,23 +320,27 @@ static bool fill_tuple(camber_plan *plan, const camber_plan_set *set, const camb
     table->stroke.width_px = 0.0f;
     for (size_t i = 0; i < set->layer_count; i++, at = plan->layers[at].next) {
         const camber_plan_layer *layer = plan->layers + at;
-        const camber_layer_paint paint = camber_layer_look_paint(&layer->look, feature);
+        camber_layer_paint paint = camber_layer_look_paint(&layer->look, feature);
         camber_paint *made = table->tuple + layer->slot;
+        const pattern_choice pattern = choose_pattern(plan, layer, view, feature, &paint);
         *made = paint_of(layer, &paint, view->ratio);
-        if (paint.dashes.count && made->width_px > 0.0f) {
+        if (pattern.patterned)
+            put_pattern(layer, &pattern, made);
+        else if (paint.dashes.count && made->width_px > 0.0f) {
             made->dash = intern_dash(plan, &paint.dashes);
-            made->dash_unit_px = dash_unit_px(layer, view, feature);
+            made->dash_unit_px = whole_zoom_px(layer, view, feature);
             *failed |= made->dash == 0;
         }
         const float width_px = fmaxf(table->stroke.width_px, whole_width(made));
         table->stroke = stroke_of(&paint, view->ratio);
         table->stroke.width_px = width_px;
         *key = paint.sort_key;
-        plan->measured |= made->dash || made->ramp || made->trim_end > made->trim_start;
+        plan->measured |= made->dash || made->ramp || made->pattern || made->trim_end > made->trim_start;
         if (made->width_px > 0.0f)
             plan->translate_px = fmaxf(plan->translate_px, hypotf(made->translate_x_px, made->translate_y_px));
     }
-    return table->stroke.width_px > 0.0f;
+    *failed |= plan->patterns.failed;
+    return table->stroke.width_px > 0.0f || *failed;
 }
 
 /* Rows of every class in one set. */
@@ -506,8 +529,8 @@ static camber_status list_entries(const camber_features *features, camber_plan *
 camber_status camber_plan_create(const camber_features *features, const camber_view *view, camber_plan *plan) {
     camber_context *context = features->context;
     *plan = (camber_plan){.context = context};
-    const size_t first = compose_background(plan, features->style, camber_view_style_zoom(view));
-    camber_status status = group_layers(plan, features->style, first, view);
+    plan->patterns = (camber_plan_patterns){.context = context, .sprites = features->sprites};
+    camber_status status = group_layers(plan, features->style, view);
     if (status != CAMBER_OK)
         return status;
 
@@ -551,6 +574,7 @@ done:
 
 void camber_plan_destroy(camber_plan *plan) {
     camber_free(plan->context, plan->ramps);
+    camber_plan_patterns_free(&plan->patterns);
     camber_free(plan->context, plan->dashes);
     camber_free(plan->context, plan->dash_lengths);
     camber_free(plan->context, plan->entries);

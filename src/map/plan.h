@@ -6,7 +6,7 @@
 #ifndef CAMBER_PLAN_H
 #define CAMBER_PLAN_H
 
-#include "map/view.h"
+#include "map/patterns.h"
 #include "source/features.h"
 
 #define CAMBER_NO_ROW UINT32_MAX
@@ -23,7 +23,7 @@ typedef struct camber_plan_set {
 
 typedef struct camber_plan_layer {
     camber_layer_look look;
-    camber_layer_look below; /* at the whole zoom below, of a layer with dashes */
+    camber_layer_look below; /* at the whole zoom below, of a layer with dashes or a pattern */
     float translate_px[2];
     size_t set;
     size_t slot;   /* which of the set's layers it is */
@@ -42,7 +42,7 @@ typedef struct camber_plan_entry {
 typedef struct camber_plan {
     camber_context *context;
     camber_color background;
-    bool misplaced_background; /* a translucent one above lines, which a frame cannot draw there */
+    camber_plan_patterns patterns;
     camber_plan_layer *layers;
     size_t layer_count;
     camber_plan_set *sets; /* in the order of their first layers */

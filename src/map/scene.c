@@ -76,6 +76,7 @@ typedef struct layer_run {
     float opacity; /* of the layer; 1: of runs of several */
     camber_overlap overlap;
     bool opaque;
+    const camber_plan_fill *fill; /* NULL: none; else nothing of the above */
 } layer_run;
 
 /* Whether the layer draws anything, and only opaque lines, of what polylines have. */
@@ -94,13 +95,17 @@ static bool layer_draws(const numbering *n, const camber_plan_layer *layer, bool
 }
 
 /* Opaque layers whose polylines follow each other become one run. A translucent layer is one by itself: it is
- * flattened by itself. */
+ * flattened by itself. Fills come between. */
 static size_t find_runs(const numbering *n, layer_run *runs, size_t *layer_count) {
     const camber_plan *plan = n->plan;
-    size_t count = 0;
+    size_t count = 0, fill = 0;
     *layer_count = 0;
-    for (size_t i = 0; i < plan->layer_count; i++) {
+    for (size_t i = 0; i <= plan->layer_count; i++) {
         bool opaque;
+        for (; fill < plan->patterns.fill_count && plan->patterns.fills[fill].before == i; fill++)
+            runs[count++] = (layer_run){.fill = plan->patterns.fills + fill};
+        if (i == plan->layer_count)
+            break;
         if (!layer_draws(n, plan->layers + i, &opaque))
             continue;
         *layer_count += !plan->layers[i].border;
@@ -115,7 +120,7 @@ static size_t find_runs(const numbering *n, layer_run *runs, size_t *layer_count
             last->end_polyline = end;
             last->end_paint = end_of(n, set);
         } else {
-            runs[count++] = (layer_run){i, i + 1, first, end, end_of(n, set), opacity, overlap, opaque};
+            runs[count++] = (layer_run){i, i + 1, first, end, end_of(n, set), opacity, overlap, opaque, NULL};
         }
     }
     return count;
@@ -133,14 +138,14 @@ static void put_paints(const numbering *n, const layer_run *run, camber_paint *p
         for (size_t k = first_of(n, set); k < end_of(n, set); k++) {
             paints[k] = paint_of(n, layer, k);
             if (!n->by_pair) /* pieces do not know where their lines begin */
-                paints[k].dash = paints[k].ramp = 0;
+                paints[k].dash = paints[k].ramp = paints[k].pattern = 0;
         }
     }
 }
 
 static camber_status make_passes(camber_context *context, const numbering *n, size_t *layer_count, pass_list *list) {
     camber_status status = CAMBER_ERROR_MEMORY;
-    layer_run *runs = camber_alloc(context, n->plan->layer_count, sizeof *runs);
+    layer_run *runs = camber_alloc(context, n->plan->layer_count + n->plan->patterns.fill_count, sizeof *runs);
     if (!runs)
         return CAMBER_ERROR_MEMORY;
     const size_t count = find_runs(n, runs, layer_count);
@@ -164,10 +169,14 @@ static camber_status make_passes(camber_context *context, const numbering *n, si
                                         .paint_count = runs[i].end_paint,
                                         .dashes = n->plan->dashes,
                                         .dash_count = n->plan->dash_count,
+                                        .images = n->plan->patterns.images,
+                                        .image_count = n->plan->patterns.count,
                                         .overlap = runs[i].overlap,
                                         .ramps = n->plan->ramps,
                                         .ramp_count = n->plan->ramp_count,
                                         .opacity = runs[i].opacity};
+        if (runs[i].fill)
+            list->passes[i].fill = runs[i].fill->fill;
         paints += runs[i].end_paint;
     }
     list->count = count;
@@ -323,9 +332,9 @@ camber_status camber_scene_create(const camber_features *features, const camber_
         camber_scene_destroy(made);
         return status;
     }
-    if (made->plan.misplaced_background)
+    if (made->plan.patterns.unread)
         camber_log(context, CAMBER_LOG_WARNING,
-                   "style: a translucent background above lines is drawn below them; place it before the line layers");
+                   "style: its patterns are left out, for its sprites are not read; read them with the features");
     *scene = made;
     return CAMBER_OK;
 }
@@ -415,7 +424,7 @@ camber_frame camber_scene_frame(camber_scene *scene, camber_mesh *mesh) {
         (void)is_seen(scene);
     const pass_list *list = holds_network ? &scene->pair_passes : &scene->passes;
     for (size_t i = 0; i < list->count; i++)
-        list->passes[i].mesh = mesh;
+        list->passes[i].mesh = list->passes[i].fill.color.a > 0.0f ? NULL : mesh;
     return (camber_frame){.width = scene->view.width,
                           .height = scene->view.height,
                           .background = scene->plan.background,

@@ -85,6 +85,8 @@ void camber_features_destroy(camber_features *features) {
     camber_free(context, features->progress);
     camber_free(context, features->importance);
     camber_free(context, features->points);
+    if (features->sprites)
+        features->free_sprites(features->sprites);
     camber_free(context, features);
 }
 

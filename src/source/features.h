@@ -60,6 +60,9 @@ struct camber_features {
     camber_features_stats stats;
     camber_features_times times;
 
+    struct camber_sprites *sprites;                       /* what patterns are of. NULL: not read */
+    void (*free_sprites)(struct camber_sprites *sprites); /* the module that reads files does without sprites */
+
     void *interned; /* features.c: strings and classes, hashed */
 };
 

@@ -1,5 +1,6 @@
 #include "source/sprite.h"
 
+#include "source/features.h"
 #include "source/url.h"
 #include "style/json.h"
 
@@ -8,7 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { SIDE_MAX_PX = 16384 };
+enum { SIDE_MAX_PX = CAMBER_IMAGE_SIDE_MAX, AREA_MAX_PX = 1 << 24, MISSED_MAX = 16 };
 
 /* ---- Sheets ---- */
 
@@ -22,9 +23,9 @@ static void premultiply(camber_sprite_sheet *sheet) {
 
 /* libpng's short form: it says what is wrong and jumps nowhere. */
 static camber_status decode(camber_context *context, const char *path, png_image *image, camber_sprite_sheet *sheet) {
-    if (image->width > SIDE_MAX_PX || image->height > SIDE_MAX_PX)
-        return camber_fail(context, CAMBER_ERROR_LIMIT, "%s: %u x %u px; cut it to %d px a side", path, image->width,
-                           image->height, SIDE_MAX_PX);
+    if (image->width > SIDE_MAX_PX || image->height > SIDE_MAX_PX || image->width > AREA_MAX_PX / image->height)
+        return camber_fail(context, CAMBER_ERROR_LIMIT, "%s: %u x %u px; cut it to %d px a side and 4096 x 4096 in all",
+                           path, image->width, image->height, (int)SIDE_MAX_PX);
     image->format = PNG_FORMAT_RGBA;
     uint8_t *rgba = camber_alloc(context, (size_t)image->width * image->height, 4);
     if (!rgba)
@@ -62,11 +63,11 @@ typedef struct index_reader {
     size_t sheet;
 } index_reader;
 
-/* A whole number of px; one that is missing is 0. */
-static bool read_px(const json_t *image, const char *key, uint32_t *px) {
+/* A whole number of px. */
+static bool read_px(const json_t *image, const char *key, double least, uint32_t *px) {
     const json_t *json = json_object_get(image, key);
     const double value = json_number_value(json);
-    if ((json && !json_is_number(json)) || !(value >= 0.0 && value <= SIDE_MAX_PX) || value != floor(value))
+    if (!json_is_number(json) || !(value >= least && value <= SIDE_MAX_PX) || value > floor(value))
         return false;
     *px = (uint32_t)value;
     return true;
@@ -80,10 +81,12 @@ static camber_status add_image(index_reader *r, const char *name, const json_t *
     camber_sprite_image image = {.sheet = r->sheet,
                                  .pixel_ratio = ratio ? json_number_value(ratio) : 1.0,
                                  .sdf = json_is_true(json_object_get(json, "sdf"))};
-    if (!read_px(json, "x", &image.x) || !read_px(json, "y", &image.y) || !read_px(json, "width", &image.width) ||
-        !read_px(json, "height", &image.height) || !(image.pixel_ratio > 0.0 && isfinite(image.pixel_ratio)))
+    if (!read_px(json, "x", 0.0, &image.x) || !read_px(json, "y", 0.0, &image.y) ||
+        !read_px(json, "width", 1.0, &image.width) || !read_px(json, "height", 1.0, &image.height) ||
+        !(image.pixel_ratio >= 1e-3 && image.pixel_ratio <= 1e3))
         return camber_fail(context, CAMBER_ERROR_INPUT,
-                           "%s: /%.64s: expected x, y, width and height in whole pixels and a pixelRatio; correct them",
+                           "%s: /%.64s: expected x, y, width and height in whole pixels, these from 1 on, and a "
+                           "pixelRatio of 0.001 to 1000; correct them",
                            r->path, name);
     if (image.x + image.width > sheet->width || image.y + image.height > sheet->height)
         return camber_fail(context, CAMBER_ERROR_INPUT,
@@ -151,14 +154,32 @@ static camber_status load_at(camber_sprites *sprites, const camber_style_sprite 
     return status;
 }
 
-/* A sprite without a large form is drawn from its small one. */
-static bool has_large(camber_context *context, const char *path) {
-    char *sheet = with_tail(context, path, "@2x.png");
-    FILE *file = sheet ? fopen(sheet, "rb") : NULL;
+static camber_status find_file(camber_context *context, const char *path, const char *tail, bool *found) {
+    char *whole = with_tail(context, path, tail);
+    if (!whole)
+        return CAMBER_ERROR_MEMORY;
+    FILE *file = fopen(whole, "rb");
     if (file)
         fclose(file);
-    camber_free(context, sheet);
-    return file != NULL;
+    *found = file != NULL;
+    camber_free(context, whole);
+    return CAMBER_OK;
+}
+
+/* A sprite without a large form is drawn from its small one. */
+static camber_status load_any(camber_sprites *sprites, const camber_style_sprite *sprite, const char *path,
+                              double ratio) {
+    bool large = false, small = false;
+    camber_status status = CAMBER_OK;
+    if (ratio > 1.0)
+        status = find_file(sprites->context, path, "@2x.png", &large);
+    if (status == CAMBER_OK && !large)
+        status = find_file(sprites->context, path, ".png", &small);
+    if (status != CAMBER_OK || large || small)
+        return status == CAMBER_OK ? load_at(sprites, sprite, path, large) : status;
+    camber_log(sprites->context, CAMBER_LOG_WARNING,
+               "sprite: %s.png is not there; what is drawn with its images is left out", path);
+    return CAMBER_OK;
 }
 
 static camber_status load(camber_sprites *sprites, const camber_style *style, const char *base_path, double ratio) {
@@ -168,7 +189,7 @@ static camber_status load(camber_sprites *sprites, const camber_style *style, co
         camber_status status = camber_url_resolve(sprites->context, "sprite", sprite->url, base_path, &url);
         if (status != CAMBER_OK)
             return status;
-        status = load_at(sprites, sprite, url.path, ratio > 1.0 && has_large(sprites->context, url.path));
+        status = load_any(sprites, sprite, url.path, ratio);
         camber_free(sprites->context, url.path);
         if (status != CAMBER_OK)
             return status;
@@ -207,6 +228,9 @@ void camber_sprites_destroy(camber_sprites *sprites) {
         camber_free(sprites->context, sprites->images[i].name);
     for (size_t i = 0; sprites->sheets && i < sprites->sheet_count; i++)
         camber_free(sprites->context, sprites->sheets[i].rgba);
+    for (size_t i = 0; i < sprites->missed_count; i++)
+        camber_free(sprites->context, sprites->missed[i]);
+    camber_free(sprites->context, sprites->missed);
     camber_free(sprites->context, sprites->images);
     camber_free(sprites->context, sprites->sheets);
     camber_free(sprites->context, sprites);
@@ -222,4 +246,50 @@ const camber_sprite_image *camber_sprites_find(const camber_sprites *sprites, co
             high = middle;
     }
     return low < sprites->image_count && strcmp(sprites->images[low].name, name) == 0 ? sprites->images + low : NULL;
+}
+
+bool camber_sprites_miss(camber_sprites *sprites, const char *name) {
+    for (size_t i = 0; i < sprites->missed_count; i++)
+        if (strcmp(sprites->missed[i], name) == 0)
+            return true;
+    if (sprites->missed_count == MISSED_MAX)
+        return true;
+    char *kept = camber_copy_string(sprites->context, name);
+    if (!kept || !camber_grow(sprites->context, &sprites->missed, &sprites->missed_capacity, sprites->missed_count + 1,
+                              sizeof *sprites->missed)) {
+        camber_free(sprites->context, kept);
+        return false;
+    }
+    sprites->missed[sprites->missed_count++] = kept;
+    camber_log(sprites->context, CAMBER_LOG_WARNING,
+               "sprite: there is no image \"%.64s\"; what is drawn with it is left out%s", name,
+               sprites->missed_count == MISSED_MAX ? ", and so are others that are not told" : "");
+    return true;
+}
+
+/* ---- Of features ---- */
+
+static bool has_patterns(const camber_style *style) {
+    for (size_t i = 0; i < style->layer_count; i++) {
+        const camber_style_layer *layer = style->layers + i;
+        if (layer->visible && (layer->properties[CAMBER_LINE_PATTERN] || layer->properties[CAMBER_BACKGROUND_PATTERN]))
+            return true;
+    }
+    return false;
+}
+
+camber_status camber_features_read_sprites(camber_features *features, double ratio, const char *base_path) {
+    camber_sprites *sprites = NULL;
+    if (!(ratio >= 0.0 && isfinite(ratio)))
+        return camber_fail(features->context, CAMBER_ERROR_ARGUMENT, "sprites: a ratio of %g; choose one above 0",
+                           ratio);
+    if (!has_patterns(features->style))
+        return CAMBER_OK;
+    const camber_status status = camber_sprites_load(features->context, features->style, base_path, ratio, &sprites);
+    if (status != CAMBER_OK)
+        return status;
+    camber_sprites_destroy(features->sprites);
+    features->sprites = sprites;
+    features->free_sprites = camber_sprites_destroy;
+    return CAMBER_OK;
 }

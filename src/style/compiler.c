@@ -308,8 +308,9 @@ static bool is_foldable(const camber_expression *e, const camber_node *node) {
         node->op == CAMBER_OP_COLLATOR || (node->op >= CAMBER_OP_PROPERTIES && node->op <= CAMBER_OP_LINE_PROGRESS))
         return false;
     for (uint32_t i = 0; i < node->count; i++)
-        if (e->nodes[e->links[node->first + i]].op != CAMBER_OP_CONSTANT)
-            return false;
+        if (e->nodes[e->links[node->first + i]].op != CAMBER_OP_CONSTANT ||
+            (node->op == CAMBER_OP_COALESCE && e->nodes[e->links[node->first + i]].type.type == CAMBER_TYPE_IMAGE))
+            return false; /* which images there are is seen later */
     return true;
 }
 

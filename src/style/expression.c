@@ -255,11 +255,25 @@ static bool evaluate_match(camber_evaluation *e, const camber_node *node, camber
     return true;
 }
 
+static bool is_there(const camber_evaluation *e, const camber_node *operand, const camber_value *value) {
+    if (value->type == CAMBER_VALUE_NULL || !e->images || operand->type.type != CAMBER_TYPE_IMAGE)
+        return value->type != CAMBER_VALUE_NULL;
+    return value->type == CAMBER_VALUE_STRING && e->images->find(e->images->user, value->string) != 0;
+}
+
+/* Of images that are all missing the first is the one that is missed. */
 static bool evaluate_coalesce(camber_evaluation *e, const camber_node *node, camber_value *value) {
+    camber_value first = nothing;
     *value = nothing;
-    for (uint32_t i = 0; i < node->count && value->type == CAMBER_VALUE_NULL; i++)
+    for (uint32_t i = 0; i < node->count; i++) {
         if (!camber_evaluate_operand(e, node, i, value))
             return false;
+        if (is_there(e, &e->expression->nodes[e->expression->links[node->first + i]], value))
+            return true;
+        if (first.type == CAMBER_VALUE_NULL)
+            first = *value;
+    }
+    *value = first;
     return true;
 }
 
@@ -324,6 +338,7 @@ void camber_evaluation_begin(camber_evaluation *evaluation, double zoom, const c
     evaluation->zoom = zoom;
     evaluation->line_progress = 0.0;
     evaluation->feature = feature;
+    evaluation->images = NULL;
     evaluation->cause = NULL;
     evaluation->arena = &evaluation->own;
     evaluation->own = (camber_arena){.at = evaluation->room, .left = sizeof evaluation->room};

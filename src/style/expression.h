@@ -57,7 +57,7 @@ typedef enum camber_op {
     CAMBER_OP_CASE,     /* condition, output, ..., otherwise */
     CAMBER_OP_MATCH,    /* input, output, ..., otherwise; index, index_count: labels, sorted */
     CAMBER_OP_AMONG,    /* input; index, index_count: labels, sorted */
-    CAMBER_OP_COALESCE, /* the first that is not null */
+    CAMBER_OP_COALESCE, /* the first that is not null, nor an image that is not there */
     /* texts.c */
     CAMBER_OP_IN,
     CAMBER_OP_INDEX_OF,
@@ -151,6 +151,7 @@ struct camber_expression {
 typedef struct camber_evaluation {
     double zoom, line_progress;
     const camber_feature_view *feature;  /* NULL: none, and what reads it fails */
+    const camber_style_images *images;   /* that there are. NULL: any that is named */
     const char *cause;                   /* why it failed, a phrase */
     const camber_expression *expression; /* from here on set by the evaluation */
     camber_arena *arena;

@@ -146,6 +146,27 @@ camber_layer_paint camber_style_layer_paint(const camber_style_layer *layer, dou
     return camber_layer_look_paint(&look, feature);
 }
 
+bool camber_style_layer_pattern(const camber_style_layer *layer, double zoom, const camber_feature_view *feature,
+                                const camber_style_images *images, uint32_t *image) {
+    const bool line = layer->kind == CAMBER_LAYER_LINE;
+    const camber_expression *pattern = layer->properties[line ? CAMBER_LINE_PATTERN : CAMBER_BACKGROUND_PATTERN];
+    camber_evaluation evaluation;
+    camber_value value;
+    *image = 0;
+    if (!pattern)
+        return false;
+    camber_evaluation_begin(&evaluation, zoom, feature);
+    evaluation.images = images;
+    if (camber_expression_evaluate(pattern, &evaluation, &value) && value.type == CAMBER_VALUE_STRING &&
+        value.string[0]) {
+        *image = images->find(images->user, value.string);
+        if (!*image)
+            images->missing(images->user, value.string);
+    }
+    camber_evaluation_end(&evaluation);
+    return true;
+}
+
 bool camber_layer_look_shares(const camber_layer_look *a, const camber_layer_look *b) {
     const uint32_t geometry = (1u << CAMBER_LINE_GEOMETRY) - 1;
     if ((a->by_feature & geometry) != (b->by_feature & geometry))

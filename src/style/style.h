@@ -22,6 +22,13 @@ typedef struct camber_feature_view {
 
 typedef struct camber_expression camber_expression; /* expression.h */
 
+/* The images that patterns may name. */
+typedef struct camber_style_images {
+    uint32_t (*find)(void *user, const char *name); /* counted from 1. 0: there is none of this name */
+    void (*missing)(void *user, const char *name);
+    void *user;
+} camber_style_images;
+
 typedef enum camber_layer_kind {
     CAMBER_LAYER_BACKGROUND,
     CAMBER_LAYER_LINE,
@@ -172,6 +179,11 @@ camber_layer_paint camber_style_layer_paint(const camber_style_layer *layer, dou
                                             const camber_feature_view *feature);
 /* Of a line without a colour for its border. */
 camber_color camber_border_color(camber_color color);
+/* The image that a layer's line-pattern or background-pattern names at a zoom, of those that find counts from 1; 0: it
+ * names none, or one that is not there, of which missing is told. false: the layer has no pattern. feature may be NULL
+ * for a background. */
+bool camber_style_layer_pattern(const camber_style_layer *layer, double zoom, const camber_feature_view *feature,
+                                const camber_style_images *images, uint32_t *image);
 /* Whether two layers give each feature the same geometry: caps, joins, limits, offset, order. */
 bool camber_layer_look_shares(const camber_layer_look *a, const camber_layer_look *b);
 

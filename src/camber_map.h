@@ -242,8 +242,9 @@ CAMBER_API camber_scene_info camber_scene_get_view(const camber_scene *scene);
 /* Counts are 0 where memory for the parts below ran out. */
 CAMBER_API camber_scene_info camber_scene_get_info(const camber_scene *scene);
 
-/* What the view sees, on the host and owned by the scene: made by the CPU twin, with each piece by itself. After a
- * move, and of a scene on the device, the first of these calls makes it: NULL where memory ran out. */
+/* What the view sees, on the host and owned by the scene: made by the CPU twin, with each piece by itself, so that what
+ * lies along lines (dashes, gradients, trims) is not drawn of these. After a move, and of a scene on the device, the
+ * first of these calls makes it: NULL where memory ran out. */
 CAMBER_API const camber_polylines *camber_scene_polylines(const camber_scene *scene);
 CAMBER_API const camber_lines *camber_scene_lines(const camber_scene *scene);
 /* The row of each polyline, an index into the strokes. */

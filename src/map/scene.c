@@ -126,6 +126,18 @@ static size_t find_runs(const numbering *n, layer_run *runs, size_t *layer_count
     return count;
 }
 
+/* Pieces do not know where their lines begin: a gradient's have the colour of its middle. */
+static void forget_progress(const camber_plan *plan, camber_paint *paint) {
+    if (paint->ramp) {
+        const camber_ramp *ramp = plan->ramps + paint->ramp - 1;
+        const float alpha = paint->color.a;
+        paint->color = ramp->stops[ramp->count / 2].color;
+        paint->color.a *= alpha;
+    }
+    paint->dash = paint->ramp = paint->pattern = 0;
+    paint->trim_start = paint->trim_end = 0.0f;
+}
+
 /* The paints of a run: those below its end, of width 0 where it does not draw them. */
 static void put_paints(const numbering *n, const layer_run *run, camber_paint *paints) {
     memset(paints, 0, run->end_paint * sizeof *paints);
@@ -137,8 +149,8 @@ static void put_paints(const numbering *n, const layer_run *run, camber_paint *p
             continue;
         for (size_t k = first_of(n, set); k < end_of(n, set); k++) {
             paints[k] = paint_of(n, layer, k);
-            if (!n->by_pair) /* pieces do not know where their lines begin */
-                paints[k].dash = paints[k].ramp = paints[k].pattern = 0;
+            if (!n->by_pair)
+                forget_progress(n->plan, paints + k);
         }
     }
 }

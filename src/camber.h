@@ -306,19 +306,32 @@ typedef enum camber_sharing {
     CAMBER_SHARING_COPY,      /* through host memory; works anywhere */
 } camber_sharing;
 
+/* What draws. */
+typedef enum camber_draw {
+    CAMBER_DRAW_AUTO = 0, /* GL where there is a surface, else OpenCL */
+    CAMBER_DRAW_GL,       /* GLES shaders */
+    CAMBER_DRAW_CL, /* OpenCL kernels, which need no surface; not yet dashes, gaps, blur, trims, gradients, patterns,
+                       fills, pitch */
+} camber_draw;
+
 typedef struct camber_renderer_desc {
     /* Asking for one path and not AUTO fails with CAMBER_ERROR_DEVICE where it does not work. */
     camber_sharing sharing;
+    camber_draw draw;
 } camber_renderer_desc;
 
 typedef struct camber_renderer camber_renderer;
 
-/* desc may be NULL. Returns CAMBER_ERROR_DEVICE (the sharing path asked for does not work), CAMBER_ERROR_MEMORY.
- * Shaders are built when they are first used. */
+/* desc may be NULL, and so may the surface where OpenCL draws. Returns CAMBER_ERROR_DEVICE (the sharing path asked for
+ * does not work), CAMBER_ERROR_MEMORY. Shaders are built when they are first used. */
 CAMBER_API camber_status camber_renderer_create(camber_device *device, camber_surface *surface,
                                                 const camber_renderer_desc *desc, camber_renderer **renderer);
 CAMBER_API void camber_renderer_destroy(camber_renderer *renderer);
+/* CAMBER_SHARING_AUTO where OpenCL draws: nothing is shared. */
 CAMBER_API camber_sharing camber_renderer_get_sharing(const camber_renderer *renderer);
+CAMBER_API camber_draw camber_renderer_get_draw(const camber_renderer *renderer);
+/* "auto", "gl" or "cl". */
+CAMBER_API const char *camber_draw_name(camber_draw draw);
 /* "cl_khr_gl_sharing", "zero copy" or "copy". */
 CAMBER_API const char *camber_sharing_name(camber_sharing sharing);
 

@@ -166,6 +166,12 @@ static inline bool device_is_there(void) {
     return count > 0;
 }
 
+/* Whether OpenCL is to draw what the test draws: its second run, with CAMBER_TEST_DRAW=cl. */
+static inline bool draws_in_cl(void) {
+    const char *wish = getenv("CAMBER_TEST_DRAW");
+    return wish && strcmp(wish, "cl") == 0;
+}
+
 /* ---- Sinks ---- */
 
 typedef struct byte_list {

@@ -88,11 +88,23 @@ static void write_difference(const char *path, const picture *a, const picture *
     picture_free(&d);
 }
 
+/* OpenCL rounds once where GL rounds at every line, draws kites and fans as it draws strips, and gives single pixels on
+ * the bisector of a sharp join to the other segment. */
+static bool is_close_in_cl(const char *name, const picture *drawn, const picture *expected) {
+    static const double MEAN_MAX = 0.2;
+    const difference d = picture_compare(drawn, expected);
+    printf("# %-40s off GL's by %.4f of 255 on average, %d at most, %zu pixels past 8\n", name, d.mean, d.most,
+           d.past_8);
+    return d.mean < MEAN_MAX && d.past_8 <= d.drawn / PIXELS_A_MISS;
+}
+
 static bool is_close(const char *name, const picture *drawn, const picture *expected) {
     if (drawn->width != expected->width || drawn->height != expected->height) {
         printf("%s: %u x %u px, not %u x %u\n", name, drawn->width, drawn->height, expected->width, expected->height);
         return false;
     }
+    if (draws_in_cl())
+        return is_close_in_cl(name, drawn, expected);
     const size_t pixels = (size_t)drawn->width * drawn->height;
     size_t off = 0;
     int most = 0;

@@ -36,6 +36,11 @@ lint_step(kernels_network
           -Wno-unused-function -Wno-unused-parameter -Wno-ignored-pragmas -D__OPENCL_VERSION__=120 ${CMAKE_BINARY_DIR}/src/network.cl
   DEPENDS ${CMAKE_BINARY_DIR}/src/network.cl)
 
+lint_step(kernels_cover
+  COMMAND ${CLANG} -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only -Wall -Wextra -Werror
+          -Wno-unused-function -Wno-unused-parameter -Wno-ignored-pragmas -D__OPENCL_VERSION__=120 ${CMAKE_BINARY_DIR}/src/cover.cl
+  DEPENDS ${CMAKE_BINARY_DIR}/src/cover.cl)
+
 foreach(header camber.h camber_map.h)
   lint_step(c_${header} COMMAND ${CLANG} -std=c11 -pedantic -Wall -Wextra -Werror -fsyntax-only -x c ${PROJECT_SOURCE_DIR}/src/${header}
             DEPENDS ${PROJECT_SOURCE_DIR}/src/camber.h ${PROJECT_SOURCE_DIR}/src/camber_map.h)

@@ -8,7 +8,7 @@ enum { BACKENDS = 2 };
 static const camber_backend BACKEND[BACKENDS] = {CAMBER_BACKEND_EGL, CAMBER_BACKEND_OSMESA};
 static const char *const BACKEND_NAME[BACKENDS] = {"EGL", "OSMesa"};
 
-/* All back ends that are there, each with a renderer. */
+/* All back ends that are there, each with a renderer; where OpenCL draws, its renderer stands for the first. */
 typedef struct studio {
     host h;
     camber_context *context;
@@ -23,6 +23,10 @@ static inline bool studio_open(studio *s) {
     bool any = false;
     if (camber_device_create(s->context, NULL, NULL, &s->device) != CAMBER_OK)
         return false;
+    if (draws_in_cl()) {
+        s->h.errors = 0;
+        return camber_renderer_create(s->device, NULL, NULL, &s->renderer[0]) == CAMBER_OK;
+    }
     for (int i = 0; i < BACKENDS; i++) {
         const camber_surface_desc desc = {BACKEND[i]};
         if (camber_surface_create(s->context, &desc, &s->surface[i]) == CAMBER_OK &&

@@ -1,3 +1,5 @@
+#include "core.h"
+
 #include "sheet.h"
 
 #include <math.h>
@@ -61,7 +63,7 @@ bool sheet_open(camber_method method, sheet **opened) {
     s->picture = must(malloc((size_t)SIDE_PX * SIDE_PX * 4));
     *opened = s;
     return camber_context_create(&desc, &s->context) == CAMBER_OK &&
-           camber_surface_create(s->context, NULL, &s->surface) == CAMBER_OK &&
+           (draws_in_cl() || camber_surface_create(s->context, NULL, &s->surface) == CAMBER_OK) &&
            camber_device_create(s->context, NULL, s->surface, &s->device) == CAMBER_OK &&
            camber_renderer_create(s->device, s->surface, NULL, &s->renderer) == CAMBER_OK &&
            camber_mesh_create(s->device, s->renderer, &s->mesh) == CAMBER_OK;

@@ -10,6 +10,8 @@ extern const char camber_measure_kernels_source[]; /* those of measures */
 extern const unsigned long camber_measure_kernels_source_size;
 extern const char camber_offset_kernels_source[]; /* those of offsets */
 extern const unsigned long camber_offset_kernels_source_size;
+extern const char camber_cover_kernels_source[]; /* those that draw */
+extern const unsigned long camber_cover_kernels_source_size;
 extern const char camber_edge_glsl[]; /* shaders/ without their #version line */
 extern const unsigned long camber_edge_glsl_size;
 extern const char camber_stroke_vert[], camber_stroke_frag[];

@@ -243,12 +243,16 @@ static camber_status end(camber_renderer *renderer, camber_flight *flight, cambe
 camber_status camber_render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows, void *user,
                             camber_frame_stats *stats) {
     assert(renderer->flight_count == 0);
-    camber_flight flight;
+    camber_flight flight = {0};
     camber_status status = check_frame(renderer, frame);
-    if (status == CAMBER_OK)
-        status = begin(renderer, frame, CAMBER_TARGET_PICTURE, &flight);
-    if (status == CAMBER_OK)
-        status = end(renderer, &flight, rows, user);
+    if (status == CAMBER_OK && renderer->cover) {
+        status = camber_covered_render(renderer, frame, rows, user, &flight.stats);
+    } else {
+        if (status == CAMBER_OK)
+            status = begin(renderer, frame, CAMBER_TARGET_PICTURE, &flight);
+        if (status == CAMBER_OK)
+            status = end(renderer, &flight, rows, user);
+    }
     if (stats && status == CAMBER_OK)
         *stats = flight.stats;
     return status;
@@ -283,6 +287,8 @@ static camber_status keep_passes(camber_renderer *renderer, camber_flight *fligh
 static void drop_passes(camber_renderer *renderer, camber_flight *flight) {
     camber_free(renderer->share.device->context, flight->paints);
     camber_free(renderer->share.device->context, flight->passes);
+    camber_free(renderer->share.device->context, flight->rgba);
+    flight->rgba = NULL;
     flight->paints = NULL;
     flight->passes = NULL;
 }
@@ -295,7 +301,8 @@ camber_status camber_render_begin(camber_renderer *renderer, const camber_frame 
     camber_flight *flight = renderer->flights + at;
     camber_status status = check_frame(renderer, frame);
     if (status == CAMBER_OK)
-        status = begin(renderer, frame, targets[at], flight);
+        status = renderer->cover ? camber_covered_begin(renderer, frame, flight)
+                                 : begin(renderer, frame, targets[at], flight);
     if (status != CAMBER_OK)
         return status;
     if (!has_one_piece(flight))
@@ -313,7 +320,8 @@ camber_status camber_render_end(camber_renderer *renderer, camber_rows_fn *rows,
                                 camber_frame_stats *stats) {
     assert(renderer->flight_count > 0);
     camber_flight *flight = renderer->flights + renderer->first_flight;
-    const camber_status status = end(renderer, flight, rows, user);
+    const camber_status status =
+        renderer->cover ? camber_covered_end(renderer, flight, rows, user) : end(renderer, flight, rows, user);
     drop_passes(renderer, flight);
     renderer->first_flight = (renderer->first_flight + 1) % CAMBER_FRAMES_IN_FLIGHT;
     renderer->flight_count--;

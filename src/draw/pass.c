@@ -115,8 +115,7 @@ static bool is_translucent(const camber_ramp *ramp) {
     return false;
 }
 
-/* The longest run from a polyline on. Rows that are not drawn belong to any run. */
-static camber_run next_run(const camber_pass *pass, size_t first, size_t end) {
+camber_run camber_pass_next_run(const camber_pass *pass, size_t first, size_t end) {
     const uint32_t *rows = pass->mesh->polyline_rows;
     const bool layered = pass->overlap != CAMBER_OVERLAP_ACCUMULATE;
     camber_run run = {.pass = pass, .first = first, .end = first, .alpha = 1.0f, .opacity = 1.0f, .one_color = true};
@@ -160,7 +159,7 @@ static camber_status draw_runs(camber_renderer *renderer, const camber_pass *pas
                                const camber_piece *piece) {
     camber_status status = CAMBER_OK;
     for (size_t first = pass->first_polyline; first < end && status == CAMBER_OK;) {
-        const camber_run run = next_run(pass, first, end);
+        const camber_run run = camber_pass_next_run(pass, first, end);
         first = run.end;
         status = draw_run(renderer, &run, piece);
     }
@@ -170,7 +169,7 @@ static camber_status draw_runs(camber_renderer *renderer, const camber_pass *pas
 /* A pass with an opacity: its one run's layer takes it, or a layer that all its runs are drawn into. */
 static camber_status draw_group(camber_renderer *renderer, const camber_pass *pass, size_t end,
                                 const camber_piece *piece) {
-    camber_run run = next_run(pass, pass->first_polyline, end);
+    camber_run run = camber_pass_next_run(pass, pass->first_polyline, end);
     if (run.end == end && pass->overlap != CAMBER_OVERLAP_ACCUMULATE) {
         run.opacity = pass->opacity;
         run.layered = true;

@@ -1,36 +1,10 @@
 /* Renderers, and meshes that they draw. */
 #include "draw/renderer.h"
+#include "cover/cover.h"
 
 #include <assert.h>
 
-camber_status camber_renderer_create(camber_device *device, camber_surface *surface, const camber_renderer_desc *desc,
-                                     camber_renderer **renderer) {
-    camber_renderer *made = camber_alloc_zero(device->context, 1, sizeof *made);
-    if (!made)
-        return CAMBER_ERROR_MEMORY;
-    made->share = (camber_share){.device = device, .surface = surface};
-    camber_status status = camber_surface_make_current(surface);
-    if (status == CAMBER_OK)
-        status = camber_share_choose(&made->share, desc ? desc->sharing : CAMBER_SHARING_AUTO, &made->path);
-    if (status != CAMBER_OK) {
-        camber_free(device->context, made);
-        return status;
-    }
-    surface->gl.GenVertexArrays(1, &made->vertex_array);
-    surface->gl.GenTextures(1, &made->record_texture);
-    status = camber_surface_check(surface, "opening");
-    if (status != CAMBER_OK) {
-        camber_renderer_destroy(made);
-        return status;
-    }
-    *renderer = made;
-    return CAMBER_OK;
-}
-
-void camber_renderer_destroy(camber_renderer *renderer) {
-    if (!renderer)
-        return;
-    camber_context *context = renderer->share.device->context;
+static void close_gl(camber_renderer *renderer) {
     const camber_gl *gl = &renderer->share.surface->gl;
     const bool is_current = camber_surface_try_current(renderer->share.surface);
     camber_frames_forget(renderer, is_current);
@@ -47,6 +21,50 @@ void camber_renderer_destroy(camber_renderer *renderer) {
         gl->DeleteTextures(1, &renderer->record_texture);
         gl->DeleteVertexArrays(1, &renderer->vertex_array);
     }
+}
+
+static camber_status open_gl(camber_renderer *made, camber_sharing sharing) {
+    camber_surface *surface = made->share.surface;
+    camber_status status = camber_surface_make_current(surface);
+    if (status == CAMBER_OK)
+        status = camber_share_choose(&made->share, sharing, &made->path);
+    if (status != CAMBER_OK)
+        return status;
+    surface->gl.GenVertexArrays(1, &made->vertex_array);
+    surface->gl.GenTextures(1, &made->record_texture);
+    status = camber_surface_check(surface, "opening");
+    if (status != CAMBER_OK)
+        close_gl(made);
+    return status;
+}
+
+camber_status camber_renderer_create(camber_device *device, camber_surface *surface, const camber_renderer_desc *desc,
+                                     camber_renderer **renderer) {
+    const camber_renderer_desc full = desc ? *desc : (camber_renderer_desc){0};
+    const bool in_cl = full.draw == CAMBER_DRAW_CL || (full.draw == CAMBER_DRAW_AUTO && !surface);
+    assert(surface || in_cl);
+    camber_renderer *made = camber_alloc_zero(device->context, 1, sizeof *made);
+    if (!made)
+        return CAMBER_ERROR_MEMORY;
+    made->share = (camber_share){.device = device, .surface = in_cl ? NULL : surface};
+    const camber_status status = in_cl ? camber_cover_create(device, &made->cover) : open_gl(made, full.sharing);
+    if (status != CAMBER_OK) {
+        camber_free(device->context, made);
+        return status;
+    }
+    *renderer = made;
+    return CAMBER_OK;
+}
+
+void camber_renderer_destroy(camber_renderer *renderer) {
+    if (!renderer)
+        return;
+    camber_context *context = renderer->share.device->context;
+    if (renderer->cover)
+        camber_frames_forget(renderer, false);
+    else
+        close_gl(renderer);
+    camber_cover_destroy(renderer->cover);
     camber_free(context, renderer->batch.counts);
     camber_free(context, renderer->batch.firsts);
     camber_free(context, renderer->batch.ranges);
@@ -57,7 +75,20 @@ void camber_renderer_destroy(camber_renderer *renderer) {
 }
 
 camber_sharing camber_renderer_get_sharing(const camber_renderer *renderer) {
-    return renderer->path->sharing;
+    return renderer->path ? renderer->path->sharing : CAMBER_SHARING_AUTO;
+}
+
+camber_draw camber_renderer_get_draw(const camber_renderer *renderer) {
+    return renderer->cover ? CAMBER_DRAW_CL : CAMBER_DRAW_GL;
+}
+
+const char *camber_draw_name(camber_draw draw) {
+    switch (draw) {
+    case CAMBER_DRAW_AUTO: return "auto";
+    case CAMBER_DRAW_GL: return "gl";
+    case CAMBER_DRAW_CL: return "cl";
+    }
+    return "unknown";
 }
 
 /* ---- Meshes that a renderer draws: the GL context is current before GL buffers are touched ---- */
@@ -92,10 +123,11 @@ static const camber_buffer_ops current_ops = {current_reserve, current_begin, cu
 
 camber_status camber_mesh_create(camber_device *device, camber_renderer *renderer, camber_mesh **mesh) {
     assert(!renderer || renderer->share.device == device);
-    const camber_status status = camber_mesh_create_on(device, renderer ? &current_ops : NULL, renderer, mesh);
+    const bool in_gl = renderer && !renderer->cover;
+    const camber_status status = camber_mesh_create_on(device, in_gl ? &current_ops : NULL, renderer, mesh);
     if (status == CAMBER_OK)
         (*mesh)->renderer = renderer;
-    if (status == CAMBER_OK && renderer && renderer->path->sharing == CAMBER_SHARING_COPY)
+    if (status == CAMBER_OK && in_gl && renderer->path->sharing == CAMBER_SHARING_COPY)
         (*mesh)->buffer_copies = 2;
     return status;
 }

@@ -146,10 +146,12 @@ typedef struct camber_flight {
     camber_pass *passes; /* of several pieces: the frame's own */
     camber_paint *paints;
     camber_frame_stats stats;
+    uint8_t *rgba; /* of a frame that kernels draw: the picture */
 } camber_flight;
 
 struct camber_renderer {
     camber_share share;
+    struct camber_cover *cover; /* draws in OpenCL; no surface then, and nothing of what follows. NULL: GL draws */
     const camber_share_path *path;
     camber_shader strokes[CAMBER_STROKES_MAX]; /* in the order they were built */
     size_t strokes_built;
@@ -219,6 +221,16 @@ void camber_patterns_bind(camber_renderer *renderer);
 /* The caller's images may be others from here on. */
 void camber_patterns_forget_images(camber_renderer *renderer);
 void camber_patterns_release(camber_renderer *renderer, bool is_current);
+
+/* The longest run from a polyline on. Rows that are not drawn belong to any run. */
+camber_run camber_pass_next_run(const camber_pass *pass, size_t first, size_t end);
+
+/* covered.c: frames that kernels draw. */
+camber_status camber_covered_render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows,
+                                    void *user, camber_frame_stats *stats);
+/* What one area holds is drawn at once, and kept; else all of it when the frame ends. */
+camber_status camber_covered_begin(camber_renderer *renderer, const camber_frame *frame, camber_flight *flight);
+camber_status camber_covered_end(camber_renderer *renderer, camber_flight *flight, camber_rows_fn *rows, void *user);
 
 /* rows.c: the row texture. */
 bool camber_renderer_holds_rows(const camber_renderer *renderer, size_t row_count);

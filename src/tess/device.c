@@ -312,6 +312,7 @@ void camber_device_destroy(camber_device *device) {
     camber_program_destroy(device->context, device->measures);
     for (size_t i = 0; i < 2; i++)
         camber_program_destroy(device->context, device->offset_programs[i]);
+    camber_program_destroy(device->context, device->cover);
     if (device->queue)
         clReleaseCommandQueue(device->queue);
     if (device->cl)

@@ -14,6 +14,7 @@ typedef enum program_kind {
     PROGRAM_NETWORK,
     PROGRAM_MEASURES,
     PROGRAM_OFFSETS,
+    PROGRAM_COVER,
 } program_kind;
 
 /* What a program is made of. */
@@ -110,7 +111,10 @@ static camber_status make_kernels(camber_device *device, camber_program *program
                   {"classify", &program->classify, PROGRAM_METHOD}, {"scan", &program->scan, PROGRAM_METHOD},
                   {"emit", &program->emit, PROGRAM_METHOD},         {"tally", &program->tally, PROGRAM_MEASURES},
                   {"measure", &program->measure, PROGRAM_MEASURES}, {"span", &program->span, PROGRAM_OFFSETS},
-                  {"tell", &program->tell, PROGRAM_OFFSETS},        {"shift", &program->shift, PROGRAM_OFFSETS}};
+                  {"tell", &program->tell, PROGRAM_OFFSETS},        {"shift", &program->shift, PROGRAM_OFFSETS},
+                  {"shape", &program->shape, PROGRAM_COVER},        {"count", &program->count, PROGRAM_COVER},
+                  {"total", &program->total, PROGRAM_COVER},        {"fill", &program->fill, PROGRAM_COVER},
+                  {"cover", &program->cover, PROGRAM_COVER}};
     for (size_t i = 0; i < sizeof stages / sizeof *stages; i++) {
         cl_int code;
         if (stages[i].kind != kind)
@@ -181,6 +185,12 @@ camber_status camber_device_offsets(camber_device *device, bool measured, camber
     return use_program(device, &from, &device->offset_programs[measured], program);
 }
 
+camber_status camber_device_cover_program(camber_device *device, camber_program **program) {
+    recipe from = {PROGRAM_COVER, "drawing", camber_cover_kernels_source, camber_cover_kernels_source_size, ""};
+    set_options(device, -1, false, &from);
+    return use_program(device, &from, &device->cover, program);
+}
+
 camber_status camber_device_network_program(camber_device *device, bool measured, camber_program **program) {
     recipe from = {PROGRAM_NETWORK, "networks", camber_network_kernels_source, camber_network_kernels_source_size, ""};
     set_options(device, -1, measured, &from);
@@ -215,7 +225,8 @@ void camber_program_destroy(camber_context *context, camber_program *program) {
     if (!program)
         return;
     cl_kernel kernels[] = {program->survey, program->project, program->classify, program->scan, program->emit,
-                           program->tally,  program->measure, program->span,     program->tell, program->shift};
+                           program->tally,  program->measure, program->span,     program->tell, program->shift,
+                           program->shape,  program->count,   program->total,    program->fill, program->cover};
     for (size_t i = 0; i < sizeof kernels / sizeof *kernels; i++)
         if (kernels[i])
             clReleaseKernel(kernels[i]);

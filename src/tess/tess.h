@@ -27,6 +27,7 @@ struct camber_device {
     struct camber_program *network_programs[2];
     struct camber_program *measures;
     struct camber_program *offset_programs[2];
+    struct camber_program *cover; /* what draws */
     /* What its meshes may hold (0: what they want), hold, and held at most. */
     uint64_t memory_bytes, held_bytes, most_held_bytes;
     camber_mesh *meshes; /* each knows the next */
@@ -53,6 +54,9 @@ typedef struct camber_program {
     cl_kernel span, tell, shift; /* of offsets */
     uint64_t key;                /* of the cache */
     bool to_save;                /* built from source: its binary is saved once the kernels have run */
+    cl_kernel shape, count, total, fill, cover;
+    uint64_t key; /* of the cache */
+    bool to_save; /* built from source: its binary is saved once the kernels have run */
 } camber_program;
 
 /* The kernels of a method, built or loaded at first use. */
@@ -61,6 +65,7 @@ camber_status camber_device_program(camber_device *device, camber_method method,
 camber_status camber_device_network_program(camber_device *device, bool measured, camber_program **program);
 camber_status camber_device_measures(camber_device *device, camber_program **program);
 camber_status camber_device_offsets(camber_device *device, bool measured, camber_program **program);
+camber_status camber_device_cover_program(camber_device *device, camber_program **program);
 /* Saves the binary if it is new. Called after the kernels have run: only then does PoCL's hold machine code. */
 void camber_program_save(camber_device *device, camber_program *program);
 void camber_program_destroy(camber_context *context, camber_program *program);

@@ -1,0 +1,258 @@
+/* cover: the pixels of a tile, or of some rows of its cells, from the segments in its list.
+ * Reads shapes, starts[tiles + 1], lists, inks, items[2 * n] (tile; first and last row of cells << 8); writes pixels,
+ * rows of stride words. What is drawn last is seen first: the list is walked from its end, and what lies below cells
+ * that are full is not looked at. Each colour in turn is gathered as what it lets through, and then put under what is
+ * there. */
+#define CELLS (CAMBER_TILE_CELLS * CAMBER_TILE_CELLS)
+#define LEVELS 3 /* the picture, a group, a layer */
+
+typedef struct camber_sheet {
+    float left, top; /* of the first tile in the picture, px */
+    camber_u32 columns, stride;
+    float r, g, b, a; /* background, premultiplied */
+} camber_sheet;
+
+typedef struct canvas {
+    float16 ink[4][CELLS];           /* let through; of unions the sums of areas and of normals besides */
+    float16 level[LEVELS][4][CELLS]; /* red, green, blue; let through */
+    ulong inked, touched[LEVELS];    /* cells, a bit each */
+    ulong done;                      /* nothing that lies below shows in these */
+    ulong filled;                    /* nor of the same ink in these */
+    int is_open[LEVELS], is_ready[LEVELS], has_sums;
+    uchar puts[CELLS]; /* segments that came */
+    camber_ink now;
+} canvas;
+
+static inline float most_of(float16 v) {
+    const float8 a = v.lo > v.hi ? v.lo : v.hi;
+    const float4 b = a.lo > a.hi ? a.lo : a.hi;
+    const float2 c = b.lo > b.hi ? b.lo : b.hi;
+    return c.x > c.y ? c.x : c.y;
+}
+
+static inline int lowest(ulong bits) {
+    return 63 - (int)clz(bits & (~bits + 1));
+}
+
+static inline void clear_level(private canvas *c, int level) {
+    for (int i = 0; i < CELLS; i++) {
+        c->level[level][0][i] = c->level[level][1][i] = c->level[level][2][i] = (float16)(0.0f);
+        c->level[level][3][i] = (float16)(1.0f);
+    }
+}
+
+static inline void begin_canvas(private canvas *c, ulong cells) {
+    for (int i = 0; i < CELLS; i++)
+        c->ink[0][i] = (float16)(1.0f);
+    clear_level(c, 0);
+    for (int i = 0; i < CELLS / 16; i++)
+        vstore16((uchar16)(0), i, c->puts);
+    c->inked = c->filled = c->touched[0] = c->touched[1] = c->touched[2] = 0;
+    c->done = ~cells;
+    c->is_open[0] = c->is_ready[0] = 1;
+    c->is_open[1] = c->is_open[2] = c->is_ready[1] = c->is_ready[2] = c->has_sums = 0;
+}
+
+/* Notes whether a cell of the picture is full. */
+static inline void look_at_cell(private canvas *c, int i, int level) {
+    if (level == 0 && most_of(c->level[0][3][i]) < CAMBER_NOTHING_PX)
+        c->done |= 1ul << i;
+}
+
+/* What is inked goes under what the level has. */
+static inline void close_ink(private canvas *c) {
+    const int level = c->is_open[2] ? 2 : c->is_open[1] ? 1 : 0;
+    const int is_union = c->now.mode == CAMBER_INK_UNION;
+    for (ulong left = c->inked; left; left &= left - 1) {
+        const int i = lowest(left);
+        float16 area = 1.0f - c->ink[0][i];
+        if (is_union) {
+            area = camber_united(area, c->ink[1][i], c->ink[2][i], c->ink[3][i]) * c->now.a;
+            c->ink[1][i] = c->ink[2][i] = c->ink[3][i] = (float16)(0.0f);
+        }
+        const float16 through = c->level[level][3][i], seen = through * area;
+        c->level[level][0][i] += seen * c->now.r;
+        c->level[level][1][i] += seen * c->now.g;
+        c->level[level][2][i] += seen * c->now.b;
+        c->level[level][3][i] = through * (1.0f - area);
+        c->ink[0][i] = (float16)(1.0f);
+        look_at_cell(c, i, level);
+    }
+    c->touched[level] |= c->inked;
+    c->inked = c->filled = 0;
+}
+
+/* A layer or a group goes under what the level below it has. */
+static inline void close_level(private canvas *c, int level, float opacity) {
+    const int below = level == 2 && c->is_open[1] ? 1 : 0;
+    for (ulong left = c->touched[level]; left; left &= left - 1) {
+        const int i = lowest(left);
+        const float16 through = c->level[below][3][i], seen = through * opacity;
+        for (int k = 0; k < 3; k++) {
+            c->level[below][k][i] += seen * c->level[level][k][i];
+            c->level[level][k][i] = (float16)(0.0f);
+        }
+        c->level[below][3][i] = through * (1.0f - (1.0f - c->level[level][3][i]) * opacity);
+        c->level[level][3][i] = (float16)(1.0f);
+        look_at_cell(c, i, below);
+    }
+    c->touched[below] |= c->touched[level];
+    c->touched[level] = 0;
+    c->is_open[level] = 0;
+}
+
+static inline void open_level(private canvas *c, int level) {
+    if (!c->is_ready[level])
+        clear_level(c, level);
+    c->is_open[level] = c->is_ready[level] = 1;
+}
+
+/* Closes what the ink has nothing to do with, and opens what it lies in. */
+static inline void change_ink(private canvas *c, camber_ink next) {
+    close_ink(c);
+    if (c->is_open[2] && next.layer != c->now.layer)
+        close_level(c, 2, c->now.layer_opacity);
+    if (c->is_open[1] && next.group != c->now.group)
+        close_level(c, 1, c->now.group_opacity);
+    if (next.group && !c->is_open[1])
+        open_level(c, 1);
+    if (next.layer && !c->is_open[2])
+        open_level(c, 2);
+    if (next.mode == CAMBER_INK_UNION && !c->has_sums) {
+        for (int i = 0; i < CELLS; i++)
+            c->ink[1][i] = c->ink[2][i] = c->ink[3][i] = (float16)(0.0f);
+        c->has_sums = 1;
+    }
+    c->now = next;
+}
+
+static inline void put_area(private canvas *c, private const camber_pen *p, int i, float16 area, float16 x, float16 y) {
+    if (c->now.mode != CAMBER_INK_UNION) {
+        c->ink[0][i] *= 1.0f - area * c->now.a;
+        if (++c->puts[i] % CAMBER_LOOK_EVERY == 0 && c->now.a == 1.0f && most_of(c->ink[0][i]) < CAMBER_NOTHING_PX)
+            c->filled |= 1ul << i;
+        return;
+    }
+    c->ink[0][i] *= 1.0f - area;
+    if (p->half_width > 0.4f) {
+        float16 nx, ny;
+        camber_pen_normal(p, x, y, &nx, &ny);
+        const float16 edge = area * (1.0f - area);
+        c->ink[1][i] += area;
+        c->ink[2][i] += nx * edge;
+        c->ink[3][i] += ny * edge;
+    }
+}
+
+/* All of a cell's pixels lie inside the stroke. */
+static inline void put_whole(private canvas *c, int i) {
+    const int is_union = c->now.mode == CAMBER_INK_UNION;
+    c->ink[0][i] *= is_union ? 0.0f : 1.0f - c->now.a;
+    if (is_union || c->now.a == 1.0f)
+        c->filled |= 1ul << i;
+}
+
+/* The pixels of a cell, from its first one. */
+constant float ACROSS[16] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
+constant float DOWN[16] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
+
+/* The cells, of rows first to last, that a segment's box meets. */
+static inline void draw_segment(private canvas *c, global const float *shape, float left, float top, int first,
+                                int last) {
+    const camber_pen p = camber_pen_of(shape, as_uint(shape[14]));
+    const float reach = shape[11], a_cell = 1.0f / CAMBER_CELL_PX, side = (float)(CAMBER_TILE_CELLS - 1);
+    const float x0 = ((p.ax < p.bx ? p.ax : p.bx) - reach - left + 0.5f) * a_cell;
+    const float x1 = ((p.ax < p.bx ? p.bx : p.ax) + reach - left - 0.5f) * a_cell;
+    const float y0 = ((p.ay < p.by ? p.ay : p.by) - reach - top + 0.5f) * a_cell;
+    const float y1 = ((p.ay < p.by ? p.by : p.ay) + reach - top - 0.5f) * a_cell;
+    if (x1 < 0.0f || y1 < (float)first || x0 >= side + 1.0f || y0 >= (float)last + 1.0f)
+        return;
+    const int from_x = x0 > 0.0f ? (int)x0 : 0, to_x = x1 < side ? (int)x1 : CAMBER_TILE_CELLS - 1;
+    const int from_y = y0 > (float)first ? (int)y0 : first, to_y = y1 < (float)last ? (int)y1 : last;
+    const float16 across = vload16(0, ACROSS), down = vload16(0, DOWN);
+    const float16 lane_x = across * p.ux + down * p.uy, lane_y = down * p.ux - across * p.uy;
+    const float16 lane_a = across * p.nax + down * p.nay, lane_b = across * p.nbx + down * p.nby;
+    for (int j = from_y; j <= to_y; j++) {
+        const float py = top + 0.5f + (float)(CAMBER_CELL_PX * j);
+        const float qy = py - p.ay, a_y = qy * p.nay, b_y = (py - p.by) * p.nby;
+        for (int k = from_x; k <= to_x; k++) {
+            const int i = CAMBER_TILE_CELLS * j + k;
+            if ((c->done | c->filled) >> i & 1ul)
+                continue;
+            const float px = left + 0.5f + (float)(CAMBER_CELL_PX * k), qx = px - p.ax;
+            const float x = qx * p.ux + qy * p.uy, y = qy * p.ux - qx * p.uy;
+            const float fa = qx * p.nax + a_y, fb = (px - p.bx) * p.nbx + b_y;
+            const camber_u32 meets = camber_cell_meets(&p, x + 1.5f * (p.ux + p.uy), y + 1.5f * (p.ux - p.uy),
+                                                       fa + 1.5f * (p.nax + p.nay), fb + 1.5f * (p.nbx + p.nby));
+            if (meets == CAMBER_CELL_OUTSIDE)
+                continue;
+            c->inked |= 1ul << i;
+            if (meets == CAMBER_CELL_INSIDE) {
+                put_whole(c, i);
+                continue;
+            }
+            const float16 xs = x + lane_x, ys = y + lane_y;
+            put_area(c, &p, i, camber_pen_area(&p, xs, ys, fa + lane_a, fb + lane_b), xs, ys);
+        }
+    }
+}
+
+/* Whether nothing that is still to come shows. What is filled by an ink of a layer shows as much as the layer does. */
+static inline int is_full(private const canvas *c) {
+    const int opaque = c->now.mode != CAMBER_INK_UNION && !c->is_open[1] && !c->is_open[2];
+    return (c->done | (opaque ? c->filled : 0ul)) == ~0ul;
+}
+
+static inline uint16 level_of(float16 value) {
+    const float16 scaled = value * 255.0f + 0.5f, least = scaled > 0.0f ? scaled : (float16)(0.0f);
+    return convert_uint16(least < 255.0f ? least : (float16)(255.0f));
+}
+
+static inline void write_cells(private const canvas *c, global camber_u32 *pixels, camber_sheet s, int first,
+                               int last) {
+    for (int i = CAMBER_TILE_CELLS * first; i < CAMBER_TILE_CELLS * (last + 1); i++) {
+        const float16 through = c->level[0][3][i];
+        const uint16 rgba =
+            level_of(c->level[0][0][i] + through * s.r) | level_of(c->level[0][1][i] + through * s.g) << 8 |
+            level_of(c->level[0][2][i] + through * s.b) << 16 | level_of(1.0f - through + through * s.a) << 24;
+        global camber_u32 *at = pixels + (size_t)(i / CAMBER_TILE_CELLS * CAMBER_CELL_PX) * s.stride +
+                                i % CAMBER_TILE_CELLS * CAMBER_CELL_PX;
+        vstore4(rgba.s0123, 0, at);
+        vstore4(rgba.s4567, 0, at + s.stride);
+        vstore4(rgba.s89ab, 0, at + 2 * (size_t)s.stride);
+        vstore4(rgba.scdef, 0, at + 3 * (size_t)s.stride);
+    }
+}
+
+kernel __attribute__((reqd_work_group_size(1, 1, 1))) void cover(
+    global const float *restrict shapes, global const camber_u32 *restrict starts,
+    global const camber_u32 *restrict lists, global const camber_ink *restrict inks,
+    global const camber_u32 *restrict items, global camber_u32 *restrict pixels, const camber_sheet s) {
+    canvas c;
+    const size_t tile = items[2 * get_global_id(0)];
+    const camber_u32 cells = items[2 * get_global_id(0) + 1], column = (camber_u32)tile % s.columns,
+                     row = (camber_u32)tile / s.columns;
+    const int first = (int)(cells & 255u), last = (int)(cells >> 8);
+    const float left = s.left + (float)(column * CAMBER_TILE_PX), top = s.top + (float)(row * CAMBER_TILE_PX);
+    const ulong own = (~0ul >> (64 - CAMBER_TILE_CELLS * (last - first + 1))) << (CAMBER_TILE_CELLS * first);
+    camber_u32 current = ~0u;
+    begin_canvas(&c, own);
+    c.now = inks[0];
+    for (camber_u32 k = starts[tile + 1]; k-- > starts[tile];) {
+        global const float *shape = shapes + (size_t)CAMBER_SHAPE_WORDS * lists[k];
+        const camber_u32 ink = as_uint(shape[15]);
+        if (ink != current) {
+            change_ink(&c, inks[ink]);
+            current = ink;
+        }
+        draw_segment(&c, shape, left, top, first, last);
+        if (is_full(&c))
+            break;
+    }
+    close_ink(&c);
+    if (c.is_open[2])
+        close_level(&c, 2, c.now.layer_opacity);
+    if (c.is_open[1])
+        close_level(&c, 1, c.now.group_opacity);
+    write_cells(&c, pixels + (size_t)row * CAMBER_TILE_PX * s.stride + (size_t)column * CAMBER_TILE_PX, s, first, last);
+}

@@ -1,0 +1,26 @@
+/* fill: the list of each tile, its segments in drawing order. A chunk, a work-item, puts its own where count and total
+ * say, so that the order is the same however many there are.
+ * Reads shapes, boxes[shape_count], starts[tiles]; counts[chunks * tiles] go on to the chunk's end; writes
+ * lists[pairs]. */
+kernel __attribute__((reqd_work_group_size(1, 1, 1))) void fill(global const float *restrict shapes,
+                                                                global const camber_u32 *restrict boxes,
+                                                                global const camber_u32 *restrict starts,
+                                                                global camber_u32 *restrict counts,
+                                                                global camber_u32 *restrict lists,
+                                                                const camber_chunks c) {
+    const size_t chunk = get_global_id(0), first = chunk * c.a_chunk;
+    const size_t end = first + c.a_chunk < c.shape_count ? first + c.a_chunk : c.shape_count;
+    global camber_u32 *own = counts + chunk * c.tiles;
+    for (size_t i = first; i < end; i++) {
+        const camber_u32 box = boxes[i];
+        if (FIRST_X(box) > LAST_X(box))
+            continue;
+        for (camber_u32 y = FIRST_Y(box); y <= LAST_Y(box); y++) {
+            const camber_u32 span = span_of(shapes, i, box, y, c);
+            for (camber_u32 x = span & 255u; x <= span >> 8; x++) {
+                const camber_u32 tile = y * c.columns + x;
+                lists[starts[tile] + own[tile]++] = (camber_u32)i;
+            }
+        }
+    }
+}

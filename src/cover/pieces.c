@@ -1,0 +1,96 @@
+/* Which records of which parts are drawn: what the device and the twin both begin with. */
+#include "cover/cover.h"
+
+/* Records of a part's polylines before one. A strip has two indices a record; kite and fan a record a slot. */
+static camber_status first_record(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline,
+                                  size_t *record) {
+    uint64_t index = 0;
+    if (polyline == part->first_polyline)
+        *record = 0;
+    else if (!mesh->mesh_info.strips)
+        *record = camber_part_slot(mesh, part, polyline);
+    else if (polyline == part->first_polyline + part->polyline_count)
+        *record = part->record_count;
+    else {
+        const camber_status status = camber_part_first_index(mesh, part, polyline, &index);
+        if (status != CAMBER_OK)
+            return status;
+        *record = (size_t)index / 2;
+    }
+    return CAMBER_OK;
+}
+
+static camber_status find_piece(const camber_cover_run *run, size_t which, camber_cover_piece *piece) {
+    camber_mesh_part *part = run->mesh->parts + which;
+    const size_t end = part->first_polyline + part->polyline_count;
+    const size_t from = run->first > part->first_polyline ? run->first : part->first_polyline;
+    const size_t to = run->end < end ? run->end : end;
+    *piece = (camber_cover_piece){.mesh = run->mesh, .part = which, .first_row = run->first_row};
+    if (from >= to || part->index_count == 0)
+        return CAMBER_OK;
+    const bool whole = from == part->first_polyline && to == end;
+    camber_status status = whole ? CAMBER_OK : camber_part_use(run->mesh, part);
+    if (status == CAMBER_OK)
+        status = first_record(run->mesh, part, from, &piece->first);
+    if (status == CAMBER_OK)
+        status = first_record(run->mesh, part, to, &piece->end);
+    return status;
+}
+
+camber_status camber_cover_list_pieces(camber_context *context, const camber_cover_scene *scene,
+                                       camber_cover_piece **pieces, size_t *piece_count, size_t *shape_count) {
+    size_t capacity = 0, count = 0, shapes = 0;
+    camber_cover_piece *list = NULL;
+    camber_status status = CAMBER_OK;
+    for (size_t r = 0; r < scene->run_count && status == CAMBER_OK; r++)
+        for (size_t i = 0; i < scene->runs[r].mesh->part_count && status == CAMBER_OK; i++) {
+            camber_cover_piece piece;
+            status = find_piece(scene->runs + r, i, &piece);
+            if (status != CAMBER_OK || piece.first >= piece.end)
+                continue;
+            if (!camber_grow(context, &list, &capacity, count + 1, sizeof *list)) {
+                status = CAMBER_ERROR_MEMORY;
+                continue;
+            }
+            piece.base = shapes;
+            shapes += (piece.end - piece.first + 15) / 16 * 16;
+            list[count++] = piece;
+        }
+    if (status != CAMBER_OK) {
+        camber_free(context, list);
+        return status;
+    }
+    *pieces = list;
+    *piece_count = count;
+    *shape_count = shapes;
+    return CAMBER_OK;
+}
+
+camber_shape_range camber_cover_range(const camber_cover_scene *scene, const camber_cover_piece *piece,
+                                      const camber_cover_area *area) {
+    const camber_mesh *mesh = piece->mesh;
+    const camber_mesh_part *part = mesh->parts + piece->part;
+    return (camber_shape_range){
+        .first = (uint32_t)piece->first,
+        .end = (uint32_t)piece->end,
+        .record_count = (uint32_t)(mesh->mesh_info.strips ? part->record_count : part->slot_count),
+        .stride = mesh->mesh_info.measured ? 2 : 1,
+        .strips = mesh->mesh_info.strips,
+        .linear = scene->linear,
+        .base = (uint32_t)piece->base,
+        .first_row = (uint32_t)piece->first_row,
+        .left = (float)area->x,
+        .top = (float)area->y,
+        .columns = camber_cover_tiles(area->width),
+        .rows = camber_cover_tiles(area->height),
+    };
+}
+
+void camber_cover_stages_free(camber_context *context, camber_cover_stages *stages) {
+    camber_free(context, stages->shapes);
+    camber_free(context, stages->boxes);
+    camber_free(context, stages->starts);
+    camber_free(context, stages->lists);
+    camber_free(context, stages->rgba);
+    *stages = (camber_cover_stages){0};
+}

@@ -1,0 +1,384 @@
+/* The CPU twin of what draws: the same shapes, boxes, lists and pixels, a segment, a tile and a pixel at a time, with
+ * neither chunks nor sums. Between pixels it knows cells only, as what lies below a cell that is full is not looked at.
+ */
+#include "cover/cover.h"
+
+#include "camber_proof.h"
+#include "kernels/join.h"
+
+#include <string.h>
+
+enum { CELL_PIXELS = CAMBER_CELL_PX * CAMBER_CELL_PX, CELLS = CAMBER_TILE_CELLS * CAMBER_TILE_CELLS, LEVELS = 3 };
+
+typedef struct twin {
+    camber_context *context;
+    const camber_cover_scene *scene;
+    const camber_cover_area *area;
+    camber_cover_stages *stages;
+    uint32_t columns, rows; /* tiles */
+} twin;
+
+/* ---- Shapes ---- */
+
+/* A record by its number, or the nearest there is. */
+static camber_record record_at(const camber_record *records, int64_t i, const camber_shape_range *r) {
+    const int64_t last = (int64_t)r->record_count - 1;
+    return records[i < 0 ? 0 : i > last ? last : i];
+}
+
+static float as_float(uint32_t word) {
+    float value;
+    memcpy(&value, &word, sizeof value);
+    return value;
+}
+
+static uint32_t as_word(float value) {
+    uint32_t word;
+    memcpy(&word, &value, sizeof word);
+    return word;
+}
+
+static bool ends_segment(const camber_record *b, const camber_shape_range *r) {
+    const uint32_t starts = CAMBER_POINT_FIRST | CAMBER_RECORD_BREAK | CAMBER_RECORD_START;
+    const uint32_t kind = camber_join_kind(b->join);
+    if (!(b->last & CAMBER_POINT_REAL) || kind == CAMBER_KIND_GHOST)
+        return false;
+    return r->strips ? !(b->last & starts) : !(b->last & CAMBER_POINT_FIRST) || kind == CAMBER_KIND_DOT;
+}
+
+/* The words of the segment that ends with a record; the box says whether there is one. */
+static void put_shape(const twin *t, const camber_record *records, const camber_shape_range *r, int64_t i,
+                      float words[CAMBER_SHAPE_WORDS], uint32_t *box) {
+    const camber_record b = record_at(records, i, r), before = record_at(records, i - 1, r);
+    const bool is_dot = camber_join_kind(b.join) == CAMBER_KIND_DOT;
+    const bool ends = i < r->end && ends_segment(&b, r);
+    const camber_record a = is_dot ? b : before;
+    const bool again = before.last & CAMBER_RECORD_START && camber_join_kind(before.join) == CAMBER_KIND_TIGHT;
+    const camber_record p = record_at(records, again ? i - 3 : i - 2, r);
+    const float *row =
+        t->scene->rows + CAMBER_COVER_ROW_WORDS * (r->first_row + (ends ? b.last >> CAMBER_POINT_ROW_SHIFT : 0));
+    const camber_shape s = camber_shape_of(p.x + row[1], p.y + row[2], a.x + row[1], a.y + row[2], b.x + row[1],
+                                           b.y + row[2], a.join, b.join, row[0], r->linear);
+    const float shape[CAMBER_SHAPE_WORDS] = {s.ax,  s.ay,  s.bx,         s.by,    s.ux,    s.uy,    s.nax, s.nay,
+                                             s.nbx, s.nby, s.half_width, s.reach, s.slope, s.curve, 0,     row[3]};
+    memcpy(words, shape, sizeof shape);
+    words[14] = as_float(s.flags);
+    *box = camber_shape_box(&s, ends && row[0] >= 0.0f, r->left, r->top, r->columns, r->rows);
+}
+
+/* The records of a part, read as the device has them. */
+static camber_status read_part(camber_mesh *mesh, size_t which, camber_record **records) {
+    camber_mesh_data data;
+    const camber_status status = camber_mesh_read(mesh, &data);
+    if (status != CAMBER_OK)
+        return status;
+    const camber_mesh_part *part = mesh->parts + which;
+    const size_t count = mesh->mesh_info.strips ? part->record_count : part->slot_count;
+    *records = camber_alloc(mesh->device->context, count, sizeof **records);
+    if (*records)
+        memcpy(*records, data.records + part->first_record, count * sizeof **records);
+    camber_mesh_data_free(mesh->device->context, &data);
+    return *records ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+}
+
+static camber_status make_shapes(const twin *t, const camber_cover_piece *pieces, size_t piece_count) {
+    camber_status status = CAMBER_OK;
+    for (size_t p = 0; p < piece_count && status == CAMBER_OK; p++) {
+        const camber_shape_range r = camber_cover_range(t->scene, pieces + p, t->area);
+        camber_record *records = NULL;
+        status = read_part(pieces[p].mesh, pieces[p].part, &records);
+        const size_t count = (pieces[p].end - pieces[p].first + 15) / 16 * 16;
+        for (size_t i = 0; i < count && status == CAMBER_OK; i++)
+            put_shape(t, records, &r, (int64_t)(pieces[p].first + i),
+                      t->stages->shapes + CAMBER_SHAPE_WORDS * (pieces[p].base + i),
+                      t->stages->boxes + pieces[p].base + i);
+        camber_free(t->context, records);
+    }
+    return status;
+}
+
+/* ---- Lists ---- */
+
+/* Calls put for each tile that a shape meets, from the first to the last. */
+static void each_tile(const twin *t, size_t shape, uint32_t *counts, bool fill) {
+    const uint32_t box = t->stages->boxes[shape];
+    const uint32_t x0 = box & 255u, y0 = box >> 8 & 255u, x1 = box >> 16 & 255u, y1 = box >> 24;
+    for (uint32_t y = y0; x0 <= x1 && y <= y1; y++) {
+        const float middle = (float)t->area->y + ((float)y + 0.5f) * CAMBER_TILE_PX;
+        const uint32_t span = x0 == x1 || y0 == y1 ? x0 | x1 << 8
+                                                   : camber_tile_span(t->stages->shapes + CAMBER_SHAPE_WORDS * shape,
+                                                                      middle, (float)t->area->x, x0, x1);
+        for (uint32_t x = span & 255u; x <= span >> 8; x++) {
+            uint32_t *count = counts + y * t->columns + x;
+            if (fill)
+                t->stages->lists[*count] = (uint32_t)shape;
+            ++*count;
+        }
+    }
+}
+
+static camber_status make_lists(const twin *t) {
+    camber_cover_stages *stages = t->stages;
+    uint32_t *next = camber_alloc_zero(t->context, stages->tile_count, sizeof *next);
+    if (!next)
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < stages->shape_count; i++)
+        each_tile(t, i, next, false);
+    stages->starts[0] = 0;
+    for (size_t i = 0; i < stages->tile_count; i++) {
+        stages->starts[i + 1] = stages->starts[i] + next[i];
+        next[i] = stages->starts[i];
+    }
+    stages->lists = camber_alloc(t->context, stages->starts[stages->tile_count], sizeof *stages->lists);
+    for (size_t i = 0; i < stages->shape_count && stages->lists; i++)
+        each_tile(t, i, next, true);
+    camber_free(t->context, next);
+    return stages->lists ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+}
+
+/* ---- Pixels ---- */
+
+typedef struct level {
+    float color[3], through;
+} level;
+
+typedef struct pixel {
+    float ink, sum, normal[2]; /* let through; of unions the areas and the normals */
+    level levels[LEVELS];
+} pixel;
+
+typedef struct cell {
+    pixel pixels[CELL_PIXELS];
+    bool inked, touched[LEVELS];
+    bool done, filled;
+    uint8_t puts; /* segments that came */
+} cell;
+
+typedef struct canvas {
+    cell cells[CELLS];
+    bool is_open[LEVELS];
+    camber_ink now;
+} canvas;
+
+static void look_at_cell(cell *c, int at) {
+    float most = 0.0f;
+    for (int i = 0; i < CELL_PIXELS; i++)
+        most = CAMBER_MORE(c->pixels[i].levels[0].through, most);
+    c->done = c->done || (at == 0 && most < CAMBER_NOTHING_PX);
+}
+
+static void close_ink(canvas *c) {
+    const int at = c->is_open[2] ? 2 : c->is_open[1] ? 1 : 0;
+    const camber_ink *ink = &c->now;
+    for (cell *one = c->cells; one < c->cells + CELLS; one++) {
+        for (int i = 0; i < CELL_PIXELS && one->inked; i++) {
+            pixel *p = one->pixels + i;
+            level *l = p->levels + at;
+            float area = 1.0f - p->ink;
+            if (ink->mode == CAMBER_INK_UNION)
+                area = camber_united(area, p->sum, p->normal[0], p->normal[1]) * ink->a;
+            const float through = l->through, seen = through * area;
+            l->color[0] += seen * ink->r;
+            l->color[1] += seen * ink->g;
+            l->color[2] += seen * ink->b;
+            l->through = through * (1.0f - area);
+            p->ink = 1.0f;
+            p->sum = p->normal[0] = p->normal[1] = 0.0f;
+        }
+        if (one->inked)
+            look_at_cell(one, at);
+        one->touched[at] = one->touched[at] || one->inked;
+        one->inked = one->filled = false;
+    }
+}
+
+static void close_level(canvas *c, int at, float opacity) {
+    const int below = at == 2 && c->is_open[1] ? 1 : 0;
+    for (cell *one = c->cells; one < c->cells + CELLS; one++) {
+        for (int i = 0; i < CELL_PIXELS && one->touched[at]; i++) {
+            level *from = one->pixels[i].levels + at, *to = one->pixels[i].levels + below;
+            const float through = to->through, seen = through * opacity;
+            for (int k = 0; k < 3; k++)
+                to->color[k] += seen * from->color[k];
+            to->through = through * (1.0f - (1.0f - from->through) * opacity);
+            *from = (level){{0.0f, 0.0f, 0.0f}, 1.0f};
+        }
+        if (one->touched[at])
+            look_at_cell(one, below);
+        one->touched[below] = one->touched[below] || one->touched[at];
+        one->touched[at] = false;
+    }
+    c->is_open[at] = false;
+}
+
+static void change_ink(canvas *c, camber_ink next) {
+    close_ink(c);
+    if (c->is_open[2] && next.layer != c->now.layer)
+        close_level(c, 2, c->now.layer_opacity);
+    if (c->is_open[1] && next.group != c->now.group)
+        close_level(c, 1, c->now.group_opacity);
+    c->is_open[1] = c->is_open[1] || next.group;
+    c->is_open[2] = c->is_open[2] || next.layer;
+    c->now = next;
+}
+
+/* A segment's part of a pixel. */
+static void put_pixel(const canvas *c, const camber_pen *pen, pixel *p, const float place[4]) {
+    const float x = place[0], y = place[1], area = camber_pen_area(pen, x, y, place[2], place[3]);
+    if (c->now.mode != CAMBER_INK_UNION) {
+        p->ink *= 1.0f - area * c->now.a;
+        return;
+    }
+    p->ink *= 1.0f - area;
+    if (pen->half_width > 0.4f) {
+        const float edge = area * (1.0f - area);
+        float nx, ny;
+        camber_pen_normal(pen, x, y, &nx, &ny);
+        p->sum += area;
+        p->normal[0] += nx * edge;
+        p->normal[1] += ny * edge;
+    }
+}
+
+static float most_ink(const cell *c) {
+    float most = 0.0f;
+    for (int i = 0; i < CELL_PIXELS; i++)
+        most = CAMBER_MORE(c->pixels[i].ink, most);
+    return most;
+}
+
+static void draw_cell(canvas *c, const camber_pen *p, cell *one, float px, float py) {
+    const float qx = px - p->ax, qy = py - p->ay;
+    const float x = qx * p->ux + qy * p->uy, y = qy * p->ux - qx * p->uy;
+    const float fa = qx * p->nax + qy * p->nay, fb = (px - p->bx) * p->nbx + (py - p->by) * p->nby;
+    const camber_u32 meets = camber_cell_meets(p, x + 1.5f * (p->ux + p->uy), y + 1.5f * (p->ux - p->uy),
+                                               fa + 1.5f * (p->nax + p->nay), fb + 1.5f * (p->nbx + p->nby));
+    const bool is_union = c->now.mode == CAMBER_INK_UNION;
+    if (one->done || one->filled || meets == CAMBER_CELL_OUTSIDE)
+        return;
+    one->inked = true;
+    if (meets == CAMBER_CELL_INSIDE) {
+        for (int i = 0; i < CELL_PIXELS; i++)
+            one->pixels[i].ink *= is_union ? 0.0f : 1.0f - c->now.a;
+        one->filled = is_union || c->now.a == 1.0f;
+        return;
+    }
+    for (int i = 0; i < CELL_PIXELS; i++) {
+        const float across = (float)(i % CAMBER_CELL_PX), down = (float)(i / CAMBER_CELL_PX);
+        const float place[4] = {x + (across * p->ux + down * p->uy), y + (down * p->ux - across * p->uy),
+                                fa + (across * p->nax + down * p->nay), fb + (across * p->nbx + down * p->nby)};
+        put_pixel(c, p, one->pixels + i, place);
+    }
+    if (!is_union && ++one->puts % CAMBER_LOOK_EVERY == 0 && c->now.a == 1.0f)
+        one->filled = most_ink(one) < CAMBER_NOTHING_PX;
+}
+
+static void draw_segment(canvas *c, const float *shape, float left, float top) {
+    const camber_pen p = camber_pen_of(shape, as_word(shape[14]));
+    const float reach = shape[11], a_cell = 1.0f / CAMBER_CELL_PX, side = (float)(CAMBER_TILE_CELLS - 1);
+    const float x0 = (CAMBER_LESS(p.ax, p.bx) - reach - left + 0.5f) * a_cell;
+    const float x1 = (CAMBER_MORE(p.ax, p.bx) + reach - left - 0.5f) * a_cell;
+    const float y0 = (CAMBER_LESS(p.ay, p.by) - reach - top + 0.5f) * a_cell;
+    const float y1 = (CAMBER_MORE(p.ay, p.by) + reach - top - 0.5f) * a_cell;
+    if (x1 < 0.0f || y1 < 0.0f || x0 >= side + 1.0f || y0 >= side + 1.0f)
+        return;
+    const int from_x = x0 > 0.0f ? (int)x0 : 0, to_x = x1 < side ? (int)x1 : CAMBER_TILE_CELLS - 1;
+    const int from_y = y0 > 0.0f ? (int)y0 : 0, to_y = y1 < side ? (int)y1 : CAMBER_TILE_CELLS - 1;
+    for (int j = from_y; j <= to_y; j++)
+        for (int k = from_x; k <= to_x; k++)
+            draw_cell(c, &p, c->cells + CAMBER_TILE_CELLS * j + k, left + 0.5f + (float)(CAMBER_CELL_PX * k),
+                      top + 0.5f + (float)(CAMBER_CELL_PX * j));
+}
+
+static uint8_t level_of(float value) {
+    const float scaled = value * 255.0f + 0.5f, least = scaled > 0.0f ? scaled : 0.0f;
+    return (uint8_t)(least < 255.0f ? least : 255.0f);
+}
+
+/* The tile's pixels that lie in the area. */
+static void write_tile(const twin *t, const canvas *c, uint32_t column, uint32_t row) {
+    const float *back = t->scene->background;
+    const uint32_t left = column * CAMBER_TILE_PX, top = row * CAMBER_TILE_PX;
+    for (uint32_t y = top; y < top + CAMBER_TILE_PX && y < t->area->height; y++)
+        for (uint32_t x = left; x < left + CAMBER_TILE_PX && x < t->area->width; x++) {
+            const uint32_t cx = (x - left) / CAMBER_CELL_PX, cy = (y - top) / CAMBER_CELL_PX;
+            const uint32_t i = (y - top) % CAMBER_CELL_PX * CAMBER_CELL_PX + (x - left) % CAMBER_CELL_PX;
+            const level *l = c->cells[CAMBER_TILE_CELLS * cy + cx].pixels[i].levels;
+            uint8_t *rgba = t->stages->rgba + 4 * ((size_t)y * t->area->width + x);
+            for (int k = 0; k < 3; k++)
+                rgba[k] = level_of(l->color[k] + l->through * back[k]);
+            rgba[3] = level_of(1.0f - l->through + l->through * back[3]);
+        }
+}
+
+static void draw_tile(const twin *t, canvas *c, uint32_t column, uint32_t row) {
+    const camber_cover_stages *stages = t->stages;
+    const size_t tile = (size_t)row * t->columns + column;
+    const float left = (float)t->area->x + (float)(column * CAMBER_TILE_PX);
+    const float top = (float)t->area->y + (float)(row * CAMBER_TILE_PX);
+    uint32_t current = UINT32_MAX;
+    memset(c, 0, sizeof *c);
+    for (int i = 0; i < CELLS * CELL_PIXELS; i++) {
+        pixel *p = c->cells[i / CELL_PIXELS].pixels + i % CELL_PIXELS;
+        p->ink = 1.0f;
+        for (int k = 0; k < LEVELS; k++)
+            p->levels[k].through = 1.0f;
+    }
+    c->now = t->scene->inks[0];
+    for (uint32_t k = stages->starts[tile + 1]; k-- > stages->starts[tile];) {
+        const float *shape = stages->shapes + (size_t)CAMBER_SHAPE_WORDS * stages->lists[k];
+        const uint32_t ink = as_word(shape[15]);
+        if (ink != current)
+            change_ink(c, t->scene->inks[ink]);
+        current = ink;
+        draw_segment(c, shape, left, top);
+    }
+    close_ink(c);
+    if (c->is_open[2])
+        close_level(c, 2, c->now.layer_opacity);
+    if (c->is_open[1])
+        close_level(c, 1, c->now.group_opacity);
+    write_tile(t, c, column, row);
+}
+
+static camber_status draw_tiles(const twin *t) {
+    canvas *c = camber_alloc(t->context, 1, sizeof *c);
+    if (!c)
+        return CAMBER_ERROR_MEMORY;
+    for (uint32_t row = 0; row < t->rows; row++)
+        for (uint32_t column = 0; column < t->columns; column++)
+            draw_tile(t, c, column, row);
+    camber_free(t->context, c);
+    return CAMBER_OK;
+}
+
+camber_status camber_cover_on_host(camber_context *context, const camber_cover_scene *scene,
+                                   const camber_cover_area *area, camber_cover_stages *stages) {
+    camber_cover_stages made = {0};
+    camber_cover_piece *pieces = NULL;
+    size_t piece_count = 0;
+    const twin t = {context, scene, area, &made, camber_cover_tiles(area->width), camber_cover_tiles(area->height)};
+    made.tile_count = (size_t)t.columns * t.rows;
+    camber_status status = camber_cover_list_pieces(context, scene, &pieces, &piece_count, &made.shape_count);
+    if (status != CAMBER_OK)
+        return status;
+    made.shapes = camber_alloc(context, made.shape_count, CAMBER_SHAPE_WORDS * sizeof *made.shapes);
+    made.boxes = camber_alloc(context, made.shape_count, sizeof *made.boxes);
+    made.starts = camber_alloc(context, made.tile_count + 1, sizeof *made.starts);
+    made.rgba = camber_alloc(context, 4 * (size_t)area->width, area->height);
+    if (!made.shapes || !made.boxes || !made.starts || !made.rgba)
+        status = CAMBER_ERROR_MEMORY;
+    if (status == CAMBER_OK)
+        status = make_shapes(&t, pieces, piece_count);
+    if (status == CAMBER_OK)
+        status = make_lists(&t);
+    if (status == CAMBER_OK)
+        status = draw_tiles(&t);
+    camber_free(context, pieces);
+    if (status != CAMBER_OK) {
+        camber_cover_stages_free(context, &made);
+        return status;
+    }
+    *stages = made;
+    return CAMBER_OK;
+}

@@ -1,0 +1,282 @@
+/* Frames that kernels draw: passes become runs of polylines, tables of rows and inks, and the picture is drawn an area
+ * after the other. */
+#include "cover/cover.h"
+#include "draw/renderer.h"
+
+#include <string.h>
+
+/* Of an area: its tiles' counts and its pixels are what its memory goes by. */
+enum { AREA_PX = 16 * 1024 * 1024, AREA_SIDE_PX = CAMBER_TILE_PX * CAMBER_TILES_MAX };
+/* How far back a table looks for an ink of the same colour. */
+enum { INKS_BACK = 16 };
+
+typedef struct tables {
+    camber_context *context;
+    float *rows;
+    camber_ink *inks;
+    camber_cover_run *runs;
+    size_t row_count, row_capacity, ink_count, ink_capacity, run_count, run_capacity;
+    uint32_t layers; /* so far */
+    /* The last table of what is not layered: the runs of a pass share it. */
+    const camber_pass *pass;
+    size_t first_row;
+} tables;
+
+static void free_tables(tables *t) {
+    camber_free(t->context, t->runs);
+    camber_free(t->context, t->inks);
+    camber_free(t->context, t->rows);
+}
+
+/* The number of an ink, which may be one of the table's that begins with ink first. */
+static camber_status use_ink(tables *t, size_t first, const camber_ink *ink, uint32_t *number) {
+    for (size_t i = t->ink_count; i > first && i + INKS_BACK > t->ink_count; i--)
+        if (memcmp(t->inks + i - 1, ink, sizeof *ink) == 0) {
+            *number = (uint32_t)(i - 1);
+            return CAMBER_OK;
+        }
+    if (!camber_grow(t->context, &t->inks, &t->ink_capacity, t->ink_count + 1, sizeof *t->inks))
+        return CAMBER_ERROR_MEMORY;
+    *number = (uint32_t)t->ink_count;
+    t->inks[t->ink_count++] = *ink;
+    return CAMBER_OK;
+}
+
+/* The table of a run: rows of other alphas are left out, and a layer's rows are drawn opaque. ink has its group. */
+static camber_status fill_table(tables *t, const camber_run *run, camber_ink ink) {
+    const camber_pass *pass = run->pass;
+    const size_t count = pass->mesh->row_count, first_ink = t->ink_count;
+    const bool united = run->layered && run->one_color;
+    if (!camber_grow(t->context, &t->rows, &t->row_capacity, t->row_count + count,
+                     CAMBER_COVER_ROW_WORDS * sizeof *t->rows))
+        return CAMBER_ERROR_MEMORY;
+    if (run->layered && !united) {
+        ink.layer = ++t->layers;
+        ink.layer_opacity = run->alpha * run->opacity;
+    }
+    t->first_row = t->row_count;
+    for (size_t i = 0; i < count; i++) {
+        const camber_paint *paint = pass->paints + i;
+        float *row = t->rows + CAMBER_COVER_ROW_WORDS * t->row_count++;
+        uint32_t number = 0;
+        memset(row, 0, CAMBER_COVER_ROW_WORDS * sizeof *row);
+        row[0] = -1.0f;
+        if (!camber_pass_draws(pass, (uint32_t)i) || (run->layered && paint->color.a != run->alpha))
+            continue;
+        const camber_color color = united ? run->color : paint->color;
+        ink.r = color.r;
+        ink.g = color.g;
+        ink.b = color.b;
+        ink.a = united ? run->alpha * run->opacity : run->layered ? 1.0f : color.a;
+        ink.mode = united ? CAMBER_INK_UNION : CAMBER_INK_OVER;
+        const camber_status status = use_ink(t, first_ink, &ink, &number);
+        if (status != CAMBER_OK)
+            return status;
+        row[0] = camber_paint_half_width(paint);
+        row[1] = paint->translate_x_px;
+        row[2] = paint->translate_y_px;
+        memcpy(row + 3, &number, sizeof number);
+    }
+    return CAMBER_OK;
+}
+
+static camber_status refuse(camber_context *context) {
+    return camber_fail(
+        context, CAMBER_ERROR_ARGUMENT,
+        "dashes, gaps, blur, trims, gradients, patterns, fills and pitch are not drawn in OpenCL yet; draw "
+        "with GL");
+}
+
+static camber_status add_run(tables *t, const camber_run *run, camber_ink ink) {
+    if (run->alpha <= 0.0f)
+        return CAMBER_OK;
+    if (run->bands)
+        return refuse(t->context);
+    const bool shares = !run->layered && t->pass == run->pass && ink.group == 0;
+    camber_status status = CAMBER_OK;
+    if (!camber_grow(t->context, &t->runs, &t->run_capacity, t->run_count + 1, sizeof *t->runs))
+        return CAMBER_ERROR_MEMORY;
+    if (!shares)
+        status = fill_table(t, run, ink);
+    t->pass = run->layered || ink.group ? NULL : run->pass;
+    t->runs[t->run_count++] = (camber_cover_run){run->pass->mesh, run->first, run->end, t->first_row};
+    return status;
+}
+
+static camber_status add_pass(tables *t, const camber_pass *pass) {
+    const camber_mesh *mesh = pass->mesh;
+    if (!mesh)
+        return refuse(t->context);
+    const bool fades = pass->opacity > 0.0f && pass->opacity < 1.0f;
+    size_t end = pass->polyline_count ? pass->first_polyline + pass->polyline_count : mesh->polyline_count;
+    end = end < mesh->polyline_count ? end : mesh->polyline_count;
+    camber_ink ink = {0};
+    camber_status status = CAMBER_OK;
+    if (mesh->empty)
+        return CAMBER_OK;
+    for (size_t first = pass->first_polyline; first < end && status == CAMBER_OK;) {
+        camber_run run = camber_pass_next_run(pass, first, end);
+        const bool alone = first == pass->first_polyline && run.end == end;
+        if (fades && alone && pass->overlap != CAMBER_OVERLAP_ACCUMULATE) {
+            run.opacity = pass->opacity;
+            run.layered = true;
+        } else if (fades && first == pass->first_polyline) {
+            ink.group = ++t->layers;
+            ink.group_opacity = pass->opacity;
+        }
+        first = run.end;
+        status = add_run(t, &run, ink);
+    }
+    return status;
+}
+
+static camber_status make_tables(tables *t, const camber_frame *frame) {
+    const camber_ink none = {0};
+    uint32_t number;
+    if (frame->pitch_deg > 0.0)
+        return refuse(t->context);
+    camber_status status = use_ink(t, 0, &none, &number); /* there is one, also where nothing is drawn */
+    for (size_t i = 0; i < frame->pass_count && status == CAMBER_OK; i++)
+        status = add_pass(t, frame->passes + i);
+    if (status == CAMBER_OK && !camber_grow(t->context, &t->rows, &t->row_capacity, t->row_count + 1,
+                                            CAMBER_COVER_ROW_WORDS * sizeof *t->rows))
+        status = CAMBER_ERROR_MEMORY;
+    if (status == CAMBER_OK)
+        memset(t->rows + CAMBER_COVER_ROW_WORDS * t->row_count, 0, CAMBER_COVER_ROW_WORDS * sizeof *t->rows);
+    return status;
+}
+
+/* Whole rows where they fit. */
+static camber_cover_area first_area(const camber_frame *frame) {
+    uint32_t side = AREA_SIDE_PX;
+    if (frame->largest_piece_px && frame->largest_piece_px < side)
+        side = frame->largest_piece_px < CAMBER_TILE_PX ? CAMBER_TILE_PX
+                                                        : frame->largest_piece_px / CAMBER_TILE_PX * CAMBER_TILE_PX;
+    const uint32_t width = frame->width < side ? frame->width : side;
+    const uint32_t fitting = (uint32_t)AREA_PX / width / CAMBER_TILE_PX * CAMBER_TILE_PX;
+    const uint32_t rows = fitting < side ? fitting : side;
+    return (camber_cover_area){.width = width, .height = frame->height < rows ? frame->height : rows};
+}
+
+typedef struct target {
+    camber_rows_fn *rows;
+    void *user;
+    uint8_t *band; /* of several areas, or where rows are not as wide as the picture */
+    uint32_t width;
+} target;
+
+/* Copies the area into the band, or hands it over as it is. */
+static camber_status take_area(camber_renderer *renderer, const camber_cover_area *area, target *to) {
+    camber_cover_pixels pixels;
+    const size_t width_bytes = 4 * (size_t)area->width, row_bytes = 4 * (size_t)to->width;
+    const bool direct = !to->band;
+    camber_status status = camber_cover_map(renderer->cover, &pixels);
+    if (status != CAMBER_OK)
+        return status;
+    if (direct && !to->rows(to->user, pixels.rgba, area->y, area->height))
+        status = CAMBER_ERROR_IO;
+    for (size_t y = 0; !direct && y < area->height; y++)
+        memcpy(to->band + y * row_bytes + 4 * (size_t)area->x, pixels.rgba + y * pixels.row_bytes, width_bytes);
+    camber_cover_unmap(renderer->cover, pixels);
+    return status;
+}
+
+/* The areas of a band of rows, from left to right. */
+static camber_status draw_band(camber_renderer *renderer, const camber_cover_scene *scene, camber_cover_area area,
+                               target *to, camber_frame_stats *stats) {
+    const uint32_t widest = area.width;
+    camber_status status = CAMBER_OK;
+    for (area.x = 0; area.x < to->width && status == CAMBER_OK; area.x += widest) {
+        const double begin = camber_now_ms();
+        area.width = to->width - area.x < widest ? to->width - area.x : widest;
+        status = camber_cover_draw(renderer->cover, scene, &area);
+        const double drawn = camber_now_ms();
+        stats->draw_ms += drawn - begin;
+        stats->pieces++;
+        if (status == CAMBER_OK && to->rows)
+            status = take_area(renderer, &area, to);
+        stats->read_ms += camber_now_ms() - drawn;
+    }
+    if (status == CAMBER_OK && to->band && !to->rows(to->user, to->band, area.y, area.height))
+        status = CAMBER_ERROR_IO;
+    return status;
+}
+
+static camber_status draw_areas(camber_renderer *renderer, const camber_frame *frame, const camber_cover_scene *scene,
+                                target *to, camber_frame_stats *stats) {
+    camber_context *context = renderer->share.device->context;
+    camber_cover_area area = first_area(frame);
+    const uint32_t tallest = area.height;
+    camber_status status = CAMBER_OK;
+    to->width = frame->width;
+    if (to->rows && (area.width < frame->width || frame->width % CAMBER_TILE_PX)) {
+        to->band = camber_alloc(context, (size_t)frame->width * tallest, 4);
+        status = to->band ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    }
+    for (; area.y < frame->height && status == CAMBER_OK; area.y += tallest) {
+        area.height = frame->height - area.y < tallest ? frame->height - area.y : tallest;
+        status = draw_band(renderer, scene, area, to, stats);
+        if (tallest < frame->height)
+            camber_progress(context, "drawing", (double)(area.y + area.height) / frame->height);
+    }
+    camber_free(context, to->band);
+    return status;
+}
+
+camber_status camber_covered_render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows,
+                                    void *user, camber_frame_stats *stats) {
+    const camber_color back = frame->background;
+    tables t = {.context = renderer->share.device->context};
+    target to = {.rows = rows, .user = user};
+    camber_frame_stats made = {0};
+    camber_status status = make_tables(&t, frame);
+    const camber_cover_scene scene = {
+        .rows = t.rows,
+        .row_count = t.row_count + 1,
+        .inks = t.inks,
+        .ink_count = t.ink_count,
+        .runs = t.runs,
+        .run_count = t.run_count,
+        .background = {back.r * back.a, back.g * back.a, back.b * back.a, back.a},
+        .linear = frame->coverage == CAMBER_COVERAGE_LINEAR,
+    };
+    if (status == CAMBER_OK)
+        status = draw_areas(renderer, frame, &scene, &to, &made);
+    if (status == CAMBER_OK)
+        *stats = made;
+    free_tables(&t);
+    return status;
+}
+
+/* ---- Frames in two steps ---- */
+
+static bool keep_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
+    camber_flight *flight = user;
+    const size_t row_bytes = 4 * (size_t)flight->frame.width;
+    memcpy(flight->rgba + first_row * row_bytes, rgba, row_count * row_bytes);
+    return true;
+}
+
+camber_status camber_covered_begin(camber_renderer *renderer, const camber_frame *frame, camber_flight *flight) {
+    camber_context *context = renderer->share.device->context;
+    const camber_cover_area area = first_area(frame);
+    camber_flight made = {.frame = *frame, .first = {.width = area.width, .height = area.height}};
+    camber_status status = CAMBER_OK;
+    if (area.width == frame->width && area.height == frame->height) {
+        made.rgba = camber_alloc(context, (size_t)frame->width * frame->height, 4);
+        status =
+            made.rgba ? camber_covered_render(renderer, frame, keep_rows, &made, &made.stats) : CAMBER_ERROR_MEMORY;
+    }
+    if (status != CAMBER_OK) {
+        camber_free(context, made.rgba);
+        return status;
+    }
+    *flight = made;
+    return CAMBER_OK;
+}
+
+camber_status camber_covered_end(camber_renderer *renderer, camber_flight *flight, camber_rows_fn *rows, void *user) {
+    if (!flight->rgba)
+        return camber_covered_render(renderer, &flight->frame, rows, user, &flight->stats);
+    return !rows || rows(user, flight->rgba, 0, flight->frame.height) ? CAMBER_OK : CAMBER_ERROR_IO;
+}

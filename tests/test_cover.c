@@ -1,0 +1,304 @@
+/* Drawing in OpenCL: the device against the twin to the last bit, stage by stage; GL's pictures; the same bytes again
+ * and in areas of any size; loads that lie in one tile or in one polyline. */
+#include "picture.h"
+
+#include "cover/cover.h"
+
+enum { SIDE_PX = 600 };
+
+typedef struct easel {
+    studio s;
+    camber_renderer *cl;
+} easel;
+
+/* ---- Scenes ---- */
+
+typedef struct drawing {
+    scene lines;
+    camber_stroke strokes[SCENE_ROWS];
+    camber_paint paints[3][SCENE_ROWS];
+    camber_pass passes[3];
+    camber_frame frame;
+} drawing;
+
+static camber_color color_of(size_t i, float alpha) {
+    return (camber_color){0.2f * (float)(i % 6), 1.0f - 0.2f * (float)(i % 5), 0.2f * (float)(i % 4), alpha};
+}
+
+/* Casing, fill, and a pass that a caller makes translucent; all joins and caps. */
+static drawing begin_drawing(void) {
+    drawing d = {.frame = {.width = SIDE_PX, .height = SIDE_PX - 37, .background = {0.8f, 0.6f, 1, 1}}};
+    scene_strokes(d.strokes);
+    for (size_t i = 0; i < SCENE_ROWS; i++) {
+        const float width = d.strokes[i].width_px;
+        d.paints[0][i] = (camber_paint){.width_px = width, .color = {0, 0, 0, 1}};
+        d.paints[1][i] = (camber_paint){.width_px = 0.6f * width, .color = color_of(i, 1), .translate_x_px = 3};
+        d.paints[2][i] = (camber_paint){.width_px = 0.3f * width, .color = color_of(i + 2, 0.4f)};
+    }
+    return d;
+}
+
+static const camber_frame *end_drawing(drawing *d, camber_mesh *mesh, size_t pass_count) {
+    for (size_t i = 0; i < 3; i++) {
+        d->passes[i].mesh = mesh;
+        d->passes[i].paints = d->paints[i];
+        d->passes[i].paint_count = SCENE_ROWS;
+    }
+    d->frame.passes = d->passes;
+    d->frame.pass_count = pass_count;
+    return &d->frame;
+}
+
+static void fill_scene(scene *lines, int which) {
+    uint64_t seed = 77 + (uint64_t)which;
+    static void (*const fills[])(scene *, uint64_t *) = {scene_walks, scene_blocks, scene_rings, scene_turns,
+                                                         scene_degenerate};
+    fills[which](lines, &seed);
+}
+
+enum { SCENES = 5 };
+
+static camber_mesh *make_mesh(const easel *e, camber_renderer *renderer, const drawing *d, camber_method method) {
+    const camber_tessellation_desc desc = {d->strokes, SCENE_ROWS, method, 0, false};
+    return studio_mesh(&e->s, renderer, &d->lines, &desc);
+}
+
+/* ---- Device and twin ---- */
+
+/* A scene of the stages alone: one table, an ink a row, with layers and a group among them. */
+static void compare_with_twin(const easel *e, const drawing *d, camber_mesh *mesh, bool linear,
+                              camber_cover_area area) {
+    float rows[2 * SCENE_ROWS][CAMBER_COVER_ROW_WORDS] = {{0}};
+    camber_ink inks[2 * SCENE_ROWS + 1] = {{0}};
+    for (uint32_t i = 0; i < 2 * SCENE_ROWS; i++) {
+        const bool over = i >= SCENE_ROWS;
+        const float width = d->strokes[i % SCENE_ROWS].width_px;
+        rows[i][0] = width > 0.0f ? (over ? 0.3f : 0.5f) * width : -1.0f;
+        rows[i][1] = over ? 1.5f : 0.0f;
+        memcpy(rows[i] + 3, &i, sizeof i);
+        const camber_color c = color_of(i, over ? 1.0f : 0.5f);
+        inks[i] = (camber_ink){.r = c.r, .g = c.g, .b = c.b, .a = c.a, .layer_opacity = 0.7f, .group_opacity = 0.6f};
+        inks[i].mode = i % 3 == 0 && !over ? CAMBER_INK_UNION : CAMBER_INK_OVER;
+        inks[i].group = over ? 1 : 0;
+        inks[i].layer = i % 4 == 1 ? i : 0;
+    }
+    const size_t count = mesh->polyline_count;
+    const camber_cover_run runs[] = {{mesh, 0, count, 0}, {mesh, count / 3, count, SCENE_ROWS}};
+    const camber_cover_scene drawn = {rows[0], 2 * SCENE_ROWS,        inks,  2 * SCENE_ROWS, runs,
+                                      2,       {0.2f, 0.3f, 0.4f, 1}, linear};
+    camber_cover *cover = NULL;
+    camber_cover_stages device, twin;
+    assert_int_equal(camber_cover_create(e->s.device, &cover), CAMBER_OK);
+    assert_int_equal(camber_cover_draw(cover, &drawn, &area), CAMBER_OK);
+    assert_int_equal(camber_cover_read_stages(cover, &device), CAMBER_OK);
+    assert_int_equal(camber_cover_on_host(e->s.context, &drawn, &area, &twin), CAMBER_OK);
+    assert_int_equal(device.shape_count, twin.shape_count);
+    assert_int_equal(device.tile_count, twin.tile_count);
+    assert_memory_equal(device.boxes, twin.boxes, 4 * twin.shape_count);
+    for (size_t i = 0; i < twin.shape_count; i++)
+        if ((twin.boxes[i] & 255u) <= (twin.boxes[i] >> 16 & 255u))
+            assert_memory_equal(device.shapes + CAMBER_SHAPE_WORDS * i, twin.shapes + CAMBER_SHAPE_WORDS * i,
+                                4 * CAMBER_SHAPE_WORDS);
+    assert_memory_equal(device.starts, twin.starts, 4 * (twin.tile_count + 1));
+    assert_memory_equal(device.lists, twin.lists, 4 * (size_t)twin.starts[twin.tile_count]);
+    assert_memory_equal(device.rgba, twin.rgba, 4 * (size_t)area.width * area.height);
+    camber_cover_stages_free(e->s.context, &device);
+    camber_cover_stages_free(e->s.context, &twin);
+    camber_cover_destroy(cover);
+}
+
+static void test_twin(void **state) {
+    const easel *e = *state;
+    static const camber_method methods[] = {CAMBER_METHOD_STRIP, CAMBER_METHOD_KITE, CAMBER_METHOD_FAN};
+    for (int which = 0; which < SCENES; which++)
+        for (int m = 0; m < 3; m++) {
+            drawing d = begin_drawing();
+            fill_scene(&d.lines, which);
+            camber_mesh *mesh = make_mesh(e, e->cl, &d, methods[m]);
+            compare_with_twin(e, &d, mesh, which % 2, (camber_cover_area){32 * (uint32_t)m, 64, 500, 333});
+            camber_mesh_destroy(mesh);
+            scene_free(&d.lines);
+        }
+}
+
+/* ---- GL ---- */
+
+static picture draw_with(const easel *e, camber_renderer *renderer, drawing *d, size_t pass_count,
+                         camber_method method) {
+    camber_mesh *mesh = make_mesh(e, renderer, d, method);
+    picture p = picture_draw(renderer, end_drawing(d, mesh, pass_count));
+    camber_mesh_destroy(mesh);
+    return p;
+}
+
+/* GL rounds to 8 bits at each line, which is a level or two. And it says by triangles which segment has a pixel,
+ * kernels by the bisector itself: on it single pixels belong to another, which shows where joins are sharp and lines
+ * wide. */
+enum { MOST = 200, PIXELS_PAST_8 = 1000 };
+static void compare_with_gl(const easel *e, drawing *d, size_t pass_count, const char *what) {
+    const double bound = d->passes[1].opacity > 0 ? 0.3 : 0.2; /* a group is rounded twice more */
+    camber_renderer *gl = studio_any(&e->s);
+    picture a = draw_with(e, gl, d, pass_count, CAMBER_METHOD_STRIP),
+            b = draw_with(e, e->cl, d, pass_count, CAMBER_METHOD_STRIP);
+    const difference apart = picture_compare(&a, &b);
+    printf("# %-40s %.4f of 255 on average, %d at most, %zu pixels past 8\n", what, apart.mean, apart.most,
+           apart.past_8);
+    assert_true(apart.drawn > 0 && apart.mean < bound && apart.most <= MOST);
+    assert_true(apart.past_8 <= apart.drawn / PIXELS_PAST_8);
+    picture_free(&a);
+    picture_free(&b);
+}
+
+static void test_gl(void **state) {
+    const easel *e = *state;
+    static const char *const names[SCENES] = {"walks", "blocks", "rings", "turns", "degenerate"};
+    if (!studio_any(&e->s))
+        skip();
+    for (int which = 0; which < SCENES; which++) {
+        drawing d = begin_drawing();
+        fill_scene(&d.lines, which);
+        compare_with_gl(e, &d, 2, names[which]);
+        d.passes[2].overlap = CAMBER_OVERLAP_FLATTEN;
+        compare_with_gl(e, &d, 3, "  with a translucent pass");
+        d.passes[0].overlap = CAMBER_OVERLAP_UNITE;
+        d.passes[1].opacity = 0.5f;
+        d.passes[2].overlap = CAMBER_OVERLAP_ACCUMULATE;
+        d.passes[2].opacity = 0.8f;
+        d.paints[1][3].color.a = 0.3f;
+        compare_with_gl(e, &d, 3, "  with layers in groups");
+        d.frame.coverage = CAMBER_COVERAGE_LINEAR;
+        d.frame.background = (camber_color){0, 0, 0, 0};
+        compare_with_gl(e, &d, 3, "  with ramps, on nothing");
+        scene_free(&d.lines);
+    }
+}
+
+/* ---- The same bytes ---- */
+
+static void test_areas(void **state) {
+    const easel *e = *state;
+    static const uint32_t sides[] = {0, 33, 64, 320, 599};
+    drawing d = begin_drawing();
+    scene_walks(&d.lines, &(uint64_t){5});
+    d.passes[1].opacity = 0.5f;
+    picture whole = draw_with(e, e->cl, &d, 3, CAMBER_METHOD_STRIP);
+    for (size_t i = 0; i < sizeof sides / sizeof *sides; i++) {
+        d.frame.largest_piece_px = sides[i];
+        picture p = draw_with(e, e->cl, &d, 3, CAMBER_METHOD_STRIP);
+        picture_assert_same(&whole, &p);
+        picture_free(&p);
+    }
+    picture_free(&whole);
+    scene_free(&d.lines);
+}
+
+static void test_steps(void **state) {
+    const easel *e = *state;
+    drawing d = begin_drawing();
+    scene_rings(&d.lines, &(uint64_t){5});
+    for (int i = 0; i < 2; i++) {
+        camber_mesh *mesh = make_mesh(e, e->cl, &d, CAMBER_METHOD_STRIP);
+        d.frame.largest_piece_px = i ? 96 : 0;
+        const camber_frame *frame = end_drawing(&d, mesh, 2);
+        picture whole = picture_draw(e->cl, frame), p = whole;
+        p.rgba = malloc(4 * (size_t)p.width * p.height);
+        p.rows = 0;
+        assert_non_null(p.rgba);
+        assert_int_equal(camber_render_begin(e->cl, frame), CAMBER_OK);
+        assert_int_equal(camber_render_begin(e->cl, frame), CAMBER_OK);
+        assert_int_equal(camber_render_end(e->cl, picture_rows, &p, NULL), CAMBER_OK);
+        picture_assert_same(&whole, &p);
+        assert_int_equal(camber_render_end(e->cl, NULL, NULL, NULL), CAMBER_OK);
+        picture_free(&whole);
+        picture_free(&p);
+        camber_mesh_destroy(mesh);
+    }
+    scene_free(&d.lines);
+}
+
+/* ---- Loads ---- */
+
+/* All in one tile, and one polyline over all: both take many work-items. */
+static void test_loads(void **state) {
+    const easel *e = *state;
+    drawing d = begin_drawing();
+    uint64_t seed = 3;
+    for (int i = 0; i < 20000; i++) {
+        for (int k = 0; k < 5; k++)
+            scene_point(&d.lines, random_between(&seed, 66, 94), random_between(&seed, 66, 94));
+        scene_end(&d.lines, 1 + (size_t)i % 2);
+    }
+    for (int i = 0; i < 1000000; i++)
+        scene_point(&d.lines, 300 + 2e-4 * i * cos(1e-2 * i), 280 + 2e-4 * i * sin(1e-2 * i));
+    scene_end(&d.lines, 2);
+    for (size_t i = 0; i < SCENE_ROWS; i++)
+        d.paints[0][i].color.a = 0.5f;
+    d.passes[0].overlap = CAMBER_OVERLAP_ACCUMULATE;
+    camber_mesh *mesh = make_mesh(e, e->cl, &d, CAMBER_METHOD_STRIP);
+    picture p = picture_draw(e->cl, end_drawing(&d, mesh, 1)), q = picture_draw(e->cl, &d.frame);
+    picture_assert_same(&p, &q);
+    assert_true(picture_at(&p, 80, 80)[0] < 2); /* the background does not show */
+    picture_free(&p);
+    picture_free(&q);
+    camber_mesh_destroy(mesh);
+    scene_free(&d.lines);
+}
+
+/* ---- What is refused ---- */
+
+static void test_refused(void **state) {
+    easel *e = *state;
+    drawing d = begin_drawing();
+    scene_point(&d.lines, 10, 10);
+    scene_point(&d.lines, 90, 10);
+    scene_end(&d.lines, 5);
+    camber_mesh *mesh = make_mesh(e, e->cl, &d, CAMBER_METHOD_STRIP);
+    const camber_paint plain = d.paints[0][5];
+    camber_paint refused[] = {plain, plain};
+    refused[0].blur_px = 2;
+    refused[1].gap_px = 2;
+    for (int i = 0; i < 2; i++) {
+        d.paints[0][5] = refused[i];
+        e->s.h.errors = 0;
+        assert_int_equal(camber_render(e->cl, end_drawing(&d, mesh, 1), NULL, NULL, NULL), CAMBER_ERROR_ARGUMENT);
+        assert_story(&e->s.h, "draw with GL");
+    }
+    d.paints[0][5] = plain;
+    assert_int_equal(camber_render(e->cl, end_drawing(&d, mesh, 1), NULL, NULL, NULL), CAMBER_OK);
+    assert_int_equal(camber_renderer_get_draw(e->cl), CAMBER_DRAW_CL);
+    assert_int_equal(camber_renderer_get_sharing(e->cl), CAMBER_SHARING_AUTO);
+    camber_mesh_destroy(mesh);
+    scene_free(&d.lines);
+}
+
+static int set_up(void **state) {
+    static easel e;
+    *state = &e;
+    studio_open(&e.s); /* without GL there is still something to draw with */
+    return e.s.device && camber_renderer_create(e.s.device, NULL, NULL, &e.cl) == CAMBER_OK ? 0 : -1;
+}
+
+static int tear_down(void **state) {
+    easel *e = *state;
+    camber_renderer_destroy(e->cl);
+    studio_close(&e->s);
+    assert_int_equal(e->s.h.live_blocks, 0);
+    return 0;
+}
+
+int main(void) {
+    char cache[64];
+    pocl_cache_apart(cache);
+    if (!device_is_there()) {
+        puts("skipped: no OpenCL device");
+        folder_remove(cache);
+        return 77;
+    }
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_twin),  cmocka_unit_test(test_gl),    cmocka_unit_test(test_areas),
+        cmocka_unit_test(test_steps), cmocka_unit_test(test_loads), cmocka_unit_test(test_refused),
+    };
+    const int failed = cmocka_run_group_tests(tests, set_up, tear_down);
+    folder_remove(cache);
+    return failed;
+}

@@ -416,7 +416,7 @@ static camber_paint paints[SCENE_ROWS];
 static camber_status try_renderer(stage_set *s, void *user) {
     const easel *e = user;
     camber_renderer *renderer = NULL;
-    const camber_renderer_desc desc = {e->sharing};
+    const camber_renderer_desc desc = {.sharing = e->sharing};
     const camber_status status = camber_renderer_create(s->device, e->surface, &desc, &renderer);
     camber_renderer_destroy(renderer);
     return status;

@@ -482,7 +482,7 @@ static void test_drawing(void **state) {
             paints[i] = (camber_paint){.width_px = fminf(s.strokes[i].width_px, 2),
                                        .color = {1, 0.5f, (float)i / SCENE_ROWS, 1}};
         const camber_surface_desc surface_desc = {BACKEND[k / 3]};
-        const camber_renderer_desc renderer_desc = {e.sharing};
+        const camber_renderer_desc renderer_desc = {.sharing = e.sharing};
         if (camber_surface_create(s.context, &surface_desc, &e.surface) == CAMBER_OK &&
             camber_renderer_create(s.device, e.surface, &renderer_desc, &e.renderer) == CAMBER_OK) {
             each_call_fails(&s, try_renderer, &e, "sharing '", 2);

@@ -52,8 +52,6 @@ typedef struct camber_program {
     cl_kernel survey, project;      /* of networks */
     cl_kernel tally, measure;
     cl_kernel span, tell, shift; /* of offsets */
-    uint64_t key;                /* of the cache */
-    bool to_save;                /* built from source: its binary is saved once the kernels have run */
     cl_kernel shape, count, total, fill, cover;
     uint64_t key; /* of the cache */
     bool to_save; /* built from source: its binary is saved once the kernels have run */

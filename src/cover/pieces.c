@@ -5,19 +5,17 @@
 static camber_status first_record(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline,
                                   size_t *record) {
     uint64_t index = 0;
+    *record = 0;
     if (polyline == part->first_polyline)
-        *record = 0;
-    else if (!mesh->mesh_info.strips)
-        *record = camber_part_slot(mesh, part, polyline);
-    else if (polyline == part->first_polyline + part->polyline_count)
-        *record = part->record_count;
-    else {
-        const camber_status status = camber_part_first_index(mesh, part, polyline, &index);
-        if (status != CAMBER_OK)
-            return status;
-        *record = (size_t)index / 2;
-    }
-    return CAMBER_OK;
+        return CAMBER_OK;
+    if (!mesh->mesh_info.strips)
+        return camber_part_slot(mesh, part, polyline, record);
+    *record = part->record_count;
+    if (polyline == part->first_polyline + part->polyline_count)
+        return CAMBER_OK;
+    const camber_status status = camber_part_first_index(mesh, part, polyline, &index);
+    *record = (size_t)index / 2;
+    return status;
 }
 
 static camber_status find_piece(const camber_cover_run *run, size_t which, camber_cover_piece *piece) {

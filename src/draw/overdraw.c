@@ -317,7 +317,8 @@ camber_status camber_overdraw_count(camber_renderer *renderer, const camber_over
     assert(desc->mesh->renderer == renderer);
     assert(desc->paint_count == 0 || desc->paints);
     if (renderer->cover)
-        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "overdraw is counted by GL; open the renderer with a surface");
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT,
+                           "overdraw is counted by GL; open the renderer with a surface");
     if (desc->width < 1 || desc->width > SIDE_MAX_PX || desc->height < 1 || desc->height > SIDE_MAX_PX)
         return camber_fail(context, CAMBER_ERROR_ARGUMENT, "a picture of %u x %u px; each side must be 1 to %d",
                            desc->width, desc->height, SIDE_MAX_PX);

@@ -74,6 +74,34 @@ static void test_all_errors(void **state) {
     host_done(&h, context);
 }
 
+/* What styles have at their root beside what is drawn. */
+static void test_root(void **state) {
+    (void)state;
+    static const struct {
+        const char *json, *pointer;
+    } cases[] = {
+        {"\"id\": \"x\", \"owner\": \"y\", \"sky\": {}, \"projection\": {\"type\": \"mercator\"}", NULL},
+        {"\"projection\": {\"type\": \"globe\"}", "/projection"},
+        {"\"projection\": {\"type\": [\"step\", [\"zoom\"], \"globe\", 5, \"mercator\"]}", "/projection"},
+        {"\"terrain\": {\"source\": \"dem\"}", "/terrain"},
+        {"\"colour\": 3", "/colour"},
+    };
+    host h;
+    camber_context *context = host_context(&h);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char json[512];
+        camber_style_report *report = NULL;
+        snprintf(json, sizeof json, "{\"version\": 8, \"sources\": {}, \"layers\": [], %s}", cases[i].json);
+        assert_int_equal(check(context, json, &report), CAMBER_OK);
+        assert_int_equal(report->error_count, 0);
+        assert_int_equal(report->finding_count, cases[i].pointer ? 1 : 0);
+        if (cases[i].pointer)
+            assert_string_equal(report->findings[0].pointer, cases[i].pointer);
+        camber_style_report_destroy(report);
+    }
+    host_done(&h, context);
+}
+
 static void test_what_is_drawn(void **state) {
     (void)state;
     host h;
@@ -127,7 +155,7 @@ static void test_memory(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_all_errors), cmocka_unit_test(test_what_is_drawn),
-                                       cmocka_unit_test(test_memory)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_all_errors), cmocka_unit_test(test_root),
+                                       cmocka_unit_test(test_what_is_drawn), cmocka_unit_test(test_memory)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -256,12 +256,29 @@ static bool read_state(camber_document *d) {
     return true;
 }
 
+static void warn_at(camber_document *d, const char *key, const char *message) {
+    camber_compiler_enter_key(&d->compiler, key);
+    camber_compiler_warn(&d->compiler, "%s", message);
+    camber_compiler_leave(&d->compiler);
+}
+
+/* What would change where lines lie. */
+static void warn_of_places(camber_document *d) {
+    const json_t *projection = json_object_get(json_object_get(d->root, "projection"), "type");
+    if (projection && !(json_is_string(projection) && strcmp(json_string_value(projection), "mercator") == 0))
+        warn_at(d, "projection", "maps are drawn in Web Mercator; write {\"type\": \"mercator\"}");
+    if (json_is_object(json_object_get(d->root, "terrain")))
+        warn_at(d, "terrain", "maps are drawn flat; leave it out");
+}
+
 static bool read_document(camber_document *d) {
-    /* What needs other kinds of layers, or a picture that changes, is nothing of these. */
-    static const char *const known[] = {"version",    "name",    "metadata",  "center", "centerAltitude",
-                                        "zoom",       "bearing", "pitch",     "roll",   "state",
-                                        "light",      "sources", "sprite",    "glyphs", "font-faces",
-                                        "transition", "layers",  "constants", NULL};
+    /* What needs other kinds of layers, or a picture that changes, is nothing of these; nor is what editors of styles
+     * keep there. */
+    static const char *const known[] = {
+        "version", "name",      "metadata", "center",     "centerAltitude", "zoom",   "bearing",    "pitch",
+        "roll",    "state",     "light",    "sources",    "sprite",         "glyphs", "font-faces", "transition",
+        "layers",  "constants", "sky",      "projection", "terrain",        "id",     "created",    "modified",
+        "owner",   NULL};
     camber_compiler *c = &d->compiler;
     if (!json_is_object(d->root))
         return camber_compiler_fail(c, "expected a style document, an object, found %s; pass a MapLibre style",
@@ -269,6 +286,7 @@ static bool read_document(camber_document *d) {
     if (!read_version(d))
         return false;
     camber_document_warn_unknown(d, d->root, known, "style");
+    warn_of_places(d);
     return camber_document_read_string(d, d->root, "name", &c->style->name) && read_camera(d) && read_state(d) &&
            read_sprites(d, json_object_get(d->root, "sprite")) &&
            read_sources(d, json_object_get(d->root, "sources")) &&

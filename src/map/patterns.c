@@ -53,9 +53,9 @@ bool camber_plan_patterns_find(camber_plan_patterns *patterns, const camber_styl
     uint32_t found;
     *image = 0;
     *aspect = 1.0f;
-    if (!camber_style_layer_pattern(layer, zoom, feature, &names, &found))
+    if (patterns->failed || !camber_style_layer_pattern(layer, zoom, feature, &names, &found))
         return false;
-    if (found && !patterns->failed && (*image = intern(patterns, found - 1)))
+    if (found && (*image = intern(patterns, found - 1)))
         *aspect = (float)patterns->images[*image - 1].width / (float)patterns->images[*image - 1].height;
     return true;
 }

@@ -132,7 +132,7 @@ static camber_status group_layers(camber_plan *plan, const camber_style *style, 
         !(plan->sets = camber_alloc_zero(plan->context, style->layer_count, sizeof *plan->sets)) ||
         !(table.slots = camber_alloc_zero(plan->context, table.slot_count, sizeof *table.slots)))
         return CAMBER_ERROR_MEMORY;
-    for (size_t i = find_first(style, zoom); i < style->layer_count; i++) {
+    for (size_t i = find_first(style, zoom); i < style->layer_count && !plan->patterns.failed; i++) {
         const camber_style_layer *layer = style->layers + i;
         if (!is_active(layer, zoom))
             continue;

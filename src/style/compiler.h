@@ -152,6 +152,8 @@ const camber_binding *camber_find_binding(const camber_compiler *c, const char *
 bool camber_compile_operator(camber_compiler *c, json_t *array, camber_typing expected, uint32_t *node);
 /* function.c: {"stops": ..., "property": ..., "base": ..., "type": ..., "default": ..., "colorSpace": ...}. */
 bool camber_compile_function(camber_compiler *c, json_t *object, const camber_property *property, uint32_t *node);
+/* A string in which {name} stands for the property of that name. */
+bool camber_compile_tokens(camber_compiler *c, const json_t *json, const camber_property *property, uint32_t *node);
 /* property.c */
 camber_typing camber_property_typing(const camber_property *property);
 

@@ -150,8 +150,8 @@ static bool add_sprite(camber_document *d, const char *id, const char *url) {
     camber_style *style = d->compiler.style;
     camber_style_sprite *sprite = &style->sprites[style->sprite_count++];
     sprite->id = camber_copy_string(style->context, id);
-    sprite->url = camber_copy_string(style->context, url);
-    return (sprite->id && sprite->url) || camber_document_fail_memory(d);
+    sprite->url = sprite->id ? camber_copy_string(style->context, url) : NULL;
+    return sprite->url || camber_document_fail_memory(d);
 }
 
 /* A URL, or several with ids. */

@@ -436,3 +436,8 @@ bool camber_compile_function(camber_compiler *c, json_t *object, const camber_pr
             return camber_compiler_fail(c, "%s is not interpolated; write \"type\": \"interval\"", property->name);
     return true;
 }
+
+bool camber_compile_tokens(camber_compiler *c, const json_t *json, const camber_property *property, uint32_t *node) {
+    function f = {.c = c, .property = property, .type = camber_property_typing(property)};
+    return compile_value(&f, json, node);
+}

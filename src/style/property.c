@@ -139,6 +139,8 @@ static bool compile_value(camber_compiler *c, json_t *json, const camber_propert
         return camber_compile_function(c, json, property, root);
     if (is_list(json) && property->type == CAMBER_TYPE_ARRAY && !c->strict)
         return compile_list(c, json, property, root);
+    if (json_is_string(json) && property->tokens && !c->strict)
+        return camber_compile_tokens(c, json, property, root);
     const bool fits = json_is_array(json) || (property->type == CAMBER_TYPE_NUMBER  ? json_is_number(json)
                                               : property->type == CAMBER_TYPE_BOOL  ? json_is_boolean(json)
                                               : property->type == CAMBER_TYPE_ARRAY ? false

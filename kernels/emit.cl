@@ -175,8 +175,8 @@ static inline void put_join(global camber_u32 *indices, camber_u32 record, cambe
 
 /* A point's record and indices; gives how many indices. */
 static inline size_t put_point(global const float *x, global const float *y, global const camber_u32 *info,
-                               global const camber_row *rows, global const camber_u32 *joins, size_t i,
-                               global camber_u32 *records, global camber_u32 *index) {
+                               global const camber_u32 *joins, size_t i, global camber_u32 *records,
+                               global camber_u32 *index) {
     const camber_u32 join = joins[i], kind = camber_join_kind(join), point = info[i];
     const camber_u32 before = joins[i - 1];
     /* A record a slot, ghosts too: a ring's are where its seam's neighbours lie. */
@@ -197,7 +197,7 @@ static inline size_t put_point(global const float *x, global const float *y, glo
     if (!joined)
         return body;
     put_join(index + body, here, camber_join_triangles(join),
-             CAMBER_METHOD == CAMBER_FAN && rows[point >> 8].join == 0u,
+             CAMBER_METHOD == CAMBER_FAN && camber_join_end(join) == 0u,
              camber_turn_unpack(join) > 0.0f ? -1.0f : 1.0f);
     return body + 3u * camber_join_triangles(join);
 }
@@ -210,7 +210,7 @@ kernel __attribute__((reqd_work_group_size(LANES, 1, 1))) void emit(
     const size_t first = get_global_id(0) * CAMBER_ITEM + 1;
     size_t at = (size_t)bases[2 * get_group_id(0) + 1] + (offsets[get_global_id(0)] >> 16);
     for (size_t i = first; i < first + CAMBER_ITEM; i++) {
-        at += put_point(x, y, info, rows, joins, i, records, indices + at);
+        at += put_point(x, y, info, joins, i, records, indices + at);
 #if CAMBER_MEASURED
         put_measures(records, i - 1, 1, measures, i - 1);
 #endif

@@ -187,6 +187,8 @@ typedef struct camber_stroke {
      * below 0. Its corners follow the join: arcs (to 1/8 px), miters within the limit, or bevels; what has no room on
      * the inner side of a bend goes. Not of dots. -16384 to 16384 px. */
     float offset_px;
+    /* Round joins whose miter length over width is less are miter joins, or bevels past the miter limit. 0: none */
+    float round_limit;
 } camber_stroke;
 
 /* ---- OpenCL devices ------------------------------------------------------------------------------- */

@@ -125,8 +125,8 @@ void sheet_add(sheet *s, const figure *f) {
     add_polyline(s, f->points, f->point_count, p->x - left, p->y - top);
     if (f->twin_points)
         add_polyline(s, f->twin_points, f->twin_count, p->x + width - left, p->y - top);
-    s->strokes[s->figure_count] =
-        (camber_stroke){(float)style->width_px, style->join, style->cap, (float)style->miter_limit};
+    s->strokes[s->figure_count] = (camber_stroke){(float)style->width_px, style->join, style->cap,
+                                                  (float)style->miter_limit, .round_limit = (float)style->round_limit};
     s->figure_count++;
     s->shelf_x += needed;
     s->shelf_height = height > s->shelf_height ? height : s->shelf_height;

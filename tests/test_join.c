@@ -39,7 +39,6 @@ static camber_row make_row(float width_px, camber_u32 join, float miter_limit, d
                         .miter_limit = miter_limit,
                         .fan_cos = (float)cos(step),
                         .fan_sin = (float)sin(step),
-                        .fan_scale = (float)(1 / cos(step / 2)),
                         .join = join};
 }
 
@@ -121,10 +120,12 @@ static void check_word(const sample *s, camber_row row, camber_u32 method) {
     const camber_u32 word = join_word(turn, row, method);
     const double t = fabs(s->turn), tan_half = tan(fmin(t, PI - 1e-9) / 2), length = 1 / cos(fmin(t, PI - 1e-9) / 2);
     if (is_near(tan_half, 2) || is_near(tan_half, sqrt(3)) || is_near(length, row.miter_limit) ||
-        fabs(row.reach_px * tan_half - 0.5 * s->shorter) <= 1e-4 * s->shorter || t > 179.9 * PI / 180)
+        is_near(length, row.round_limit) || fabs(row.reach_px * tan_half - 0.5 * s->shorter) <= 1e-4 * s->shorter ||
+        t > 179.9 * PI / 180)
         return;
-    const bool miter = row.join == CAMBER_JOIN_MITER && length <= row.miter_limit;
-    const bool bevel = row.join != CAMBER_JOIN_ROUND && !miter;
+    const bool is_round = row.join == CAMBER_JOIN_ROUND && length >= (double)row.round_limit;
+    const bool miter = row.join != CAMBER_JOIN_BEVEL && !is_round && length <= row.miter_limit;
+    const bool bevel = !is_round && !miter;
     const bool split = !miter && tan_half > 2, tight = row.reach_px * tan_half > 0.5 * s->shorter;
     assert_int_equal(camber_join_kind(word), split ? CAMBER_KIND_SPLIT : tight ? CAMBER_KIND_TIGHT : CAMBER_KIND_CUT);
     if (method == CAMBER_STRIP && (split || tight))
@@ -138,7 +139,7 @@ static void check_word(const sample *s, camber_row row, camber_u32 method) {
         assert_near(camber_limit_unpack(word), fmin(0.5 * s->shorter, (double)CAMBER_PAD_PX), 0.006);
     else if (method == CAMBER_STRIP || fabsf(turn.s) <= CAMBER_STRAIGHT_SINE)
         assert_int_equal(triangles, 0);
-    else if (method == CAMBER_KITE || row.join != CAMBER_JOIN_ROUND)
+    else if (method == CAMBER_KITE || !is_round)
         assert_int_equal(triangles, !miter && t > 120 * PI / 180 ? 4 : 2);
 }
 
@@ -151,7 +152,9 @@ static void test_words(void **state) {
             for (camber_u32 join = 0; join < 3; join++) {
                 const sample s = make_sample(&seed, k * 0.1 - 180);
                 const float width = (float)pow(10, random_between(&seed, -1, 3));
-                check_word(&s, make_row(width, join, limits[random_below(&seed, 5)], 0.3), method);
+                camber_row row = make_row(width, join, limits[random_below(&seed, 5)], 0.3);
+                row.round_limit = k % 2 ? 0.0f : limits[random_below(&seed, 5)];
+                check_word(&s, row, method);
             }
 }
 

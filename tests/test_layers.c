@@ -259,6 +259,30 @@ static void test_border(void **state) {
     }
 }
 
+/* A round join is a miter below the layer's limit where that shows: from 10 px on by the specification's limit. */
+static void test_round_limit(void **state) {
+    studio *s = *state;
+    static const struct {
+        const char *layout;
+        double width, limit;
+    } cases[] = {{"", 8, 0},
+                 {"", 20, 1.05},
+                 {", \"line-round-limit\": 1.3", 8, 1.3},
+                 {", \"line-round-limit\": [\"get\", \"limit\"]", 20, 1.5},
+                 {", \"line-round-limit\": 1", 200, 0}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char layer[512];
+        snprintf(layer, sizeof layer,
+                 "{\"id\": \"a\", \"type\": \"line\", \"source\": \"s\", \"layout\": {\"line-join\": \"round\"%s}, "
+                 "\"paint\": {\"line-width\": %g}}",
+                 cases[i].layout, cases[i].width);
+        map m = open_map(s, "\"s\": " LINES(LINE(0, "\"limit\": 1.5")), layer, 0);
+        if (fabs((double)stroke_of(&m, 0).round_limit - cases[i].limit) > 1e-6)
+            fail_msg("case %zu: a limit of %g", i, (double)stroke_of(&m, 0).round_limit);
+        close_map(&m);
+    }
+}
+
 /* Layers share polylines where their strokes agree, though one says by a function what the other says plainly. */
 static void test_sharing(void **state) {
     studio *s = *state;
@@ -372,7 +396,7 @@ int main(void) {
         cmocka_unit_test(test_sources),       cmocka_unit_test(test_translate),
         cmocka_unit_test(test_layer_opacity), cmocka_unit_test(test_many_layers),
         cmocka_unit_test(test_border),        cmocka_unit_test(test_sharing),
-        cmocka_unit_test(test_overlap),
+        cmocka_unit_test(test_overlap),       cmocka_unit_test(test_round_limit),
     };
     const int failed = cmocka_run_group_tests(tests, studio_set_up, studio_tear_down);
     folder_remove(cache);

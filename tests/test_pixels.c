@@ -245,6 +245,37 @@ static void test_lengths_of_fans(void **state) {
                                                 {{0.4, 135}, {0.2, 115}, {0.56, 70}}});
 }
 
+/* ---- Round joins that are not round ---- */
+
+/* Below the limit they are miters, and past the miter limit (1.15: 59 degrees) bevels. */
+static void test_round_limit(void **state) {
+    (void)state;
+    for (int method = CAMBER_METHOD_STRIP; method <= CAMBER_METHOD_FAN; method++) {
+        trial t;
+        tally errors = {.name = "round joins with a limit"}, round = {.name = "round joins past it"};
+        assert_true(begin_trial(&t, (camber_method)method));
+        for (int i = 0; i < 600; i++) {
+            camber_oracle_style style = style_of(i % 2 ? 20 : 48, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT);
+            style.round_limit = i % 3 ? 1.41421 : 1.05; /* 90 and 35.5 degrees */
+            style.miter_limit = i % 3 == 1 ? 1.15 : 2;
+            const double turn = 0.2 + 1.8 * (i % 100) / 100;
+            path p;
+            char label[64];
+            snprintf(label, sizeof label, "width %g turn %.0f limit %g", style.width_px, turn * 180 / M_PI,
+                     style.round_limit);
+            begin(&p, &t.dice);
+            go(&p, 90, 0);
+            go(&p, 90, i % 7 < 3 ? turn : -turn);
+            add(&t, style.round_limit * cos(turn / 2) > 1 ? &errors : &round, &p, &style, label);
+        }
+        sheet_flush(t.sheet);
+        const int max = method == CAMBER_METHOD_FAN ? 70 : 50;
+        check(&t, &errors, (limits){0.1, max});
+        check(&t, &round, (limits){0.11, max});
+        end_trial(&t);
+    }
+}
+
 /* ---- Dots and rings ---- */
 
 static void test_dots(void **state) {
@@ -393,6 +424,7 @@ int main(void) {
         cmocka_unit_test(test_lengths_of_strips),
         cmocka_unit_test(test_lengths_of_kites),
         cmocka_unit_test(test_lengths_of_fans),
+        cmocka_unit_test(test_round_limit),
         cmocka_unit_test(test_dots),
         cmocka_unit_test(test_rings),
         cmocka_unit_test(test_direction_does_not_matter),

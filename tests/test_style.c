@@ -345,13 +345,13 @@ static void test_warnings(void **state) {
     setup(&f);
     assert_int_equal(parse(&f, "{\"version\": 8, \"layers\": ["
                                "{\"id\": \"a\", \"type\": \"fill\"}, {\"id\": \"b\", \"type\": \"fill\"},"
-                               "{\"id\": \"c\", \"type\": \"line\", \"layout\": {\"line-round-limit\": 3},"
+                               "{\"id\": \"c\", \"type\": \"line\", \"layout\": {\"line-shadow\": 3},"
                                "  \"paint\": {\"line-color-transition\": {\"duration\": 1}}},"
-                               "{\"id\": \"d\", \"type\": \"line\", \"layout\": {\"line-round-limit\": 4}}]}"),
+                               "{\"id\": \"d\", \"type\": \"line\", \"layout\": {\"line-shadow\": 4}}]}"),
                      CAMBER_OK);
     assert_int_equal(f.warning_count, 2);
-    assert_string_equal(f.warning, "roads.json: /layers/2/layout/line-round-limit: line-round-limit is not drawn; its "
-                                   "round joins are round at any angle");
+    assert_string_equal(f.warning, "roads.json: /layers/2/layout/line-shadow: unknown property; the layer is drawn "
+                                   "without it");
     assert_int_equal(f.style->layer_count, 2);
     teardown(&f);
     setup(&f);

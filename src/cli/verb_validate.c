@@ -17,17 +17,19 @@ static int check_subject(camber_validation *v, const camber_subject *s) {
 }
 
 /* Of all widths at which a kernel or a shader does something else; pictures leave out what would cover all of them. */
-static const camber_stroke builtin_strokes[CAMBER_SCENE_ROWS] = {{.width_px = 0.3f, .miter_limit = 1},
-                                                                 {.width_px = 2, .miter_limit = 0},
-                                                                 {.width_px = 9, .miter_limit = 10},
-                                                                 {.width_px = 64, .miter_limit = 4},
-                                                                 {.width_px = 1, .miter_limit = 2}};
+static const camber_stroke builtin_strokes[CAMBER_SCENE_ROWS] = {
+    {.width_px = 0.3f, .miter_limit = 1},
+    {.width_px = 2, .miter_limit = 0},
+    {.width_px = 9, .miter_limit = 10},
+    {.width_px = 64, .miter_limit = 4, .round_limit = 1.3f},
+    {.width_px = 1, .miter_limit = 2}};
 /* The third is CAMBER_SCENE_WIDTH_ROW. */
-static const camber_stroke builtin_drawn_strokes[CAMBER_SCENE_ROWS] = {{.width_px = 0.4f, .miter_limit = 1},
-                                                                       {.width_px = 3, .miter_limit = 0},
-                                                                       {CAMBER_SCENE_WIDTH_PX, 0, 0, 10},
-                                                                       {.width_px = 20, .miter_limit = 4},
-                                                                       {.width_px = 1, .miter_limit = 2}};
+static const camber_stroke builtin_drawn_strokes[CAMBER_SCENE_ROWS] = {
+    {.width_px = 0.4f, .miter_limit = 1},
+    {.width_px = 3, .miter_limit = 0},
+    {CAMBER_SCENE_WIDTH_PX, 0, 0, 10},
+    {.width_px = 20, .miter_limit = 4, .round_limit = 1.3f},
+    {.width_px = 1, .miter_limit = 2}};
 
 static int check_builtin(camber_validation *v, size_t number) {
     camber_builtin scene;

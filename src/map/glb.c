@@ -274,6 +274,8 @@ static json_t *style_table(const camber_glb_desc *desc, bool *ok) {
         const double limit = stroke->miter_limit > 0.0f ? fmin((double)stroke->miter_limit, (double)FLT_MAX) : 2.0;
         json_t *row = json_pack("{s:f, s:s, s:s, s:f}", "width", (double)stroke->width_px, "join",
                                 join_name(stroke->join), "cap", cap_name(stroke->cap), "miterLimit", limit);
+        if (row && stroke->round_limit > 0.0f)
+            set(row, "roundLimit", json_real(fmin((double)stroke->round_limit, (double)FLT_MAX)), ok);
         if (desc->paints) {
             const camber_color c = desc->paints[i].color;
             set(row, "paint",

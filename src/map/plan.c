@@ -278,10 +278,19 @@ static void put_pattern(const camber_plan_layer *layer, const pattern_choice *ch
 
 /* A limit of 1 bevels every turn, and so do those below; 0 would mean the default. */
 static camber_stroke stroke_of(const camber_layer_paint *paint, double ratio) {
-    return (camber_stroke){.join = paint->join,
-                           .cap = paint->cap,
-                           .miter_limit = (float)fmin(fmax(paint->miter_limit, 1.0), 1e6),
-                           .offset_px = (float)fmin(fmax(paint->offset * ratio, -WIDEST_PX), WIDEST_PX)};
+    return (camber_stroke){
+        .join = paint->join,
+        .cap = paint->cap,
+        .miter_limit = (float)fmin(fmax(paint->miter_limit, 1.0), 1e6),
+        .offset_px = (float)fmin(fmax(paint->offset * ratio, -WIDEST_PX), WIDEST_PX),
+        .round_limit = paint->join == CAMBER_JOIN_ROUND ? (float)fmin(fmax(paint->round_limit, 0.0), 1e6) : 0.0f};
+}
+
+/* A tip that is no more than a quarter of a pixel is not worth what drawing miters costs: a tenth of a frame. */
+static float round_limit_that_shows(const camber_stroke *stroke) {
+    const double limit = (double)stroke->round_limit, half_px = 0.5 * (double)stroke->width_px;
+    const double turn = limit > 1.0 ? 2.0 * acos(1.0 / limit) : 0.0;
+    return half_px * half_px * (tan(0.5 * turn) - 0.5 * turn) > 0.25 ? stroke->round_limit : 0.0f;
 }
 
 static bool same_row(const camber_plan *plan, const camber_plan_set *set, const row_table *table, size_t row) {
@@ -334,6 +343,7 @@ static bool fill_tuple(camber_plan *plan, const camber_plan_set *set, const camb
         const float width_px = fmaxf(table->stroke.width_px, whole_width(made));
         table->stroke = stroke_of(&paint, view->ratio);
         table->stroke.width_px = width_px;
+        table->stroke.round_limit = round_limit_that_shows(&table->stroke);
         *key = paint.sort_key;
         plan->measured |= made->dash || made->ramp || made->pattern || made->trim_end > made->trim_start;
         if (made->width_px > 0.0f)

@@ -95,7 +95,9 @@ static void judge(camber_found_join *join, const camber_vertex *in, const camber
     const double dx = (double)in->dx, dy = (double)in->dy, ex = (double)out->dx, ey = (double)out->dy;
     const double cross = dx * ey - dy * ex, turn = atan2(fabs(cross), dx * ex + dy * ey);
     const double limit = stroke->miter_limit > 0 ? (double)stroke->miter_limit : 2;
-    const bool miter = stroke->join == CAMBER_JOIN_MITER && cross != 0 && cos(turn / 2) * limit >= 1;
+    const bool sharp = stroke->join == CAMBER_JOIN_MITER ||
+                       (stroke->join == CAMBER_JOIN_ROUND && (double)stroke->round_limit * cos(turn / 2) > 1);
+    const bool miter = sharp && cross != 0 && cos(turn / 2) * limit >= 1;
     const double reach = (double)stroke->width_px / 2 + (double)CAMBER_PAD_PX;
     const double half_shorter = fmin(length_of(in), length_of(out)) / 2;
     const bool tight = reach * tan(turn / 2) > half_shorter * (1 - AT_BOUND);

@@ -165,9 +165,10 @@ static void cover_join(camber_oracle_window *w, vec point, vec u, vec v, const c
     const vec in = step(point, (vec){-u.y, u.x}, outer), out = step(point, (vec){-v.y, v.x}, outer);
     if (turn == 0)
         return;
-    if (style->join == CAMBER_JOIN_ROUND)
+    const bool is_round = style->join == CAMBER_JOIN_ROUND && style->round_limit * cos(turn / 2) <= 1;
+    if (is_round)
         cover_sector(w, point, h, (vec){-u.x, -u.y}, v);
-    else if (style->join == CAMBER_JOIN_MITER && 1 <= style->miter_limit * cos(turn / 2))
+    else if (style->join != CAMBER_JOIN_BEVEL && 1 <= style->miter_limit * cos(turn / 2))
         cover_polygon(w, (vec[]){point, in, step(in, u, h * tan(fabs(turn) / 2)), out}, 4);
     else
         cover_polygon(w, (vec[]){point, in, out}, 3);

@@ -28,6 +28,7 @@ typedef struct camber_oracle_style {
     camber_cap cap;
     double miter_limit; /* 1 / cos(turn / 2) */
     bool closed;        /* the last point, equal to the first, is a join */
+    double round_limit; /* as the miter limit; below it round joins are not round */
 } camber_oracle_style;
 
 /* Nothing is covered yet. false: out of memory. */

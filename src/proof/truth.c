@@ -30,7 +30,7 @@ static bool reach_of(const piece *p, camber_window window, camber_window *part) 
         top = fmin(top, (double)p->points[2 * i + 1]), bottom = fmax(bottom, (double)p->points[2 * i + 1]);
     }
     /* Corners of square caps lie sqrt(2) half widths away, miter tips as far as their limit. */
-    const double tip = p->style.join == CAMBER_JOIN_MITER ? fmax(p->style.miter_limit, 1.5) : 1.5;
+    const double tip = p->style.join != CAMBER_JOIN_BEVEL ? fmax(p->style.miter_limit, 1.5) : 1.5;
     const double reach = p->style.width_px / 2 * tip + 1;
     left = fmax(floor(left - reach), window.x0), right = fmin(ceil(right + reach), window.x0 + window.width);
     top = fmax(floor(top - reach), window.y0), bottom = fmin(ceil(bottom + reach), window.y0 + window.height);
@@ -70,7 +70,8 @@ static bool draw_line(canvas *c, size_t line) {
     piece p = {.style = {.width_px = (double)stroke->width_px,
                          .join = stroke->join,
                          .cap = stroke->cap,
-                         .miter_limit = stroke->miter_limit > 0 ? (double)stroke->miter_limit : 2}};
+                         .miter_limit = stroke->miter_limit > 0 ? (double)stroke->miter_limit : 2,
+                         .round_limit = (double)stroke->round_limit}};
     bool drawn = true;
     for (size_t first = lines->offsets[line]; first < end && drawn; first += p.count + 1) {
         p.points = lines->points + 2 * first;

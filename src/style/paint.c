@@ -167,6 +167,17 @@ bool camber_style_layer_pattern(const camber_style_layer *layer, double zoom, co
     return true;
 }
 
+/* Whether limits that differ change nothing of the join that both have. */
+static bool join_ignores(const camber_layer_paint *p, const camber_layer_paint *q) {
+    switch (p->join) {
+    case CAMBER_JOIN_MITER: return p->miter_limit == q->miter_limit;
+    case CAMBER_JOIN_ROUND:
+        return p->round_limit == q->round_limit && fmin(p->miter_limit, q->miter_limit) >= p->round_limit;
+    case CAMBER_JOIN_BEVEL: break;
+    }
+    return true;
+}
+
 bool camber_layer_look_shares(const camber_layer_look *a, const camber_layer_look *b) {
     const uint32_t geometry = (1u << CAMBER_LINE_GEOMETRY) - 1;
     if ((a->by_feature & geometry) != (b->by_feature & geometry))
@@ -177,6 +188,7 @@ bool camber_layer_look_shares(const camber_layer_look *a, const camber_layer_loo
     /* Of what features change, both have nothing yet. */
     const camber_layer_paint *p = &a->paint, *q = &b->paint;
     const bool driven = a->by_feature >> CAMBER_LINE_JOIN & 1;
-    const bool limits = p->miter_limit == q->miter_limit || (!driven && p->join != CAMBER_JOIN_MITER);
-    return p->cap == q->cap && p->join == q->join && limits && p->offset == q->offset && p->sort_key == q->sort_key;
+    const bool limits = p->round_limit == q->round_limit && p->miter_limit == q->miter_limit;
+    return p->cap == q->cap && p->join == q->join && (limits || (!driven && join_ignores(p, q))) &&
+           p->offset == q->offset && p->sort_key == q->sort_key;
 }

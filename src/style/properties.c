@@ -51,7 +51,6 @@ const camber_property_row camber_property_rows[CAMBER_PROPERTIES] = {
     [CAMBER_LINE_ROUND_LIMIT] = {.kind = CAMBER_LAYER_LINE,
                                  .layout = true,
                                  AT(round_limit),
-                                 .not_drawn = "its round joins are round at any angle",
                                  .property = {.name = "line-round-limit",
                                               .type = CAMBER_TYPE_NUMBER,
                                               .fallback = "1.05",

@@ -83,14 +83,16 @@ static void expand_strip(camber_mesh_data *data) {
 /* Along and across of a join's own vertices, in units of the reach; outer: the side. */
 static void set_join_corner(camber_vertex *vertex, camber_u32 corner, float q, const camber_row *row) {
     const float outer = q > 0.0f ? -1.0f : 1.0f, a = fabsf(q), scale = 1.0f / (1.0f + a * a);
-    const float angle = row->fan_step * (float)((int)corner - (int)CAMBER_CORNER_FAN);
+    /* Chords touch the padded arc instead of cutting it. */
+    const float angle = row->fan_step * (float)((int)corner - (int)CAMBER_CORNER_FAN),
+                arc = 1.0f / cosf(0.5f * row->fan_step);
     switch (corner) {
     case CAMBER_CORNER_CENTRE: break;
     case CAMBER_CORNER_TIP: set_extrusion(vertex, camber_turn_tan_half(a), outer); break;
     case CAMBER_CORNER_IN_TIP: set_extrusion(vertex, a, outer); break;
     case CAMBER_CORNER_BISECTOR: set_extrusion(vertex, 2.0f * a * scale, outer * (1.0f - a * a) * scale); break;
     case CAMBER_CORNER_OUT_TIP: set_extrusion(vertex, -a, outer); break;
-    default: set_extrusion(vertex, sinf(angle) * row->fan_scale, outer * cosf(angle) * row->fan_scale); break;
+    default: set_extrusion(vertex, sinf(angle) * arc, outer * cosf(angle) * arc); break;
     }
 }
 

@@ -291,6 +291,9 @@ static double reach_of(const camber_stroke *stroke) {
     double factor = stroke->cap == CAMBER_CAP_SQUARE ? 1.5 : 1.0; /* a corner lies sqrt(2) away */
     if (stroke->join == CAMBER_JOIN_MITER)
         factor = fmax(factor, stroke->miter_limit > 0.0f ? (double)stroke->miter_limit : 2.0);
+    if (stroke->join == CAMBER_JOIN_ROUND)
+        factor =
+            fmax(factor, (double)fminf(stroke->round_limit, stroke->miter_limit > 0.0f ? stroke->miter_limit : 2.0f));
     return fmin(half * factor, fmax(half, LARGEST_REACH_PX));
 }
 

@@ -4,6 +4,7 @@
 #include "kernels/join.h"
 
 #include <assert.h>
+#include <float.h>
 
 static const float WIDEST_PX = 16384.0f;
 
@@ -17,6 +18,9 @@ static camber_status check_stroke(camber_context *context, const camber_stroke *
     if (!(fabsf(stroke->offset_px) <= WIDEST_PX))
         return camber_fail(context, CAMBER_ERROR_ARGUMENT, "stroke %zu: an offset of %g px; it must be %g to %g", row,
                            (double)stroke->offset_px, -(double)WIDEST_PX, (double)WIDEST_PX);
+    if (!(stroke->round_limit >= 0.0f))
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "stroke %zu: a round limit of %g; it must be 0 or more", row,
+                           (double)stroke->round_limit);
     if ((unsigned)stroke->join > CAMBER_JOIN_BEVEL || (unsigned)stroke->cap > CAMBER_CAP_SQUARE)
         return camber_fail(context, CAMBER_ERROR_ARGUMENT,
                            "stroke %zu: join %d, cap %d; see camber_join and camber_cap", row, (int)stroke->join,
@@ -36,7 +40,8 @@ static camber_row make_row(const camber_stroke *stroke, float tolerance_px) {
         .miter_limit = stroke->miter_limit > 0.0f ? stroke->miter_limit : 2.0f,
         .fan_cos = (float)cos(step),
         .fan_sin = (float)sin(step),
-        .fan_scale = (float)(1 / cos(step / 2)),
+        /* c * limit is 0 * infinity where a line turns back. */
+        .round_limit = fminf(stroke->round_limit, FLT_MAX),
         .join = (camber_u32)stroke->join,
         .cap = (camber_u32)stroke->cap,
         .fan_step = (float)step,

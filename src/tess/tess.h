@@ -154,7 +154,7 @@ struct camber_mesh {
     size_t shift_capacity;
     camber_mesh_info mesh_info;
     bool joins_counted; /* mesh_info's counts of joins and triangles are there */
-    bool sharp_joins;   /* a row has miter or bevel joins */
+    bool sharp_joins;   /* a row has miter or bevel joins, or round ones with a limit */
     bool flat_caps;     /* a row has butt or square caps */
     bool round_caps;    /* a row has round caps */
     bool done;          /* the last tessellation succeeded */

@@ -316,7 +316,7 @@ static camber_status tessellate(camber_mesh *mesh, const source *from, const cam
     mesh->empty = mesh->joins_counted = true;
     mesh->done = mesh->sharp_joins = mesh->flat_caps = mesh->round_caps = false;
     for (size_t i = 0; i < desc->stroke_count; i++) {
-        mesh->sharp_joins |= desc->strokes[i].join != CAMBER_JOIN_ROUND;
+        mesh->sharp_joins |= desc->strokes[i].join != CAMBER_JOIN_ROUND || desc->strokes[i].round_limit > 1.0f;
         mesh->flat_caps |= desc->strokes[i].cap != CAMBER_CAP_ROUND;
         mesh->round_caps |= desc->strokes[i].cap == CAMBER_CAP_ROUND;
     }

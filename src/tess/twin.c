@@ -150,7 +150,7 @@ static void push_body(twin *t, const place *p) {
 static void push_join(twin *t, const place *p) {
     const uint32_t triangles = camber_join_triangles(p->join), centre = corner_at(p->slot, CAMBER_CORNER_CENTRE);
     const bool left_is_outer = !(camber_turn_unpack(p->join) > 0.0f);
-    const bool is_fan = t->method == CAMBER_FAN && t->rows[p->info >> CAMBER_POINT_ROW_SHIFT].join == CAMBER_JOIN_ROUND;
+    const bool is_fan = t->method == CAMBER_FAN && camber_join_end(p->join) == CAMBER_END_ROUND;
     uint32_t from = corner_at(p->slot, left_is_outer ? CAMBER_CORNER_IN_LEFT : CAMBER_CORNER_IN_RIGHT);
     const uint32_t last = corner_at(p->slot, left_is_outer ? CAMBER_CORNER_OUT_LEFT : CAMBER_CORNER_OUT_RIGHT);
     for (uint32_t i = 0; i < triangles; i++) {

@@ -146,7 +146,8 @@ CAMBER_FN camber_u32 camber_join_word(camber_turn turn, CAMBER_GLOBAL const camb
     } else if (sine > CAMBER_STRAIGHT_SINE) {
         /* Past 120 degrees the kite's tip runs away: two kites of half the angle. */
         const camber_u32 kites = !miter && sine > 1.7320508f * turn.c ? 4u : 2u;
-        triangles = method == CAMBER_FAN && is_round ? camber_fan_triangles(turn.dot, row->fan_cos, row->fan_sin) : kites;
+        triangles =
+            method == CAMBER_FAN && is_round ? camber_fan_triangles(turn.dot, row->fan_cos, row->fan_sin) : kites;
     }
     const camber_u32 kind = split ? CAMBER_KIND_SPLIT : tight ? CAMBER_KIND_TIGHT : CAMBER_KIND_CUT;
     const camber_u32 limit = kind == CAMBER_KIND_TIGHT ? camber_limit_pack(turn.half_shorter) : 0u;

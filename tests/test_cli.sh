@@ -163,6 +163,8 @@ verify 0
 has "$tmp/stdout" '^device *none: .'
 expect 0 "info on an unknown device" info --device 'no such device' --json
 has "$tmp/stdout" '"unavailable"'
+expect 0 "info on what draws" info --draw cl
+has "$tmp/stdout" '^draw *cl: asked for'
 
 # ---- Render ----
 
@@ -195,6 +197,15 @@ expect 0 "JSON" render "$tiger" -o tiger.png --size 64x64 --json --method kite -
 has "$tmp/stdout" '"width": 64' '"device"' '"gl_renderer"' '"sharing"' '"draw_calls"' '"peak_rss_bytes"' '"total_ms"' \
     '"attribution": null' '"method": "kite"' '"coverage": "linear"' '"triangles": [1-9]'
 lacks tiger.png OpenStreetMap
+expect 0 "drawn in OpenCL" render "$osm" -o cl.png --size 300x200 --draw cl --json
+has "$tmp/stdout" '"draw": "cl"' '"draw_reason": "asked for"' '"gl_renderer": null' '"sharing": "none"'
+is_png cl.png 300 200
+LD_DEBUG=files "$tool" render "$osm" -o cl.png -f --size 300x200 --draw cl 2>"$tmp/loaded" || fail "does not draw"
+grep -q 'libOpenCL' "$tmp/loaded" || fail "says nothing of what it loads"
+! grep -Eq 'lib(EGL|OSMesa|GL|GLESv2)\.so' "$tmp/loaded" || fail "GL is loaded for what OpenCL draws"
+expect 2 "pitch in OpenCL" render "$osm" -o pitch.png --size 64x64 --draw cl --center=-122,37 --zoom 15 --pitch 40
+says 'not drawn in OpenCL yet'
+rm -f cl.png
 expect 0 "few draw calls" render "$osm" -o calls.png --size 512x512 --json
 has "$tmp/stdout" '"draw_calls": [1-4],'
 rm -f calls.png

@@ -116,6 +116,8 @@ static const option_spec specs[] = {
     {"backend", 0, KIND_CHOICE, EVERY, FIELD(backend), "auto|egl|osmesa", "where GL comes from (auto)", 0, 0},
     {"sharing", 0, KIND_CHOICE, RENDER | COMPARE | BENCH | INFO, FIELD(sharing), "auto|gl|zero-copy|copy",
      "how OpenCL's buffers reach GL (auto)", 0, 0},
+    {"draw", 0, KIND_CHOICE, RENDER | BENCH | INFO, FIELD(draw), "auto|gl|cl",
+     "what draws: GLES shaders, or OpenCL kernels without any GL (auto: gl)", 0, 0},
     {"threads", 0, KIND_COUNT, EVERY, FIELD(threads), "N", "of OpenCL and GL on a CPU (all cores)", 1, 1024},
     {"memory", 0, KIND_BYTES, READING, FIELD(memory_bytes), "SIZE",
      "that meshes may take, as in 512M or 2G: what does not fit is made when it is drawn", 65536, 1099511627776.0},

@@ -43,7 +43,7 @@ typedef struct camber_options {
     const char *output, *dump, *polylines, *plot, *junit, *pictures, *style, *layer, *device;
     const char *where; /* the first */
     int format;        /* 0: png, 1: glb */
-    int theme, method, coverage, backend, sharing;
+    int theme, method, coverage, backend, sharing, draw;
     camber_view_desc view; /* width and height are set by camber_options_parse */
     bool has_bbox, has_center;
     double zoom, bearing_deg, pitch_deg; /* NAN where not given */

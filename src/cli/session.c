@@ -18,7 +18,8 @@ static camber_status prepare(camber_session *session) {
 static camber_status open_drawing(camber_session *session, camber_context *context, camber_needs needs) {
     const camber_options *options = session->options;
     camber_status status = CAMBER_OK;
-    if (needs >= CAMBER_NEEDS_RENDERER && !session->surface) {
+    const bool in_gl = (camber_draw)options->draw != CAMBER_DRAW_CL;
+    if (needs >= CAMBER_NEEDS_RENDERER && !session->surface && in_gl) {
         const camber_surface_desc desc = {.backend = (camber_backend)options->backend};
         status = camber_surface_create(context, &desc, &session->surface);
     }
@@ -27,7 +28,8 @@ static camber_status open_drawing(camber_session *session, camber_context *conte
         status = camber_device_create(context, &desc, session->surface, &session->device);
     }
     if (status == CAMBER_OK && needs >= CAMBER_NEEDS_RENDERER && !session->renderer) {
-        const camber_renderer_desc desc = {.sharing = (camber_sharing)options->sharing};
+        const camber_renderer_desc desc = {.sharing = (camber_sharing)options->sharing,
+                                           .draw = (camber_draw)options->draw};
         status = camber_renderer_create(session->device, session->surface, &desc, &session->renderer);
     }
     return status;
@@ -180,6 +182,13 @@ void camber_session_describe(const camber_session *session, json_t *object) {
     }
     if (session->renderer) {
         const camber_sharing sharing = camber_renderer_get_sharing(session->renderer);
-        json_object_set_new(object, "sharing", camber_json_text(camber_sharing_name(sharing)));
+        const camber_draw draw = camber_renderer_get_draw(session->renderer);
+        const bool in_gl = draw == CAMBER_DRAW_GL, asked = (camber_draw)session->options->draw == draw;
+        json_object_set_new(object, "draw", camber_json_text(camber_draw_name(draw)));
+        json_object_set_new(object, "draw_reason",
+                            camber_json_text(asked ? "asked for" : "draws all that styles have"));
+        json_object_set_new(object, "sharing", camber_json_text(in_gl ? camber_sharing_name(sharing) : "none"));
+        if (!in_gl)
+            json_object_set_new(object, "gl_renderer", json_null());
     }
 }

@@ -154,8 +154,8 @@ static int print_json(const job *j) {
     const camber_polylines_stats lines = camber_polylines_get_stats(camber_input_polylines(&j->input));
     const camber_mesh_info mesh = camber_mesh_get_info(j->mesh);
     json_t *object =
-        json_pack("{s:s, s:s, s:I, s:I, s:I}", "draw", "gl", "method", camber_method_name(mesh.method), "width",
-                  (json_int_t)j->width, "height", (json_int_t)j->height, "runs", (json_int_t)session->options->runs);
+        json_pack("{s:s, s:I, s:I, s:I}", "method", camber_method_name(mesh.method), "width", (json_int_t)j->width,
+                  "height", (json_int_t)j->height, "runs", (json_int_t)session->options->runs);
     if (!object)
         return camber_report_json(session->report, NULL);
     camber_session_describe(session, object);
@@ -198,8 +198,11 @@ static int print_text(const job *j) {
     const camber_polylines_stats lines = camber_polylines_get_stats(camber_input_polylines(&j->input));
     const camber_mesh_info mesh = camber_mesh_get_info(j->mesh);
     const camber_device_info device = camber_device_get_info(session->device);
-    fprintf(file, "%s; %s; sharing: %s\n", device.name, camber_surface_get_info(session->surface).renderer,
-            camber_sharing_name(camber_renderer_get_sharing(session->renderer)));
+    if (session->surface)
+        fprintf(file, "%s; %s; sharing: %s\n", device.name, camber_surface_get_info(session->surface).renderer,
+                camber_sharing_name(camber_renderer_get_sharing(session->renderer)));
+    else
+        fprintf(file, "%s; drawn in OpenCL\n", device.name);
     fprintf(file, "%u x %u px, %s, %zu polylines, %zu points (%zu read), %zu segments (%zu read)\n", j->width,
             j->height, camber_method_name(mesh.method), lines.polylines, lines.kept_points, j->input.points_in,
             lines.kept_segments, j->input.segments_in);

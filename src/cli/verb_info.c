@@ -71,11 +71,13 @@ static void add_backends(camber_session *session, json_t *object) {
 static void add_choice(camber_session *session, json_t *object) {
     const camber_options *options = session->options;
     const camber_surface_desc surface = {.backend = (camber_backend)options->backend};
-    camber_status status = camber_surface_create(session->context, &surface, &session->surface);
+    const bool in_gl = (camber_draw)options->draw != CAMBER_DRAW_CL;
+    camber_status status = in_gl ? camber_surface_create(session->context, &surface, &session->surface) : CAMBER_OK;
     const camber_device_desc device = {.match = options->device};
     if (status == CAMBER_OK)
         status = camber_device_create(session->context, &device, session->surface, &session->device);
-    const camber_renderer_desc renderer = {.sharing = (camber_sharing)options->sharing};
+    const camber_renderer_desc renderer = {.sharing = (camber_sharing)options->sharing,
+                                           .draw = (camber_draw)options->draw};
     if (status == CAMBER_OK)
         status = camber_renderer_create(session->device, session->surface, &renderer, &session->renderer);
     camber_session_describe(session, object);
@@ -149,6 +151,8 @@ static void print_text(const json_t *object) {
         else
             printf("GL        %s: not available: %s\n", text_of(entry, "backend"), text_of(entry, "error"));
     }
+    if (json_object_get(object, "draw"))
+        printf("draw      %s: %s\n", text_of(object, "draw"), text_of(object, "draw_reason"));
     if (json_object_get(object, "unavailable"))
         printf("sharing   none: %s\n", text_of(object, "unavailable"));
     else

@@ -333,46 +333,78 @@ CAMBER_FN float camber_offset_near(float offset) {
     return d - (coarse > least ? coarse : least);
 }
 
-/* Cuts a leg by what the line passes before it, or behind it, but for the neighbours of the leg. */
-CAMBER_FN float camber_leg_cut(const camber_course *c, camber_u32 slot, const camber_leg *leg, float offset,
-                               camber_u32 back, float edge) {
+/* What a line passes is looked at both ways in turn: of a ring that lies within the reach each way sees half. */
+typedef struct camber_prowls {
+    camber_prowl back, ahead;
+    camber_u32 turn; /* 1: back went last */
+} camber_prowls;
+
+CAMBER_FN void camber_prowls_meet(camber_prowls *p) {
+    if (p->back.bx == p->ahead.bx && p->back.by == p->ahead.by)
+        p->back.left = p->ahead.left = 0u;
+}
+
+/* From two slots, past the segments that lie at them. */
+CAMBER_FN camber_prowls camber_prowls_from(const camber_course *c, camber_u32 back, camber_u32 ahead, float offset) {
+    camber_prowls p;
+    p.back = camber_prowl_from(c, back, offset);
+    p.ahead = camber_prowl_from(c, ahead, offset);
+    p.turn = 0u;
+    camber_prowl_on(c, &p.back, 1u);
+    camber_prowl_on(c, &p.ahead, 0u);
+    camber_prowls_meet(&p);
+    return p;
+}
+
+/* Goes on by a segment, which is in p->back or p->ahead; 0: there is none. */
+CAMBER_FN camber_u32 camber_prowls_on(const camber_course *c, camber_prowls *p) {
+    for (camber_u32 i = 0; i < 2u; i++) {
+        p->turn = 1u - p->turn;
+        if (camber_prowl_on(c, p->turn ? &p->back : &p->ahead, p->turn)) {
+            camber_prowls_meet(p);
+            return 1u;
+        }
+    }
+    return 0u;
+}
+
+/* Cuts a leg by what the line passes before it and behind it, but for the neighbours of the leg. */
+CAMBER_FN void camber_leg_cut(const camber_course *c, camber_u32 slot, const camber_leg *leg, float offset, float *from,
+                              float *to) {
     const float d = CAMBER_FABS(offset), near = camber_offset_near(offset), side = offset < 0.0f ? -1.0f : 1.0f;
-    camber_prowl p = camber_prowl_from(c, back ? slot : slot + 1u, offset);
-    if (!camber_prowl_on(c, &p, back))
-        return edge;
-    while (camber_prowl_on(c, &p, back)) {
-        const float ax = p.ax - leg->x, ay = p.ay - leg->y, bx = p.bx - leg->x, by = p.by - leg->y;
+    camber_prowls p = camber_prowls_from(c, slot, slot + 1u, offset);
+    while (camber_prowls_on(c, &p)) {
+        const camber_prowl *way = p.turn ? &p.back : &p.ahead;
+        const float ax = way->ax - leg->x, ay = way->ay - leg->y, bx = way->bx - leg->x, by = way->by - leg->y;
         float lo, hi;
         if (!camber_hidden_part(d, near, ax * leg->ux + ay * leg->uy, side * (ay * leg->ux - ax * leg->uy),
                                 bx * leg->ux + by * leg->uy, side * (by * leg->ux - bx * leg->uy), &lo, &hi))
             continue;
         if (lo >= leg->length || hi <= 0.0f)
             continue;
-        if (back)
-            edge = hi > edge ? (hi < leg->length ? hi : leg->length) : edge;
+        if (p.turn)
+            *from = hi > *from ? hi : *from;
         else
-            edge = lo < edge ? (lo > 0.0f ? lo : 0.0f) : edge;
+            *to = lo < *to ? lo : *to;
     }
-    return edge;
 }
 
 /* What is left of an arc: as with a leg, what comes before hides its beginning. */
 CAMBER_FN void camber_arc_cut(const camber_course *c, camber_u32 slot, const camber_bend *bend, const camber_arc *arc,
-                              float offset, camber_u32 back, camber_u32 *first, camber_u32 *end) {
+                              float offset, camber_u32 *first, camber_u32 *end) {
     const float near = camber_offset_near(offset);
-    camber_prowl p = camber_prowl_from(c, slot, offset);
-    if (!camber_prowl_on(c, &p, back))
-        return;
-    while (camber_prowl_on(c, &p, back)) {
-        const float ex = p.bx - p.ax, ey = p.by - p.ay, length2 = ex * ex + ey * ey;
+    camber_prowls p = camber_prowls_from(c, slot, slot, offset);
+    while (camber_prowls_on(c, &p)) {
+        const camber_prowl *way = p.turn ? &p.back : &p.ahead;
+        const float ex = way->bx - way->ax, ey = way->by - way->ay, length2 = ex * ex + ey * ey;
         camber_arc at = *arc;
         for (camber_u32 i = 0; i < arc->count; i++) {
-            const float px = bend->x + at.vx - p.ax, py = bend->y + at.vy - p.ay;
+            const float px = bend->x + at.vx - way->ax, py = bend->y + at.vy - way->ay;
             const float along = px * ex + py * ey;
             const float t = along <= 0.0f || length2 <= 0.0f ? 0.0f : along >= length2 ? 1.0f : along / length2;
             const float qx = px - ex * t, qy = py - ey * t;
             const camber_u32 hidden = qx * qx + qy * qy < near * near ? 1u : 0u;
-            if (hidden && back)
+            if (hidden && p.turn)
                 *first = i + 1u > *first ? i + 1u : *first;
             else if (hidden)
                 *end = i < *end ? i : *end;
@@ -405,9 +437,7 @@ CAMBER_FN void camber_span_leg(const camber_course *c, camber_u32 slot, float of
     if (folds && room > leg.length)
         to = span->from;
     if (to > span->from)
-        span->from = camber_leg_cut(c, slot, &leg, offset, 1u, span->from);
-    if (to > span->from)
-        to = camber_leg_cut(c, slot, &leg, offset, 0u, to);
+        camber_leg_cut(c, slot, &leg, offset, &span->from, &to);
     span->to = to - span->from > CAMBER_LEG_SHORTEST_PX ? (to >= leg.length ? CAMBER_LEG_WHOLE : to) : -1.0f;
 }
 
@@ -418,10 +448,8 @@ CAMBER_FN camber_u32 camber_span_arc(const camber_course *c, camber_u32 slot, ca
         return 0u;
     const camber_arc arc = camber_arc_of(&bend, shift);
     camber_u32 first = 0, end = arc.count;
-    if (arc.count > 1u) {
-        camber_arc_cut(c, slot, &bend, &arc, shift.offset_px, 1u, &first, &end);
-        camber_arc_cut(c, slot, &bend, &arc, shift.offset_px, 0u, &first, &end);
-    }
+    if (arc.count > 1u)
+        camber_arc_cut(c, slot, &bend, &arc, shift.offset_px, &first, &end);
     return end > first ? first | end << 8 | arc.count << 16 : 0u;
 }
 

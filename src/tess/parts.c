@@ -207,9 +207,9 @@ camber_status camber_part_slot(const camber_mesh *mesh, const camber_mesh_part *
     const camber_device *device = mesh->device;
     cl_uint place = 0;
     cl_int code = CL_SUCCESS;
-    if (mesh->offsets && polyline >= part->first_polyline + part->polyline_count)
+    if (mesh->offsets && (given >= part->given_count || polyline >= part->first_polyline + part->polyline_count))
         place = (cl_uint)part->course.made_count;
-    else if (mesh->offsets && given < part->given_count && part->slot_count > 0)
+    else if (mesh->offsets && part->slot_count > 0)
         code = clEnqueueReadBuffer(device->queue, part->course.places, CL_TRUE, 4 * given, 4, &place, 0, NULL, NULL);
     *slot = mesh->offsets ? place : given;
     return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(device->context, "clEnqueueReadBuffer", code);

@@ -193,6 +193,43 @@ static int check_networks(camber_context *context, camber_mesh *mesh, const scen
     return failures;
 }
 
+/* Lines beside: of a mesh that is not measured and one that is. Where its points lie depends on every division. */
+static bool check_counts(camber_context *context, camber_mesh *mesh, const camber_polylines *polylines,
+                         const camber_tessellation_desc *desc) {
+    camber_mesh_data device = {0}, twin = {0};
+    const bool good = camber_tessellate(mesh, polylines, desc) == CAMBER_OK &&
+                      camber_mesh_read(mesh, &device) == CAMBER_OK &&
+                      camber_tessellate_on_host(context, polylines, desc, &twin) == CAMBER_OK &&
+                      device.info.record_count == twin.info.record_count;
+    camber_mesh_data_free(context, &twin);
+    camber_mesh_data_free(context, &device);
+    return good;
+}
+
+static int check_offsets(camber_context *context, camber_mesh *mesh, const scene *s, camber_stroke *strokes) {
+    static const float offsets[] = {6.0f, -6.0f, 0.0f, 25.0f, -2.5f, 3.0f, -40.0f, 1.0f, -12.0f};
+    const camber_polylines_desc desc = {.points = s->points,
+                                        .point_count = s->point_count,
+                                        .offsets = s->offsets,
+                                        .polyline_count = s->line_count,
+                                        .rows = s->rows};
+    camber_polylines *polylines = NULL;
+    int failures = camber_polylines_create(context, &desc, &polylines) != CAMBER_OK;
+    for (size_t row = 0; row < ROWS; row++)
+        strokes[row].offset_px = offsets[row % (sizeof offsets / sizeof *offsets)];
+    for (int measured = 0; measured < 2 && polylines; measured++) {
+        const camber_tessellation_desc strips = {.strokes = strokes, .stroke_count = ROWS, .measured = measured};
+        if (check_counts(context, mesh, polylines, &strips))
+            continue;
+        printf("not ok - offsets%s\n", measured ? ", measured" : "");
+        failures++;
+    }
+    for (size_t row = 0; row < ROWS; row++)
+        strokes[row].offset_px = 0.0f;
+    camber_polylines_destroy(polylines);
+    return failures;
+}
+
 static int check_device(camber_context *context, scene *s, const camber_device_desc *desc, size_t rotations) {
     camber_device *device = NULL;
     camber_mesh *mesh = NULL;
@@ -209,7 +246,7 @@ static int check_device(camber_context *context, scene *s, const camber_device_d
             rotate(s, strokes, rotation);
             failures += check_methods(context, mesh, s, strokes, what);
             if (rotation == 0)
-                failures += check_networks(context, mesh, s, strokes);
+                failures += check_networks(context, mesh, s, strokes) + check_offsets(context, mesh, s, strokes);
         }
     }
     camber_mesh_destroy(mesh);

@@ -129,6 +129,17 @@ mutant fan kernels/emit.cl "a fan from the inner edge" 'outer > 0.0f ? CAMBER_CO
 mutant strip kernels/layout.h "a pad of another width on the device" '#define CAMBER_PAD_PX 0.75f' \
     '#define CAMBER_PAD_PX 0.7f'
 
+mutant strip kernels/offset.cl "slots that begin one too far" 'pen.at = bases[chunk] + 1u' 'pen.at = bases[chunk] + 2u'
+mutant strip kernels/offset.cl "what is left of a neighbour" 'camber_span_of(&course, slot)' \
+    'camber_span_of(\&course, slot > 1u ? slot - 1u : slot)'
+
+# ---- Offsets, which kernels and twin share: where points lie tells ----
+
+mutant strip kernels/offset.h "to the other side" 'leg->ux * along - leg->uy * offset' 'leg->ux * along + leg->uy * offset'
+mutant strip kernels/offset.h "bends that hide nothing" 'return room;' 'return 0.0f;'
+mutant strip kernels/offset.h "lines that hide nothing" 'if (lo >= leg->length || hi <= 0.0f)' 'if (lo < leg->length)'
+mutant strip kernels/offset.h "arcs of a single point" 'define CAMBER_ARC_POINTS_MAX 64u' 'define CAMBER_ARC_POINTS_MAX 1u'
+
 # ---- Join maths, which kernels and twin share: pixels tell ----
 
 mutant strip kernels/join.h "turns to the other side" 'aside = dx * ey - dy * ex' 'aside = dy * ex - dx * ey'

@@ -73,10 +73,14 @@ static camber_status compare_mesh(job *j, camber_mesh *mesh, const camber_sight 
 
 /* ---- Against the twin ---- */
 
+/* Of every join and cap one, and the last with offsets. */
+enum { BESIDE = 9, STYLES };
+
 static void every_join_and_cap(camber_stroke *stroke, size_t row, size_t number) {
-    (void)row;
-    stroke->join = (camber_join)(number / 3 % 3);
+    static const float offsets_px[] = {6.0f, -6.0f, 2.5f, -20.0f, 0.0f};
+    stroke->join = (camber_join)((number == BESIDE ? row : number / 3) % 3);
     stroke->cap = (camber_cap)(number % 3);
+    stroke->offset_px = number == BESIDE ? offsets_px[row % (sizeof offsets_px / sizeof *offsets_px)] : 0.0f;
 }
 
 /* The strokes of a check that follows; NULL: out of memory. A network's stand: its twin's polylines are made for them.
@@ -92,7 +96,9 @@ static int check_twin(job *j, size_t number) {
     camber_stroke *strokes = style(j, every_join_and_cap, number);
     camber_sight twin = {0};
     char styled[64] = "";
-    if (!j->s->network)
+    if (!j->s->network && number == BESIDE)
+        snprintf(styled, sizeof styled, ", offset");
+    else if (!j->s->network)
         snprintf(styled, sizeof styled, ", %s joins, %s caps", camber_join_name((camber_join)(number / 3 % 3)),
                  camber_cap_name((camber_cap)(number % 3)));
     camber_check check = camber_check_start(j->rig->name, NULL, "%s: %s%s: as the CPU twin, on %s", j->s->name,
@@ -225,7 +231,7 @@ static int check_ways(job *j) {
 }
 
 int camber_check_meshes(camber_validation *validation, const camber_subject *subject) {
-    const size_t styles = subject->network ? 1 : 9;
+    const size_t styles = subject->network ? 1 : STYLES;
     int status = CAMBER_EXIT_DONE;
     for (size_t r = 0; r < validation->rigs.count; r++)
         for (int method = 0; method < 3 && status == CAMBER_EXIT_DONE; method++) {

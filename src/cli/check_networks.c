@@ -133,7 +133,9 @@ static double reach_of(const job *j) {
     for (size_t i = 0; i < j->stroke_count; i++) {
         const camber_stroke *stroke = j->strokes + i;
         const double limit = stroke->miter_limit > 0 ? (double)stroke->miter_limit : 2;
-        reach = fmax(reach, 0.5 * (double)stroke->width_px * fmax(limit, 1.5));
+        /* With an offset points lie up to a tip away, and the window is as far again as decides what is drawn. */
+        const double offset = fabs((double)stroke->offset_px);
+        reach = fmax(reach, 0.5 * (double)stroke->width_px * fmax(limit, 1.5) + offset * (2 * fmax(limit, 1.1) + 7));
     }
     return reach;
 }

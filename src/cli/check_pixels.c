@@ -329,12 +329,24 @@ static int check_number(job *j, size_t number) {
     return status;
 }
 
+/* The truth of pixels is that of the lines themselves. */
+static int skip_offsets(camber_validation *v, const camber_subject *s) {
+    camber_check check = camber_check_start(NULL, NULL, "%s: pixels", s->name);
+    check.verdict = CAMBER_VERDICT_SKIPPED;
+    snprintf(check.reason, sizeof check.reason, "lines have offsets, and are drawn beside where they lie");
+    camber_verdicts_add(&v->verdicts, &check);
+    return CAMBER_EXIT_DONE;
+}
+
 int camber_check_pixels(camber_validation *validation, const camber_subject *subject) {
     const size_t area = (size_t)subject->width * subject->height;
     job j = {.v = validation, .s = subject, .desc = {.stroke_count = subject->stroke_count}};
     int status = CAMBER_EXIT_DONE;
     if (!camber_bounds_of_pixels(subject->scene, 0, CAMBER_COVERAGE_EXACT, &j.bounds))
         return status;
+    for (size_t i = 0; i < subject->stroke_count; i++)
+        if (subject->drawn_strokes[i].offset_px < 0 || subject->drawn_strokes[i].offset_px > 0)
+            return skip_offsets(validation, subject);
     j.first = malloc(area);
     j.own = malloc(area);
     j.other = malloc(area);

@@ -44,6 +44,8 @@ int camber_check_meshes(camber_validation *validation, const camber_subject *sub
 int camber_check_networks(camber_validation *validation, const camber_subject *subject, camber_network *network,
                           const camber_camera *camera, const camber_tessellation_desc *desc);
 int camber_check_pixels(camber_validation *validation, const camber_subject *subject);
+/* Lines beside others, of the CPU twin: how far they lie from these. */
+int camber_check_offsets(camber_validation *validation);
 /* Moves a camera to a pixel of its picture. */
 void camber_camera_center(camber_camera *camera, double x, double y);
 

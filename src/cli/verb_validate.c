@@ -100,6 +100,8 @@ static int check_all(camber_validation *v, camber_input *input) {
             camber_report_progress(session->report, "checking", (double)i / (double)count);
         status = input ? check_input(v, input) : check_builtin(v, i);
     }
+    if (status == CAMBER_EXIT_DONE && !input)
+        status = camber_check_offsets(v);
     camber_report_erase_bar(session->report);
     return status;
 }

@@ -107,7 +107,8 @@ double fuzz_take_double(fuzz_reader *from) {
 camber_stroke fuzz_take_stroke(fuzz_reader *from) {
     const float width_px = fuzz_take_float(from), miter_limit = fuzz_take_float(from);
     const unsigned kinds = (unsigned)fuzz_take(from, 1);
-    return (camber_stroke){width_px, (camber_join)(kinds & 3), (camber_cap)(kinds >> 2 & 3), miter_limit};
+    const float offset_px = kinds & 16 ? fuzz_take_float(from) : 0.0f;
+    return (camber_stroke){width_px, (camber_join)(kinds & 3), (camber_cap)(kinds >> 2 & 3), miter_limit, offset_px};
 }
 
 /* ---- Meshes ---- */

@@ -102,6 +102,67 @@ static void test_root(void **state) {
     host_done(&h, context);
 }
 
+/* Constants inside functions and expressions, and sources: each with its place. */
+static void test_places(void **state) {
+    (void)state;
+#define PAINT(json) "{\"id\": \"a\", \"type\": \"line\", \"source\": \"s\", \"paint\": {" json "}}"
+#define LAYOUT(json) "{\"id\": \"a\", \"type\": \"line\", \"source\": \"s\", \"layout\": {" json "}}"
+    static const struct {
+        const char *source, *layer, *pointer;
+        bool error;
+    } cases[] = {
+        {"", PAINT("\"line-dasharray\": [1, -2]"), "/layers/0/paint/line-dasharray", true},
+        {"", PAINT("\"line-dasharray\": {\"stops\": [[3, [1, 1]], [5, [-1, 2]]]}"),
+         "/layers/0/paint/line-dasharray/stops/1/1", true},
+        {"", PAINT("\"line-dasharray\": [\"step\", [\"zoom\"], [\"literal\", [1, -2]], 4, [\"literal\", [1, 1]]]"),
+         "/layers/0/paint/line-dasharray/2/1/1", true},
+        {"",
+         PAINT("\"line-dasharray\": [\"let\", \"v\", 1, [\"match\", [\"get\", \"x\"], 1, [\"literal\", [1, 1]], "
+               "[\"literal\", [-1]]]]"),
+         "/layers/0/paint/line-dasharray/3/4/1/0", true},
+        {"", PAINT("\"line-opacity\": {\"stops\": [[1, 0], [2, 5]]}"), "/layers/0/paint/line-opacity/stops/1/1", true},
+        {"", PAINT("\"line-opacity\": {\"property\": \"o\", \"type\": \"identity\", \"default\": 1}"), NULL, false},
+        {"", PAINT("\"line-width\": [\"interpolate\", [\"linear\"], [\"zoom\"], 5, 1, 10, -4]"),
+         "/layers/0/paint/line-width/6", false},
+        {"", PAINT("\"line-width\": [\"coalesce\", [\"get\", \"w\"], [\"case\", [\"has\", \"x\"], 2, -1]]"),
+         "/layers/0/paint/line-width/2/3", false},
+        {"", LAYOUT("\"line-cap\": {\"stops\": [[0, \"butt\"], [5, \"pointed\"]]}"),
+         "/layers/0/layout/line-cap/stops/1/1", true},
+        {"", LAYOUT("\"line-join\": [\"match\", [\"get\", \"x\"], \"a\", \"pointed\", \"round\"]"),
+         "/layers/0/layout/line-join/3", false},
+        {"", LAYOUT("\"line-join\": [\"match\", [\"get\", \"pointed\"], \"pointed\", \"bevel\", \"round\"]"), NULL,
+         false},
+        {"", "{\"id\": \"a\", \"type\": \"line\", \"source\": \"s\", \"minzoom\": 9, \"maxzoom\": 4}", "/layers/0",
+         false},
+        {", \"t\": {\"type\": \"raster-tiles\"}", PAINT(""), "/sources/t/type", true},
+        {", \"t\": {\"type\": \"geojson\"}", PAINT(""), "/sources/t/data", true},
+        {", \"t\": {\"type\": \"vector\", \"tiles\": \"x\"}", PAINT(""), "/sources/t/tiles", true},
+        {", \"t\": {\"type\": \"vector\", \"url\": 3}", PAINT(""), "/sources/t/url", true},
+        {", \"t\": {\"type\": \"vector\", \"url\": \"x\", \"bounds\": [1, 2]}", PAINT(""), "/sources/t/bounds", true},
+        {", \"t\": {\"type\": \"vector\", \"url\": \"x\", \"scheme\": \"zyx\"}", PAINT(""), "/sources/t/scheme", true},
+        {", \"t\": {\"type\": \"vector\", \"url\": \"x\", \"maxzoom\": -1}", PAINT(""), "/sources/t/maxzoom", true},
+    };
+    host h;
+    camber_context *context = host_context(&h);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char json[2048];
+        camber_style_report *report = NULL;
+        snprintf(json, sizeof json,
+                 "{\"version\": 8, \"sources\": {\"s\": {\"type\": \"geojson\", \"data\": \"x\"}%s}, \"layers\": [%s]}",
+                 cases[i].source, cases[i].layer);
+        assert_int_equal(check(context, json, &report), CAMBER_OK);
+        if (report->finding_count != (cases[i].pointer != NULL))
+            fail_msg("%s: %zu findings", cases[i].layer, report->finding_count);
+        if (cases[i].pointer && !find(report, cases[i].pointer, cases[i].error))
+            fail_msg("nothing at %s, but at %s: %s", cases[i].pointer, report->findings[0].pointer,
+                     report->findings[0].message);
+        if (cases[i].pointer && !strstr(report->findings[0].message, "; "))
+            fail_msg("no cure: %s", report->findings[0].message);
+        camber_style_report_destroy(report);
+    }
+    host_done(&h, context);
+}
+
 static void test_what_is_drawn(void **state) {
     (void)state;
     host h;
@@ -155,7 +216,8 @@ static void test_memory(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_all_errors), cmocka_unit_test(test_root),
-                                       cmocka_unit_test(test_what_is_drawn), cmocka_unit_test(test_memory)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_all_errors), cmocka_unit_test(test_places),
+                                       cmocka_unit_test(test_root), cmocka_unit_test(test_what_is_drawn),
+                                       cmocka_unit_test(test_memory)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -57,6 +57,9 @@ static void find_in_layer(camber_document *d, const camber_style_layer *layer, c
     camber_compiler *c = &d->compiler;
     if (layer->kind != CAMBER_LAYER_LINE)
         return;
+    if (layer->min_zoom >= layer->max_zoom)
+        camber_compiler_warn(c, "the layer is drawn at no zoom: its minzoom is %g, its maxzoom %g; swap or change them",
+                             layer->min_zoom, layer->max_zoom);
     if (!layer->source) {
         if (camber_document_first_time(d, "source"))
             camber_compiler_warn(c, "the layer names no source; name one, or it is drawn of files given as input only");
@@ -90,6 +93,76 @@ static void find_in_layers(camber_document *d) {
         camber_compiler_enter_index(c, i);
         find_in_layer(d, layer,
                       layer->source_index == CAMBER_NO_SOURCE ? "" : c->style->sources[layer->source_index].type);
+        camber_compiler_leave(c);
+    }
+    camber_compiler_leave(c);
+}
+
+/* ---- Sources ---- */
+
+static void fail_at(camber_document *d, const char *key, const char *message) {
+    const size_t depth = d->compiler.path_length;
+    camber_compiler_enter_key(&d->compiler, key);
+    camber_compiler_fail(&d->compiler, "%s", message);
+    camber_document_goes_on(d, depth);
+}
+
+static bool is_one_of(const char *text, const char *const *names) {
+    while (*names && strcmp(*names, text) != 0)
+        names++;
+    return *names != NULL;
+}
+
+static bool are_strings(const json_t *array) {
+    for (size_t i = 0; i < json_array_size(array); i++)
+        if (!json_is_string(json_array_get(array, i)))
+            return false;
+    return json_array_size(array) > 0;
+}
+
+static bool are_bounds(const json_t *array) {
+    for (size_t i = 0; i < json_array_size(array); i++)
+        if (!json_is_number(json_array_get(array, i)))
+            return false;
+    return json_array_size(array) == 4;
+}
+
+static void find_in_tiles(camber_document *d, const json_t *source) {
+    static const char *const schemes[] = {"xyz", "tms", NULL}, *const zooms[] = {"minzoom", "maxzoom"};
+    const json_t *tiles = json_object_get(source, "tiles"), *url = json_object_get(source, "url"),
+                 *bounds = json_object_get(source, "bounds"), *scheme = json_object_get(source, "scheme");
+    if (tiles && !are_strings(tiles))
+        fail_at(d, "tiles", "expected an array of URL templates; write e.g. [\"tiles/{z}/{x}/{y}.pbf\"]");
+    if (url && !json_is_string(url))
+        fail_at(d, "url", "expected a URL, a string; write e.g. \"mbtiles://roads.mbtiles\"");
+    if (bounds && !are_bounds(bounds))
+        fail_at(d, "bounds", "expected [west, south, east, north] in degrees; write four numbers");
+    if (scheme && !(json_is_string(scheme) && is_one_of(json_string_value(scheme), schemes)))
+        fail_at(d, "scheme", "expected \"xyz\" or \"tms\"; write one of them");
+    for (size_t i = 0; i < 2; i++) {
+        const json_t *zoom = json_object_get(source, zooms[i]);
+        if (zoom && !(json_number_value(zoom) >= 0.0 && json_number_value(zoom) <= 30.0 && json_is_number(zoom)))
+            fail_at(d, zooms[i], "expected a zoom; write a number from 0 to 30");
+    }
+}
+
+/* What reading a source would tell, had a line layer named it. */
+static void find_in_sources(camber_document *d) {
+    static const char *const types[] = {"vector", "raster", "raster-dem", "geojson", "image", "video", "canvas", NULL};
+    camber_compiler *c = &d->compiler;
+    const camber_style *style = c->style;
+    camber_compiler_enter_key(c, "sources");
+    for (size_t i = 0; i < style->source_count; i++) {
+        const camber_style_source *source = style->sources + i;
+        const json_t *data = json_object_get(source->json, "data");
+        const bool geojson = strcmp(source->type, "geojson") == 0;
+        camber_compiler_enter_key(c, source->name);
+        if (!is_one_of(source->type, types))
+            fail_at(d, "type", "no source has this type; write e.g. \"vector\" or \"geojson\"");
+        if (geojson && !json_is_object(data) && !json_is_string(data))
+            fail_at(d, "data", "expected GeoJSON or the name of a file; add one");
+        if (strcmp(source->type, "vector") == 0)
+            find_in_tiles(d, source->json);
         camber_compiler_leave(c);
     }
     camber_compiler_leave(c);
@@ -172,6 +245,7 @@ static camber_status check(checker *k, const char *json, size_t size_bytes, cons
     d.compiler.style->context = k->context;
     camber_status status = camber_document_read(&d, json, size_bytes);
     if (status == CAMBER_OK) {
+        find_in_sources(&d);
         find_in_layers(&d);
         count_types(k, &d);
         list_sources(k, d.compiler.style);

@@ -19,6 +19,9 @@
 #define CAMBER_FOLD_LIMIT ((size_t)64 << 20)
 #define CAMBER_FOLD_WORK_LIMIT (10u * CAMBER_WORK_LIMIT)
 
+/* Warnings of constants in expressions that a property cannot have. */
+#define CAMBER_HELD_LIMIT 32
+
 typedef struct camber_path_step {
     const char *key; /* NULL: index */
     size_t index;
@@ -69,6 +72,7 @@ struct camber_compiler {
     uint32_t folded_work;
     const json_t *state; /* an object of what "global-state" reads. NULL: nothing */
     bool state_defaults; /* its members are {"default": value}, as a style's are */
+    unsigned held_count; /* warnings of constants that are held to their range; CAMBER_HELD_LIMIT at most */
     bool strict;         /* what stands for a property is an expression or a function: no list, no enum's names */
     /* Takes what is wrong instead of the log; the place is in path. NULL: the log */
     void (*report)(void *user, const camber_compiler *c, camber_log_level level, const char *message);
@@ -156,5 +160,7 @@ bool camber_compile_function(camber_compiler *c, json_t *object, const camber_pr
 bool camber_compile_tokens(camber_compiler *c, const json_t *json, const camber_property *property, uint32_t *node);
 /* property.c */
 camber_typing camber_property_typing(const camber_property *property);
+/* Whether the property may have the value: its names and ranges. */
+bool camber_property_check(camber_compiler *c, const camber_property *property, const camber_value *value);
 
 #endif

@@ -144,7 +144,10 @@ static bool compile_value(function *f, const json_t *json, uint32_t *node) {
                                     camber_json_name(json));
     if (!(tokens ? compile_tokens(f, json_string_value(json), node) : camber_make_json_constant(c, json, node)))
         return false;
-    return camber_annotate(c, f->type, CAMBER_ANNOTATE_ASSERT, node);
+    if (!camber_annotate(c, f->type, CAMBER_ANNOTATE_ASSERT, node))
+        return false;
+    const camber_node *made = camber_node_at(c, *node);
+    return c->strict || made->op != CAMBER_OP_CONSTANT || camber_property_check(c, f->property, &made->value);
 }
 
 static bool push_value(function *f, const json_t *json) {

@@ -83,15 +83,26 @@ static bool check_name(camber_compiler *c, const camber_property *property, cons
     return camber_compiler_fail(c, "\"%.64s\" is no %s; use %s", name, property->name, names);
 }
 
+enum { RANGE_SIZE = 64 };
+
+static const char *write_range(const camber_property *property, char range[RANGE_SIZE]) {
+    if (property->high < HUGE_VAL)
+        snprintf(range, RANGE_SIZE, "%g to %g", property->low, property->high);
+    else
+        snprintf(range, RANGE_SIZE, "%g or more", property->low);
+    return range;
+}
+
 static bool check_range(camber_compiler *c, const camber_property *property, const camber_value *value) {
     const bool ranged = property->low < 0.0 || property->high > 0.0;
     if (!ranged || value->type != CAMBER_VALUE_NUMBER ||
         (value->number >= property->low && value->number <= property->high))
         return true;
-    return camber_compiler_fail(c, "%g is out of range; use %g to %g", value->number, property->low, property->high);
+    char range[RANGE_SIZE];
+    return camber_compiler_fail(c, "%g is out of range; use %s", value->number, write_range(property, range));
 }
 
-static bool check_constant(camber_compiler *c, const camber_property *property, const camber_value *value) {
+bool camber_property_check(camber_compiler *c, const camber_property *property, const camber_value *value) {
     if (value->type == CAMBER_VALUE_STRING && property->values)
         return check_name(c, property, value->string);
     for (uint32_t i = 0; value->type == CAMBER_VALUE_ARRAY && i < value->count; i++)
@@ -109,7 +120,86 @@ static bool check_property(camber_compiler *c, const camber_property *property, 
         return camber_compiler_fail(c, "%s cannot depend on \"line-progress\"; use it in line-gradient",
                                     property->name);
     return check_zoom(c, property, root) && (node->op != CAMBER_OP_CONSTANT || c->strict ||
-                                             check_constant(c, property, &camber_node_at(c, root)->value));
+                                             camber_property_check(c, property, &camber_node_at(c, root)->value));
+}
+
+/* ---- Constants that an expression may result in ---- */
+
+static bool check_outputs(camber_compiler *c, const camber_property *property, const json_t *json);
+
+/* Of the operands those that may be the result: from first on each step-th, and the last. */
+static bool check_operands(camber_compiler *c, const camber_property *property, const json_t *array, size_t first,
+                           size_t step) {
+    const size_t count = json_array_size(array);
+    for (size_t i = first; i < count; i++) {
+        if ((i - first) % step != 0 && i + 1 != count)
+            continue;
+        camber_compiler_enter_index(c, i);
+        if (!check_outputs(c, property, json_array_get(array, i)))
+            return false;
+        camber_compiler_leave(c);
+    }
+    return true;
+}
+
+/* What is out of range is held to it when it is evaluated, and a name that is none is the default. */
+static void warn_of_output(camber_compiler *c, const camber_property *property, const json_t *json) {
+    const bool ranged = property->low < 0.0 || property->high > 0.0;
+    const double number = json_number_value(json);
+    const char *name = json_string_value(json);
+    char range[RANGE_SIZE];
+    if (c->held_count >= CAMBER_HELD_LIMIT)
+        return;
+    if (ranged && json_is_number(json) && (number < property->low || number > property->high)) {
+        c->held_count++;
+        camber_compiler_warn(c, "%g is out of range and held to it; use %s", number, write_range(property, range));
+    }
+    if (!name || !property->values)
+        return;
+    for (size_t i = 0; property->values[i]; i++)
+        if (strcmp(property->values[i], name) == 0)
+            return;
+    c->held_count++;
+    camber_compiler_warn(c, "\"%.64s\" is no %s; features with it are drawn with the default", name, property->name);
+}
+
+/* An array that is out of range has no meaning. */
+static bool check_output(camber_compiler *c, const camber_property *property, const json_t *json) {
+    warn_of_output(c, property, json);
+    for (size_t i = 0; i < json_array_size(json); i++) {
+        const json_t *item = json_array_get(json, i);
+        const camber_value value = {.type = CAMBER_VALUE_NUMBER, .number = json_number_value(item)};
+        camber_compiler_enter_index(c, i);
+        if (json_is_number(item) && !check_range(c, property, &value))
+            return false;
+        camber_compiler_leave(c);
+    }
+    return true;
+}
+
+/* The expression compiles. */
+static bool check_outputs(camber_compiler *c, const camber_property *property, const json_t *json) {
+    static const struct {
+        const char *name;
+        size_t first, step;
+    } operators[] = {{"step", 2, 2},  {"interpolate", 4, 2}, {"interpolate-hcl", 4, 2}, {"interpolate-lab", 4, 2},
+                     {"match", 3, 2}, {"case", 2, 2},        {"coalesce", 1, 1}};
+    const char *name = json_string_value(json_array_get(json, 0));
+    const size_t count = json_array_size(json);
+    if (!json_is_array(json))
+        return check_output(c, property, json);
+    for (size_t i = 0; name && i < sizeof operators / sizeof *operators; i++)
+        if (strcmp(name, operators[i].name) == 0)
+            return check_operands(c, property, json, operators[i].first, operators[i].step);
+    const bool literal = name && strcmp(name, "literal") == 0;
+    if (!name || !(literal || strcmp(name, "let") == 0))
+        return true;
+    camber_compiler_enter_index(c, count - 1);
+    const json_t *last = json_array_get(json, count - 1);
+    if (!(literal ? check_output(c, property, last) : check_outputs(c, property, last)))
+        return false;
+    camber_compiler_leave(c);
+    return true;
 }
 
 /* ---- Values ---- */
@@ -161,6 +251,8 @@ bool camber_compile_property(camber_compiler *c, json_t *json, const camber_prop
     uint32_t root = 0;
     if (!camber_expression_begin(c, json))
         return false;
-    const bool done = compile_value(c, json, property, &root) && check_property(c, property, root);
+    const bool done = compile_value(c, json, property, &root) && check_property(c, property, root) &&
+                      (c->strict || is_list(json) || camber_node_at(c, root)->op == CAMBER_OP_CONSTANT ||
+                       !json_is_array(json) || check_outputs(c, property, json));
     return camber_expression_end(c, done, root, expression);
 }

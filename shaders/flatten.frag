@@ -13,8 +13,11 @@ layout(binding = 2) uniform mediump sampler2D u_alphas;
 #if IMAGES
 layout(binding = 3) uniform mediump sampler2D u_patterns;
 uniform vec4 u_place;            // of the image in the texture, and how far it reaches
-uniform vec2 u_origin;           // of this piece from a corner of an image, px
+uniform vec2 u_mean;             // where it is one texel
+uniform vec2 u_origin;           // of this piece in the picture, px
+uniform vec2 u_first;            // where a corner of an image lies, px
 uniform vec2 u_axis_x, u_axis_y; // images a px, along the image's x and y
+uniform vec4 u_eye;              // as stroke.vert has it. 0: the picture is seen from above
 #endif
 uniform vec4 u_color; // premultiplied; with colours of its own, opacity in all four
 
@@ -39,12 +42,36 @@ float united(vec4 layer) {
 }
 #endif
 
+#if IMAGES
+vec4 image_at(vec2 at) {
+    return textureLod(u_patterns, u_place.xy + fract(at) * u_place.zw, 0.0);
+}
+
+// So many images over.
+vec4 images_over(vec2 at, vec2 reach) {
+    vec2 texels = reach * u_place.zw * vec2(textureSize(u_patterns, 0));
+    ivec2 count = ivec2(clamp(texels + 0.5, 1.0, 8.0));
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < count.x * count.y; i++)
+        sum += image_at(at + ((vec2(i % count.x, i / count.x) + 0.5) / vec2(count) - 0.5) * reach);
+    vec4 mean = textureLod(u_patterns, u_mean, 0.0);
+    return mix(sum / float(count.x * count.y), mean, clamp(max(texels.x, texels.y) / 8.0 - 1.0, 0.0, 1.0));
+}
+#endif
+
 #if FILL
 void main() {
     o_color = u_color;
 #if IMAGES
-    vec2 p = gl_FragCoord.xy + u_origin;
-    o_color *= textureLod(u_patterns, u_place.xy + fract(vec2(dot(u_axis_x, p), dot(u_axis_y, p))) * u_place.zw, 0.0);
+    vec2 p = gl_FragCoord.xy + u_origin - u_eye.xy, px = vec2(0.0);
+    if (u_eye.w > 0.0) {
+        float depth = u_eye.z / (u_eye.z + u_eye.w * p.y);
+        p = vec2(p.x, p.y / u_eye.z) * depth;
+        px = vec2(depth, depth * depth / u_eye.z);
+    }
+    p += u_eye.xy - u_first;
+    vec2 at = vec2(dot(u_axis_x, p), dot(u_axis_y, p));
+    o_color *= u_eye.w > 0.0 ? images_over(at, vec2(dot(abs(u_axis_x), px), dot(abs(u_axis_y), px))) : image_at(at);
 #endif
 }
 #else

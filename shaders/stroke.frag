@@ -360,13 +360,26 @@ float before_joint(float t, float tangent, float y) {
     return tangent == 0.0 || t > near ? t : near * clamp((t - bisector) / max(near - bisector, 1e-3), 0.0, 1.0);
 }
 
-// The image at x along and y across the segment; past a round join it is swept around.
-vec4 image_at(float x, float y, float d) {
+// The image at x along and y across the segment, d from the line; past a round join it is swept around. scales: px of the
+// picture a px along and across.
+vec4 image_at(float x, float y, float d, vec2 scales) {
     float t = v_shape.x - x;
     x = x < t ? before_joint(x, v_pattern.z, y) : v_shape.x - before_joint(t, v_pattern.w, y);
     float across = x < 0.0 || x > v_shape.x ? abs(y) : d;
-    vec2 place = vec2(fract(v_pattern.x + x * v_pattern.y), 0.5 - sign(y) * min(0.5 * across / v_shape.y, 0.5));
-    return textureLod(u_patterns, v_image.xy + place * v_image.zw, 0.0);
+    vec2 place = vec2(v_pattern.x + x * v_pattern.y, 0.5 - sign(y) * min(0.5 * across / v_shape.y, 0.5));
+#if PITCHED
+    // Far away a pixel holds many texels.
+    vec2 reach = vec2(v_pattern.y, 0.5 / v_shape.y) / max(scales, 1e-4);
+    ivec2 count = ivec2(clamp(reach * v_image.zw * vec2(textureSize(u_patterns, 0)) + 0.5, 1.0, 8.0));
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < count.x * count.y; i++) {
+        vec2 part = (vec2(i % count.x, i / count.x) + 0.5) / vec2(count) - 0.5, at = place + part * reach;
+        sum += textureLod(u_patterns, v_image.xy + vec2(fract(at.x), clamp(at.y, 0.0, 1.0)) * v_image.zw, 0.0);
+    }
+    return sum / float(count.x * count.y);
+#else
+    return textureLod(u_patterns, v_image.xy + vec2(fract(place.x), place.y) * v_image.zw, 0.0);
+#endif
 }
 #endif
 
@@ -524,7 +537,7 @@ void main() {
         o_color *= ramp_over(v_measure.z > 0.0 ? along : -1.0, edge, scale); // a dot has its first
 #endif
 #if PATTERN
-    o_color *= v_image.z > 0.0 ? image_at(x, y, sqrt(dot(ends, ends) + y * y)) : vec4(1.0);
+    o_color *= v_image.z > 0.0 ? image_at(x, y, sqrt(dot(ends, ends) + y * y), vec2(scale, across)) : vec4(1.0);
 #endif
 #if MASK
     o_alpha = vec4(o_color.a, 0.0, 0.0, area);

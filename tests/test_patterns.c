@@ -1,6 +1,7 @@
 /* Lines and fills of images: against the image sampled where each pixel lies along and across its line. */
 #include "picture.h"
 
+#include "base/perspective.h"
 #include "draw/renderer.h"
 
 #include <stdio.h>
@@ -442,6 +443,80 @@ static void test_fill_images(void **state) {
     picture_free(&p);
 }
 
+/* ---- At an angle ---- */
+
+/* The place of the plane that a pixel shows, and the depth there; false past the far plane. */
+static bool ground_of(double pitch_deg, uint32_t k, double ground[2], double *depth) {
+    const camber_perspective p = camber_perspective_of(pitch_deg, SIDE);
+    const double x = k % SIDE + 0.5 - SIDE / 2, y = k / SIDE + 0.5 - SIDE / 2;
+    *depth = camber_perspective_depth(&p, y);
+    ground[0] = x * *depth + SIDE / 2;
+    ground[1] = y * *depth / p.cosine + SIDE / 2;
+    return y > p.far_y + 1;
+}
+
+static void test_pitched_line(void **state) {
+    studio *s = *state;
+    sheet made;
+    make_sheet(&made, 4, 4, SMOOTH);
+    const drawing d = drawing_of(slanted, 2, 40, &made);
+    camber_mesh *mesh = make_mesh(s, &d, true);
+    const camber_pass pass = {.mesh = mesh, .paints = &d.paint, .paint_count = 1, .images = d.images, .image_count = 1};
+    picture p =
+        picture_draw(studio_any(s),
+                     &(camber_frame){.width = SIDE, .height = SIDE, .passes = &pass, .pass_count = 1, .pitch_deg = 60});
+    size_t count = 0;
+    for (uint32_t k = 0; k < SIDE * SIDE; k++) {
+        double ground[2], depth, wanted[4];
+        if (!ground_of(60, k, ground, &depth) || p.rgba[4 * k + 3] < 255)
+            continue;
+        const spot at = find_spot(&d, ground[0], ground[1]);
+        if (fabs(at.across) > 16 || at.along < 4 || at.left < 4 || depth > 1.3)
+            continue;
+        sample(&made.image, at.along / 40, 0.5 - at.across / 40, false, wanted);
+        for (size_t c = 0; c < 3; c++)
+            assert_in_range(fabs(p.rgba[4 * k + c] - wanted[c]), 0, 16);
+        count++;
+    }
+    assert_true(count > 300);
+    picture_free(&p);
+    camber_mesh_destroy(mesh);
+}
+
+/* Near the middle the images are where they lie, and far away they are their average. */
+static void test_pitched_fill(void **state) {
+    studio *s = *state;
+    sheet made;
+    for (int fine = 0; fine < 2; fine++) {
+        const double pitch_deg = fine ? 75 : 60;
+        make_sheet(&made, fine ? 64 : 4, fine ? 64 : 4, fine ? CHECKED : SMOOTH);
+        const camber_pass pass = {
+            .images = &made.image,
+            .image_count = 1,
+            .fill = {.color = {0, 0, 0, 1}, .pattern = 1, .width_px = 32, .height_px = 32, .x_px = 5, .y_px = 9}};
+        picture p = picture_draw(studio_any(s), &(camber_frame){.width = SIDE,
+                                                                .height = SIDE,
+                                                                .passes = &pass,
+                                                                .pass_count = 1,
+                                                                .pitch_deg = pitch_deg,
+                                                                .largest_piece_px = 60});
+        for (uint32_t k = 0; k < SIDE * SIDE; k++) {
+            double ground[2], depth, wanted[4];
+            if (!ground_of(pitch_deg, k, ground, &depth))
+                continue;
+            sample(&made.image, (ground[0] - 5) / 32, (ground[1] - 9) / 32, true, wanted);
+            for (size_t c = 0; c < 3; c++)
+                if (fine)
+                    assert_in_range(p.rgba[4 * k + c], 90, 165);
+                else if (depth < 1.2)
+                    assert_in_range(fabs(p.rgba[4 * k + c] - wanted[c]), 0, 16);
+            assert_int_equal(p.rgba[4 * k + 3], 255);
+        }
+        assert_int_equal(p.rgba[3], fine ? 0 : 255); /* past the far plane */
+        picture_free(&p);
+    }
+}
+
 /* ---- What is refused, and what runs out ---- */
 
 static void test_misuse(void **state) {
@@ -502,10 +577,11 @@ static void test_memory(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_memory),     cmocka_unit_test(test_straight),    cmocka_unit_test(test_bent),
-        cmocka_unit_test(test_corner),     cmocka_unit_test(test_sides),       cmocka_unit_test(test_fine),
-        cmocka_unit_test(test_neighbours), cmocka_unit_test(test_composed),    cmocka_unit_test(test_many),
-        cmocka_unit_test(test_fill_color), cmocka_unit_test(test_fill_images), cmocka_unit_test(test_misuse),
+        cmocka_unit_test(test_memory),       cmocka_unit_test(test_straight),    cmocka_unit_test(test_bent),
+        cmocka_unit_test(test_corner),       cmocka_unit_test(test_sides),       cmocka_unit_test(test_fine),
+        cmocka_unit_test(test_neighbours),   cmocka_unit_test(test_composed),    cmocka_unit_test(test_many),
+        cmocka_unit_test(test_fill_color),   cmocka_unit_test(test_fill_images), cmocka_unit_test(test_pitched_line),
+        cmocka_unit_test(test_pitched_fill), cmocka_unit_test(test_misuse),
     };
     char cache[64];
     if (!studio_begin(cache))

@@ -236,13 +236,10 @@ static camber_status draw_ranges(camber_renderer *renderer, const camber_shader 
     return status;
 }
 
-/* Past the far plane, which is a row of the picture, nothing is drawn. */
-static void begin_pitched(camber_renderer *renderer, const camber_shader *shader, const camber_piece *piece) {
-    const camber_gl *gl = &renderer->share.surface->gl;
+void camber_renderer_hide_beyond(camber_renderer *renderer, const camber_piece *piece) {
     const uint32_t past = piece->horizon > piece->y ? piece->horizon - piece->y : 0;
     const GLint top = (GLint)(past < piece->height ? past : piece->height);
-    gl->Scissor(0, top, (GLsizei)piece->width, (GLsizei)piece->height - top);
-    gl->Uniform1i(shader->table, (GLint)vertex_bits(renderer->batch.mesh, true));
+    renderer->share.surface->gl.Scissor(0, top, (GLsizei)piece->width, (GLsizei)piece->height - top);
 }
 
 camber_status camber_batch_draw(camber_renderer *renderer, unsigned variant, const camber_piece *piece) {
@@ -260,13 +257,13 @@ camber_status camber_batch_draw(camber_renderer *renderer, unsigned variant, con
         status = camber_renderer_upload_rows(renderer, batch->table_count * mesh->row_count);
     if (status == CAMBER_OK) {
         camber_renderer_use_shader(renderer, shader, mesh, piece);
-        gl->Uniform1i(shader->table, mesh->mesh_info.strips ? (GLint)vertex_bits(mesh, false) : 0);
+        gl->Uniform1i(shader->table, has_numbered_tables(mesh, piece) ? (GLint)vertex_bits(mesh, piece->pitched) : 0);
         gl->Uniform1i(shader->table_rows, (GLint)mesh->row_count);
         gl->Uniform1i(shader->tail, camber_renderer_tail(batch->table_count * mesh->row_count));
         if (variant & CAMBER_VARIANT_PATTERN)
             camber_patterns_bind(renderer);
         if (piece->pitched)
-            begin_pitched(renderer, shader, piece);
+            camber_renderer_hide_beyond(renderer, piece);
         status = draw_ranges(renderer, shader, piece);
         if (piece->pitched)
             gl->Scissor(0, 0, (GLsizei)piece->width, (GLsizei)piece->height);

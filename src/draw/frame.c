@@ -114,7 +114,7 @@ static camber_status draw_piece(camber_renderer *renderer, camber_flight *flight
     gl->ClearColor(back.r * back.a, back.g * back.a, back.b * back.a, back.a);
     gl->Clear(GL_COLOR_BUFFER_BIT);
     camber_batch_forget(renderer); /* of a frame that failed */
-    camber_patterns_forget_images(renderer);
+    camber_patterns_begin(renderer, piece);
     for (size_t i = 0; i < frame->pass_count && status == CAMBER_OK; i++)
         status = camber_renderer_draw_pass(renderer, frame->passes + i, piece);
     if (status == CAMBER_OK)

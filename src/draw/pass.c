@@ -54,7 +54,11 @@ static camber_status flatten(camber_renderer *renderer, int layer, camber_flatte
     }
     gl->BindTexture(GL_TEXTURE_2D, layer >= 0 ? renderer->targets[layer].texture : 0);
     gl->BindVertexArray(renderer->vertex_array);
+    if (kind == CAMBER_FLATTEN_IMAGES)
+        camber_renderer_hide_beyond(renderer, piece);
     gl->DrawArrays(GL_TRIANGLES, 0, 3);
+    if (kind == CAMBER_FLATTEN_IMAGES)
+        gl->Scissor(0, 0, (GLsizei)piece->width, (GLsizei)piece->height);
     gl->BindVertexArray(0);
     ++*piece->draw_calls;
     return CAMBER_OK;
@@ -188,37 +192,47 @@ static camber_status draw_group(camber_renderer *renderer, const camber_pass *pa
     return status == CAMBER_OK ? flatten(renderer, group.target, CAMBER_FLATTEN_COLORS, color, piece) : status;
 }
 
-static camber_status draw_fill(camber_renderer *renderer, const camber_pass *pass, const camber_piece *piece) {
+/* What the shader of images takes, but for the colour. */
+static void set_images(camber_renderer *renderer, const camber_shader *shader, const camber_fill *fill,
+                       const camber_fill_place *at, const camber_piece *piece) {
     const camber_gl *gl = &renderer->share.surface->gl;
+    const double angle = fill->bearing_deg * (3.14159265358979323846 / 180.0);
+    const float cosine = (float)cos(angle), sine = (float)sin(angle);
+    const float *eye = piece->eye;
+    camber_patterns_bind(renderer);
+    gl->UseProgram(shader->program);
+    gl->Uniform4f(shader->place, at->place[0], at->place[1], at->place[2], at->place[3]);
+    gl->Uniform2f(shader->mean, at->mean[0] + 0.5f * at->mean[2], at->mean[1] + 0.5f * at->mean[3]);
+    gl->Uniform2f(shader->origin, (float)piece->x, (float)piece->y);
+    gl->Uniform2f(shader->first, fill->x_px, fill->y_px);
+    gl->Uniform2f(shader->axis_x, cosine / at->size_px[0], -sine / at->size_px[0]);
+    gl->Uniform2f(shader->axis_y, sine / at->size_px[1], cosine / at->size_px[1]);
+    gl->Uniform4f(shader->eye, eye[0], eye[1], eye[2], eye[3]);
+}
+
+/* A colour is everywhere; images lie in the plane, and past the far plane there are none. */
+static camber_status draw_fill(camber_renderer *renderer, const camber_pass *pass, const camber_piece *piece) {
     const camber_fill *fill = &pass->fill;
     const camber_shader *shader;
     const bool images = fill->pattern != 0;
     const float a = fill->color.a * (pass->opacity > 0.0f ? pass->opacity : 1.0f);
     const float color[4] = {images ? a : fill->color.r * a, images ? a : fill->color.g * a,
                             images ? a : fill->color.b * a, a};
-    float place[4], size_px[2];
+    const camber_flatten_kind kind = images ? CAMBER_FLATTEN_IMAGES : CAMBER_FLATTEN_FILL;
+    camber_fill_place at;
     if (!(a > 0.0f))
         return CAMBER_OK;
     camber_status status = camber_batch_draw(renderer, 0, piece); /* what waits lies below */
     if (status == CAMBER_OK && images)
         status = camber_patterns_hold(renderer, pass, piece);
     if (status == CAMBER_OK && images)
-        status = camber_patterns_put_fill(renderer, pass, place, size_px);
-    const camber_flatten_kind kind = images ? CAMBER_FLATTEN_IMAGES : CAMBER_FLATTEN_FILL;
+        status = camber_patterns_put_fill(renderer, pass, &at);
     if (status == CAMBER_OK)
         status = camber_renderer_flatten_shader(renderer, kind, &shader);
     if (status != CAMBER_OK)
         return status;
-    if (images) {
-        const double angle = fill->bearing_deg * (3.14159265358979323846 / 180.0);
-        const float cosine = (float)cos(angle), sine = (float)sin(angle);
-        camber_patterns_bind(renderer);
-        gl->UseProgram(shader->program);
-        gl->Uniform4f(shader->place, place[0], place[1], place[2], place[3]);
-        gl->Uniform2f(shader->origin, (float)piece->x - fill->x_px, (float)piece->y - fill->y_px);
-        gl->Uniform2f(shader->axis_x, cosine / size_px[0], -sine / size_px[0]);
-        gl->Uniform2f(shader->axis_y, sine / size_px[1], cosine / size_px[1]);
-    }
+    if (images)
+        set_images(renderer, shader, fill, &at, piece);
     return flatten(renderer, -1, kind, color, piece);
 }
 

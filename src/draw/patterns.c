@@ -30,6 +30,10 @@ static pattern_use use_of_fill(const camber_pass *pass) {
                          fill->height_px > 0.0f ? (double)fill->height_px : image->height, true};
 }
 
+static pattern_use mean_of_fill(const camber_pass *pass) {
+    return (pattern_use){pass->fill.pattern, 0.0, 0.0, true};
+}
+
 /* Texels for a side that is drawn so long: all there are, unless they are finer than pixels by far. Sizes in steps of
  * sqrt(2) keep a zoom from filling the texture. */
 static uint32_t texels_for(uint32_t side_px, double drawn_px) {
@@ -221,8 +225,8 @@ static camber_status place(camber_renderer *renderer, const camber_image *image,
 static camber_status find_place(camber_renderer *renderer, const camber_pass *pass, pattern_use use, float texel[4],
                                 bool *full) {
     const camber_image *image = pass->images + use.pattern - 1;
-    camber_placed wanted = {.width = texels_for(image->width, use.width_px),
-                            .height = texels_for(image->height, use.height_px),
+    camber_placed wanted = {.width = texels_for(image->width, use.width_px * renderer->patterns.nearest),
+                            .height = texels_for(image->height, use.height_px * renderer->patterns.nearest),
                             .tiled = use.tiled};
     camber_status status = hash_once(renderer, pass, use.pattern - 1, &wanted.hash);
     if (status != CAMBER_OK)
@@ -268,8 +272,10 @@ static camber_status try_to_hold(camber_renderer *renderer, const camber_pass *p
     float texels[8];
     camber_status status = CAMBER_OK;
     *full = false;
-    if (!pass->mesh)
-        return find_place(renderer, pass, use_of_fill(pass), texels, full);
+    if (!pass->mesh) {
+        status = find_place(renderer, pass, use_of_fill(pass), texels, full);
+        return status == CAMBER_OK && !*full ? find_place(renderer, pass, mean_of_fill(pass), texels, full) : status;
+    }
     for (uint32_t i = 0; i < pass->mesh->row_count && status == CAMBER_OK && !*full; i++)
         if (camber_pass_draws(pass, i) && pass->paints[i].pattern)
             status = put_row(renderer, pass, pass->paints + i, texels, full);
@@ -294,13 +300,16 @@ camber_status camber_patterns_hold(camber_renderer *renderer, const camber_pass 
     return status;
 }
 
-camber_status camber_patterns_put_fill(camber_renderer *renderer, const camber_pass *pass, float texel[4],
-                                       float size_px[2]) {
+camber_status camber_patterns_put_fill(camber_renderer *renderer, const camber_pass *pass, camber_fill_place *place) {
     const pattern_use use = use_of_fill(pass);
     bool full = false;
-    size_px[0] = (float)use.width_px;
-    size_px[1] = (float)use.height_px;
-    return find_place(renderer, pass, use, texel, &full);
+    place->size_px[0] = (float)use.width_px;
+    place->size_px[1] = (float)use.height_px;
+    camber_status status = find_place(renderer, pass, use, place->place, &full);
+    if (status == CAMBER_OK)
+        status = find_place(renderer, pass, mean_of_fill(pass), place->mean, &full);
+    assert(!full);
+    return status;
 }
 
 void camber_patterns_bind(camber_renderer *renderer) {
@@ -310,9 +319,11 @@ void camber_patterns_bind(camber_renderer *renderer) {
     gl->ActiveTexture(GL_TEXTURE0);
 }
 
-void camber_patterns_forget_images(camber_renderer *renderer) {
+void camber_patterns_begin(camber_renderer *renderer, const camber_piece *piece) {
+    const double cosine = (double)piece->eye[2], fall = (double)piece->eye[3];
     renderer->patterns.hashed = NULL;
     renderer->patterns.hashed_count = 0;
+    renderer->patterns.nearest = piece->pitched ? (cosine + fall * (double)piece->eye[1]) / cosine : 1.0;
 }
 
 void camber_patterns_release(camber_renderer *renderer, bool is_current) {

@@ -44,7 +44,7 @@ typedef struct camber_shader {
     GLuint program;   /* 0: not built yet */
     unsigned variant; /* of a stroke shader */
     GLint origin, corner, scale, layer_color, table, table_rows, stride, tail, eye;
-    GLint place, axis_x, axis_y; /* of images side by side */
+    GLint place, mean, first, axis_x, axis_y; /* of images side by side */
 } camber_shader;
 
 /* A texture to draw into, of the size of a piece. */
@@ -123,6 +123,7 @@ typedef struct camber_patterns {
     const camber_image *hashed;           /* a pass's images, whose hashes are known or 0 */
     uint64_t *hashes;
     size_t hashed_count, hash_capacity;
+    double nearest; /* px of the picture a px of the plane, at most */
 } camber_patterns;
 
 /* One piece of the picture. */
@@ -214,12 +215,14 @@ camber_status camber_patterns_hold(camber_renderer *renderer, const camber_pass 
 /* Of a row of a pass that is held: where in the texture, as coordinates there, and px along the line. */
 camber_status camber_patterns_put(camber_renderer *renderer, const camber_pass *pass, const camber_paint *paint,
                                   float texels[8]);
-/* Of a fill that is held. */
-camber_status camber_patterns_put_fill(camber_renderer *renderer, const camber_pass *pass, float texel[4],
-                                       float size_px[2]);
+/* Of a fill that is held: where in the texture, the place of its mean there, and px of the picture. */
+typedef struct camber_fill_place {
+    float place[4], mean[4], size_px[2];
+} camber_fill_place;
+camber_status camber_patterns_put_fill(camber_renderer *renderer, const camber_pass *pass, camber_fill_place *place);
 void camber_patterns_bind(camber_renderer *renderer);
 /* The caller's images may be others from here on. */
-void camber_patterns_forget_images(camber_renderer *renderer);
+void camber_patterns_begin(camber_renderer *renderer, const camber_piece *piece);
 void camber_patterns_release(camber_renderer *renderer, bool is_current);
 
 /* The longest run from a polyline on. Rows that are not drawn belong to any run. */
@@ -265,6 +268,8 @@ void camber_renderer_use_shader(camber_renderer *renderer, const camber_shader *
                                 const camber_piece *piece);
 /* Binds a part's records and indices, and the row texture. */
 void camber_renderer_bind_part(camber_renderer *renderer, camber_mesh_part *part);
+/* Past the far plane, which is a row of the picture, nothing is drawn from here on. */
+void camber_renderer_hide_beyond(camber_renderer *renderer, const camber_piece *piece);
 /* Draws indices of the part that is bound. */
 void camber_renderer_draw_indices(camber_renderer *renderer, const camber_mesh *mesh, uint64_t first, uint64_t count);
 

@@ -96,6 +96,8 @@ static camber_status build(camber_renderer *renderer, const char *head, const ch
                               gl->GetUniformLocation(program, "u_tail"),
                               gl->GetUniformLocation(program, "u_eye"),
                               gl->GetUniformLocation(program, "u_place"),
+                              gl->GetUniformLocation(program, "u_mean"),
+                              gl->GetUniformLocation(program, "u_first"),
                               gl->GetUniformLocation(program, "u_axis_x"),
                               gl->GetUniformLocation(program, "u_axis_y")};
     return CAMBER_OK;

@@ -557,6 +557,7 @@ expect 0 "an expression that does not compile" style eval "$tmp/in/wrong.json"
 has "$tmp/stdout" '"result":"error".*"key":"\[1\]"'
 expect 65 "no expression" style eval "$tmp/in/fill.json"
 expect 65 "an expression that is not JSON" style eval "$tmp/in/cut.json"
+expect 66 "an expression by a style's name" style eval roads
 expect 66 "no such expression" style eval "$tmp/in/none.json"
 expect 2 "nothing to evaluate" style eval
 expect 65 "width of a wrong type" render "$osm" -o a.png --style "$tmp/in/type.json"
@@ -581,6 +582,8 @@ expect 0 "the built-in style" render "$tiger" --theme dark -qo builtin.png --siz
 cmp -s named.png builtin.png || fail "roads is not the built-in style"
 rm -f named.png builtin.png
 expect 0 "a style that ships" style check openmaptiles
+expect 66 "no style of that name" render "$tiger" --style streets -o a.png
+says 'roads, openmaptiles, transit'
 expect 66 "a style that ships, without its tiles" render --style openmaptiles --theme dark -o a.png
 says 'openmaptiles.mbtiles'
 cp "$tmp/in/own.json" roads

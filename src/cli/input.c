@@ -107,12 +107,24 @@ bool camber_input_ships(const char *name) {
     return camber_style_text(name, CAMBER_THEME_LIGHT, &size_bytes) && access(name, F_OK) != 0;
 }
 
+static int fail_name(camber_session *session, const char *name) {
+    char names[128] = "";
+    const char *next;
+    for (size_t i = 0; (next = camber_style_name(i)) != NULL; i++)
+        snprintf(names + strlen(names), sizeof names - strlen(names), "%s%s", i ? ", " : "", next);
+    return camber_report_fail(session->report, CAMBER_EXIT_NO_INPUT,
+                              "%s: neither a file nor a style that ships; name a style document, or one of: %s", name,
+                              names);
+}
+
 int camber_input_read_style(camber_session *session, const char *path, camber_theme theme, camber_style_input *style) {
     *style = (camber_style_input){.name = path};
     if (camber_input_ships(path)) {
         style->text = camber_style_text(path, theme, &style->size_bytes);
         return CAMBER_EXIT_DONE;
     }
+    if (strcmp(path, "-") != 0 && !strchr(path, '/') && access(path, F_OK) != 0)
+        return fail_name(session, path);
     const int status = camber_input_read_all(session->report, path, &style->bytes, &style->size_bytes);
     style->text = style->bytes;
     style->base_path = path;

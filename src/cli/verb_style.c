@@ -85,11 +85,14 @@ int camber_verb_style(camber_session *session) {
     const char *path = session->options->inputs[1];
     camber_style_input style = {0};
     int status = camber_session_need(session, CAMBER_NEEDS_CONTEXT);
-    if (status == CAMBER_EXIT_DONE)
+    if (status == CAMBER_EXIT_DONE && checks)
         status = camber_input_read_style(session, path, CAMBER_THEME_LIGHT, &style);
+    else if (status == CAMBER_EXIT_DONE)
+        status = camber_input_read_all(session->report, path, &style.bytes, &style.size_bytes);
     if (status == CAMBER_EXIT_DONE)
-        status = checks ? check(session, style.name, style.text, style.size_bytes)
-                        : evaluate(session, style.name, style.text, style.size_bytes);
+        status =
+            checks ? check(session, style.name, style.text, style.size_bytes)
+                   : evaluate(session, strcmp(path, "-") == 0 ? "standard input" : path, style.bytes, style.size_bytes);
     free(style.bytes);
     return status;
 }

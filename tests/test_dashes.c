@@ -35,7 +35,7 @@ static size_t cut(const drawing *d, double from, double to, float *part) {
 static void add_truth(const drawing *d, double truth[SIDE * SIDE]) {
     const camber_oracle_style style = {
         .width_px = (double)d->paint.width_px, .join = d->stroke.join, .cap = d->stroke.cap, .miter_limit = 2};
-    const double total = along_length(d);
+    const double total = camber_along_length(d->points, d->count);
     double at = 0;
     for (size_t i = 0; at < total; i++) {
         const double length = (double)d->dash.lengths[i % d->dash.count];
@@ -59,7 +59,7 @@ static void check(studio *s, const drawing *d, double mean_bound, double most_bo
     memset(area, 0, sizeof area);
     add_truth(d, area);
     for (size_t k = 0; k < sizeof truth / sizeof *truth; k++)
-        truth[k] = area[k / 4];
+        truth[k] = (float)area[k / 4];
     picture p = along_draw(s, d);
     const along_error e = along_compare(&p, truth);
     if (e.mean > mean_bound || e.most > most_bound)

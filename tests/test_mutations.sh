@@ -213,5 +213,22 @@ mutant strip shaders/flatten.frag "united lines: edges that face alike are added
 mutant strip shaders/flatten.frag "united lines: every two edges face alike" 'abs(cosine))' '1.0)'
 mutant strip shaders/flatten.frag "united lines: one over the other" 'abs(cosine))' '0.0)'
 
+# What lies along lines, and bands beside them.
+mutant strip shaders/stroke.frag "gaps that are not cut out" 'max(area - gap, 0.0)' 'area'
+mutant strip shaders/stroke.frag "a fade half as wide" 'fade = v_band.y + 1.0' 'fade = 0.5 * v_band.y + 1.0'
+mutant strip shaders/stroke.frag "dashes that do not end" 'covered((t - dash.x) * scale, edge) - covered((t - dash.y) * scale, edge)' \
+    'covered((t - dash.x) * scale, edge)'
+mutant strip shaders/stroke.frag "the nearest round dash" 'max(dash.x - t, t - dash.y)' 'max(dash.x - t, t - dash.x)'
+mutant strip shaders/stroke.frag "the period of dashes" 'period * floor(' '1.1 * period * floor('
+mutant strip shaders/stroke.frag "what is trimmed and what is not" 'covered((along - v_trim.x)' 'covered((v_trim.x - along)'
+mutant strip shaders/stroke.frag "a place along the line" 'v_measure.x + clamp(x, 0.0, v_shape.x)' 'v_measure.x + clamp(x, 0.0, 0.5 * v_shape.x)'
+mutant strip shaders/stroke.frag "steps at the pixel before" 'float from = along - edge.x / scale' 'float from = along + edge.x / scale'
+mutant strip shaders/stroke.frag "colours at the ends of pieces" 'mix(color, next_color, part)' 'color'
+mutant strip shaders/stroke.frag "translucent ramps that are opaque" 'o_alpha = vec4(o_color.a' 'o_alpha = vec4(area'
+mutant strip shaders/stroke.frag "translucent ramps by their alpha" 'o_color.a = area;' ''
+mutant strip shaders/flatten.frag "alphas that are left beside" 'vec4(layer.rgb, texelFetch' 'vec4(layer.rgb, layer.a) + 0.0 * vec4(texelFetch'
+mutant strip kernels/measure.cl "lengths that are not summed" 'ahead + length' 'length'
+mutant strip kernels/emit.cl "measures of the neighbour" 'as_uint(measures[2 * i])' 'as_uint(measures[2 * i + 2])'
+
 echo "$caught caught, $failures failures"
 [ "$failures" = 0 ]

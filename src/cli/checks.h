@@ -46,6 +46,8 @@ int camber_check_networks(camber_validation *validation, const camber_subject *s
 int camber_check_pixels(camber_validation *validation, const camber_subject *subject);
 /* Lines beside others, of the CPU twin: how far they lie from these. */
 int camber_check_offsets(camber_validation *validation);
+/* Gaps, blurs, dashes, trims and ramps, of lines of its own. */
+int camber_check_along(camber_validation *validation);
 /* Moves a camera to a pixel of its picture. */
 void camber_camera_center(camber_camera *camera, double x, double y);
 

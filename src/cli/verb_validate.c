@@ -102,6 +102,8 @@ static int check_all(camber_validation *v, camber_input *input) {
     }
     if (status == CAMBER_EXIT_DONE && !input)
         status = camber_check_offsets(v);
+    if (status == CAMBER_EXIT_DONE && !input)
+        status = camber_check_along(v);
     camber_report_erase_bar(session->report);
     return status;
 }

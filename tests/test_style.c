@@ -1,5 +1,5 @@
 /* Style documents: the built-in ones against a list of road classes, and documents that are wrong. */
-#include "style/style.h"
+#include "style/properties.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -339,6 +339,28 @@ static void test_layer(void **state) {
     teardown(&f);
 }
 
+/* What the state of the style and of features says: the one its default, the other nothing. */
+static void test_states(void **state) {
+    (void)state;
+    fixture f;
+    setup(&f);
+    assert_int_equal(
+        parse(
+            &f,
+            "{\"version\": 8, \"state\": {\"show\": {\"default\": "
+            "\"none\"}}, \"layers\": ["
+            "{\"id\": \"a\", \"type\": \"line\", \"layout\": {\"visibility\": [\"global-state\", \"show\"]}},"
+            "{\"id\": \"b\", \"type\": \"line\", \"layout\": {\"visibility\": [\"global-state\", \"other\"]},"
+            " \"paint\": {\"line-width\": [\"case\", [\"boolean\", [\"feature-state\", \"hover\"], false], 9, 4]}}]}"),
+        CAMBER_OK);
+    assert_int_equal(f.error_count + f.warning_count, 0);
+    assert_false(f.style->layers[0].visible);
+    assert_true(f.style->layers[1].visible);
+    const camber_feature_view view = {.geometry_type = "LineString"};
+    assert_true(fabs(camber_style_layer_paint(&f.style->layers[1], 5.0, &view).width - 4.0) < 1e-12);
+    teardown(&f);
+}
+
 static void test_warnings(void **state) {
     (void)state;
     fixture f;
@@ -425,6 +447,10 @@ static void test_wrong(void **state) {
         {"{\"version\": 8, \"sprite\": [{\"url\": \"x\"}], \"layers\": []}", "/sprite: expected a URL"},
         {LINE("\"layout\": {\"line-cap\": 3}"), "/layers/0/layout/line-cap: expected a string"},
         {LINE("\"layout\": {\"visibility\": true}"), "/layers/0/layout/visibility: expected \"visible\" or \"none\""},
+        {LINE("\"layout\": {\"visibility\": [\"get\", \"x\"]}"),
+         "/layers/0/layout/visibility: visibility cannot depend on"},
+        {LINE("\"layout\": {\"visibility\": [\"zoom\"]}"), "/layers/0/layout/visibility: "},
+        {LINE("\"paint\": {\"line-translate\": [\"feature-state\", \"x\"]}"), "/layers/0/paint/line-translate: "},
         {LINE("\"minzoom\": \"3\""), "/layers/0/minzoom: expected a number, found a string"},
         {LINE("\"maxzoom\": 25"), "/layers/0/maxzoom: 25 is out of range"},
         {LINE("\"source\": 3"), "/layers/0/source: expected a string, found a number"},
@@ -600,11 +626,72 @@ static void test_memory(void **state) {
     }
 }
 
+/* ---- The reference ---- */
+
+/* Every property of line and background layers in the specification's reference of August 2026, but visibility. */
+static void test_reference(void **state) {
+    (void)state;
+    enum range { RANGE_ANY, RANGE_FROM_0, RANGE_UNIT };
+    static const struct {
+        const char *name;
+        bool layout;
+        camber_type type;
+        const char *fallback;
+        uint32_t length;
+        enum range range;
+        const char *depends; /* zoom, feature, line-progress, interpolated */
+    } reference[] = {
+        {"line-cap", true, CAMBER_TYPE_STRING, "\"butt\"", 0, RANGE_ANY, "zf"},
+        {"line-join", true, CAMBER_TYPE_STRING, "\"miter\"", 0, RANGE_ANY, "zf"},
+        {"line-miter-limit", true, CAMBER_TYPE_NUMBER, "2", 0, RANGE_ANY, "zfi"},
+        {"line-round-limit", true, CAMBER_TYPE_NUMBER, "1.05", 0, RANGE_ANY, "zfi"},
+        {"line-sort-key", true, CAMBER_TYPE_NUMBER, NULL, 0, RANGE_ANY, "zf"},
+        {"line-opacity", false, CAMBER_TYPE_NUMBER, "1", 0, RANGE_UNIT, "zfi"},
+        {"line-layer-opacity", false, CAMBER_TYPE_NUMBER, "1", 0, RANGE_UNIT, "zi"},
+        {"line-color", false, CAMBER_TYPE_COLOR, "\"#000000\"", 0, RANGE_ANY, "zfi"},
+        {"line-translate", false, CAMBER_TYPE_ARRAY, "[0, 0]", 2, RANGE_ANY, "zi"},
+        {"line-translate-anchor", false, CAMBER_TYPE_STRING, "\"map\"", 0, RANGE_ANY, "z"},
+        {"line-width", false, CAMBER_TYPE_NUMBER, "1", 0, RANGE_FROM_0, "zfi"},
+        {"line-gap-width", false, CAMBER_TYPE_NUMBER, "0", 0, RANGE_FROM_0, "zfi"},
+        {"line-offset", false, CAMBER_TYPE_NUMBER, "0", 0, RANGE_ANY, "zfi"},
+        {"line-blur", false, CAMBER_TYPE_NUMBER, "0", 0, RANGE_FROM_0, "zfi"},
+        {"line-dasharray", false, CAMBER_TYPE_ARRAY, NULL, 0, RANGE_FROM_0, "zf"},
+        {"line-pattern", false, CAMBER_TYPE_IMAGE, NULL, 0, RANGE_ANY, "zf"},
+        {"line-gradient", false, CAMBER_TYPE_COLOR, NULL, 0, RANGE_ANY, "pi"},
+        {"background-color", false, CAMBER_TYPE_COLOR, "\"#000000\"", 0, RANGE_ANY, "zi"},
+        {"background-pattern", false, CAMBER_TYPE_IMAGE, NULL, 0, RANGE_ANY, "z"},
+        {"background-opacity", false, CAMBER_TYPE_NUMBER, "1", 0, RANGE_UNIT, "zi"},
+    };
+    for (size_t i = 0; i < sizeof reference / sizeof *reference; i++) {
+        const char *name = reference[i].name, *depends = reference[i].depends;
+        const bool line = strncmp(name, "line-", 5) == 0;
+        const camber_property_row *row =
+            camber_property_find(line ? CAMBER_LAYER_LINE : CAMBER_LAYER_BACKGROUND, reference[i].layout, name);
+        if (!row)
+            fail_msg("%s is not known", name);
+        const camber_property *property = &row->property;
+        assert_int_equal(property->type, reference[i].type);
+        assert_int_equal(property->length, reference[i].length);
+        assert_int_equal(!property->without_zoom, strchr(depends, 'z') != NULL);
+        assert_int_equal(property->data_driven, strchr(depends, 'f') != NULL);
+        assert_int_equal(property->line_progress, strchr(depends, 'p') != NULL);
+        assert_int_equal(property->interpolated, strchr(depends, 'i') != NULL);
+        assert_int_equal(property->fallback != NULL, reference[i].fallback != NULL);
+        if (property->fallback)
+            assert_string_equal(property->fallback, reference[i].fallback);
+        assert_true(fabs(property->low) <= 0.0);
+        assert_true(reference[i].range == RANGE_ANY    ? fabs(property->high) <= 0.0
+                    : reference[i].range == RANGE_UNIT ? fabs(property->high - 1.0) <= 0.0
+                                                       : property->high >= HUGE_VAL);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_builtin),    cmocka_unit_test(test_layer),   cmocka_unit_test(test_warnings),
-        cmocka_unit_test(test_wrong),      cmocka_unit_test(test_nesting), cmocka_unit_test(test_many),
-        cmocka_unit_test(test_many_names), cmocka_unit_test(test_damage),  cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_builtin), cmocka_unit_test(test_layer),     cmocka_unit_test(test_warnings),
+        cmocka_unit_test(test_states),  cmocka_unit_test(test_reference), cmocka_unit_test(test_wrong),
+        cmocka_unit_test(test_nesting), cmocka_unit_test(test_many),      cmocka_unit_test(test_many_names),
+        cmocka_unit_test(test_damage),  cmocka_unit_test(test_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -251,7 +251,6 @@ static bool read_state(camber_document *d) {
     c->style->state = json_incref(state);
     c->state = state;
     c->state_defaults = true;
-    c->state_defaults = true;
     camber_compiler_leave(c);
     return true;
 }

@@ -13,8 +13,28 @@ static bool ends_with(const char *text, const char *end) {
     return length >= end_length && strcmp(text + length - end_length, end) == 0;
 }
 
-static bool read_visibility(camber_document *d, const json_t *json, bool *visible) {
+/* An expression, of the style's state alone. */
+static bool evaluate_visibility(camber_document *d, json_t *json, bool *visible) {
+    static const char *const values[] = {"visible", "none", NULL};
+    static const camber_property property = {
+        .name = "visibility", .type = CAMBER_TYPE_STRING, .values = values, .without_zoom = true};
+    camber_expression *expression = NULL;
+    camber_evaluation evaluation;
+    camber_value value;
+    if (!camber_compile_property(&d->compiler, json, &property, &expression))
+        return false;
+    camber_evaluation_begin(&evaluation, 0.0, NULL);
+    *visible = !camber_expression_evaluate(expression, &evaluation, &value) || value.type != CAMBER_VALUE_STRING ||
+               strcmp(value.string, "none") != 0;
+    camber_evaluation_end(&evaluation);
+    camber_expression_destroy(d->compiler.context, expression);
+    return true;
+}
+
+static bool read_visibility(camber_document *d, json_t *json, bool *visible) {
     const char *text = json_string_value(json);
+    if (json_is_array(json))
+        return evaluate_visibility(d, json, visible);
     if (!text || (strcmp(text, "visible") != 0 && strcmp(text, "none") != 0))
         return camber_compiler_fail(&d->compiler, "expected \"visible\" or \"none\"; write one of them");
     *visible = strcmp(text, "visible") == 0;
@@ -86,7 +106,7 @@ static bool read_properties(camber_document *d, const json_t *json, const char *
 }
 
 static bool read_layer_visibility(camber_document *d, const json_t *json, camber_style_layer *layer) {
-    const json_t *visibility = json_object_get(json_object_get(json, "layout"), "visibility");
+    json_t *visibility = json_object_get(json_object_get(json, "layout"), "visibility");
     const size_t depth = d->compiler.path_length;
     layer->visible = true;
     if (!visibility)

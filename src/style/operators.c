@@ -38,6 +38,16 @@ static bool compile_constant(camber_compiler *c, const camber_operator *row, jso
     return camber_make_constant(c, &value, camber_typing_of(CAMBER_TYPE_NUMBER), node);
 }
 
+/* Nobody sets the states of features of a picture: each is null. */
+static bool compile_feature_state(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
+                                  uint32_t *node) {
+    (void)expected;
+    const camber_node prototype = {.op = row->op, .reads_feature = true};
+    uint32_t name;
+    return camber_compile_element(c, array, 1, camber_typing_of(row->operands), &name) &&
+           camber_make_node(c, &prototype, c->operand_count, node);
+}
+
 /* What the specification has and lines have no use for. */
 static bool compile_foreign(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
                             uint32_t *node) {
@@ -151,7 +161,7 @@ static const camber_operator operators[] = {
     {"is-supported-script", compile_script, CAMBER_OP_CONSTANT, STRING, BOOL, 1, 1},
     {"within", compile_foreign, CAMBER_OP_CONSTANT, VALUE, BOOL, 0, ANY_COUNT},
     {"distance", compile_foreign, CAMBER_OP_CONSTANT, VALUE, NUMBER, 0, ANY_COUNT},
-    {"feature-state", compile_foreign, CAMBER_OP_CONSTANT, VALUE, VALUE, 0, ANY_COUNT},
+    {"feature-state", compile_feature_state, CAMBER_OP_STATE, STRING, VALUE, 1, 1},
     {"heatmap-density", compile_foreign, CAMBER_OP_CONSTANT, VALUE, NUMBER, 0, ANY_COUNT},
     {"elevation", compile_foreign, CAMBER_OP_CONSTANT, VALUE, NUMBER, 0, ANY_COUNT},
     {"accumulated", compile_foreign, CAMBER_OP_CONSTANT, VALUE, VALUE, 0, ANY_COUNT},

@@ -32,6 +32,15 @@
 #else
 #define CAMBER_WALK_MEASURES 1
 #endif
+/* Whether a walk may be of a camera with a pitch; the host's may. */
+#ifndef CAMBER_PITCHED
+#define CAMBER_PITCHED 0
+#endif
+#if defined(__OPENCL_VERSION__) && !CAMBER_PITCHED
+#define CAMBER_WALK_PITCHED 0
+#else
+#define CAMBER_WALK_PITCHED 1
+#endif
 /* Of a run's word, whose row stands at CAMBER_POINT_ROW_SHIFT. */
 #define CAMBER_RUN_RING CAMBER_POINT_RING
 
@@ -53,6 +62,11 @@ typedef struct camber_projection {
     camber_u32 first_point;                           /* where the arrays of points begin in the network */
     camber_u32 begin, end;                            /* the points to walk, counted from there */
     float step_px;
+    /* Of a camera with a pitch. The window is a trapezoid then: its sides come so many px closer a px down, and are at
+     * window_x0 and window_x1 at its bottom. Depth is 1 at middle_y, and so much less a px down; tolerance is what is
+     * borne there. */
+    float slope; /* 0: no pitch */
+    float middle_y, fall, nearest, inverse_cosine;
 } camber_projection;
 
 /* What a walk reads and where it puts slots. */
@@ -94,6 +108,12 @@ CAMBER_FN float camber_project_y(const camber_projection *p, camber_i32 x, cambe
 /* The sides of the window, grown by some px, that a pixel lies beyond. A segment whose ends have one in common misses
  * it. */
 CAMBER_FN camber_u32 camber_beyond(const camber_projection *p, float x, float y, float grown) {
+#if CAMBER_WALK_PITCHED
+    const float wider = p->slope * (p->window_y1 - y);
+    if (p->slope > 0.0f)
+        return (x < p->window_x0 - wider - grown ? 1u : 0u) | (x > p->window_x1 + wider + grown ? 2u : 0u) |
+               (y < p->window_y0 - grown ? 4u : 0u) | (y > p->window_y1 + grown ? 8u : 0u);
+#endif
     return (x < p->window_x0 - grown ? 1u : 0u) | (x > p->window_x1 + grown ? 2u : 0u) |
            (y < p->window_y0 - grown ? 4u : 0u) | (y > p->window_y1 + grown ? 8u : 0u);
 }
@@ -160,9 +180,58 @@ CAMBER_FN camber_kept camber_pull(const camber_walk *w, const camber_projection 
     return found;
 }
 
+#if CAMBER_WALK_PITCHED
+/* px inside a side, of which b is not. */
+CAMBER_FN float camber_part_to(float a_inside, float b_inside) {
+    return a_inside / (a_inside - b_inside);
+}
+
+CAMBER_FN float camber_part_within_pitched(const camber_projection *p, camber_kept a, camber_kept b) {
+    const float a_wider = p->slope * (p->window_y1 - a.y), b_wider = p->slope * (p->window_y1 - b.y);
+    float t = 1.0f, part;
+    if (b.beyond & 1u)
+        t = camber_part_to(a.x - p->window_x0 + a_wider, b.x - p->window_x0 + b_wider);
+    if (b.beyond & 2u) {
+        part = camber_part_to(p->window_x1 - a.x + a_wider, p->window_x1 - b.x + b_wider);
+        t = part < t ? part : t;
+    }
+    if (b.beyond & 4u) {
+        part = camber_part_to(a.y - p->window_y0, b.y - p->window_y0);
+        t = part < t ? part : t;
+    }
+    if (b.beyond & 8u) {
+        part = camber_part_to(p->window_y1 - a.y, p->window_y1 - b.y);
+        t = part < t ? part : t;
+    }
+    return t > 0.0f ? t : 0.0f;
+}
+
+/* What is borne where a point lies: a px there is depth px of the plane from side to side, and more from front to
+ * back, but near the camera less. */
+CAMBER_FN float camber_tolerance_at(const camber_projection *p, camber_i32 x, camber_i32 y) {
+    const float depth = 1.0f - p->fall * (camber_project_y(p, x, y) - p->middle_y);
+    const float seen = depth > p->nearest ? depth : p->nearest;
+    const float back = seen * seen * p->inverse_cosine;
+    return p->tolerance * (back < seen ? back : seen);
+}
+#endif
+
+/* Whether a point matters to the camera. Nodes that lines share have one importance and one place. */
+CAMBER_FN camber_u32 camber_matters(const camber_walk *w, const camber_projection *p, camber_u32 i) {
+#if CAMBER_WALK_PITCHED
+    if (p->slope > 0.0f)
+        return w->importance[i] >= camber_tolerance_at(p, w->x[i], w->y[i]) ? 1u : 0u;
+#endif
+    return w->importance[i] >= p->tolerance ? 1u : 0u;
+}
+
 /* How far from a to b, 0 to 1, the first side of the window lies that b is beyond; 1 where it is beyond none. a is not
  * beyond any of these sides: no division by 0. */
 CAMBER_FN float camber_part_within(const camber_projection *p, camber_kept a, camber_kept b) {
+#if CAMBER_WALK_PITCHED
+    if (p->slope > 0.0f)
+        return camber_part_within_pitched(p, a, b);
+#endif
     const float side_x = b.beyond & 2u ? p->window_x1 : p->window_x0;
     const float side_y = b.beyond & 8u ? p->window_y1 : p->window_y0;
     const float tx = b.beyond & 3u ? (side_x - a.x) / (b.x - a.x) : 1.0f;
@@ -202,7 +271,7 @@ CAMBER_FN void camber_put_cut(camber_walk *w, const camber_projection *p, camber
 /* The last point before a place that is kept. The run's first point always is. */
 CAMBER_FN camber_kept camber_find_before(const camber_walk *w, const camber_projection *p, camber_u32 from) {
     camber_u32 i = from - 1;
-    while (i > w->first && !(w->importance[i] >= p->tolerance))
+    while (i > w->first && !camber_matters(w, p, i))
         i--;
     return camber_keep(w, p, i);
 }
@@ -212,7 +281,7 @@ CAMBER_FN camber_kept camber_find_next(const camber_walk *w, const camber_projec
                                        camber_kept other) {
     camber_kept next = other;
     for (camber_u32 i = from; i < w->end; i++) {
-        if (!(w->importance[i] >= p->tolerance))
+        if (!camber_matters(w, p, i))
             continue;
         next = camber_keep(w, p, i);
         if (!camber_same_pixel(next, other))
@@ -272,7 +341,7 @@ CAMBER_FN void camber_walk_part(camber_walk *w, const camber_projection *p, camb
     camber_u32 count = 0;
     for (camber_u32 i = begin; i < end; i++) {
         kept[count] = i;
-        count += w->importance[i] >= p->tolerance ? 1u : 0u;
+        count += camber_matters(w, p, i);
     }
     if (count == 0u)
         return;
@@ -325,10 +394,10 @@ CAMBER_FN void camber_chunk_bounds(const camber_projection *p, camber_u32 chunk,
 }
 
 #ifdef __OPENCL_VERSION__
-typedef char camber_projection_is_84_bytes[sizeof(camber_projection) == 84 ? 1 : -1];
+typedef char camber_projection_is_104_bytes[sizeof(camber_projection) == 104 ? 1 : -1];
 typedef char camber_run_is_24_bytes[sizeof(camber_run) == 24 ? 1 : -1];
 #else
-_Static_assert(sizeof(camber_projection) == 84, "the device reads a projection of 84 bytes");
+_Static_assert(sizeof(camber_projection) == 104, "the device reads a projection of 104 bytes");
 _Static_assert(sizeof(camber_run) == 24, "the device reads runs of 24 bytes");
 #endif
 

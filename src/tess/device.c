@@ -307,7 +307,8 @@ void camber_device_destroy(camber_device *device) {
     for (int measured = 0; measured < 2; measured++) {
         for (int method = 0; method < 3; method++)
             camber_program_destroy(device->context, device->programs[measured][method]);
-        camber_program_destroy(device->context, device->network_programs[measured]);
+        for (int pitched = 0; pitched < 2; pitched++)
+            camber_program_destroy(device->context, device->network_programs[measured][pitched]);
     }
     camber_program_destroy(device->context, device->measures);
     for (size_t i = 0; i < 2; i++)

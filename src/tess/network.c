@@ -339,14 +339,12 @@ static trapezoid trapezoid_of(const camber_camera *camera, const camber_perspect
                        .near_y = near + reach + 4.0};
 }
 
-/* The box of the trapezoid is the window; points are left out as the nearest part of the picture bears it. */
 static void aim_pitched(const camber_network *network, const camber_camera *camera, double reach,
                         camber_projection *p) {
     const camber_perspective perspective = camber_perspective_of(camera->pitch_deg, camera->height);
     const trapezoid seen = trapezoid_of(camera, &perspective, reach);
     const double half_x = 0.5 * camera->width, half_y = 0.5 * camera->height, step = network->step;
     const double widest = seen.side - seen.slope * seen.far_y, narrowest = seen.side - seen.slope * seen.near_y;
-    const double largest = fmax(1.0, perspective.cosine / perspective.nearest) / perspective.nearest;
     const double cosine = (double)p->across_x / (step * camera->scale_px),
                  sine = (double)p->down_x / (step * camera->scale_px);
     double x0 = INFINITY, y0 = INFINITY, x1 = -INFINITY, y1 = -INFINITY;
@@ -359,11 +357,15 @@ static void aim_pitched(const camber_network *network, const camber_camera *came
         y0 = fmin(y0, y);
         y1 = fmax(y1, y);
     }
-    p->tolerance = (float)(camera->simplify_px / camera->scale_px / largest);
-    p->window_x0 = (float)(half_x - widest);
-    p->window_x1 = (float)(half_x + widest);
+    p->window_x0 = (float)(half_x - narrowest);
+    p->window_x1 = (float)(half_x + narrowest);
     p->window_y0 = (float)(half_y + seen.far_y);
     p->window_y1 = (float)(half_y + seen.near_y);
+    p->slope = (float)seen.slope;
+    p->middle_y = (float)half_y;
+    p->fall = (float)perspective.fall;
+    p->nearest = (float)perspective.nearest;
+    p->inverse_cosine = (float)(1.0 / perspective.cosine);
     p->seen_x0 = outwards(camera->x + x0 - network->x0, step, -2.0);
     p->seen_y0 = outwards(camera->y + y0 - network->y0, step, -2.0);
     p->seen_x1 = outwards(camera->x + x1 - network->x0, step, 3.0);

@@ -221,7 +221,8 @@ camber_status camber_mesh_plan_network(camber_mesh *mesh, camber_network *networ
 
 camber_status camber_mesh_aim(camber_mesh *mesh, const camber_camera *camera, const camber_tessellation_desc *desc) {
     const camber_status status = camber_network_aim(mesh->held->network, camera, desc, &mesh->held->projection);
-    return status == CAMBER_OK ? camber_device_network_program(mesh->device, desc->measured, &mesh->held->program)
+    return status == CAMBER_OK ? camber_device_network_program(mesh->device, desc->measured, camera->pitch_deg > 0.0,
+                                                               &mesh->held->program)
                                : status;
 }
 

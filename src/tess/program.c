@@ -23,7 +23,7 @@ typedef struct recipe {
     const char *name;
     const char *source;
     size_t source_size;
-    char options[160];
+    char options[192];
 } recipe;
 
 /* Everything that a binary depends on. */
@@ -191,10 +191,14 @@ camber_status camber_device_cover_program(camber_device *device, camber_program 
     return use_program(device, &from, &device->cover, program);
 }
 
-camber_status camber_device_network_program(camber_device *device, bool measured, camber_program **program) {
+camber_status camber_device_network_program(camber_device *device, bool measured, bool pitched,
+                                            camber_program **program) {
     recipe from = {PROGRAM_NETWORK, "networks", camber_network_kernels_source, camber_network_kernels_source_size, ""};
     set_options(device, -1, measured, &from);
-    return use_program(device, &from, &device->network_programs[measured], program);
+    const size_t used = strlen(from.options);
+    if (pitched)
+        snprintf(from.options + used, sizeof from.options - used, " -DCAMBER_PITCHED=1");
+    return use_program(device, &from, &device->network_programs[measured][pitched], program);
 }
 
 void camber_program_save(camber_device *device, camber_program *program) {

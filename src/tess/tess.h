@@ -23,8 +23,8 @@ struct camber_device {
     size_t block;          /* points a work-group: CAMBER_BLOCK as its kernels see it */
     size_t item;           /* points a work-item: CAMBER_ITEM */
     /* Built when first used; the second of two for what is measured. */
-    struct camber_program *programs[2][3]; /* by camber_method */
-    struct camber_program *network_programs[2];
+    struct camber_program *programs[2][3];         /* by camber_method */
+    struct camber_program *network_programs[2][2]; /* the second ones of a camera with a pitch */
     struct camber_program *measures;
     struct camber_program *offset_programs[2];
     struct camber_program *cover; /* what draws */
@@ -60,7 +60,8 @@ typedef struct camber_program {
 /* The kernels of a method, built or loaded at first use. */
 camber_status camber_device_program(camber_device *device, camber_method method, bool measured,
                                     camber_program **program);
-camber_status camber_device_network_program(camber_device *device, bool measured, camber_program **program);
+camber_status camber_device_network_program(camber_device *device, bool measured, bool pitched,
+                                            camber_program **program);
 camber_status camber_device_measures(camber_device *device, camber_program **program);
 camber_status camber_device_offsets(camber_device *device, bool measured, camber_program **program);
 camber_status camber_device_cover_program(camber_device *device, camber_program **program);

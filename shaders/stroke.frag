@@ -293,18 +293,10 @@ float cut_joins(float area, vec2 past, float y, vec2 u, SIDE side, float half_wi
 #endif
 
 #if FLAT_CAPS
+// px inside both caps. Of a line that is seen aslant they meet the sides at any angle; cosine: of that at B.
+float cut_caps(float area, vec2 inside, vec4 edge, float cosine) {
 #if PITCHED
-// A cap meets the sides at any angle, as it is seen. A line with both sides in the pixel has none.
-float cut_cap(float area, float s, vec2 normal, vec2 side, bool thick) {
-    float cosine = dot(normalize(seen_normal(normal, s)), normalize(seen_normal(side, 0.0)));
-    return s > 1e5 ? area : inside_both(area, covered_plane(s, normal), thick ? cosine : 0.0);
-}
-#endif
-
-// px inside both caps
-float cut_caps(float area, vec2 inside, vec2 u, SIDE side, vec4 edge, bool thick) {
-#if PITCHED
-    return cut_cap(cut_cap(area, inside.x, -u, side, thick), inside.y, u, side, thick);
+    return inside_both(inside_both(area, covered(inside.x, edge), -cosine), covered(inside.y, edge), cosine);
 #else
     return area * max(covered(inside.x, edge) + covered(inside.y, edge) - 1.0, 0.0);
 #endif
@@ -390,8 +382,11 @@ void main() {
     vec2 u = v_segment.zw, q = ground - v_segment.xy;
     float x = dot(q, u), y = q.y * u.x - q.x * u.y;
     vec2 past = vec2(-x, dot(ground - v_end, u)); // the ends, along the segment
-    float scale = scale_of(u); // along
-    vec4 edge = edge_of(normalize(seen_normal(u, 0.0)));
+    // Along the line.
+    vec2 seen_u = seen_normal(u, 0.0);
+    float seen_scale = inversesqrt(max(dot(seen_u, seen_u), 1e-30)), scale = seen_scale / depth;
+    seen_u *= seen_scale;
+    vec4 edge = edge_of(seen_u);
 #else
     vec2 u = v_segment.zw, q = gl_FragCoord.xy - v_segment.xy;
     // Of the sides and, turned by a right angle, of flat caps.
@@ -433,7 +428,7 @@ void main() {
 #if TIPS
     // Round caps that are no pixel long, and not seen aslant, end like flat ones of the same area.
     float cap_length = half_width * scale;
-    float cosine = dot(normalize(seen_normal(u, 0.0)), normalize(seen_normal(vec2(-u.y, u.x), 0.0)));
+    float cosine = dot(seen_u, normalize(seen_normal(vec2(-u.y, u.x), 0.0)));
     float flat_cap = (1.0 - clamp(2.0 * cap_length - 1.0, 0.0, 1.0)) * max(1.0 - 2.0 * abs(cosine), 0.0);
     off.x *= min(v_tips.x - past.x, v_tips.y - past.y) < 0.0 ? 1.0 - flat_cap : 1.0;
 #endif
@@ -493,7 +488,13 @@ void main() {
     area = v_band.y > 0.0 ? clamp((min(rim, inner) + 0.5) / fade, 0.0, 1.0) : area;
 #endif
 #if FLAT_CAPS
-    area = cut_caps(area, v_shape.zw - past, u, side, edge, half_width * across > 0.5);
+#if PITCHED
+    // A line with both sides in the pixel has no angle.
+    float meets = half_width * across > 0.5 ? dot(seen_u, normalize(seen_normal(side, 0.0))) : 0.0;
+#else
+    const float meets = 0.0;
+#endif
+    area = cut_caps(area, (v_shape.zw - past) * scale, edge, meets);
 #endif
 #if DASH
     area *= dashed && !round_dashes ? dashes_cover(place, edge, scale) : 1.0;

@@ -144,7 +144,23 @@ static camber_status add_line(reader *self, size_t count) {
     return status == CAMBER_OK ? camber_features_add_polyline(self->features, self->points, count) : status;
 }
 
-static camber_status read_line(reader *self, const json_t *json, bool ring) {
+/* An outline goes clockwise as seen, so that what lies to its right is inside, and that of a hole the other way. */
+static void wind(double *points, size_t count, bool hole) {
+    double area = 0.0;
+    for (size_t i = 0; i + 1 < count; i++)
+        area += (points[2 * i] - points[0]) * (points[2 * i + 3] - points[1]) -
+                (points[2 * i + 1] - points[1]) * (points[2 * i + 2] - points[0]);
+    if ((area < 0.0) == hole)
+        return;
+    for (size_t i = 0; i < count / 2; i++)
+        for (size_t axis = 0; axis < 2; axis++) {
+            double *a = points + 2 * i + axis, *b = points + 2 * (count - 1 - i) + axis, number = *a;
+            *a = *b;
+            *b = number;
+        }
+}
+
+static camber_status read_line(reader *self, const json_t *json, bool ring, bool hole) {
     const size_t announced = json_array_size(json);
     size_t count = 0;
     if (!camber_grow(self->context, &self->points, &self->capacity, announced + 1, 2 * sizeof *self->points))
@@ -164,20 +180,22 @@ static camber_status read_line(reader *self, const json_t *json, bool ring) {
         spoil(self, "a ring that is not closed");
         memcpy(self->points + 2 * count++, self->points, 2 * sizeof *self->points);
     }
+    if (ring && self->features->style->directed)
+        wind(self->points, count, hole);
     return add_line(self, count);
 }
 
-/* depth: of lines in the coordinates. */
-static camber_status read_lines(reader *self, const json_t *json, int depth, bool ring) {
+/* depth: of lines in the coordinates. hole: of a polygon the lines are not the first. */
+static camber_status read_lines(reader *self, const json_t *json, int depth, bool ring, bool hole) {
     if (!json_is_array(json)) {
         spoil(self, "coordinates that are no array");
         return CAMBER_OK;
     }
     if (depth == 0)
-        return read_line(self, json, ring);
+        return read_line(self, json, ring, hole);
     camber_status status = CAMBER_OK;
     for (size_t i = 0; i < json_array_size(json) && status == CAMBER_OK; i++)
-        status = read_lines(self, json_array_get(json, i), depth - 1, ring);
+        status = read_lines(self, json_array_get(json, i), depth - 1, ring, depth == 1 && i > 0);
     return status;
 }
 
@@ -207,7 +225,8 @@ static camber_status read_geometry(reader *self, const json_t *geometry, camber_
     self->left_out |= types[i].depth < 0;
     if (types[i].depth < 0 || types[i].kind != kind)
         return CAMBER_OK;
-    return read_lines(self, json_object_get(geometry, "coordinates"), types[i].depth, kind == CAMBER_GEOMETRY_POLYGON);
+    return read_lines(self, json_object_get(geometry, "coordinates"), types[i].depth, kind == CAMBER_GEOMETRY_POLYGON,
+                      false);
 }
 
 /* Whether a geometry has lines, or polygons, at all. */

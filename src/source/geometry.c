@@ -185,7 +185,25 @@ static bool fetch(camber_parts *parts, OGRGeometryH geometry, size_t count) {
     return true;
 }
 
-static camber_status add_line(camber_parts *parts, OGRGeometryH geometry) {
+/* Whether the line fetched, which is closed, goes clockwise as seen. North is up in what was fetched. */
+static bool goes_clockwise(const camber_parts *parts, size_t count) {
+    const double *x = parts->raw, *y = parts->raw + count;
+    double area = 0.0;
+    for (size_t i = 0; i + 1 < count; i++)
+        area += (x[i] - x[0]) * (y[i + 1] - y[0]) - (x[i + 1] - x[0]) * (y[i] - y[0]);
+    return (area < 0.0) != parts->latitude_first;
+}
+
+static void turn_back(double *numbers, size_t count) {
+    for (size_t i = 0; i < count / 2; i++) {
+        const double number = numbers[i];
+        numbers[i] = numbers[count - 1 - i];
+        numbers[count - 1 - i] = number;
+    }
+}
+
+/* clockwise: which way a ring is to go as seen; below 0: as it does. */
+static camber_status add_line(camber_parts *parts, OGRGeometryH geometry, int clockwise) {
     const int points = OGR_G_GetPointCount(geometry);
     if (points <= 0) {
         parts->left_out = true;
@@ -194,6 +212,10 @@ static camber_status add_line(camber_parts *parts, OGRGeometryH geometry) {
     const size_t count = (size_t)points;
     if (!fetch(parts, geometry, count))
         return CAMBER_ERROR_MEMORY;
+    if (clockwise >= 0 && goes_clockwise(parts, count) != (clockwise > 0)) {
+        turn_back(parts->raw, count);
+        turn_back(parts->raw + count, count);
+    }
     parts->raw_points += count;
     line_state line = {0};
     for (size_t i = 0; i < count; i++) {
@@ -231,7 +253,7 @@ static camber_status collect_members(camber_parts *parts, OGRGeometryH geometry,
 static camber_status collect_rings(camber_parts *parts, OGRGeometryH polygon) {
     const int count = OGR_G_GetGeometryCount(polygon);
     for (int i = 0; i < count; i++) {
-        const camber_status status = add_line(parts, OGR_G_GetGeometryRef(polygon, i));
+        const camber_status status = add_line(parts, OGR_G_GetGeometryRef(polygon, i), parts->directed ? i == 0 : -1);
         if (status != CAMBER_OK)
             return status;
     }
@@ -260,7 +282,7 @@ static camber_status collect(camber_parts *parts, OGRGeometryH geometry, camber_
     if (OGR_GT_IsNonLinear(type))
         return collect_curve(parts, geometry, kind, depth);
     switch (type) {
-    case wkbLineString: return kind == CAMBER_GEOMETRY_LINE ? add_line(parts, geometry) : CAMBER_OK;
+    case wkbLineString: return kind == CAMBER_GEOMETRY_LINE ? add_line(parts, geometry, -1) : CAMBER_OK;
     case wkbPolygon:
     case wkbTriangle:
         if (kind == CAMBER_GEOMETRY_POLYGON)

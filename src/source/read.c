@@ -295,7 +295,8 @@ static camber_status read_dataset(reader *self, bool *unsorted) {
             self->dataset.handle,
             GDALDatasetExecuteSQL(self->dataset.handle, CPLSPrintf("SET interest_layers = %s", name), NULL, NULL));
     }
-    self->parts = (camber_parts){.context = context, .whole = self->tiles, .wants_polygons = style->wants_polygons};
+    self->parts = (camber_parts){
+        .context = context, .whole = self->tiles, .wants_polygons = style->wants_polygons, .directed = style->directed};
     status = read_layers(self, layers, count, unsorted);
     if (status == CAMBER_OK && self->tiles)
         status = camber_tiles_finish(self->tiles, self->features);

@@ -25,6 +25,7 @@ typedef struct camber_parts {
     /* Tiles: coordinates are left where they are, beyond the world's edges too; clipping comes later. */
     bool whole;
     bool wants_polygons;
+    bool directed; /* outlines go clockwise as seen, those of holes the other way */
 
     /* The last feature's polylines: part i ends before point ends[i]. */
     double *points;

@@ -6,6 +6,7 @@
 enum { STAGES = 3, METHODS = 3, WIDTHS = 2 };
 
 static const float widths_px[WIDTHS] = {2, 8};
+static const float OFFSET_PX = 6;
 
 /* Bytes a point that a stage reads and writes, by the heads of kernels/<stage>.cl, but for the mesh that emit writes;
  * what there is once a block is left out. */
@@ -27,7 +28,21 @@ typedef struct trial {
     camber_mesh_info info;
     double copied_gb_s; /* by memcpy */
     bench_series series[STAGES], all;
+    bench_series offset; /* of lines beside these, before the stages */
 } trial;
+
+static camber_status measure_offset(trial *t) {
+    const camber_stroke stroke = {.width_px = t->width_px, .offset_px = OFFSET_PX};
+    const camber_tessellation_desc desc = {.strokes = &stroke, .stroke_count = 1, .method = t->method};
+    camber_status status = CAMBER_OK;
+    t->offset.count = 0;
+    for (size_t run = 0; run < t->b->warm_ups + t->b->runs && status == CAMBER_OK; run++) {
+        status = camber_tessellate(t->b->mesh, t->polylines, &desc);
+        if (status == CAMBER_OK && run >= t->b->warm_ups)
+            bench_series_add(&t->offset, camber_mesh_get_info(t->b->mesh).offset_ms);
+    }
+    return status;
+}
 
 static camber_status tessellate(trial *t) {
     const camber_stroke stroke = {.width_px = t->width_px};
@@ -72,6 +87,12 @@ static void report(trial *t, json_t *result) {
     for (int i = 0; i < STAGES; i++)
         add_stage(row, stages[i].name, bench_series_median(t->series + i), points, moved[i], t->copied_gb_s);
     add_stage(row, "all", ms, points, sum, t->copied_gb_s);
+    if (t->offset.count) {
+        const double offset_ms = bench_series_median(&t->offset);
+        json_object_set_new(row, "offset_m_points_s", json_real(offset_ms > 0 ? points / offset_ms / 1e3 : 0));
+        bench_result_add_figure(result, &(bench_figure){t->scene->key, "offset of 6 px, 2 px wide", "kernels",
+                                                        offset_ms > 0 ? ms / offset_ms : 0, false});
+    }
     char what[64];
     snprintf(what, sizeof what, "bytes a segment, %s, %g px", method, (double)t->width_px);
     bench_result_add_figure(result, &(bench_figure){t->scene->key, what, NULL, mesh / segments, true});
@@ -96,6 +117,9 @@ static camber_status measure_scene(bench *b, const bench_scene *scene, void *cop
         for (int k = 0; k < STAGES; k++)
             t.series[k].count = 0;
         status = tessellate(&t);
+        t.offset.count = 0;
+        if (status == CAMBER_OK && i == 0)
+            status = measure_offset(&t);
         if (status == CAMBER_OK)
             report(&t, result);
     }
@@ -131,6 +155,9 @@ static void print(const json_t *result, FILE *to) {
         }
         fprintf(to, "\n");
     }
+    fprintf(to, "\nOffset of 6 px, M points a second:\n");
+    json_array_foreach(bench_result_rows(result), i, row) if (json_object_get(row, "offset_m_points_s"))
+        fprintf(to, "%-12s %6.1f\n", bench_text(row, "scene"), bench_number(row, "offset_m_points_s"));
 }
 
 const bench_section bench_section_stages = {"stages", measure, print};

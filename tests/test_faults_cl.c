@@ -60,6 +60,7 @@ static void open_set(stage_set *s, bool parts, camber_method method) {
     s->polylines = make_lines(s->context, 3, 60);
     s->others = make_lines(s->context, 4, 30);
     scene_strokes(s->strokes);
+    s->strokes[1].offset_px = 6;
     s->desc = (camber_tessellation_desc){s->strokes, SCENE_ROWS, method, 0, false};
     camber_mesh *mesh = NULL;
     assert_int_equal(camber_mesh_create(s->device, NULL, &mesh), CAMBER_OK);

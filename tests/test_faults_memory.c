@@ -22,7 +22,7 @@ typedef struct desk {
 
 static const camber_stroke STROKES[ROWS] = {{9, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0},
                                             {6, CAMBER_JOIN_MITER, CAMBER_CAP_ROUND, 0},
-                                            {4, CAMBER_JOIN_BEVEL, CAMBER_CAP_SQUARE, 0}};
+                                            {4, CAMBER_JOIN_BEVEL, CAMBER_CAP_SQUARE, .offset_px = 5}};
 static const camber_tessellation_desc STRIPS = {STROKES, ROWS, CAMBER_METHOD_STRIP, 0, false};
 
 static void assert_same_mesh(const camber_mesh_data *a, const camber_mesh_data *b) {

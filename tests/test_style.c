@@ -430,6 +430,8 @@ static void test_wrong(void **state) {
         {LINE("\"layout\": 3"), "/layers/0/layout: expected an object, found a number"},
         {LINE("\"layout\": {\"line-cap\": \"pointed\"}"), "/layers/0/layout/line-cap: \"pointed\" is no line-cap"},
         {LINE("\"paint\": {\"line-dasharray\": [-1, 2]}"), "/layers/0/paint/line-dasharray: -1 is out of range"},
+        {LINE("\"paint\": {\"line-width\": [\"/\", 0, 0]}"), "/layers/0/paint/line-width: the number is none (NaN)"},
+        {LINE("\"paint\": {\"line-width\": [\"/\", 1, 0]}"), "/layers/0/paint/line-width: the number is infinite"},
         {LINE("\"paint\": {\"line-gap-width\": -1}"), "/layers/0/paint/line-gap-width: -1 is out of range"},
         {LINE("\"paint\": {\"line-translate\": [1]}"), "/layers/0/paint/line-translate: expected"},
         {LINE("\"paint\": {\"line-translate\": [\"get\", \"x\"]}"),
@@ -533,6 +535,24 @@ static void test_many(void **state) {
     const camber_value value = {.type = CAMBER_VALUE_NUMBER, .number = 654321.25};
     const camber_feature_view view = {.values = &value, .geometry_type = "LineString"};
     assert_true(fabs(camber_style_layer_paint(f.style->layers, 10.0, &view).width - 1308642.5) < 1e-6);
+    free(t.bytes);
+    teardown(&f);
+    /* More dashes than are drawn are told of, and so are numbers that are held to their range, some of them. */
+    t = (text){0};
+    setup(&f);
+    append(&t, "{\"version\": 8, \"layers\": [{\"id\": \"a\", \"type\": \"line\", \"paint\": {\"line-width\": "
+               "[\"step\", [\"zoom\"], 1");
+    for (int i = 0; i < MANY; i++) {
+        snprintf(one, sizeof one, ",%d,-1", i);
+        append(&t, one);
+    }
+    append(&t, "], \"line-dasharray\": [1");
+    for (int i = 0; i < MANY; i++)
+        append(&t, ",1");
+    append(&t, "]}}]}");
+    assert_int_equal(parse(&f, t.bytes), CAMBER_OK);
+    assert_int_equal(f.warning_count, 33);
+    assert_non_null(strstr(f.warning, "of 1000001 lengths the first 128 are drawn"));
     free(t.bytes);
     teardown(&f);
 }

@@ -95,6 +95,9 @@ static const char *write_range(const camber_property *property, char range[RANGE
 
 static bool check_range(camber_compiler *c, const camber_property *property, const camber_value *value) {
     const bool ranged = property->low < 0.0 || property->high > 0.0;
+    if (value->type == CAMBER_VALUE_NUMBER && !isfinite(value->number))
+        return camber_compiler_fail(c, "the number is %s; correct what makes it",
+                                    isnan(value->number) ? "none (NaN)" : "infinite");
     if (!ranged || value->type != CAMBER_VALUE_NUMBER ||
         (value->number >= property->low && value->number <= property->high))
         return true;
@@ -105,6 +108,9 @@ static bool check_range(camber_compiler *c, const camber_property *property, con
 bool camber_property_check(camber_compiler *c, const camber_property *property, const camber_value *value) {
     if (value->type == CAMBER_VALUE_STRING && property->values)
         return check_name(c, property, value->string);
+    if (value->type == CAMBER_VALUE_ARRAY && property->length == 0 && value->count > CAMBER_DASH_LENGTHS_MAX)
+        camber_compiler_warn(c, "of %u lengths the first %d are drawn; write fewer", value->count,
+                             CAMBER_DASH_LENGTHS_MAX);
     for (uint32_t i = 0; value->type == CAMBER_VALUE_ARRAY && i < value->count; i++)
         if (!check_range(c, property, &value->items[i]))
             return false;

@@ -122,10 +122,32 @@ static void use_expression(fuzz_run *run, const uint8_t *bytes, size_t size) {
     free(answer.bytes);
 }
 
+/* What is wrong, each with its place; what has no errors parses. */
+static void use_report(fuzz_run *run, const uint8_t *bytes, size_t size, bool *right) {
+    camber_style_report *report = NULL;
+    *right = false;
+    if (!fuzz_done(run, camber_style_check(run->context, (const char *)bytes, size, "fuzzed", &report)))
+        return;
+    size_t errors = 0;
+    for (size_t i = 0; i < report->finding_count; i++) {
+        const camber_style_finding *finding = report->findings + i;
+        REQUIRE(finding->pointer[0] == 0 || finding->pointer[0] == '/');
+        REQUIRE(finding->message[0]);
+        errors += finding->error;
+    }
+    REQUIRE(errors == report->error_count);
+    *right = errors == 0;
+    camber_style_report_destroy(report);
+}
+
 static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
     camber_style *style = NULL;
+    bool right;
     use_expression(run, bytes, size);
-    if (!fuzz_done(run, camber_style_parse(run->context, (const char *)bytes, size, "fuzzed", &style)))
+    use_report(run, bytes, size, &right);
+    const camber_status status = camber_style_parse(run->context, (const char *)bytes, size, "fuzzed", &style);
+    REQUIRE(!right || status != CAMBER_ERROR_INPUT);
+    if (!fuzz_done(run, status))
         return;
     use_style(run, style);
     camber_style_destroy(style);

@@ -6,6 +6,15 @@
 #define CELLS (CAMBER_TILE_CELLS * CAMBER_TILE_CELLS)
 #define LEVELS 3 /* the picture, a group, a layer */
 
+/* A list's segments lie anywhere: where the compiler is known, those to come are asked for ahead. */
+#if defined(POCL_DEVICE_ADDRESS_BITS) && CAMBER_ITEM == CAMBER_BLOCK
+#define AHEAD 6
+#define ASK_FOR(address) __builtin_prefetch((const void *)(size_t)(address))
+#else
+#define AHEAD 0
+#define ASK_FOR(address) ((void)0)
+#endif
+
 typedef struct camber_sheet {
     float left, top; /* of the first tile in the picture, px */
     camber_u32 columns, stride;
@@ -208,13 +217,20 @@ static inline uint16 level_of(float16 value) {
     return convert_uint16(least < 255.0f ? least : (float16)(255.0f));
 }
 
+static inline uint16 pixels_of(private const float16 *r, private const float16 *g, private const float16 *b,
+                               float16 through, camber_sheet s) {
+    return level_of(*r + through * s.r) | level_of(*g + through * s.g) << 8 | level_of(*b + through * s.b) << 16 |
+           level_of(1.0f - through + through * s.a) << 24;
+}
+
 static inline void write_cells(private const canvas *c, global camber_u32 *pixels, camber_sheet s, int first,
                                int last) {
+    const float16 none = (float16)(0.0f);
+    const uint16 bare = pixels_of(&none, &none, &none, (float16)(1.0f), s);
     for (int i = CAMBER_TILE_CELLS * first; i < CAMBER_TILE_CELLS * (last + 1); i++) {
-        const float16 through = c->level[0][3][i];
-        const uint16 rgba =
-            level_of(c->level[0][0][i] + through * s.r) | level_of(c->level[0][1][i] + through * s.g) << 8 |
-            level_of(c->level[0][2][i] + through * s.b) << 16 | level_of(1.0f - through + through * s.a) << 24;
+        uint16 rgba = bare;
+        if (c->touched[0] >> i & 1ul)
+            rgba = pixels_of(c->level[0][0] + i, c->level[0][1] + i, c->level[0][2] + i, c->level[0][3][i], s);
         global camber_u32 *at = pixels + (size_t)(i / CAMBER_TILE_CELLS * CAMBER_CELL_PX) * s.stride +
                                 i % CAMBER_TILE_CELLS * CAMBER_CELL_PX;
         vstore4(rgba.s0123, 0, at);
@@ -240,6 +256,7 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void cover(
     c.now = inks[0];
     for (camber_u32 k = starts[tile + 1]; k-- > starts[tile];) {
         global const float *shape = shapes + (size_t)CAMBER_SHAPE_WORDS * lists[k];
+        ASK_FOR(shapes + (size_t)CAMBER_SHAPE_WORDS * lists[k > AHEAD ? k - AHEAD : 0]);
         const camber_u32 ink = as_uint(shape[15]);
         if (ink != current) {
             change_ink(&c, inks[ink]);

@@ -19,6 +19,7 @@ typedef struct camber_sheet {
     float left, top; /* of the first tile in the picture, px */
     camber_u32 columns, stride;
     float r, g, b, a; /* background, premultiplied */
+    camber_u32 above; /* rows of pixels before these */
 } camber_sheet;
 
 typedef struct canvas {
@@ -168,7 +169,8 @@ constant float DOWN[16] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
 /* The cells, of rows first to last, that a segment's box meets. */
 static inline void draw_segment(private canvas *c, global const float *shape, float left, float top, int first,
                                 int last) {
-    const camber_pen p = camber_pen_of(shape, as_uint(shape[14]));
+    camber_pen p;
+    camber_pen_of(shape, as_uint(shape[14]), &p);
     const float reach = shape[11], a_cell = 1.0f / CAMBER_CELL_PX, side = (float)(CAMBER_TILE_CELLS - 1);
     const float x0 = ((p.ax < p.bx ? p.ax : p.bx) - reach - left + 0.5f) * a_cell;
     const float x1 = ((p.ax < p.bx ? p.bx : p.ax) + reach - left - 0.5f) * a_cell;
@@ -271,5 +273,6 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void cover(
         close_level(&c, 2, c.now.layer_opacity);
     if (c.is_open[1])
         close_level(&c, 1, c.now.group_opacity);
-    write_cells(&c, pixels + (size_t)row * CAMBER_TILE_PX * s.stride + (size_t)column * CAMBER_TILE_PX, s, first, last);
+    write_cells(&c, pixels + ((size_t)row * CAMBER_TILE_PX + s.above) * s.stride + (size_t)column * CAMBER_TILE_PX, s,
+                first, last);
 }

@@ -207,64 +207,63 @@ CAMBER_FN float camber_cap_tip(camber_u32 end, float half_width) {
     return (end & 31u) == 0u ? 0.5f + 0.785398f * half_width + past : CAMBER_NEVER_PX;
 }
 
-CAMBER_FN camber_pen camber_pen_of(CAMBER_GLOBAL const float *shape, camber_u32 flags) {
-    camber_pen p;
-    p.ax = shape[0];
-    p.ay = shape[1];
-    p.bx = shape[2];
-    p.by = shape[3];
-    p.ux = shape[4];
-    p.uy = shape[5];
-    p.nax = shape[6];
-    p.nay = shape[7];
-    p.nbx = shape[8];
-    p.nby = shape[9];
-    p.half_width = shape[10];
-    p.slope = shape[12];
-    p.curve = shape[13];
-    p.length = (p.bx - p.ax) * p.ux + (p.by - p.ay) * p.uy;
-    const float nx = CAMBER_FABS(p.ux), ny = CAMBER_FABS(p.uy), h = p.half_width;
+/* Through a pointer: oclgrind does not know what compilers make of large results where a call is inlined. */
+CAMBER_FN void camber_pen_of(CAMBER_GLOBAL const float *shape, camber_u32 flags, camber_pen *p) {
+    p->ax = shape[0];
+    p->ay = shape[1];
+    p->bx = shape[2];
+    p->by = shape[3];
+    p->ux = shape[4];
+    p->uy = shape[5];
+    p->nax = shape[6];
+    p->nay = shape[7];
+    p->nbx = shape[8];
+    p->nby = shape[9];
+    p->half_width = shape[10];
+    p->slope = shape[12];
+    p->curve = shape[13];
+    p->length = (p->bx - p->ax) * p->ux + (p->by - p->ay) * p->uy;
+    const float nx = CAMBER_FABS(p->ux), ny = CAMBER_FABS(p->uy), h = p->half_width;
     const camber_u32 linear = flags & CAMBER_SHAPE_LINEAR;
-    p.extent = linear ? 0.5f : 0.5f * (nx + ny);
-    p.corner = linear ? 0.0f : nx < ny ? nx : ny;
-    p.ca = p.nax * p.ux + p.nay * p.uy;
-    p.sa = p.nax * p.uy - p.nay * p.ux;
-    p.cb = p.nbx * p.ux + p.nby * p.uy;
-    p.sb = p.nby * p.ux - p.nbx * p.uy;
+    p->extent = linear ? 0.5f : 0.5f * (nx + ny);
+    p->corner = linear ? 0.0f : nx < ny ? nx : ny;
+    p->ca = p->nax * p->ux + p->nay * p->uy;
+    p->sa = p->nax * p->uy - p->nay * p->ux;
+    p->cb = p->nbx * p->ux + p->nby * p->uy;
+    p->sb = p->nby * p->ux - p->nbx * p->uy;
     const camber_u32 end_a = flags & 0x1fffu, end_b = flags >> CAMBER_SHAPE_END_BITS & 0x1fffu;
-    p.end_a = end_a & 7u;
-    p.end_b = end_b & 7u;
-    p.flat_a = p.end_a == 1u ? 0.0f : p.end_a == 2u ? h : CAMBER_NEVER_PX;
-    p.flat_b = p.end_b == 1u ? 0.0f : p.end_b == 2u ? h : CAMBER_NEVER_PX;
-    p.round_a = p.end_a == 0u || p.end_a == 5u ? 0.0f : CAMBER_NEVER_PX;
-    p.round_b = p.end_b == 0u || p.end_b == 5u ? 0.0f : CAMBER_NEVER_PX;
-    p.tip_a = camber_cap_tip(end_a, h);
-    p.tip_b = camber_cap_tip(end_b, h);
-    p.own_a = camber_own_side(end_a, p.ca, p.sa, end_a >> 12, h);
-    p.own_b = camber_own_side(end_b, p.cb, p.sb, end_b >> 12, h);
-    p.thin = h < p.extent;
-    p.tips = h < 1.85f && ((end_a & 31u) == 0u || (end_b & 31u) == 0u);
-    p.flat = p.flat_a < CAMBER_NEVER_PX || p.flat_b < CAMBER_NEVER_PX;
-    p.bends = CAMBER_FABS(p.sa) + CAMBER_FABS(p.sb) > 1e-3f;
-    p.sharp = p.end_a == 3u || p.end_a == 4u || p.end_a > 5u || p.end_b == 3u || p.end_b == 4u || p.end_b > 5u;
+    p->end_a = end_a & 7u;
+    p->end_b = end_b & 7u;
+    p->flat_a = p->end_a == 1u ? 0.0f : p->end_a == 2u ? h : CAMBER_NEVER_PX;
+    p->flat_b = p->end_b == 1u ? 0.0f : p->end_b == 2u ? h : CAMBER_NEVER_PX;
+    p->round_a = p->end_a == 0u || p->end_a == 5u ? 0.0f : CAMBER_NEVER_PX;
+    p->round_b = p->end_b == 0u || p->end_b == 5u ? 0.0f : CAMBER_NEVER_PX;
+    p->tip_a = camber_cap_tip(end_a, h);
+    p->tip_b = camber_cap_tip(end_b, h);
+    p->own_a = camber_own_side(end_a, p->ca, p->sa, end_a >> 12, h);
+    p->own_b = camber_own_side(end_b, p->cb, p->sb, end_b >> 12, h);
+    p->thin = h < p->extent;
+    p->tips = h < 1.85f && ((end_a & 31u) == 0u || (end_b & 31u) == 0u);
+    p->flat = p->flat_a < CAMBER_NEVER_PX || p->flat_b < CAMBER_NEVER_PX;
+    p->bends = CAMBER_FABS(p->sa) + CAMBER_FABS(p->sb) > 1e-3f;
+    p->sharp = p->end_a == 3u || p->end_a == 4u || p->end_a > 5u || p->end_b == 3u || p->end_b == 4u || p->end_b > 5u;
     const camber_u32 tight_a = (end_a >> 3 & 3u) == CAMBER_CLASS_TIGHT,
                      tight_b = (end_b >> 3 & 3u) == CAMBER_CLASS_TIGHT;
-    p.tight = tight_a | tight_b;
-    p.slope_a = p.slope_b = 0.0f;
-    p.from_a = p.from_b = CAMBER_NEVER_PX;
+    p->tight = tight_a | tight_b;
+    p->slope_a = p->slope_b = 0.0f;
+    p->from_a = p->from_b = CAMBER_NEVER_PX;
     /* From the inner vertex, limit px before the end, to the outer one on the bisector. */
-    const float reach = h + CAMBER_PAD_PX, side_a = p.sa > 0.0f ? 1.0f : -1.0f, side_b = p.sb > 0.0f ? 1.0f : -1.0f;
+    const float reach = h + CAMBER_PAD_PX, side_a = p->sa > 0.0f ? 1.0f : -1.0f, side_b = p->sb > 0.0f ? 1.0f : -1.0f;
     if (tight_a) {
-        const float outer = side_a * p.sa / p.ca, limit = (float)(end_a >> 5 & 127u) * (CAMBER_PAD_PX / 127.0f);
-        p.slope_a = side_a * (outer * reach + limit) / (2.0f * reach);
-        p.from_a = 0.5f * (outer * reach - limit);
+        const float outer = side_a * p->sa / p->ca, limit = (float)(end_a >> 5 & 127u) * (CAMBER_PAD_PX / 127.0f);
+        p->slope_a = side_a * (outer * reach + limit) / (2.0f * reach);
+        p->from_a = 0.5f * (outer * reach - limit);
     }
     if (tight_b) {
-        const float outer = side_b * p.sb / p.cb, limit = (float)(end_b >> 5 & 127u) * (CAMBER_PAD_PX / 127.0f);
-        p.slope_b = side_b * (outer * reach + limit) / (2.0f * reach);
-        p.from_b = 0.5f * (outer * reach - limit);
+        const float outer = side_b * p->sb / p->cb, limit = (float)(end_b >> 5 & 127u) * (CAMBER_PAD_PX / 127.0f);
+        p->slope_b = side_b * (outer * reach + limit) / (2.0f * reach);
+        p->from_b = 0.5f * (outer * reach - limit);
     }
-    return p;
 }
 
 /* The area of a pixel whose centre lies s px inside an edge. */

@@ -205,7 +205,9 @@ grep -q 'libOpenCL' "$tmp/loaded" || fail "says nothing of what it loads"
 ! grep -Eq 'lib(EGL|OSMesa|GL|GLESv2)\.so' "$tmp/loaded" || fail "GL is loaded for what OpenCL draws"
 expect 2 "pitch in OpenCL" render "$osm" -o pitch.png --size 64x64 --draw cl --center=-122,37 --zoom 15 --pitch 40
 says 'not drawn in OpenCL yet'
-rm -f cl.png
+expect 0 "in one thread" render "$osm" -o one.png --size 300x200 --draw cl --threads 1
+cmp -s one.png cl.png || fail "other bytes than with all threads"
+rm -f cl.png one.png
 expect 0 "few draw calls" render "$osm" -o calls.png --size 512x512 --json
 has "$tmp/stdout" '"draw_calls": [1-4],'
 rm -f calls.png

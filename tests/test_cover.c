@@ -192,6 +192,32 @@ static void test_areas(void **state) {
     scene_free(&d.lines);
 }
 
+/* Where lists and pixels may take little, rows of tiles are drawn by halves. */
+static void test_little_memory(void **state) {
+    const easel *e = *state;
+    drawing d = begin_drawing();
+    uint64_t seed = 8;
+    for (int i = 0; i < 60; i++) {
+        scene_walk(&d.lines, &seed, 12, (const double[]){20, 90}, 1);
+        scene_end(&d.lines, i % 2 ? 8 : (size_t)i % SCENE_ROWS); /* every other one very wide */
+    }
+    picture whole = draw_with(e, e->cl, &d, 3, CAMBER_METHOD_STRIP);
+    static const uint64_t largest[] = {400 * 1024, 200 * 1024, 160 * 1024};
+    for (size_t i = 0; i < sizeof largest / sizeof *largest; i++) {
+        easel small = {.s = {.context = e->s.context}};
+        const camber_device_desc desc = {.largest_buffer_bytes = largest[i], .memory_bytes = 1 << (19 - i)};
+        assert_int_equal(camber_device_create(e->s.context, &desc, NULL, &small.s.device), CAMBER_OK);
+        assert_int_equal(camber_renderer_create(small.s.device, NULL, NULL, &small.cl), CAMBER_OK);
+        picture p = draw_with(&small, small.cl, &d, 3, CAMBER_METHOD_STRIP);
+        picture_assert_same(&whole, &p);
+        picture_free(&p);
+        camber_renderer_destroy(small.cl);
+        camber_device_destroy(small.s.device);
+    }
+    picture_free(&whole);
+    scene_free(&d.lines);
+}
+
 static void test_steps(void **state) {
     const easel *e = *state;
     drawing d = begin_drawing();
@@ -295,8 +321,10 @@ int main(void) {
         return 77;
     }
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_twin),  cmocka_unit_test(test_gl),    cmocka_unit_test(test_areas),
-        cmocka_unit_test(test_steps), cmocka_unit_test(test_loads), cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_twin),          cmocka_unit_test(test_gl),
+        cmocka_unit_test(test_areas),         cmocka_unit_test(test_steps),
+        cmocka_unit_test(test_little_memory), cmocka_unit_test(test_loads),
+        cmocka_unit_test(test_refused),
     };
     const int failed = cmocka_run_group_tests(tests, set_up, tear_down);
     folder_remove(cache);

@@ -20,6 +20,8 @@ enum {
 /* Segments a chunk, at least; chunks, at most: each has a count of every tile. A tile with more segments than HEAVY is
  * drawn by as many work-items as it has rows of cells. */
 enum { CHUNK = 8192, CHUNKS_MAX = 64, HEAVY = 2048 };
+/* What lists may take: where they would take more, rows of tiles are drawn by halves. */
+static const uint64_t LISTS_BYTES = 256 * 1024 * 1024;
 
 enum { STAGE_SHAPE, STAGE_COUNT, STAGE_TOTAL, STAGE_FILL, STAGE_COVER, STAGES };
 static const char *const stage_names[STAGES] = {"shape", "count", "total", "fill", "cover"};
@@ -32,6 +34,8 @@ struct camber_cover {
     uint32_t *starts, *items; /* of the host */
     size_t start_capacity, item_capacity;
     camber_cover_area area; /* drawn last */
+    camber_cover_area band; /* of it: whole rows of tiles, as many as there is room for lists */
+    uint32_t columns;       /* tiles */
     size_t shape_count, tile_count;
     double ms[STAGES];
 };
@@ -47,6 +51,7 @@ typedef struct sheet {
     float left, top;
     uint32_t columns, stride;
     float background[4];
+    uint32_t above; /* rows of pixels before these */
 } sheet;
 
 camber_status camber_cover_create(camber_device *device, camber_cover **cover) {
@@ -143,13 +148,13 @@ static camber_status run(camber_cover *cover, int stage, const argument *argumen
     return code == CL_SUCCESS ? CAMBER_OK : camber_fail_stage(device, "clWaitForEvents", stage_names[stage], code);
 }
 
-static camber_status make_shapes(camber_cover *cover, const camber_cover_scene *scene, const camber_cover_area *area,
-                                 const camber_cover_piece *pieces, size_t piece_count) {
+static camber_status make_shapes(camber_cover *cover, const camber_cover_scene *scene, const camber_cover_piece *pieces,
+                                 size_t piece_count) {
     camber_status status = CAMBER_OK;
     for (size_t i = 0; i < piece_count && status == CAMBER_OK; i++) {
         camber_mesh *mesh = pieces[i].mesh;
         camber_mesh_part *part = mesh->parts + pieces[i].part;
-        const camber_shape_range range = camber_cover_range(scene, pieces + i, area);
+        const camber_shape_range range = camber_cover_range(scene, pieces + i, &cover->band);
         status = camber_part_use(mesh, part);
         if (status != CAMBER_OK)
             break;
@@ -165,14 +170,17 @@ static camber_status make_shapes(camber_cover *cover, const camber_cover_scene *
 }
 
 static chunks cut_chunks(const camber_cover *cover, uint32_t *chunk_count) {
-    const camber_cover_area *area = &cover->area;
-    const size_t wanted = (cover->shape_count + CHUNK - 1) / CHUNK, count = wanted < CHUNKS_MAX ? wanted : CHUNKS_MAX;
+    const camber_cover_area *area = &cover->band;
+    const size_t tiles = (cover->tile_count + 15) / 16 * 16,
+                 most = cover->device->info.largest_buffer_bytes / (4 * tiles);
+    const size_t wanted = (cover->shape_count + CHUNK - 1) / CHUNK, bound = most < CHUNKS_MAX ? most : CHUNKS_MAX;
+    const size_t count = wanted < bound || bound == 0 ? wanted : bound;
     const size_t a_chunk = count ? (cover->shape_count + count - 1) / count : 0;
     *chunk_count = (uint32_t)count;
     return (chunks){(uint32_t)cover->shape_count,
                     (uint32_t)a_chunk,
                     camber_cover_tiles(area->width),
-                    (uint32_t)((cover->tile_count + 15) / 16 * 16),
+                    (uint32_t)tiles,
                     (float)area->x,
                     (float)area->y};
 }
@@ -190,8 +198,15 @@ static camber_status count_tiles(camber_cover *cover, chunks c, uint32_t chunk_c
     return status;
 }
 
-/* The host's part of the scan: where each tile's list begins. */
-static camber_status start_lists(camber_cover *cover) {
+static uint64_t lists_limit(const camber_device *device) {
+    const uint64_t largest = device->info.largest_buffer_bytes, share = camber_device_share(device, 1);
+    const uint64_t least = share < LISTS_BYTES ? share : LISTS_BYTES;
+    return (largest < least ? largest : least) / 4;
+}
+
+/* The host's part of the scan: where each tile's list begins. *fits is false where they take too much for a band that
+ * can be halved. */
+static camber_status start_lists(camber_cover *cover, bool *fits) {
     const camber_device *device = cover->device;
     const size_t tiles = cover->tile_count;
     uint64_t sum = 0;
@@ -208,6 +223,9 @@ static camber_status start_lists(camber_cover *cover) {
     }
     cover->starts[tiles] = (uint32_t)sum;
     clEnqueueUnmapMemObject(device->queue, cover->buffers[BUFFER_TOTALS], totals, 0, NULL, NULL);
+    *fits = sum <= lists_limit(device) || cover->band.height <= CAMBER_TILE_PX;
+    if (!*fits)
+        return CAMBER_OK;
     if (sum > UINT32_MAX)
         return camber_fail(device->context, CAMBER_ERROR_LIMIT, "%llu segments in tiles; draw less at once",
                            (unsigned long long)sum);
@@ -250,14 +268,15 @@ static camber_status list_items(camber_cover *cover, size_t *heavy_count, size_t
 }
 
 static camber_status cover_tiles(camber_cover *cover, const camber_cover_scene *scene) {
-    const camber_cover_area *area = &cover->area;
-    const uint32_t columns = camber_cover_tiles(area->width), rows = camber_cover_tiles(area->height);
-    sheet s = {.left = (float)area->x, .top = (float)area->y, .columns = columns, .stride = columns * CAMBER_TILE_PX};
+    const camber_cover_area *band = &cover->band;
+    sheet s = {.left = (float)band->x,
+               .top = (float)band->y,
+               .columns = cover->columns,
+               .stride = cover->columns * CAMBER_TILE_PX,
+               .above = band->y - cover->area.y};
     size_t heavy = 0, items = 0;
     memcpy(s.background, scene->background, sizeof s.background);
     camber_status status = list_items(cover, &heavy, &items);
-    if (status == CAMBER_OK)
-        status = reserve(cover, BUFFER_PIXELS, 4 * (size_t)s.stride * rows * CAMBER_TILE_PX);
     const argument arguments[] = {BUFFER(BUFFER_SHAPES),
                                   BUFFER(BUFFER_STARTS),
                                   BUFFER(BUFFER_LISTS),
@@ -272,10 +291,9 @@ static camber_status cover_tiles(camber_cover *cover, const camber_cover_scene *
     return status;
 }
 
-static camber_status draw(camber_cover *cover, const camber_cover_scene *scene, const camber_cover_piece *pieces,
-                          size_t piece_count) {
+static camber_status prepare(camber_cover *cover, const camber_cover_scene *scene) {
     const size_t shapes = cover->shape_count ? cover->shape_count : 16;
-    uint32_t chunk_count;
+    const uint32_t rows = camber_cover_tiles(cover->area.height);
     camber_status status =
         put(cover, BUFFER_ROWS, scene->rows, scene->row_count * CAMBER_COVER_ROW_WORDS * sizeof *scene->rows);
     if (status == CAMBER_OK)
@@ -285,15 +303,46 @@ static camber_status draw(camber_cover *cover, const camber_cover_scene *scene, 
     if (status == CAMBER_OK)
         status = reserve(cover, BUFFER_BOXES, 4 * shapes);
     if (status == CAMBER_OK)
-        status = make_shapes(cover, scene, &cover->area, pieces, piece_count);
+        status = reserve(cover, BUFFER_PIXELS, 4 * (size_t)cover->columns * rows * CAMBER_TILE_PX * CAMBER_TILE_PX);
+    return status;
+}
+
+/* Draws the band, unless its lists do not fit. */
+static camber_status draw_band(camber_cover *cover, const camber_cover_scene *scene, const camber_cover_piece *pieces,
+                               size_t piece_count, bool *fits) {
+    uint32_t chunk_count;
+    cover->tile_count = (size_t)cover->columns * camber_cover_tiles(cover->band.height);
     const chunks c = cut_chunks(cover, &chunk_count);
+    camber_status status = make_shapes(cover, scene, pieces, piece_count);
     if (status == CAMBER_OK)
         status = count_tiles(cover, c, chunk_count);
     if (status == CAMBER_OK)
-        status = start_lists(cover);
-    if (status == CAMBER_OK)
-        status = fill_lists(cover, c, chunk_count);
+        status = start_lists(cover, fits);
+    if (status != CAMBER_OK || !*fits)
+        return status;
+    status = fill_lists(cover, c, chunk_count);
     return status == CAMBER_OK ? cover_tiles(cover, scene) : status;
+}
+
+/* Band after band; one whose lists do not fit is halved, and so are those after it. */
+static camber_status draw_bands(camber_cover *cover, const camber_cover_scene *scene, const camber_cover_piece *pieces,
+                                size_t piece_count) {
+    const camber_cover_area *area = &cover->area;
+    uint32_t rows = camber_cover_tiles(area->height);
+    camber_status status = CAMBER_OK;
+    cover->band = *area;
+    for (uint32_t done = 0; done < area->height && status == CAMBER_OK;) {
+        const uint32_t left = area->height - done, tallest = rows * CAMBER_TILE_PX;
+        bool fits = true;
+        cover->band.y = area->y + done;
+        cover->band.height = left < tallest ? left : tallest;
+        status = draw_band(cover, scene, pieces, piece_count, &fits);
+        if (fits)
+            done += cover->band.height;
+        else
+            rows = (camber_cover_tiles(cover->band.height) + 1) / 2;
+    }
+    return status;
 }
 
 camber_status camber_cover_draw(camber_cover *cover, const camber_cover_scene *scene, const camber_cover_area *area) {
@@ -302,12 +351,14 @@ camber_status camber_cover_draw(camber_cover *cover, const camber_cover_scene *s
     size_t piece_count = 0;
     memset(cover->ms, 0, sizeof cover->ms);
     cover->area = *area;
-    cover->tile_count = (size_t)camber_cover_tiles(area->width) * camber_cover_tiles(area->height);
+    cover->columns = camber_cover_tiles(area->width);
     camber_status status = cover->program ? CAMBER_OK : camber_device_cover_program(cover->device, &cover->program);
     if (status == CAMBER_OK)
         status = camber_cover_list_pieces(context, scene, &pieces, &piece_count, &cover->shape_count);
     if (status == CAMBER_OK)
-        status = draw(cover, scene, pieces, piece_count);
+        status = prepare(cover, scene);
+    if (status == CAMBER_OK)
+        status = draw_bands(cover, scene, pieces, piece_count);
     if (status == CAMBER_OK && cover->shape_count > 0)
         camber_program_save(cover->device, cover->program);
     camber_free(context, pieces);

@@ -274,7 +274,8 @@ static void draw_cell(canvas *c, const camber_pen *p, cell *one, float px, float
 }
 
 static void draw_segment(canvas *c, const float *shape, float left, float top) {
-    const camber_pen p = camber_pen_of(shape, as_word(shape[14]));
+    camber_pen p;
+    camber_pen_of(shape, as_word(shape[14]), &p);
     const float reach = shape[11], a_cell = 1.0f / CAMBER_CELL_PX, side = (float)(CAMBER_TILE_CELLS - 1);
     const float x0 = (CAMBER_LESS(p.ax, p.bx) - reach - left + 0.5f) * a_cell;
     const float x1 = (CAMBER_MORE(p.ax, p.bx) + reach - left - 0.5f) * a_cell;

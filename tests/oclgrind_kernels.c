@@ -278,13 +278,9 @@ static int check_device(camber_context *context, scene *s, const camber_device_d
             rotate(s, strokes, rotation);
             failures += check_methods(context, mesh, s, strokes, what);
             if (rotation == 0)
-<<<<<<< HEAD
                 failures += check_networks(context, mesh, s, strokes) + check_offsets(context, mesh, s, strokes);
-=======
-                failures += check_networks(context, mesh, s, strokes);
             if (rotation == 0 && desc->largest_buffer_bytes == 0)
                 failures += check_drawing(device, context, s, strokes);
->>>>>>> b0d807f (cover: lists are bounded: rows of tiles are drawn by halves; oclgrind, one thread)
         }
     }
     camber_mesh_destroy(mesh);

@@ -202,7 +202,7 @@ static void test_little_memory(void **state) {
         scene_end(&d.lines, i % 2 ? 8 : (size_t)i % SCENE_ROWS); /* every other one very wide */
     }
     picture whole = draw_with(e, e->cl, &d, 3, CAMBER_METHOD_STRIP);
-    static const uint64_t largest[] = {400 * 1024, 200 * 1024, 160 * 1024};
+    static const uint64_t largest[] = {2048 * 1024, 1024 * 1024, 512 * 1024};
     for (size_t i = 0; i < sizeof largest / sizeof *largest; i++) {
         easel small = {.s = {.context = e->s.context}};
         const camber_device_desc desc = {.largest_buffer_bytes = largest[i], .memory_bytes = 1 << (19 - i)};

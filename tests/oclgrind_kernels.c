@@ -137,7 +137,8 @@ static int check_methods(camber_context *context, camber_mesh *mesh, const scene
     return failures;
 }
 
-/* Cameras over the lines as a network: all of it, a cut and simplified part, one segment whose ends lie far outside,
+/* Cameras over the lines as a network: all of it, a cut and simplified part, also as a tilted
+ * camera sees it, one segment whose ends lie far outside,
  * and none. */
 static int check_networks(camber_context *context, camber_mesh *mesh, const scene *s, const camber_stroke *strokes) {
     static double points[2 * POINTS_MAX];
@@ -149,6 +150,14 @@ static int check_networks(camber_context *context, camber_mesh *mesh, const scen
         {.x = 400, .y = 400, .scale_px = 1, .width = 2000, .height = 1500},
         {.x = 150, .y = 120, .scale_px = 3, .bearing_deg = 30, .width = 100, .height = 60, .simplify_px = 2},
         {.x = 4, .y = 313.5, .scale_px = 3e4, .bearing_deg = 200, .width = 100, .height = 60},
+        {.x = 150,
+         .y = 120,
+         .scale_px = 3,
+         .bearing_deg = 30,
+         .width = 100,
+         .height = 60,
+         .simplify_px = 2,
+         .pitch_deg = 80},
         {.x = 1e6, .scale_px = 1, .width = 100, .height = 100}};
     for (size_t i = 0; i < s->point_count; i++) {
         points[2 * i] = (double)s->points[2 * i];

@@ -286,6 +286,11 @@ static void test_seen_tiles(void **state) {
     view.bearing_deg = 45;
     expect_ok(it, read_view(it, source, ROADS, &view));
     assert_int_equal(it->features->stats.joined_pieces, 2);
+    /* Tilted, it is wider where it sees farther. */
+    view = view_at(2.0, 1.5, 1.5, 2, 500, 500);
+    view.pitch_deg = 60;
+    expect_ok(it, read_view(it, source, ROADS, &view));
+    assert_int_equal(it->features->stats.joined_pieces, 2);
     /* Bounds leave the eastern tile out. */
     view = view_at(2.0, 1.5, 1.5, 2, 520, 512);
     expect_ok(it, read_view(it,

@@ -215,6 +215,31 @@ static void test_projected_box_holds_its_points(void **state) {
     assert_near(px.y1, high[1], 1e-9);
 }
 
+/* The plane that a tilted camera sees: narrower than the picture at the bottom, wider at the top, and no farther than
+ * 6.7 times the distance of the centre. */
+static void test_pitch(void **state) {
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        const double pitch_deg = i == 0 ? 0 : i == 1 ? 60 : 85, angle = pitch_deg * 3.14159265358979323846 / 180;
+        const camber_view view = make_view((camber_view_desc){
+            .kind = CAMBER_VIEW_CENTER, .zoom = 12.0, .pitch_deg = pitch_deg, .width = 600, .height = 400});
+        double corners[8];
+        camber_view_corners(&view, corners);
+        for (int k = 0; k < 4; k++) {
+            const double x = (corners[2 * k] - view.x) * view.scale_px,
+                         y = (corners[2 * k + 1] - view.y) * view.scale_px;
+            const double depth = 1 - y * sin(angle) / 600; /* the camera is 1.5 times the picture's height away */
+            const double right = k == 1 || k == 2 ? 300 : -300, below = k > 1 ? 200 : -200;
+            assert_near(x / depth, right, 1e-6);
+            if (i < 2 || k > 1) {
+                assert_near(y * cos(angle) / depth, below, 1e-6);
+            } else {
+                assert_near(depth, 1.01 / 0.15, 1e-6);
+            }
+        }
+    }
+}
+
 static void test_bad_arguments(void **state) {
     (void)state;
     const camber_view_desc bad[] = {
@@ -226,6 +251,9 @@ static void test_bad_arguments(void **state) {
         {.ratio = NAN},
         {.ratio = INFINITY},
         {.bearing_deg = NAN},
+        {.pitch_deg = NAN},
+        {.pitch_deg = -1.0},
+        {.pitch_deg = 85.1},
         {.kind = CAMBER_VIEW_CENTER, .zoom = -0.5},
         {.kind = CAMBER_VIEW_CENTER, .zoom = 24.1},
         {.kind = CAMBER_VIEW_CENTER, .zoom = NAN},
@@ -255,6 +283,7 @@ int main(void) {
         cmocka_unit_test(test_center),
         cmocka_unit_test(test_size_and_ratio),
         cmocka_unit_test(test_bearing),
+        cmocka_unit_test(test_pitch),
         cmocka_unit_test(test_bbox),
         cmocka_unit_test(test_frame_fills),
         cmocka_unit_test(test_precision_at_zoom_22),

@@ -5,6 +5,7 @@
  *     u8 method | open << 2 | coordinates' form << 3 | bare << 5 | wild offsets << 6 | wild camera << 7
  *     u8 strokes, u8 polylines, u8 entries (bare: each polyline once)
  *     camera: u16 width, u16 height; wild: five f64, else i16 x, y in 1/16, i8 zoom, i16 bearing in 1/64, u8 tolerance
+ *             (an odd bearing has a pitch)
  *     strokes: f32 width, f32 miter limit, u8 join | cap << 2
  *     polylines: u16 points (wild: the offset); entries: u8 polyline, u8 row, coordinate shift
  *     points: two coordinates (f64; i8; i16 / 16; f32), u8 importance (bare: none)
@@ -56,7 +57,9 @@ static camber_camera take_camera(fuzz_reader *from, bool wild) {
     camera.x = (int16_t)fuzz_take(from, 2) / 16.0;
     camera.y = (int16_t)fuzz_take(from, 2) / 16.0;
     camera.scale_px = exp2((int8_t)fuzz_take(from, 1) / 4.0);
-    camera.bearing_deg = (int16_t)fuzz_take(from, 2) / 64.0;
+    const unsigned bearing = (unsigned)fuzz_take(from, 2);
+    camera.bearing_deg = (int16_t)bearing / 64.0;
+    camera.pitch_deg = bearing & 1u ? (bearing >> 1 & 127u) * (85.0 / 127.0) : 0.0;
     camera.simplify_px = (double)fuzz_take(from, 1) / 16.0;
     return camera;
 }
@@ -142,8 +145,12 @@ static double margin_of(const input *from) {
 
 /* Pieces begin and end, points lie in the window, and those that follow each other differ. */
 static void check_slots(const camber_polylines *slots, const input *from) {
-    const float margin = (float)margin_of(from) * 1.0001f;
     const camber_camera *camera = &from->camera;
+    const double margin = margin_of(from) * 1.0001, wide = camera->width, high = camera->height;
+    /* A tilted camera sees 14 times as far as to its centre at most. */
+    const bool tilted = camera->pitch_deg > 0;
+    const double aside = tilted ? 14 * wide + 2 * margin * (2 + wide / high) : margin;
+    const double ahead = tilted ? 30 * high + 300 + margin : margin;
     bool open = false;
     for (size_t i = 0; i <= slots->polyline_count; i++)
         REQUIRE(slots->first_slots[i] <= slots->slot_count &&
@@ -151,8 +158,8 @@ static void check_slots(const camber_polylines *slots, const input *from) {
     for (size_t i = 1; i <= slots->slot_count; i++) {
         const uint32_t info = slots->info[i];
         REQUIRE(isfinite(slots->x[i]) && isfinite(slots->y[i]));
-        REQUIRE(slots->x[i] >= -margin && slots->x[i] <= (float)camera->width + margin);
-        REQUIRE(slots->y[i] >= -margin && slots->y[i] <= (float)camera->height + margin);
+        REQUIRE((double)slots->x[i] >= -aside && (double)slots->x[i] <= wide + aside);
+        REQUIRE((double)slots->y[i] >= -ahead && (double)slots->y[i] <= high + margin);
         if (!(info & CAMBER_POINT_REAL)) {
             REQUIRE(!open);
             continue;

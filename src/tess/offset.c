@@ -4,12 +4,19 @@
 
 #include "kernels/measure.h"
 
+#include <math.h>
+
 /* ---- Rows ---- */
+
+/* Less moves no level of a pixel, and makes segments that a float cannot square. */
+static bool shows(const camber_stroke *stroke) {
+    return fabsf(stroke->offset_px) >= 1e-3f;
+}
 
 bool camber_desc_has_offsets(const camber_tessellation_desc *desc) {
     bool has = false;
     for (size_t i = 0; i < desc->stroke_count; i++)
-        has |= desc->strokes[i].offset_px < 0.0f || desc->strokes[i].offset_px > 0.0f;
+        has |= shows(desc->strokes + i);
     return has;
 }
 
@@ -20,7 +27,7 @@ static camber_status make_shifts(camber_context *context, const camber_tessellat
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < desc->stroke_count; i++) {
         const camber_stroke *stroke = desc->strokes + i;
-        made[i] = (camber_shift){.offset_px = stroke->offset_px,
+        made[i] = (camber_shift){.offset_px = shows(stroke) ? stroke->offset_px : 0.0f,
                                  .miter_limit = stroke->miter_limit > 0.0f ? stroke->miter_limit : 2.0f,
                                  .join = (camber_u32)stroke->join};
     }

@@ -21,6 +21,11 @@ static void check_frame(camber_scene *scene) {
     check_color(frame.background);
     for (size_t i = 0; i < frame.pass_count; i++) {
         const camber_pass *pass = frame.passes + i;
+        if (!pass->mesh && pass->polyline_count == 0) { /* a fill */
+            REQUIRE(pass->paint_count == 0);
+            check_color(pass->fill.color);
+            continue;
+        }
         REQUIRE(pass->first_polyline + pass->polyline_count <= lines->polyline_count);
         REQUIRE(pass->polyline_count > 0 && pass->paint_count <= stroke_count);
         for (size_t row = 0; row < pass->paint_count; row++) {

@@ -476,6 +476,34 @@ static const camber_value *id_of(const fixture *it, size_t feature) {
     return &it->features->classes[it->features->feature_class[feature]].id;
 }
 
+/* Where a style asks for directions, outlines go clockwise as seen and holes the other way, however they are written.
+ */
+static void test_winding(void **state) {
+    fixture *it = *state;
+    static const char *const styles[] = {
+        LINES, "{\"id\": \"l\", \"type\": \"line\", \"source\": \"s\", \"paint\": {\"line-offset\": 3}}"};
+    static const char *const written[] = {
+        "[[[0, 0], [9, 0], [9, 9], [0, 9], [0, 0]], [[3, 3], [6, 3], [6, 6], [3, 3]]]",
+        "[[[0, 0], [0, 9], [9, 9], [9, 0], [0, 0]], [[3, 3], [6, 6], [6, 3], [3, 3]]]"};
+    for (size_t i = 0; i < 4; i++) {
+        char source[512];
+        const camber_view_desc view = {.kind = CAMBER_VIEW_FIT};
+        snprintf(source, sizeof source,
+                 "\"s\": {\"type\": \"geojson\", \"data\": {\"type\": \"Polygon\", \"coordinates\": %s}}",
+                 written[i % 2]);
+        expect_ok(it, read_view(it, source, styles[i / 2], &view));
+        assert_int_equal(it->features->polyline_count, 2);
+        for (size_t k = 0; k < 2; k++) {
+            const double *points = it->features->points;
+            double area = 0;
+            for (size_t n = it->features->offsets[k]; n + 1 < it->features->offsets[k + 1]; n++)
+                area += points[2 * n] * points[2 * n + 3] - points[2 * n + 1] * points[2 * n + 2];
+            const bool clockwise = i < 2 ? i == 1 : k == 0; /* y goes down */
+            assert_true((area > 0) == clockwise);
+        }
+    }
+}
+
 static void test_geojson(void **state) {
     fixture *it = *state;
     read_geojson(it, "");
@@ -602,10 +630,10 @@ static void test_fit(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        TEST(test_templates),    TEST(test_archives),        TEST(test_zooms),  TEST(test_seen_tiles),
-        TEST(test_antimeridian), TEST(test_damaged_tiles),   TEST(test_errors), TEST(test_endless_database),
-        TEST(test_geojson),      TEST(test_geojson_options), TEST(test_seams),  TEST(test_fit),
-        TEST(test_straight_on),
+        TEST(test_templates),    TEST(test_archives),      TEST(test_zooms),           TEST(test_seen_tiles),
+        TEST(test_antimeridian), TEST(test_damaged_tiles), TEST(test_errors),          TEST(test_endless_database),
+        TEST(test_geojson),      TEST(test_winding),       TEST(test_geojson_options), TEST(test_seams),
+        TEST(test_fit),          TEST(test_straight_on),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

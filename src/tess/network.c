@@ -422,6 +422,6 @@ camber_status camber_network_aim(const camber_network *network, const camber_cam
         .step_px = (float)scale,
     };
     if (camera->pitch_deg > 0.0)
-        aim_pitched(network, camera, reach, projection);
+        aim_pitched(network, camera, reach + looks, projection);
     return CAMBER_OK;
 }

@@ -428,7 +428,7 @@ int main(void) {
         cmocka_unit_test(test_order),    cmocka_unit_test(test_sprites), cmocka_unit_test(test_memory),
     };
     char cache[64];
-    folder f;
+    static folder f;
     if (!studio_begin(cache))
         return 77;
     make_folder(&f);

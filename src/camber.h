@@ -630,9 +630,9 @@ CAMBER_API camber_status camber_render(camber_renderer *renderer, const camber_f
  *     tessellate mesh n + 1, begin frame n + 1, end frame n
  *
  * keeps the device and GL at work on two frames. CAMBER_FRAMES_IN_FLIGHT frames at most may have begun and not ended,
- * and none when camber_render is called; the passes' meshes, dashes and ramps must live until the end. Tessellating one
- * of them before waits for the drawing, and so gains nothing. Where a picture takes several pieces, those after the
- * first are drawn at the end, from the meshes as they are then.
+ * and none when camber_render is called; the passes' meshes, dashes, ramps and images must live until the end.
+ * Tessellating a mesh before waits for the drawing, and so gains nothing. Where a picture takes several pieces, those
+ * after the first are drawn at the end, from the meshes as they are then.
  *
  * They return what camber_render returns. Where begin fails no frame has begun; where end fails the frame is given up.
  * Destroying the renderer gives up what is in flight. */

@@ -17,7 +17,7 @@ static inline camber_u32 span_of(global const float *shapes, size_t i, camber_u3
     if (first == last || FIRST_Y(box) == LAST_Y(box))
         return first | last << 8;
     const float middle = c.top + ((float)y + 0.5f) * CAMBER_TILE_PX;
-    return camber_tile_span(shapes + CAMBER_SHAPE_WORDS * i, middle, c.left, first, last);
+    return camber_row_span(shapes + CAMBER_SHAPE_WORDS * i, middle, c.left, first, last, CAMBER_TILE_PX);
 }
 
 kernel __attribute__((reqd_work_group_size(1, 1, 1))) void count(global const float *restrict shapes,

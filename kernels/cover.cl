@@ -166,46 +166,69 @@ static inline void put_whole(private canvas *c, int i) {
 constant float ACROSS[16] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
 constant float DOWN[16] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
 
-/* The cells, of rows first to last, that a segment's box meets. */
-static inline void draw_segment(private canvas *c, global const float *shape, float left, float top, int first,
-                                int last) {
-    camber_pen p;
-    camber_pen_of(shape, as_uint(shape[14]), &p);
-    const float reach = shape[11], a_cell = 1.0f / CAMBER_CELL_PX, side = (float)(CAMBER_TILE_CELLS - 1);
-    const float x0 = ((p.ax < p.bx ? p.ax : p.bx) - reach - left + 0.5f) * a_cell;
-    const float x1 = ((p.ax < p.bx ? p.bx : p.ax) + reach - left - 0.5f) * a_cell;
-    const float y0 = ((p.ay < p.by ? p.ay : p.by) - reach - top + 0.5f) * a_cell;
-    const float y1 = ((p.ay < p.by ? p.by : p.ay) + reach - top - 0.5f) * a_cell;
+/* The cells, of rows first to last, that a segment may meet, a bit each: those of its box, and where that is large, of
+ * its band. */
+static inline ulong box_of(global const float *shape, float left, float top, int first, int last) {
+    const float ax = shape[0], ay = shape[1], bx = shape[2], by = shape[3], reach = shape[11];
+    const float a_cell = 1.0f / CAMBER_CELL_PX, side = (float)(CAMBER_TILE_CELLS - 1);
+    const float x0 = ((ax < bx ? ax : bx) - reach - left + 0.5f) * a_cell;
+    const float x1 = ((ax < bx ? bx : ax) + reach - left - 0.5f) * a_cell;
+    const float y0 = ((ay < by ? ay : by) - reach - top + 0.5f) * a_cell;
+    const float y1 = ((ay < by ? by : ay) + reach - top - 0.5f) * a_cell;
     if (x1 < 0.0f || y1 < (float)first || x0 >= side + 1.0f || y0 >= (float)last + 1.0f)
-        return;
+        return 0;
     const int from_x = x0 > 0.0f ? (int)x0 : 0, to_x = x1 < side ? (int)x1 : CAMBER_TILE_CELLS - 1;
     const int from_y = y0 > (float)first ? (int)y0 : first, to_y = y1 < (float)last ? (int)y1 : last;
+    if (to_x < from_x || to_y < from_y)
+        return 0;
+    if (to_x - from_x > 1 && to_y - from_y > 1) {
+        ulong cells = 0;
+        for (int j = from_y; j <= to_y; j++) {
+            const float middle = top + CAMBER_CELL_PX * ((float)j + 0.5f);
+            const camber_u32 span =
+                camber_row_span(shape, middle, left, (camber_u32)from_x, (camber_u32)to_x, CAMBER_CELL_PX);
+            const camber_u32 begin = span & 255u, end = span >> 8;
+            if (begin <= end)
+                cells |= ((255ul >> (CAMBER_TILE_CELLS - 1u - end + begin)) << begin) << (CAMBER_TILE_CELLS * j);
+        }
+        return cells;
+    }
+    const ulong row = (255ul >> (CAMBER_TILE_CELLS - 1 - to_x + from_x)) << from_x;
+    return (row * (0x0101010101010101ul >> (CAMBER_TILE_CELLS * (CAMBER_TILE_CELLS - 1 - to_y + from_y))))
+           << (CAMBER_TILE_CELLS * from_y);
+}
+
+static inline void draw_segment(private canvas *c, global const float *shape, float left, float top, int first,
+                                int last) {
+    ulong cells = box_of(shape, left, top, first, last) & ~(c->done | c->filled), inked = 0;
+    if (!cells)
+        return;
+    camber_pen p;
+    camber_pen_of(shape, as_uint(shape[14]), &p);
     const float16 across = vload16(0, ACROSS), down = vload16(0, DOWN);
     const float16 lane_x = across * p.ux + down * p.uy, lane_y = down * p.ux - across * p.uy;
     const float16 lane_a = across * p.nax + down * p.nay, lane_b = across * p.nbx + down * p.nby;
-    for (int j = from_y; j <= to_y; j++) {
-        const float py = top + 0.5f + (float)(CAMBER_CELL_PX * j);
-        const float qy = py - p.ay, a_y = qy * p.nay, b_y = (py - p.by) * p.nby;
-        for (int k = from_x; k <= to_x; k++) {
-            const int i = CAMBER_TILE_CELLS * j + k;
-            if ((c->done | c->filled) >> i & 1ul)
-                continue;
-            const float px = left + 0.5f + (float)(CAMBER_CELL_PX * k), qx = px - p.ax;
-            const float x = qx * p.ux + qy * p.uy, y = qy * p.ux - qx * p.uy;
-            const float fa = qx * p.nax + a_y, fb = (px - p.bx) * p.nbx + b_y;
-            const camber_u32 meets = camber_cell_meets(&p, x + 1.5f * (p.ux + p.uy), y + 1.5f * (p.ux - p.uy),
-                                                       fa + 1.5f * (p.nax + p.nay), fb + 1.5f * (p.nbx + p.nby));
-            if (meets == CAMBER_CELL_OUTSIDE)
-                continue;
-            c->inked |= 1ul << i;
-            if (meets == CAMBER_CELL_INSIDE) {
-                put_whole(c, i);
-                continue;
-            }
-            const float16 xs = x + lane_x, ys = y + lane_y;
-            put_area(c, &p, i, camber_pen_area(&p, xs, ys, fa + lane_a, fb + lane_b), xs, ys);
+    for (; cells; cells &= cells - 1) {
+        const int i = lowest(cells);
+        const float px = left + 0.5f + (float)(CAMBER_CELL_PX * (i % CAMBER_TILE_CELLS)), qx = px - p.ax;
+        const float py = top + 0.5f + (float)(CAMBER_CELL_PX * (i / CAMBER_TILE_CELLS)), qy = py - p.ay;
+        const float x = qx * p.ux + qy * p.uy, y = qy * p.ux - qx * p.uy;
+        const float fa = qx * p.nax + qy * p.nay, fb = (px - p.bx) * p.nbx + (py - p.by) * p.nby;
+        const camber_u32 meets = camber_cell_meets(&p, x + 1.5f * (p.ux + p.uy), y + 1.5f * (p.ux - p.uy),
+                                                   fa + 1.5f * (p.nax + p.nay), fb + 1.5f * (p.nbx + p.nby));
+        if (meets == CAMBER_CELL_OUTSIDE)
+            continue;
+        inked |= 1ul << i;
+        if (meets == CAMBER_CELL_INSIDE) {
+            put_whole(c, i);
+            continue;
         }
+        const float16 xs = x + lane_x, ys = y + lane_y;
+        const float16 area = meets == CAMBER_CELL_ASIDE ? camber_pen_side(&p, ys)
+                                                        : camber_pen_area(&p, xs, ys, fa + lane_a, fb + lane_b);
+        put_area(c, &p, i, area, xs, ys);
     }
+    c->inked |= inked;
 }
 
 /* Whether nothing that is still to come shows. What is filled by an ink of a layer shows as much as the layer does. */

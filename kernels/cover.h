@@ -156,20 +156,21 @@ CAMBER_FN camber_words camber_shape_box(const camber_shape *s, camber_mask drawn
 
 /* ---- Tiles ---- */
 
-/* Of the tiles of a box in one row of tiles, those that a segment's band meets: the first | the last << 8. middle: of
- * the row, px; shape: its words. */
-CAMBER_FN camber_u32 camber_tile_span(CAMBER_GLOBAL const float *shape, float middle, float left, camber_u32 first,
-                                      camber_u32 last) {
+/* Of a box's squares in one row of them, tiles or cells of side px, those that a segment's band meets: the first | the
+ * last << 8. middle: of the row, px; left: of the first square; shape: its words. */
+CAMBER_FN camber_u32 camber_row_span(CAMBER_GLOBAL const float *shape, float middle, float left, camber_u32 first,
+                                     camber_u32 last, float side) {
     const float ax = shape[0], ay = shape[1], ux = shape[4], uy = shape[5];
-    const float to_middle = 0.5f * CAMBER_TILE_PX, slack = 1e-6f * (CAMBER_FABS(ax) + CAMBER_FABS(ay));
+    const float to_middle = 0.5f * side, a_square = 1.0f / side;
+    const float slack = 1e-6f * (CAMBER_FABS(ax) + CAMBER_FABS(ay));
     const float reach = shape[10] + CAMBER_PAD_PX + to_middle * (CAMBER_FABS(ux) + CAMBER_FABS(uy)) + slack;
     if (CAMBER_FABS(uy) < 1e-3f)
         return first | last << 8;
     const float scale = 1.0f / uy, across = (middle - ay) * ux;
     const float one = ax + (across - reach) * scale, other = ax + (across + reach) * scale;
-    /* Of tiles' middles. */
-    const float from = ((one < other ? one : other) - left - to_middle) * (1.0f / CAMBER_TILE_PX);
-    const float to = ((one < other ? other : one) - left - to_middle) * (1.0f / CAMBER_TILE_PX);
+    /* Of the squares' middles. */
+    const float from = ((one < other ? one : other) - left - to_middle) * a_square;
+    const float to = ((one < other ? other : one) - left - to_middle) * a_square;
     if (from > (float)last || to < (float)first)
         return 1u; /* the last lies before the first */
     const camber_u32 begin = from > (float)first ? (camber_u32)from : first;
@@ -348,6 +349,16 @@ CAMBER_FN camber_real camber_pen_area(const camber_pen *p, camber_real x, camber
     return foreign ? none : area;
 }
 
+/* The same where the ends are too far away to matter. */
+CAMBER_FN camber_real camber_pen_side(const camber_pen *p, camber_real y) {
+    const camber_real none = CAMBER_REAL(0.0f), d = CAMBER_FABS(y);
+    const camber_real area = camber_inside_edge(p, p->half_width - d);
+    if (!p->thin)
+        return area;
+    const camber_real both = area + camber_inside_edge(p, p->half_width + d) - 1.0f;
+    return both > 0.0f ? both : none;
+}
+
 /* The normal into the stroke across the nearest edge, in the picture. */
 CAMBER_FN void camber_pen_normal(const camber_pen *p, camber_real x, camber_real y, camber_real *nx, camber_real *ny) {
     const camber_real none = CAMBER_REAL(0.0f), past_a = -x, past_b = x - p->length;
@@ -366,11 +377,12 @@ CAMBER_FN void camber_pen_normal(const camber_pen *p, camber_real x, camber_real
     *ny = in_x * p->uy + in_y * p->ux;
 }
 
-/* Whether a cell has nothing of a segment, all of it inside the stroke, or something between: by its middle along and
- * across the segment and past the bisectors, and how far it reaches about it, px. */
+/* Whether a cell has nothing of a segment, lies all inside the stroke, on its sides far from the ends, or else: by its
+ * middle along and across the segment and past the bisectors, and how far it reaches about it, px. */
 #define CAMBER_CELL_OUTSIDE 0u
 #define CAMBER_CELL_PARTLY 1u
-#define CAMBER_CELL_INSIDE 2u
+#define CAMBER_CELL_ASIDE 2u
+#define CAMBER_CELL_INSIDE 3u
 CAMBER_FN camber_u32 camber_cell_meets(const camber_pen *p, float x, float y, float fa, float fb) {
     const float reach = 1.5f * (CAMBER_FABS(p->ux) + CAMBER_FABS(p->uy)), aside = CAMBER_FABS(y);
     const float reach_a = 1.5f * (CAMBER_FABS(p->nax) + CAMBER_FABS(p->nay));
@@ -380,10 +392,9 @@ CAMBER_FN camber_u32 camber_cell_meets(const camber_pen *p, float x, float y, fl
     if ((p->own_a == CAMBER_ALWAYS_PX && fa + reach_a < 0.0f) || (p->own_b == CAMBER_ALWAYS_PX && fb - reach_b >= 0.0f))
         return CAMBER_CELL_OUTSIDE;
     const float from = x - reach, to = p->length - x - reach;
-    return aside + reach <= p->half_width - p->extent && from >= 0.75f && to >= 0.75f && fa - reach_a >= 0.5f &&
-                   fb + reach_b <= -0.5f && !p->sharp && !p->tight
-               ? CAMBER_CELL_INSIDE
-               : CAMBER_CELL_PARTLY;
+    if (p->sharp || p->tight || from < 0.75f || to < 0.75f || fa - reach_a < 0.5f || fb + reach_b > -0.5f)
+        return CAMBER_CELL_PARTLY;
+    return aside + reach <= p->half_width - p->extent ? CAMBER_CELL_INSIDE : CAMBER_CELL_ASIDE;
 }
 
 /* ---- Layers ---- */

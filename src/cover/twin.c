@@ -106,8 +106,8 @@ static void each_tile(const twin *t, size_t shape, uint32_t *counts, bool fill) 
     for (uint32_t y = y0; x0 <= x1 && y <= y1; y++) {
         const float middle = (float)t->area->y + ((float)y + 0.5f) * CAMBER_TILE_PX;
         const uint32_t span = x0 == x1 || y0 == y1 ? x0 | x1 << 8
-                                                   : camber_tile_span(t->stages->shapes + CAMBER_SHAPE_WORDS * shape,
-                                                                      middle, (float)t->area->x, x0, x1);
+                                                   : camber_row_span(t->stages->shapes + CAMBER_SHAPE_WORDS * shape,
+                                                                     middle, (float)t->area->x, x0, x1, CAMBER_TILE_PX);
         for (uint32_t x = span & 255u; x <= span >> 8; x++) {
             uint32_t *count = counts + y * t->columns + x;
             if (fill)
@@ -223,8 +223,9 @@ static void change_ink(canvas *c, camber_ink next) {
 }
 
 /* A segment's part of a pixel. */
-static void put_pixel(const canvas *c, const camber_pen *pen, pixel *p, const float place[4]) {
-    const float x = place[0], y = place[1], area = camber_pen_area(pen, x, y, place[2], place[3]);
+static void put_pixel(const canvas *c, const camber_pen *pen, pixel *p, const float place[4], bool aside) {
+    const float x = place[0], y = place[1];
+    const float area = aside ? camber_pen_side(pen, y) : camber_pen_area(pen, x, y, place[2], place[3]);
     if (c->now.mode != CAMBER_INK_UNION) {
         p->ink *= 1.0f - area * c->now.a;
         return;
@@ -267,7 +268,7 @@ static void draw_cell(canvas *c, const camber_pen *p, cell *one, float px, float
         const float across = (float)(i % CAMBER_CELL_PX), down = (float)(i / CAMBER_CELL_PX);
         const float place[4] = {x + (across * p->ux + down * p->uy), y + (down * p->ux - across * p->uy),
                                 fa + (across * p->nax + down * p->nay), fb + (across * p->nbx + down * p->nby)};
-        put_pixel(c, p, one->pixels + i, place);
+        put_pixel(c, p, one->pixels + i, place, meets == CAMBER_CELL_ASIDE);
     }
     if (!is_union && ++one->puts % CAMBER_LOOK_EVERY == 0 && c->now.a == 1.0f)
         one->filled = most_ink(one) < CAMBER_NOTHING_PX;

@@ -36,7 +36,7 @@ flat in highp ivec2 v_dashes; // the first one's texel; twice how many there are
 flat in vec2 v_trim; // from where to where the line is not drawn, px along it
 #endif
 #if RAMP
-flat in highp ivec2 v_ramp; // the texel of the first stop; how many there are. 0: no ramp
+flat in highp ivec2 v_ramp; // the texel of the first stop that the segment sees; how many it does. 0: no ramp
 #endif
 #if DASH || RAMP
 uniform highp sampler2D u_rows;
@@ -209,6 +209,10 @@ int stop_behind(float place, int low) {
 vec4 ramp_over(float along, vec4 edge, float scale) {
     const int MOST = 16;
     float from = along - edge.x / scale, to = along + edge.x / scale;
+    float first = stop_at(0), second = stop_at(min(1, v_ramp.y - 1));
+    // Mostly there are only two, far apart.
+    if (v_ramp.y < 3 && second - first > 8.0 / scale)
+        return mix(stop_color(0), stop_color(1), clamp((along - first) / (second - first), 0.0, 1.0));
     int last = v_ramp.y - 1, i = max(stop_behind(from, 0) - 1, 0), beyond = min(i + MOST, last);
     int stride = stop_at(beyond) > to ? 1 : (min(stop_behind(to, beyond), last) - i + MOST) / MOST;
     float here = stop_at(i), past = covered((along - here) * scale, edge);

@@ -86,6 +86,20 @@ vec4 row_texel(int i) {
     return texelFetch(u_rows, ivec2(i & 2047, i >> 11), 0);
 }
 
+#if RAMP
+// How many stops of a ramp, its first texel and how many it has, lie up to a place px along a line of a length.
+int stops_up_to(float place, ivec2 ramp, float len) {
+    int low = 0, high = ramp.y;
+    while (low < high) {
+        int middle = (low + high) >> 1;
+        bool behind = row_texel(ramp.x + 2 * middle).x * len > place;
+        high = behind ? middle : high;
+        low = behind ? low : middle + 1;
+    }
+    return low;
+}
+#endif
+
 float turn_of(uint join) {
     return float(int(join << 16u) >> 16) * (1.0 / 32767.0);
 }
@@ -388,6 +402,12 @@ void main() {
 #endif
 #if RAMP
     v_ramp = ivec2(progress.zw) + ivec2(u_tail, 0);
+#if !PITCHED
+    // Only the stops that a pixel of the segment may see.
+    int from = max(stops_up_to(min(measure_a.x, measure_b.x) - 1.0, v_ramp, measure_a.y) - 1, 0);
+    int to = min(stops_up_to(max(measure_a.x, measure_b.x) + 1.0, v_ramp, measure_a.y) + 1, v_ramp.y);
+    v_ramp = ivec2(v_ramp.x + 2 * from, to - from);
+#endif
 #endif
 #if PATTERN
     v_image = row_texel(texel + 5);

@@ -341,7 +341,7 @@ CAMBER_FN void camber_walk_part(camber_walk *w, const camber_projection *p, camb
     camber_u32 count = 0;
     for (camber_u32 i = begin; i < end; i++) {
         kept[count] = i;
-        count += camber_matters(w, p, i);
+        count += camber_matters(w, p, i) ? 1u : 0u;
     }
     if (count == 0u)
         return;

@@ -180,8 +180,8 @@ static void check_chunks(fuzz_run *run, const camber_network *network, const inp
     const camber_run *first = network->runs;
     size_t at = 1;
     for (uint32_t chunk = 0; chunk * CAMBER_CHUNK < network->point_count; chunk++) {
-        float x[3 * CAMBER_CHUNK], y[3 * CAMBER_CHUNK];
-        camber_u32 info[3 * CAMBER_CHUNK], begin, end;
+        float x[3 * CAMBER_CHUNK] = {0}, y[3 * CAMBER_CHUNK] = {0};
+        camber_u32 info[3 * CAMBER_CHUNK] = {0}, begin, end;
         camber_walk counts = camber_network_walk(network), puts = counts;
         camber_chunk_bounds(&p, chunk, &begin, &end);
         while (first[1].first <= begin)

@@ -92,7 +92,7 @@ static camber_status add_run(tables *t, const camber_run *run, camber_ink ink) {
         return CAMBER_OK;
     if (run->bands)
         return refuse(t->context);
-    const bool shares = !run->layered && t->pass == run->pass && ink.group == 0;
+    const bool shares = !run->layered && t->pass && t->pass == run->pass && ink.group == 0;
     camber_status status = CAMBER_OK;
     if (!camber_grow(t->context, &t->runs, &t->run_capacity, t->run_count + 1, sizeof *t->runs))
         return CAMBER_ERROR_MEMORY;
@@ -198,7 +198,7 @@ static camber_status draw_band(camber_renderer *renderer, const camber_cover_sce
             status = take_area(renderer, &area, to);
         stats->read_ms += camber_now_ms() - drawn;
     }
-    if (status == CAMBER_OK && to->band && !to->rows(to->user, to->band, area.y, area.height))
+    if (status == CAMBER_OK && to->band && to->rows && !to->rows(to->user, to->band, area.y, area.height))
         status = CAMBER_ERROR_IO;
     return status;
 }

@@ -687,8 +687,10 @@ static void test_reference(void **state) {
         const bool line = strncmp(name, "line-", 5) == 0;
         const camber_property_row *row =
             camber_property_find(line ? CAMBER_LAYER_LINE : CAMBER_LAYER_BACKGROUND, reference[i].layout, name);
-        if (!row)
+        if (!row) {
             fail_msg("%s is not known", name);
+            return;
+        }
         const camber_property *property = &row->property;
         assert_int_equal(property->type, reference[i].type);
         assert_int_equal(property->length, reference[i].length);

@@ -292,12 +292,9 @@ CAMBER_FN camber_u32 camber_prowl_on(const camber_course *c, camber_prowl *p, ca
     return 1u;
 }
 
-/* Where places at the height d over the axis lie nearer than near to the segment from a to b. */
-CAMBER_FN camber_u32 camber_hidden_part(float d, float near, float ax, float ay, float bx, float by, float *lo,
-                                        float *hi) {
-    const float ha = d - ay, hb = d - by;
-    if ((ha >= near && hb >= near) || (ha <= -near && hb <= -near))
-        return 0u;
+/* Where places of a straight lie nearer than near to a segment, whose ends lie at ax and bx along it and ha and hb
+ * below it. */
+CAMBER_FN camber_u32 camber_hidden_part(float near, float ax, float ha, float bx, float hb, float *lo, float *hi) {
     *lo = CAMBER_LEG_WHOLE;
     *hi = -CAMBER_LEG_WHOLE;
     const float ra = near * near - ha * ha, rb = near * near - hb * hb;
@@ -311,7 +308,7 @@ CAMBER_FN camber_u32 camber_hidden_part(float d, float near, float ax, float ay,
         *lo = bx - w < *lo ? bx - w : *lo;
         *hi = bx + w > *hi ? bx + w : *hi;
     }
-    const float ex = bx - ax, ey = by - ay, length = CAMBER_SQRT(ex * ex + ey * ey);
+    const float ex = bx - ax, ey = ha - hb, length = CAMBER_SQRT(ex * ex + ey * ey);
     if (CAMBER_FABS(ey) > 1.0e-5f * length) {
         const float c = ex / length, s = ey / length;
         for (camber_u32 side = 0; side < 2u; side++) {
@@ -376,9 +373,11 @@ CAMBER_FN void camber_leg_cut(const camber_course *c, camber_u32 slot, const cam
     while (camber_prowls_on(c, &p)) {
         const camber_prowl *way = p.turn ? &p.back : &p.ahead;
         const float ax = way->ax - leg->x, ay = way->ay - leg->y, bx = way->bx - leg->x, by = way->by - leg->y;
+        const float ha = d - side * (ay * leg->ux - ax * leg->uy), hb = d - side * (by * leg->ux - bx * leg->uy);
         float lo, hi;
-        if (!camber_hidden_part(d, near, ax * leg->ux + ay * leg->uy, side * (ay * leg->ux - ax * leg->uy),
-                                bx * leg->ux + by * leg->uy, side * (by * leg->ux - bx * leg->uy), &lo, &hi))
+        if ((ha >= near && hb >= near) || (ha <= -near && hb <= -near))
+            continue; /* mostly */
+        if (!camber_hidden_part(near, ax * leg->ux + ay * leg->uy, ha, bx * leg->ux + by * leg->uy, hb, &lo, &hi))
             continue;
         if (lo >= leg->length || hi <= 0.0f)
             continue;

@@ -198,9 +198,9 @@ float depth_at(vec2 p) {
 }
 
 // No triangle is cut along a bisector: all joins say what belongs to a segment as split ones do.
-float own_until(vec2 p, uint join, vec2 turn, bool ends_soon, float half_width) {
-    float seen = half_width / max(depth_at(p), 1e-3);
-    return kind_of(join) == CUT ? ALWAYS_PX : foreign_from(end_of(join), turn, ends_soon, seen);
+// narrowest: px of the picture that the line is wide there.
+float own_until(uint join, vec2 turn, bool ends_soon, float narrowest) {
+    return kind_of(join) == CUT ? ALWAYS_PX : foreign_from(end_of(join), turn, ends_soon, 0.5 * narrowest);
 }
 
 vec2 seen_of(vec2 p) {
@@ -219,17 +219,24 @@ float seen_width(vec2 p, vec2 u, float half_width) {
     return 2.0 * half_width / (depth_at(p) * length(vec2(normal.x, (normal.y - u_eye.w * dot(normal, p)) / u_eye.z)));
 }
 
-// A join that is narrower than a pixel as it is seen: the line between the two segments in the picture, by its normal and
-// where it lies, and 1 where it is wide and the bisector in the plane parts them, down to 0.
-vec4 seen_cut(vec2 p, vec2 u, float turns, uint join, float half_width) {
+// The direction on the other side of a join; turns: 1 behind it, -1 before.
+vec2 other_direction(vec2 u, float turns, uint join) {
     vec2 half_turned = half_turn(turn_of(join));
     float c = half_turned.x * half_turned.x - half_turned.y * half_turned.y, s = 2.0 * turns * half_turned.x * half_turned.y;
-    vec2 other = vec2(u.x * c - u.y * s, u.x * s + u.y * c);
+    return vec2(u.x * c - u.y * s, u.x * s + u.y * c);
+}
+
+float narrowest_at(vec2 p, vec2 u, vec2 other, float half_width) {
+    return min(seen_width(p, u, half_width), seen_width(p, other, half_width));
+}
+
+// A join that is narrower than a pixel as it is seen: the line between the two segments in the picture, by its normal and
+// where it lies, and 1 where it is wide and the bisector in the plane parts them, down to 0.
+vec4 seen_cut(vec2 p, vec2 u, vec2 other, float turns, uint join, float narrowest) {
     if (kind_of(join) < CUT || depth_at(p) < 1e-3)
         return vec4(0.0, 0.0, 0.0, 1.0);
     vec2 along = seen_direction(p, u), sum = along + seen_direction(p, other);
     vec2 normal = length(sum) > 1e-5 ? normalize(sum) : along;
-    float narrowest = min(seen_width(p, u, half_width), seen_width(p, other, half_width));
     return vec4(turns * normal, turns * dot(normal, seen_of(p)), clamp(1.5 * narrowest - 0.75, 0.0, 1.0));
 }
 
@@ -289,16 +296,18 @@ void hand_over(vec2 a, vec2 b, vec2 u, float len, float half_width, uint join_a,
 #if PITCHED
     v_segment = vec4(a, u);
     v_end = b;
-    v_cut_a = seen_cut(a, u, -1.0, join_a, half_width);
-    v_cut_b = seen_cut(b, u, 1.0, join_b, half_width);
+    vec2 before = other_direction(u, -1.0, join_a), behind = other_direction(u, 1.0, join_b);
+    float narrowest_a = narrowest_at(a, u, before, half_width), narrowest_b = narrowest_at(b, u, behind, half_width);
+    v_cut_a = seen_cut(a, u, before, -1.0, join_a, narrowest_a);
+    v_cut_b = seen_cut(b, u, behind, 1.0, join_b, narrowest_b);
 #else
     v_segment = vec4(a - u_origin, u);
 #endif
     v_shape = vec4(len, half_width, flat_cap(end_a, half_width), flat_cap(end_b, half_width));
     v_turns = vec4(turn_a, turn_b);
 #if PITCHED
-    v_rest = vec4(0.0, 0.0, own_until(a, join_a, turn_a, (join_a & AFTER_FIRST) != 0u, half_width),
-                  own_until(b, join_b, turn_b, (join_b & BEFORE_LAST) != 0u, half_width));
+    v_rest = vec4(0.0, 0.0, own_until(join_a, turn_a, (join_a & AFTER_FIRST) != 0u, narrowest_a),
+                  own_until(join_b, turn_b, (join_b & BEFORE_LAST) != 0u, narrowest_b));
 #else
     v_rest = vec4(edge_of(u).zw, foreign_from(end_a, turn_a, (join_a & AFTER_FIRST) != 0u, half_width),
                   foreign_from(end_b, turn_b, (join_b & BEFORE_LAST) != 0u, half_width));

@@ -74,9 +74,10 @@ static camber_status read_part(camber_mesh *mesh, size_t which, camber_record **
         return status;
     const camber_mesh_part *part = mesh->parts + which;
     const size_t count = mesh->mesh_info.strips ? part->record_count : part->slot_count;
-    *records = camber_alloc(mesh->device->context, count, sizeof **records);
+    const size_t kept = part->record_count < count ? part->record_count : count; /* padding is ghosts */
+    *records = camber_alloc_zero(mesh->device->context, count, sizeof **records);
     if (*records)
-        memcpy(*records, data.records + part->first_record, count * sizeof **records);
+        memcpy(*records, data.records + part->first_record, kept * sizeof **records);
     camber_mesh_data_free(mesh->device->context, &data);
     return *records ? CAMBER_OK : CAMBER_ERROR_MEMORY;
 }

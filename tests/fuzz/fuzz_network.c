@@ -151,6 +151,7 @@ static void check_slots(const camber_polylines *slots, const input *from) {
     const bool tilted = camera->pitch_deg > 0;
     const double aside = tilted ? 14 * wide + 2 * margin * (2 + wide / high) : margin;
     const double ahead = tilted ? 30 * high + 300 + margin : margin;
+    const double behind = tilted ? 2 * high + 10 + margin : margin;
     bool open = false;
     for (size_t i = 0; i <= slots->polyline_count; i++)
         REQUIRE(slots->first_slots[i] <= slots->slot_count &&
@@ -159,7 +160,7 @@ static void check_slots(const camber_polylines *slots, const input *from) {
         const uint32_t info = slots->info[i];
         REQUIRE(isfinite(slots->x[i]) && isfinite(slots->y[i]));
         REQUIRE((double)slots->x[i] >= -aside && (double)slots->x[i] <= wide + aside);
-        REQUIRE((double)slots->y[i] >= -ahead && (double)slots->y[i] <= high + margin);
+        REQUIRE((double)slots->y[i] >= -ahead && (double)slots->y[i] <= high + behind);
         if (!(info & CAMBER_POINT_REAL)) {
             REQUIRE(!open);
             continue;

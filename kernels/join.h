@@ -134,9 +134,9 @@ CAMBER_FN camber_u32 camber_fan_triangles(float turn_cos, float step_cos, float 
  */
 CAMBER_FN camber_u32 camber_join_word(camber_turn turn, CAMBER_GLOBAL const camber_row *row, camber_u32 method) {
     const float sine = CAMBER_FABS(turn.s);
-    const camber_u32 is_round = row->join == 0u && turn.c * row->round_limit <= 1.0f;
-    const camber_u32 miter = !is_round && row->join != 2u && turn.c * row->miter_limit >= 1.0f;
-    const camber_u32 bevel = !is_round && !miter;
+    const camber_u32 asked = turn.c > row->round_cos ? 1u : row->join;
+    const camber_u32 miter = asked == 1u && turn.c * row->miter_limit >= 1.0f;
+    const camber_u32 bevel = asked != 0u && !miter;
     const camber_u32 split = !miter && sine > 2.0f * turn.c;
     const camber_u32 tight = row->reach_px * sine > turn.half_shorter * turn.c;
     camber_u32 end = miter ? 3u : bevel ? 4u : 0u;
@@ -147,7 +147,7 @@ CAMBER_FN camber_u32 camber_join_word(camber_turn turn, CAMBER_GLOBAL const camb
         /* Past 120 degrees the kite's tip runs away: two kites of half the angle. */
         const camber_u32 kites = !miter && sine > 1.7320508f * turn.c ? 4u : 2u;
         triangles =
-            method == CAMBER_FAN && is_round ? camber_fan_triangles(turn.dot, row->fan_cos, row->fan_sin) : kites;
+            method == CAMBER_FAN && asked == 0u ? camber_fan_triangles(turn.dot, row->fan_cos, row->fan_sin) : kites;
     }
     const camber_u32 kind = split ? CAMBER_KIND_SPLIT : tight ? CAMBER_KIND_TIGHT : CAMBER_KIND_CUT;
     const camber_u32 limit = kind == CAMBER_KIND_TIGHT ? camber_limit_pack(turn.half_shorter) : 0u;

@@ -51,10 +51,10 @@ typedef struct camber_row {
     float miter_limit; /* 1 / cos(turn / 2) */
     float fan_cos;     /* of the fan's step angle */
     float fan_sin;
-    float round_limit; /* 1 / cos(turn / 2): below it round joins are not round */
-    camber_u32 join;   /* camber_join */
-    camber_u32 cap;    /* camber_cap */
-    float fan_step;    /* the angle */
+    float round_cos; /* of half the turn: above it round joins are miters; 2: of other joins */
+    camber_u32 join; /* camber_join */
+    camber_u32 cap;  /* camber_cap */
+    float fan_step;  /* the angle */
 } camber_row;
 
 /* Words of a record: see camber_record in camber.h. A measured mesh has as many again behind them, of which the first

@@ -37,6 +37,7 @@ static void assert_near(double a, double b, double tolerance) {
 static camber_row make_row(float width_px, camber_u32 join, float miter_limit, double step) {
     return (camber_row){.reach_px = 0.5f * width_px + CAMBER_PAD_PX,
                         .miter_limit = miter_limit,
+                        .round_cos = 2.0f,
                         .fan_cos = (float)cos(step),
                         .fan_sin = (float)sin(step),
                         .join = join};
@@ -120,10 +121,10 @@ static void check_word(const sample *s, camber_row row, camber_u32 method) {
     const camber_u32 word = join_word(turn, row, method);
     const double t = fabs(s->turn), tan_half = tan(fmin(t, PI - 1e-9) / 2), length = 1 / cos(fmin(t, PI - 1e-9) / 2);
     if (is_near(tan_half, 2) || is_near(tan_half, sqrt(3)) || is_near(length, row.miter_limit) ||
-        is_near(length, row.round_limit) || fabs(row.reach_px * tan_half - 0.5 * s->shorter) <= 1e-4 * s->shorter ||
-        t > 179.9 * PI / 180)
+        is_near(length, 1 / (double)row.round_cos) ||
+        fabs(row.reach_px * tan_half - 0.5 * s->shorter) <= 1e-4 * s->shorter || t > 179.9 * PI / 180)
         return;
-    const bool is_round = row.join == CAMBER_JOIN_ROUND && length >= (double)row.round_limit;
+    const bool is_round = row.join == CAMBER_JOIN_ROUND && length >= 1 / (double)row.round_cos;
     const bool miter = row.join != CAMBER_JOIN_BEVEL && !is_round && length <= row.miter_limit;
     const bool bevel = !is_round && !miter;
     const bool split = !miter && tan_half > 2, tight = row.reach_px * tan_half > 0.5 * s->shorter;
@@ -153,7 +154,7 @@ static void test_words(void **state) {
                 const sample s = make_sample(&seed, k * 0.1 - 180);
                 const float width = (float)pow(10, random_between(&seed, -1, 3));
                 camber_row row = make_row(width, join, limits[random_below(&seed, 5)], 0.3);
-                row.round_limit = k % 2 ? 0.0f : limits[random_below(&seed, 5)];
+                row.round_cos = k % 2 || join != CAMBER_JOIN_ROUND ? 2.0f : 1.0f / limits[random_below(&seed, 5)];
                 check_word(&s, row, method);
             }
 }

@@ -4,7 +4,6 @@
 #include "kernels/join.h"
 
 #include <assert.h>
-#include <float.h>
 
 static const float WIDEST_PX = 16384.0f;
 
@@ -40,8 +39,8 @@ static camber_row make_row(const camber_stroke *stroke, float tolerance_px) {
         .miter_limit = stroke->miter_limit > 0.0f ? stroke->miter_limit : 2.0f,
         .fan_cos = (float)cos(step),
         .fan_sin = (float)sin(step),
-        /* c * limit is 0 * infinity where a line turns back. */
-        .round_limit = fminf(stroke->round_limit, FLT_MAX),
+        .round_cos =
+            stroke->join == CAMBER_JOIN_ROUND && stroke->round_limit > 1.0f ? 1.0f / stroke->round_limit : 2.0f,
         .join = (camber_u32)stroke->join,
         .cap = (camber_u32)stroke->cap,
         .fan_step = (float)step,

@@ -13,6 +13,11 @@
 
 #include "layout.h"
 
+/* 0: no row has a round limit, which a build for the device may know: classify gathers one word of a row less. */
+#ifndef CAMBER_ROUND_LIMITS
+#define CAMBER_ROUND_LIMITS 1
+#endif
+
 /* Of half the turn: a join that turns by less, 0.011 degrees, has no triangles of its own in kite and fan. Their
  * corners would fall on each other, and it is the rasteriser's rounding that says which way they wind. */
 #define CAMBER_STRAIGHT_SINE 1e-4f
@@ -134,7 +139,11 @@ CAMBER_FN camber_u32 camber_fan_triangles(float turn_cos, float step_cos, float 
  */
 CAMBER_FN camber_u32 camber_join_word(camber_turn turn, CAMBER_GLOBAL const camber_row *row, camber_u32 method) {
     const float sine = CAMBER_FABS(turn.s);
+#if CAMBER_ROUND_LIMITS
     const camber_u32 asked = turn.c > row->round_cos ? 1u : row->join;
+#else
+    const camber_u32 asked = row->join;
+#endif
     const camber_u32 miter = asked == 1u && turn.c * row->miter_limit >= 1.0f;
     const camber_u32 bevel = asked != 0u && !miter;
     const camber_u32 split = !miter && sine > 2.0f * turn.c;

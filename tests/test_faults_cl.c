@@ -343,7 +343,7 @@ static camber_status try_cached(stage_set *s, void *user) {
     assert_int_equal(camber_context_create(&context_desc, &context), CAMBER_OK);
     camber_status status = camber_device_create(context, NULL, NULL, &device);
     if (status == CAMBER_OK)
-        status = camber_device_program(device, s->desc.method, s->desc.measured, &program);
+        status = camber_device_program(device, (camber_program_desc){s->desc.method, s->desc.measured, true}, &program);
     if (status == CAMBER_OK)
         camber_program_save(device, program);
     s->h.errors += h.errors;

@@ -161,9 +161,9 @@ mutant strip kernels/project.cl "chunks that skip where there is something" 'bas
 mutant strip kernels/network.h "a side of the window" 'x > p->window_x1 + grown ? 2u' 'x > p->window_x1 + grown ? 1u'
 mutant strip kernels/network.h "the farther side of the window" 'return tx < ty ? tx : ty' 'return tx > ty ? tx : ty'
 mutant strip kernels/network.h "a corner of the window that is cut off" '> 1.0f)))' '> 1.5f)))'
-mutant strip kernels/network.h "important points that go" 'count += w->importance[i] >= p->tolerance' \
-    'count += w->importance[i] > p->tolerance'
-mutant strip kernels/network.h "segments to points that are left out" 'if (!(w->importance[i] >= p->tolerance))' \
+mutant strip kernels/network.h "important points that go" 'return w->importance[i] >= p->tolerance' \
+    'return w->importance[i] > p->tolerance'
+mutant strip kernels/network.h "segments to points that are left out" 'if (!camber_matters(w, p, i))' \
     'if (!(w->importance[i] >= 0.0f))'
 mutant strip kernels/network.h "ends that are not pulled" 'if (out == 0u)' 'if (out < 16u)'
 mutant strip kernels/network.h "ends pulled past the window" 'if (mid_out & out) {' 'if (mid_out) {'
@@ -193,14 +193,14 @@ mutant strip shaders/stroke.vert "no pad" 'PAD_PX = 0.75' 'PAD_PX = 0.0'
 mutant strip shaders/edge.glsl "the slope of an edge" '1.0 / p,' '0.8 / p,'
 mutant strip shaders/stroke.frag "the corner of a pixel" 'corner * corner * edge.w' 'corner * edge.w'
 evidence=(--pictures "$tmp/pictures" --junit "$tmp/junit.xml")
-mutant strip shaders/stroke.frag "half the width" 'covered(half_width - d, edge)' 'covered(0.9 * half_width - d, edge)'
+mutant strip shaders/stroke.frag "half the width" 'covered_band(half_width, d, side)' 'covered_band(0.9 * half_width, d, side)'
 evidence=()
 mutant strip shaders/stroke.vert "the sine of a turn" '2.0 * q * scale' 'q * scale'
 mutant strip shaders/stroke.frag "the wrong side of a bisector" 'v_turns.yw * y' '-v_turns.yw * y'
 mutant strip shaders/stroke.vert "square caps of a whole width" 'SQUARE ? half_width' 'SQUARE ? 2.0 * half_width'
 mutant strip shaders/stroke.frag "bevels that reach too far" 'bevel ? half_width * turn.x' 'bevel ? half_width'
 mutant strip shaders/stroke.frag "a bend to the wrong side" 'y - (bend(beyond.x' 'y + (bend(beyond.x'
-mutant strip shaders/stroke.vert "caps of thin lines" '0.5 + reach : NEVER_PX' '0.5 : NEVER_PX'
+mutant strip shaders/stroke.vert "caps of thin lines" '0.785398 * half_width + 1.2' '1.2'
 mutant kite shaders/stroke.vert "kites that lie over each other" 'is_cut && inner ? cut : kind' 'is_cut && inner ? 0.5 * cut : kind'
 mutant strip shaders/stroke.frag "united lines: no edge between whole and part" '* (area * (1.0 - area)), area, area)' \
     '* area, area, area)'

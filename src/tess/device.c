@@ -305,8 +305,8 @@ void camber_device_destroy(camber_device *device) {
     if (!device)
         return;
     for (int measured = 0; measured < 2; measured++) {
-        for (int method = 0; method < 3; method++)
-            camber_program_destroy(device->context, device->programs[measured][method]);
+        for (int kind = 0; kind < 6; kind++)
+            camber_program_destroy(device->context, device->programs[measured][kind / 3][kind % 3]);
         for (int pitched = 0; pitched < 2; pitched++)
             camber_program_destroy(device->context, device->network_programs[measured][pitched]);
     }

@@ -166,11 +166,14 @@ static camber_status use_program(camber_device *device, recipe *from, camber_pro
     return status;
 }
 
-camber_status camber_device_program(camber_device *device, camber_method method, bool measured,
-                                    camber_program **program) {
-    recipe from = {PROGRAM_METHOD, camber_method_name(method), camber_kernels_source, camber_kernels_source_size, ""};
-    set_options(device, (int)method, measured, &from);
-    return use_program(device, &from, &device->programs[measured][method], program);
+camber_status camber_device_program(camber_device *device, camber_program_desc desc, camber_program **program) {
+    recipe from = {PROGRAM_METHOD, camber_method_name(desc.method), camber_kernels_source, camber_kernels_source_size,
+                   ""};
+    set_options(device, (int)desc.method, desc.measured, &from);
+    const size_t used = strlen(from.options);
+    if (!desc.round_limits)
+        snprintf(from.options + used, sizeof from.options - used, " -DCAMBER_ROUND_LIMITS=0");
+    return use_program(device, &from, &device->programs[desc.measured][desc.round_limits][desc.method], program);
 }
 
 camber_status camber_device_measures(camber_device *device, camber_program **program) {

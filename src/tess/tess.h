@@ -23,7 +23,7 @@ struct camber_device {
     size_t block;          /* points a work-group: CAMBER_BLOCK as its kernels see it */
     size_t item;           /* points a work-item: CAMBER_ITEM */
     /* Built when first used; the second of two for what is measured. */
-    struct camber_program *programs[2][3];         /* by camber_method */
+    struct camber_program *programs[2][2][3];      /* without and with round limits, by camber_method */
     struct camber_program *network_programs[2][2]; /* the second ones of a camera with a pitch */
     struct camber_program *measures;
     struct camber_program *offset_programs[2];
@@ -57,9 +57,15 @@ typedef struct camber_program {
     bool to_save; /* built from source: its binary is saved once the kernels have run */
 } camber_program;
 
-/* The kernels of a method, built or loaded at first use. */
-camber_status camber_device_program(camber_device *device, camber_method method, bool measured,
-                                    camber_program **program);
+/* What the kernels of a mesh are built for. */
+typedef struct camber_program_desc {
+    camber_method method;
+    bool measured;
+    bool round_limits; /* a row has one; without them classify is a fifth faster on PoCL */
+} camber_program_desc;
+
+/* The kernels, built or loaded at first use. */
+camber_status camber_device_program(camber_device *device, camber_program_desc desc, camber_program **program);
 camber_status camber_device_network_program(camber_device *device, bool measured, bool pitched,
                                             camber_program **program);
 camber_status camber_device_measures(camber_device *device, camber_program **program);
@@ -155,6 +161,7 @@ struct camber_mesh {
     size_t shift_capacity;
     camber_mesh_info mesh_info;
     bool joins_counted; /* mesh_info's counts of joins and triangles are there */
+    bool round_limits;  /* a row has round joins with a limit */
     bool sharp_joins;   /* a row has miter or bevel joins, or round ones with a limit */
     bool flat_caps;     /* a row has butt or square caps */
     bool round_caps;    /* a row has round caps */

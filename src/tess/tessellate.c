@@ -262,6 +262,10 @@ static camber_status run_parts(camber_mesh *mesh, const camber_program *program)
     return status;
 }
 
+static camber_program_desc program_of(const camber_mesh *mesh) {
+    return (camber_program_desc){mesh->mesh_info.method, mesh->mesh_info.measured, mesh->round_limits};
+}
+
 camber_status camber_part_use(camber_mesh *mesh, camber_mesh_part *part) {
     const camber_device *device = mesh->device;
     const camber_mesh_info told = mesh->mesh_info;
@@ -271,7 +275,7 @@ camber_status camber_part_use(camber_mesh *mesh, camber_mesh_part *part) {
     bool fits = true;
     if (part->made || part->slot_count == 0)
         return CAMBER_OK;
-    camber_status status = camber_device_program(mesh->device, told.method, told.measured, &program);
+    camber_status status = camber_device_program(mesh->device, program_of(mesh), &program);
     if (status == CAMBER_OK) {
         camber_part_adopt(mesh, part, camber_part_need(mesh, part));
         status = prepare(mesh, part, program, &fits);
@@ -314,9 +318,11 @@ static camber_status tessellate(camber_mesh *mesh, const source *from, const cam
     camber_row *rows = NULL;
     camber_program *program = NULL;
     mesh->empty = mesh->joins_counted = true;
-    mesh->done = mesh->sharp_joins = mesh->flat_caps = mesh->round_caps = false;
+    mesh->done = mesh->round_limits = mesh->sharp_joins = mesh->flat_caps = mesh->round_caps = false;
     for (size_t i = 0; i < desc->stroke_count; i++) {
-        mesh->sharp_joins |= desc->strokes[i].join != CAMBER_JOIN_ROUND || desc->strokes[i].round_limit > 1.0f;
+        const bool is_round = desc->strokes[i].join == CAMBER_JOIN_ROUND;
+        mesh->round_limits |= is_round && desc->strokes[i].round_limit > 1.0f;
+        mesh->sharp_joins |= !is_round || desc->strokes[i].round_limit > 1.0f;
         mesh->flat_caps |= desc->strokes[i].cap != CAMBER_CAP_ROUND;
         mesh->round_caps |= desc->strokes[i].cap == CAMBER_CAP_ROUND;
     }
@@ -331,7 +337,7 @@ static camber_status tessellate(camber_mesh *mesh, const source *from, const cam
         status = plan(mesh, from, desc);
     if (status == CAMBER_OK && mesh->part_count > 0) {
         mesh->joins_counted = false;
-        status = camber_device_program(mesh->device, desc->method, desc->measured, &program);
+        status = camber_device_program(mesh->device, program_of(mesh), &program);
         if (status == CAMBER_OK)
             status = upload_rows(mesh, rows, desc->stroke_count);
         if (status == CAMBER_OK)

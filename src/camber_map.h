@@ -54,7 +54,7 @@ CAMBER_API camber_status camber_style_evaluate(camber_context *context, const ch
 
 typedef struct camber_style_finding {
     bool error; /* against the specification; else something that is not drawn, or not as a reader may expect */
-    const char *pointer; /* where, as a JSON pointer; "": the whole document */
+    const char *pointer; /* where, as a JSON pointer; "": the whole document; "..." for the middle of long ones */
     const char *message; /* what, and the cure */
 } camber_style_finding;
 

@@ -517,6 +517,37 @@ static void test_nesting(void **state) {
     }
 }
 
+static void test_long_pointers(void **state) {
+    (void)state;
+    fixture f;
+    text t = {0};
+    setup(&f);
+    append(&t, "{\"version\": 8, \"layers\": [{\"id\": \"a\", \"type\": \"line\", \"paint\": {\"line-width\": ");
+    for (size_t i = 0; i < 500; i++)
+        append(&t, "[\"+\", 1, ");
+    append(&t, "1");
+    for (size_t i = 0; i < 500; i++)
+        append(&t, "]");
+    append(&t, "}}]}");
+    assert_int_equal(parse(&f, t.bytes), CAMBER_ERROR_INPUT);
+    assert_non_null(strstr(f.error, "/layers/0/paint/line-width/2/2/"));
+    assert_non_null(strstr(f.error, "/2/.../2/2/"));
+    assert_non_null(strstr(f.error, ": nested deeper than 200 levels; flatten the expression"));
+    assert_true(strlen(f.error) < 260);
+    /* A key: its characters stay whole. */
+    t.size = 0;
+    append(&t, "{\"version\": 8, \"sources\": {\"");
+    for (size_t i = 0; i < 1000; i++)
+        append(&t, "\u00fc");
+    append(&t, "~\": 7}, \"layers\": []}");
+    assert_int_equal(parse(&f, t.bytes), CAMBER_ERROR_INPUT);
+    assert_non_null(strstr(f.error, "/sources/\u00fc\u00fc"));
+    assert_non_null(strstr(f.error, "\u00fc...\u00fc"));
+    assert_non_null(strstr(f.error, "\u00fc~0: expected a source"));
+    free(t.bytes);
+    teardown(&f);
+}
+
 static void test_many(void **state) {
     (void)state;
     enum { MANY = 1000000 };
@@ -713,7 +744,7 @@ int main(void) {
         cmocka_unit_test(test_builtin), cmocka_unit_test(test_layer),     cmocka_unit_test(test_warnings),
         cmocka_unit_test(test_states),  cmocka_unit_test(test_reference), cmocka_unit_test(test_wrong),
         cmocka_unit_test(test_nesting), cmocka_unit_test(test_many),      cmocka_unit_test(test_many_names),
-        cmocka_unit_test(test_damage),  cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_damage),  cmocka_unit_test(test_memory),    cmocka_unit_test(test_long_pointers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

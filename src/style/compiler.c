@@ -35,26 +35,6 @@ void camber_compiler_end(camber_compiler *c) {
     c->operand_capacity = c->binding_capacity = 0;
 }
 
-void camber_compiler_write_pointer(const camber_compiler *c, char pointer[CAMBER_POINTER_SIZE]) {
-    size_t used = 0;
-    for (size_t i = 0; i < c->path_length && i < CAMBER_PATH_DEPTH; i++) {
-        char number[24];
-        snprintf(number, sizeof number, "%zu", c->path[i].index);
-        const char *step = c->path[i].key ? c->path[i].key : number;
-        if (used + 1 < CAMBER_POINTER_SIZE)
-            pointer[used++] = '/';
-        for (; *step && used + 3 < CAMBER_POINTER_SIZE; step++) {
-            if (*step == '~' || *step == '/') {
-                pointer[used++] = '~';
-                pointer[used++] = *step == '~' ? '0' : '1';
-            } else {
-                pointer[used++] = *step;
-            }
-        }
-    }
-    pointer[used] = 0;
-}
-
 static void say(camber_compiler *c, camber_log_level level, const char *format, va_list list) {
     char pointer[CAMBER_POINTER_SIZE], message[512];
     vsnprintf(message, sizeof message, format, list);

@@ -92,8 +92,8 @@ void camber_compiler_enter_index(camber_compiler *c, size_t index);
 void camber_compiler_leave(camber_compiler *c);
 /* Frees what the compiler has of its own. */
 void camber_compiler_end(camber_compiler *c);
-/* Where that is, by RFC 6901; cut off where it is too long to be read anyway. */
-#define CAMBER_POINTER_SIZE 512
+/* pointer.c: where that is, by RFC 6901; "..." for the middle of more than 180 bytes. */
+#define CAMBER_POINTER_SIZE 192
 void camber_compiler_write_pointer(const camber_compiler *c, char pointer[CAMBER_POINTER_SIZE]);
 /* Logs "NAME: /pointer: " and the message, and sets the status. Returns false. */
 bool camber_compiler_fail(camber_compiler *c, const char *format, ...) CAMBER_PRINTF(2, 3);

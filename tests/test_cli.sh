@@ -238,7 +238,7 @@ cmp -s whole.glb part.glb || fail "the bound shows in the mesh"
 rm whole.glb part.glb
 awk 'BEGIN { printf "{\"type\": \"LineString\", \"coordinates\": [[0, 0]"
     for (i = 1; i < 3000; i++) printf ", [%g, %d]", i / 1000, i % 2; print "]}" }' >"$tmp/in/long.geojson"
-expect 70 "memory that one line overfills" render "$tmp/in/long.geojson" -o a.png --memory 64K
+expect 65 "memory that one line overfills" render "$tmp/in/long.geojson" -o a.png --memory 64K
 says 'polyline 0 takes [0-9]* bytes, more than half of the 65536 that meshes may hold; allow more memory'
 expect 0 "memory that it does not" render "$tmp/in/long.geojson" -o a.png --memory 1M
 rm a.png
@@ -256,7 +256,7 @@ expect 0 "centre and zoom" render "$osm" -o close.png --center -122.03,36.974 --
 is_png close.png 99 77
 expect 0 "nothing in the view" render "$osm" -o nothing.png --bbox 10,10,11,11 --size 50x50
 is_png nothing.png 50 50
-says '^camber: warning: '
+says '^camber: warning: no line that the style draws is in the view'
 expect 0 "nothing in the view, tessellated" tessellate "$osm" -o nothing.glb --bbox 10,10,11,11
 [ "$(le32 nothing.glb 8)" = "$(stat -c %s nothing.glb)" ] || fail "no whole GLB"
 says '^camber: warning: '
@@ -579,6 +579,12 @@ expect 66 "a style whose source is not there" render --style "$tmp/in/gone.json"
 sed 's|line.geojson|https://example.org/a.geojson|' "$tmp/in/own.json" >"$tmp/in/url.json"
 expect 65 "a style whose source is elsewhere" render --style "$tmp/in/url.json" -o a.png
 says 'example.org'
+# A sprite that says it is 60000 x 60000 px, with no pixels.
+printf '\211PNG\r\n\032\n\0\0\0\rIHDR\0\0\352`\0\0\352`\b\006\0\0\0\200\322uB\0\0\0\0IDAT5\257\006\036\0\0\0\0IEND\256B`\202' >"$tmp/in/vast.png"
+echo '{"a": {"x": 0, "y": 0, "width": 60000, "height": 60000, "pixelRatio": 1}}' >"$tmp/in/vast.json"
+sed 's/"version": 8,/& "sprite": "vast",/; s/"line-width": 3/"line-pattern": "a"/' "$tmp/in/own.json" >"$tmp/in/pattern.json"
+expect 65 "a style whose sprite is too large" render --style "$tmp/in/pattern.json" -o a.png
+says '60000 x 60000 px; cut it'
 expect 0 "the built-in style by its name" render "$tiger" --style roads --theme dark -qo named.png --size 64x64
 expect 0 "the built-in style" render "$tiger" --theme dark -qo builtin.png --size 64x64
 cmp -s named.png builtin.png || fail "roads is not the built-in style"

@@ -268,7 +268,7 @@ int camber_input_project(camber_input *input) {
 void camber_input_warn_empty(const camber_input *input, const char *consequence) {
     if (camber_polylines_get_stats(camber_input_polylines(input)).polylines == 0)
         camber_report_warn(input->session->report, "%s; %s",
-                           input->features ? "nothing that the style draws is in the view" : "no polylines",
+                           input->features ? "no line that the style draws is in the view" : "no polylines",
                            consequence);
 }
 

@@ -34,7 +34,7 @@ void camber_input_close(camber_input *input);
 
 /* Makes what the kernels read: projects a map, cleans polylines; again at every call. */
 int camber_input_project(camber_input *input);
-/* Warns where that is nothing: "nothing ... is in the view; " and what comes of it. */
+/* Warns where that is nothing: "no line ... is in the view; " and what comes of it. */
 void camber_input_warn_empty(const camber_input *input, const char *consequence);
 /* The parts, after camber_input_project and until the next. */
 const camber_polylines *camber_input_polylines(const camber_input *input);

@@ -90,12 +90,12 @@ int camber_report_status(camber_report *report, camber_status status) {
     switch (status) {
     case CAMBER_OK: return CAMBER_EXIT_DONE;
     case CAMBER_ERROR_ARGUMENT: exit_status = CAMBER_EXIT_USAGE; break;
-    case CAMBER_ERROR_INPUT: exit_status = CAMBER_EXIT_DATA; break;
+    case CAMBER_ERROR_INPUT:
+    case CAMBER_ERROR_LIMIT: exit_status = CAMBER_EXIT_DATA; break;
     case CAMBER_ERROR_NOT_FOUND: exit_status = CAMBER_EXIT_NO_INPUT; break;
     case CAMBER_ERROR_DEVICE: exit_status = CAMBER_EXIT_UNAVAILABLE; break;
     case CAMBER_ERROR_IO: exit_status = CAMBER_EXIT_IO; break;
-    case CAMBER_ERROR_MEMORY:
-    case CAMBER_ERROR_LIMIT: break;
+    case CAMBER_ERROR_MEMORY: break;
     }
     return camber_report_fail(report, exit_status, "%s", report->error[0] ? report->error : camber_status_name(status));
 }

@@ -29,7 +29,7 @@ static int draw(job *j) {
         status = camber_session_need(session, CAMBER_NEEDS_RENDERER);
     if (status != CAMBER_EXIT_DONE)
         return status;
-    camber_input_warn_empty(&j->input, "the picture is empty");
+    camber_input_warn_empty(&j->input, "the picture has none");
     camber_report_progress(session->report, "tessellating", -1);
     const double start_ms = camber_clock_ms();
     camber_status made = camber_mesh_create(session->device, session->renderer, &j->mesh);

@@ -59,8 +59,6 @@ static bool read_known(camber_document *d, const camber_property_row *row, json_
     if (is_default(row, json))
         return true;
     c->style->directed |= row->directed;
-    if (row->not_drawn && layer->visible && camber_document_first_time(d, row->property.name))
-        camber_compiler_warn(c, "%s is not drawn; %s", row->property.name, row->not_drawn);
     return true;
 }
 

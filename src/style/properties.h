@@ -10,7 +10,6 @@ typedef struct camber_property_row {
     bool directed;           /* follows its line's direction */
     bool needs_line_metrics; /* of its source */
     size_t offset;           /* into camber_layer_paint, where it has its type's form. CAMBER_NO_OFFSET: not there */
-    const char *not_drawn;   /* how the layer is drawn meanwhile. NULL: with it */
     camber_property property;
 } camber_property_row;
 

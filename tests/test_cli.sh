@@ -578,7 +578,7 @@ sed 's/line.geojson/none.geojson/' "$tmp/in/own.json" >"$tmp/in/gone.json"
 expect 66 "a style whose source is not there" render --style "$tmp/in/gone.json" -o a.png
 sed 's|line.geojson|https://example.org/a.geojson|' "$tmp/in/own.json" >"$tmp/in/url.json"
 expect 65 "a style whose source is elsewhere" render --style "$tmp/in/url.json" -o a.png
-says 'example.org'
+says '/url.json: /sources/s: https://example.org'
 # A sprite that says it is 60000 x 60000 px, with no pixels.
 printf '\211PNG\r\n\032\n\0\0\0\rIHDR\0\0\352`\0\0\352`\b\006\0\0\0\200\322uB\0\0\0\0IDAT5\257\006\036\0\0\0\0IEND\256B`\202' >"$tmp/in/vast.png"
 echo '{"a": {"x": 0, "y": 0, "width": 60000, "height": 60000, "pixelRatio": 1}}' >"$tmp/in/vast.json"

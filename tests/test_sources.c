@@ -358,7 +358,8 @@ static void test_damaged_tiles(void **state) {
 static void expect_error(fixture *it, camber_status expected, const char *source, const char *word) {
     const camber_view_desc view = view_at(1.0, 1.0, 1.0, 1, 64, 64);
     const camber_status status = read_view(it, source, LINES, &view);
-    if (status != expected || it->errors != 1 || !strstr(it->error, "\"s\"") || !strstr(it->error, word))
+    if (status != expected || it->errors != 1 ||
+        !(strstr(it->error, "\"s\"") || strstr(it->error, "style.json: /sources/s: ")) || !strstr(it->error, word))
         fail_msg("%s: %s: %s", source, camber_status_name(status), it->error);
     assert_int_equal(it->features->polyline_count, 0);
     assert_int_equal(it->features->feature_count, 0);
@@ -385,11 +386,15 @@ static void test_errors(void **state) {
                  "network");
     write_text(it, "bad.json", "{\"type\": \"FeatureCollection\",\n \"features\": [}");
     expect_error(it, CAMBER_ERROR_INPUT, "\"s\": {\"type\": \"geojson\", \"data\": \"bad.json\"}", "line 2");
+    write_text(it, "lone.json", "{\"tilejson\": \"3.0.0\"}");
     /* Files that are not there, or no sets of tiles, are named. */
     const camber_view_desc view = view_at(1.0, 1.0, 1.0, 1, 64, 64);
     assert_int_equal(read_view(it, "\"s\": {\"type\": \"geojson\", \"data\": \"none.json\"}", LINES, &view),
                      CAMBER_ERROR_NOT_FOUND);
     assert_non_null(strstr(it->error, "none.json"));
+    assert_int_equal(read_view(it, "\"s\": {\"type\": \"vector\", \"url\": \"lone.json\"}", LINES, &view),
+                     CAMBER_ERROR_INPUT);
+    assert_non_null(strstr(it->error, "/lone.json: no \"tiles\""));
     assert_int_equal(read_view(it, "\"s\": {\"type\": \"vector\", \"url\": \"mbtiles://none.mbtiles\"}", LINES, &view),
                      CAMBER_ERROR_NOT_FOUND);
     write_text(it, "bad.mbtiles",

@@ -11,6 +11,7 @@ typedef struct source {
     const camber_style_source *style;
     uint32_t index;
     char what[160];       /* source "name" */
+    char place[1024];     /* STYLE: /sources/name, for what is wrong there */
     camber_tile_set *set; /* of a vector source */
     bool is_bounded;      /* the document has bounds: no tiles lie outside */
     double bounds[4];     /* world coordinates; x0 > x1: not known */
@@ -67,13 +68,13 @@ static camber_status read_geojson(camber_sources *sources, source *one) {
     camber_status status = CAMBER_OK;
     if (json_is_string(data)) {
         camber_url url = {0};
-        status = camber_url_resolve(context, one->what, json_string_value(data), sources->desc.base_path, &url);
+        status = camber_url_resolve(context, one->place, json_string_value(data), sources->desc.base_path, &url);
         if (status == CAMBER_OK)
             status = load_json(context, one->what, url.path, &loaded);
         camber_free(context, url.path);
     } else if (!json_is_object(data)) {
         status = camber_fail(context, CAMBER_ERROR_INPUT, "%s: no \"data\"; write GeoJSON, or the path of a file",
-                             one->what);
+                             one->place);
     }
     camber_geojson_stats stats = {0};
     const camber_geojson_desc desc = {.what = one->what, .root = loaded ? loaded : data, .source = one->style};
@@ -100,15 +101,18 @@ static camber_status open_archive(camber_sources *sources, source *one, const ca
                        "%s: %s ends neither in .mbtiles nor in .pmtiles; rename it", one->what, url->path);
 }
 
+/* about: of the style, or of the TileJSON file at base_path. */
 static camber_status open_template(camber_sources *sources, source *one, const json_t *about, const char *base_path) {
+    const bool is_style = base_path == sources->desc.base_path;
+    const char *place = is_style ? one->place : base_path;
     const char *text = json_string_value(json_array_get(json_object_get(about, "tiles"), 0));
     const char *scheme = json_string_value(json_object_get(about, "scheme"));
     camber_url url = {0};
     if (!text)
         return camber_fail(sources->context, CAMBER_ERROR_INPUT,
-                           "%s: neither \"url\" nor \"tiles\"; write \"tiles\": [\"tiles/{z}/{x}/{y}.mvt\"]",
-                           one->what);
-    camber_status status = camber_url_resolve(sources->context, one->what, text, base_path, &url);
+                           "%s: no %s\"tiles\" that names any; write \"tiles\": [\"tiles/{z}/{x}/{y}.mvt\"]", place,
+                           is_style ? "\"url\" and no " : "");
+    camber_status status = camber_url_resolve(sources->context, place, text, base_path, &url);
     if (status == CAMBER_OK && url.kind != CAMBER_URL_FILE) {
         status = open_archive(sources, one, &url);
     } else if (status == CAMBER_OK) {
@@ -153,7 +157,7 @@ static camber_status open_vector(camber_sources *sources, source *one) {
     camber_url url = {0};
     camber_status status = about ? CAMBER_OK : camber_fail(context, CAMBER_ERROR_MEMORY, "out of memory for a source");
     if (status == CAMBER_OK && text)
-        status = camber_url_resolve(context, one->what, text, sources->desc.base_path, &url);
+        status = camber_url_resolve(context, one->place, text, sources->desc.base_path, &url);
     if (status != CAMBER_OK)
         goto done;
     if (!text)
@@ -212,6 +216,18 @@ static camber_status open_source(camber_sources *sources, source *one) {
     return CAMBER_OK;
 }
 
+static void write_place(source *one, const char *base_path) {
+    snprintf(one->place, sizeof one->place, "%.800s: /sources/", base_path ? base_path : "style");
+    size_t used = strlen(one->place);
+    for (const char *c = one->style->name; *c && used + 3 < sizeof one->place; c++) {
+        const bool is_escaped = *c == '~' || *c == '/';
+        one->place[used++] = is_escaped ? '~' : *c;
+        if (is_escaped)
+            one->place[used++] = *c == '~' ? '0' : '1';
+    }
+    one->place[used] = 0;
+}
+
 camber_status camber_sources_open(camber_features *features, const camber_sources_desc *desc,
                                   camber_sources **sources) {
     camber_context *context = features->context;
@@ -230,6 +246,7 @@ camber_status camber_sources_open(camber_features *features, const camber_source
         source *one = &made->items[made->count++];
         *one = (source){.style = &style->sources[i], .index = i, .bounds = {1, 1, 0, 0}};
         snprintf(one->what, sizeof one->what, "source \"%s\"", style->sources[i].name);
+        write_place(one, desc->base_path);
         status = open_source(made, one);
     }
     features->times.file_ms += camber_now_ms() - start_ms;

@@ -254,6 +254,65 @@ static void test_alphas_keep_order(void **state) {
     scene_free(&lines);
 }
 
+enum { STRIPES = 63 };
+
+/* Stripes of the alphas that their rows have, in turn, and a line of the first row down over all of them; the calls
+ * that they take. */
+static size_t draw_stripes(studio *s, const camber_paint *paints, size_t rows, picture *p) {
+    camber_stroke strokes[STRIPES];
+    scene lines = {0};
+    for (size_t i = 0; i < rows; i++)
+        strokes[i] = (camber_stroke){.width_px = 1};
+    for (size_t i = 0; i < STRIPES; i++)
+        line(&lines, i % rows, 0, 0.5 + (double)i, 64, 0.5 + (double)i);
+    line(&lines, 0, 40.5, 0, 40.5, 64);
+    camber_mesh *mesh = make_mesh(s, &lines, strokes, rows, CAMBER_METHOD_STRIP);
+    const camber_pass pass = {.mesh = mesh, .paints = paints, .paint_count = rows};
+    const camber_frame frame = {.width = 64, .height = 64, .passes = &pass, .pass_count = 1};
+    camber_frame_stats stats;
+    *p = draw(s, &pass, 1);
+    assert_int_equal(camber_render(studio_any(s), &frame, NULL, NULL, &stats), CAMBER_OK);
+    camber_mesh_destroy(mesh);
+    scene_free(&lines);
+    return stats.draw_calls;
+}
+
+/* Alphas that change with every line take a layer each, not one a line; the faintest lies lowest. */
+static void test_alphas_in_turn(void **state) {
+    studio *s = *state;
+    static const camber_paint paints[] = {{.width_px = 1, .color = {1, 0, 0, 0.25f}},
+                                          {.width_px = 1, .color = {0, 1, 0, 1}},
+                                          {.width_px = 1, .color = {0, 0, 1, 0.5f}}};
+    picture p;
+    assert_in_range(draw_stripes(s, paints, 3, &p), 3, 5);
+    for (uint32_t i = 0; i < STRIPES; i++) {
+        const camber_color c = paints[i % 3].color;
+        const float wanted[4] = {c.r * c.a, c.g * c.a, c.b * c.a, c.a};
+        for (int k = 0; k < 4; k++) {
+            assert_value(&p, 20, i, k, (double)wanted[k]);
+            /* The line down is of one layer with its like, and lies below the others. */
+            const double below = i % 3 == 0 ? 0.0 : 0.25 * (1.0 - (double)c.a);
+            assert_value(&p, 40, i, k, (double)wanted[k] + (k == 0 || k == 3 ? below : 0.0));
+        }
+    }
+    picture_free(&p);
+}
+
+/* Past a number of alphas one layer has them all, and the line that is drawn last hides what lies below it there. */
+static void test_many_alphas(void **state) {
+    studio *s = *state;
+    camber_paint paints[STRIPES];
+    for (size_t i = 0; i < STRIPES; i++)
+        paints[i] = (camber_paint){.width_px = 1, .color = {1, 1, 1, (float)(i + 1) / (STRIPES + 1)}};
+    picture p;
+    assert_in_range(draw_stripes(s, paints, STRIPES, &p), 1, 2);
+    for (uint32_t i = 0; i < STRIPES; i++) {
+        assert_value(&p, 20, i, 3, (double)paints[i].color.a);
+        assert_value(&p, 40, i, 3, (double)paints[0].color.a);
+    }
+    picture_free(&p);
+}
+
 /* ---- Paints ---- */
 
 static void test_paints_that_draw_nothing(void **state) {
@@ -521,7 +580,8 @@ int main(void) {
         cmocka_unit_test(test_rectangles),         cmocka_unit_test(test_coverages),
         cmocka_unit_test(test_united_edges),       cmocka_unit_test(test_without_half_floats),
         cmocka_unit_test(test_flatten_is_even),    cmocka_unit_test(test_colors_of_one_run),
-        cmocka_unit_test(test_alphas_keep_order),  cmocka_unit_test(test_paints_that_draw_nothing),
+        cmocka_unit_test(test_alphas_keep_order),  cmocka_unit_test(test_alphas_in_turn),
+        cmocka_unit_test(test_many_alphas),        cmocka_unit_test(test_paints_that_draw_nothing),
         cmocka_unit_test(test_some_rows),          cmocka_unit_test(test_thousands_of_rows),
         cmocka_unit_test(test_casing_and_fill),    cmocka_unit_test(test_polyline_range),
         cmocka_unit_test(test_mesh_changes),       cmocka_unit_test(test_row_past_the_paints),

@@ -84,10 +84,13 @@ static bool has_numbered_tables(const camber_mesh *mesh, const camber_piece *pie
     return mesh->mesh_info.strips || piece->pitched;
 }
 
-static bool has_room(const camber_renderer *renderer, const camber_mesh *mesh, const camber_piece *piece) {
+static bool has_room(const camber_renderer *renderer, const camber_run *run, const camber_piece *piece) {
+    const camber_mesh *mesh = run->pass->mesh;
     const size_t tables = renderer->batch.table_count + 1;
+    const size_t tail_texels = renderer->tail_count + camber_tail_need(run->pass);
     const unsigned bits = has_numbered_tables(mesh, piece) ? vertex_bits(mesh, piece->pitched) : 0;
-    return tables * mesh->row_count <= ROWS_MAX && camber_renderer_holds_rows(renderer, tables * mesh->row_count) &&
+    return tables * mesh->row_count <= ROWS_MAX &&
+           camber_renderer_holds_rows(renderer, tables * mesh->row_count, tail_texels) &&
            tables <= (size_t)1 << (31 - bits);
 }
 
@@ -104,7 +107,7 @@ camber_status camber_batch_add(camber_renderer *renderer, const camber_run *run,
     const bool same_mesh = batch->table_count == 0 || batch->mesh == mesh;
     const bool same_table = batch->table_count && same_mesh && batch->pass == run->pass;
     camber_status status = CAMBER_OK;
-    if (!same_mesh || (!same_table && batch->table_count && !has_room(renderer, mesh, piece)))
+    if (!same_mesh || (!same_table && batch->table_count && !has_room(renderer, run, piece)))
         status = camber_batch_draw(renderer, 0, piece);
     if (status == CAMBER_OK && !same_table)
         status = camber_renderer_reserve_rows(renderer, (batch->table_count + 1) * mesh->row_count);

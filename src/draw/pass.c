@@ -119,35 +119,110 @@ static bool is_translucent(const camber_ramp *ramp) {
     return false;
 }
 
+/* The paints that a run has met so far. */
+typedef struct run_maker {
+    camber_run run;
+    const camber_ramp *known; /* the last one looked at */
+    bool met;
+} run_maker;
+
+static run_maker make_run(const camber_pass *pass, size_t first, size_t end) {
+    return (run_maker){
+        .run = {.pass = pass, .first = first, .end = end, .alpha = 1.0f, .opacity = 1.0f, .one_color = true}};
+}
+
+static void meet(run_maker *made, const camber_paint *paint) {
+    camber_run *run = &made->run;
+    const camber_pass *pass = run->pass;
+    const bool layered = pass->overlap != CAMBER_OVERLAP_ACCUMULATE;
+    if (!made->met) {
+        run->alpha = layered ? paint->color.a : 1.0f;
+        run->color = paint->color;
+    }
+    run->one_color = run->one_color && same_color(paint->color, run->color) && !paint->ramp && !paint->pattern;
+    run->bands |= bands_of(paint);
+    if (layered && paint->ramp && !run->masked && pass->ramps + paint->ramp - 1 != made->known) {
+        made->known = pass->ramps + paint->ramp - 1;
+        run->masked = is_translucent(made->known);
+    }
+    made->met = true;
+}
+
+static camber_run end_run(run_maker *made) {
+    camber_run *run = &made->run;
+    if (!made->met)
+        run->alpha = 0.0f; /* nothing to draw */
+    run->layered = run->alpha < 1.0f || run->masked || (run->pass->overlap == CAMBER_OVERLAP_UNITE && run->one_color);
+    run->one_alpha |= run->layered;
+    return *run;
+}
+
 camber_run camber_pass_next_run(const camber_pass *pass, size_t first, size_t end) {
     const uint32_t *rows = pass->mesh->polyline_rows;
     const bool layered = pass->overlap != CAMBER_OVERLAP_ACCUMULATE;
-    camber_run run = {.pass = pass, .first = first, .end = first, .alpha = 1.0f, .opacity = 1.0f, .one_color = true};
-    const camber_ramp *known = NULL;
-    bool met = false;
-    for (; run.end < end; run.end++) {
-        if (!camber_pass_draws(pass, rows[run.end]))
+    run_maker made = make_run(pass, first, first);
+    for (; made.run.end < end; made.run.end++) {
+        const uint32_t row = rows[made.run.end];
+        if (!camber_pass_draws(pass, row))
             continue;
-        const camber_paint *paint = pass->paints + rows[run.end];
-        const camber_color color = paint->color;
-        if (met && layered && color.a != run.alpha)
+        if (made.met && layered && pass->paints[row].color.a != made.run.alpha)
             break;
-        if (!met) {
-            run.alpha = layered ? color.a : 1.0f;
-            run.color = color;
-        }
-        run.one_color = run.one_color && same_color(color, run.color) && !paint->ramp && !paint->pattern;
-        run.bands |= bands_of(paint);
-        if (layered && paint->ramp && !run.masked && pass->ramps + paint->ramp - 1 != known) {
-            known = pass->ramps + paint->ramp - 1;
-            run.masked = is_translucent(known);
-        }
-        met = true;
+        meet(&made, pass->paints + row);
     }
-    if (!met)
-        run.alpha = 0.0f; /* nothing to draw */
-    run.layered = run.alpha < 1.0f || run.masked || (pass->overlap == CAMBER_OVERLAP_UNITE && run.one_color);
-    return run;
+    return end_run(&made);
+}
+
+/* ---- Alphas that change from line to line ---- */
+
+/* A layer costs as much as all of its pixels: so many a pass, in the order of lines or an alpha each. */
+enum { LAYERS_MAX = 32, ALPHAS_MAX = 16 };
+
+typedef struct alpha_list {
+    float values[ALPHAS_MAX]; /* ascending */
+    size_t count;
+    bool more; /* than these */
+} alpha_list;
+
+static bool changes_often(const camber_pass *pass, size_t end) {
+    size_t first = pass->first_polyline, layers = 0;
+    while (first < end && layers <= LAYERS_MAX) {
+        const camber_run run = camber_pass_next_run(pass, first, end);
+        layers += run.layered && run.alpha > 0.0f;
+        first = run.end;
+    }
+    return layers > LAYERS_MAX;
+}
+
+static void add_alpha(alpha_list *alphas, float alpha) {
+    size_t at = 0;
+    while (at < alphas->count && alphas->values[at] < alpha)
+        at++;
+    if (at < alphas->count && alphas->values[at] <= alpha)
+        return;
+    if (alphas->count == ALPHAS_MAX) {
+        alphas->more = true;
+        return;
+    }
+    for (size_t i = alphas->count++; i > at; i--)
+        alphas->values[i] = alphas->values[i - 1];
+    alphas->values[at] = alpha;
+}
+
+/* The polylines of one alpha, or all of them, each with its own. */
+static camber_run choose(const camber_pass *pass, size_t end, const float *alpha) {
+    const uint32_t *rows = pass->mesh->polyline_rows;
+    run_maker made = make_run(pass, pass->first_polyline, end);
+    made.run.one_alpha = alpha != NULL;
+    for (size_t i = pass->first_polyline; i < end; i++)
+        if (camber_pass_draws(pass, rows[i]) && (!alpha || pass->paints[rows[i]].color.a == *alpha))
+            meet(&made, pass->paints + rows[i]);
+    if (!alpha) {
+        made.run.alpha = 1.0f;
+        made.run.one_color = false;
+        made.run.masked = made.run.layered = true;
+        return made.run;
+    }
+    return end_run(&made);
 }
 
 static camber_status draw_run(camber_renderer *renderer, const camber_run *run, const camber_piece *piece) {
@@ -159,9 +234,32 @@ static camber_status draw_run(camber_renderer *renderer, const camber_run *run, 
     return status == CAMBER_OK ? draw_layered(renderer, run, piece) : status;
 }
 
+/* Where alphas change too often to keep the order of lines: a layer an alpha, the faintest lowest, or one for all, in
+ * which a line hides those below it. */
+static camber_status draw_by_alpha(camber_renderer *renderer, const camber_pass *pass, size_t end,
+                                   const camber_piece *piece) {
+    const uint32_t *rows = pass->mesh->polyline_rows;
+    alpha_list alphas = {.count = 0};
+    for (size_t i = pass->first_polyline; i < end && !alphas.more; i++)
+        if (camber_pass_draws(pass, rows[i]))
+            add_alpha(&alphas, pass->paints[rows[i]].color.a);
+    if (alphas.more) {
+        const camber_run all = choose(pass, end, NULL);
+        return draw_run(renderer, &all, piece);
+    }
+    camber_status status = CAMBER_OK;
+    for (size_t i = 0; i < alphas.count && status == CAMBER_OK; i++) {
+        const camber_run run = choose(pass, end, &alphas.values[i]);
+        status = draw_run(renderer, &run, piece);
+    }
+    return status;
+}
+
 static camber_status draw_runs(camber_renderer *renderer, const camber_pass *pass, size_t end,
                                const camber_piece *piece) {
     camber_status status = CAMBER_OK;
+    if (changes_often(pass, end))
+        return draw_by_alpha(renderer, pass, end, piece);
     for (size_t first = pass->first_polyline; first < end && status == CAMBER_OK;) {
         const camber_run run = camber_pass_next_run(pass, first, end);
         first = run.end;
@@ -176,7 +274,7 @@ static camber_status draw_group(camber_renderer *renderer, const camber_pass *pa
     camber_run run = camber_pass_next_run(pass, pass->first_polyline, end);
     if (run.end == end && pass->overlap != CAMBER_OVERLAP_ACCUMULATE) {
         run.opacity = pass->opacity;
-        run.layered = true;
+        run.layered = run.one_alpha = true;
         return draw_run(renderer, &run, piece);
     }
     camber_piece group = *piece;

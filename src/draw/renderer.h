@@ -77,7 +77,8 @@ typedef struct camber_run {
     float opacity;     /* of its layer, besides */
     bool one_color;    /* its layer holds coverage alone, and color is put over it */
     bool layered;
-    bool masked; /* a ramp has translucent colours */
+    bool one_alpha; /* lines of other alphas are not drawn; else those of a layer have their own */
+    bool masked;    /* a ramp has translucent colours, or lines of many alphas do */
     camber_color color;
     unsigned bands; /* CAMBER_VARIANT_GAP and what follows it, where a paint has them */
 } camber_run;
@@ -236,7 +237,7 @@ camber_status camber_covered_begin(camber_renderer *renderer, const camber_frame
 camber_status camber_covered_end(camber_renderer *renderer, camber_flight *flight, camber_rows_fn *rows, void *user);
 
 /* rows.c: the row texture. */
-bool camber_renderer_holds_rows(const camber_renderer *renderer, size_t row_count);
+bool camber_renderer_holds_rows(const camber_renderer *renderer, size_t row_count, size_t tail_texels);
 camber_status camber_renderer_reserve_rows(camber_renderer *renderer, size_t row_count);
 /* A run's table: rows of other alphas are left out, and a layer's rows are drawn opaque. */
 camber_status camber_renderer_fill_rows(camber_renderer *renderer, const camber_run *run, size_t table);
@@ -245,6 +246,8 @@ camber_status camber_renderer_upload_rows(camber_renderer *renderer, size_t row_
 GLint camber_renderer_tail(size_t row_count);
 void camber_tail_forget(camber_renderer *renderer);
 /* Puts a paint's dash or ramp into the tail, and into a texel of its row where that is. */
+/* Texels that the pass's dashes and ramps may take. */
+size_t camber_tail_need(const camber_pass *pass);
 camber_status camber_tail_put_dash(camber_renderer *renderer, const camber_pass *pass, uint32_t row, float texel[4]);
 camber_status camber_tail_put_ramp(camber_renderer *renderer, const camber_ramp *ramp, float texel[2]);
 /* Whether a dash, a ramp is one that camber.h allows. */

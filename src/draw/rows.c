@@ -10,9 +10,9 @@ enum { ROW_TEXTURE_WIDTH = 2048, TEXELS_A_ROW = CAMBER_TEXELS_A_ROW }; /* the wi
 /* Progress that no line has. */
 static const float FAR_BEYOND = 1e9f;
 
-bool camber_renderer_holds_rows(const camber_renderer *renderer, size_t row_count) {
+bool camber_renderer_holds_rows(const camber_renderer *renderer, size_t row_count, size_t tail_texels) {
     const size_t texels = (size_t)ROW_TEXTURE_WIDTH * renderer->share.surface->info.largest_target_px;
-    return row_count <= texels / TEXELS_A_ROW;
+    return tail_texels <= texels && row_count <= (texels - tail_texels) / TEXELS_A_ROW;
 }
 
 /* What is trimmed at an end of the line takes its cap as well. */
@@ -30,9 +30,9 @@ camber_status camber_renderer_fill_rows(camber_renderer *renderer, const camber_
         float *texel = texels + 4 * TEXELS_A_ROW * i;
         memset(texel, 0, 4 * TEXELS_A_ROW * sizeof *texel);
         texel[0] = -1.0f;
-        if (!camber_pass_draws(pass, (uint32_t)i) || (run->layered && paint->color.a != run->alpha))
+        if (!camber_pass_draws(pass, (uint32_t)i) || (run->one_alpha && paint->color.a != run->alpha))
             continue;
-        const float alpha = run->layered ? 1.0f : paint->color.a;
+        const float alpha = run->layered && run->one_alpha ? 1.0f : paint->color.a;
         const bool image = paint->pattern != 0;
         const float color[4] = {image ? alpha : paint->color.r * alpha, image ? alpha : paint->color.g * alpha,
                                 image ? alpha : paint->color.b * alpha, alpha};

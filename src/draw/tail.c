@@ -37,6 +37,11 @@ bool camber_dash_is_valid(const camber_dash *dash) {
     return period > 0.0 && period <= (double)FLT_MAX;
 }
 
+/* Of the texture, with one more before and behind. */
+static size_t dash_texels(const camber_dash *dash) {
+    return (dash->count % 2 ? dash->count : dash->count / 2) + 2;
+}
+
 static void put_dash(camber_renderer *renderer, double from, double to) {
     float *texel = renderer->tail_texels + 4 * renderer->tail_count++;
     texel[0] = (float)from;
@@ -51,7 +56,7 @@ camber_status camber_tail_put_dash(camber_renderer *renderer, const camber_pass 
     const camber_dash *dash = pass->dashes + paint->dash - 1;
     const bool round = pass->mesh->host_rows[row].cap == CAMBER_CAP_ROUND;
     const double unit_px = paint->dash_unit_px > 0.0f ? (double)paint->dash_unit_px : 1.0;
-    const size_t lengths = dash->count * (dash->count % 2 ? 2 : 1), count = lengths / 2 + 2;
+    const size_t lengths = dash->count * (dash->count % 2 ? 2 : 1), count = dash_texels(dash);
     const double period = period_of(dash) * unit_px;
     const double left_out = (double)dash->lengths[(lengths - 1) % dash->count] * unit_px;
     double at = 0.0;
@@ -84,6 +89,15 @@ bool camber_ramp_is_valid(const camber_ramp *ramp) {
         before = stop->place;
     }
     return true;
+}
+
+size_t camber_tail_need(const camber_pass *pass) {
+    size_t texels = 0;
+    for (size_t i = 0; i < pass->ramp_count; i++)
+        texels += 2 * pass->ramps[i].count;
+    for (size_t i = 0; i < pass->paint_count && pass->dashes; i++)
+        texels += pass->paints[i].dash ? dash_texels(pass->dashes + pass->paints[i].dash - 1) : 0;
+    return texels;
 }
 
 /* Where the ramp lies, if it is there: rows that follow each other mostly have the same. */

@@ -208,19 +208,46 @@ static camber_paint paint_of(const camber_plan_layer *layer, const camber_layer_
                           .ramp = layer->ramp};
 }
 
-/* The number of a dash among the plan's, from 1; 0 where memory ran out. Styles have few. */
-static uint32_t intern_dash(camber_plan *plan, const camber_layer_dashes *dashes) {
-    for (size_t i = 0; i < plan->dash_count; i++) {
-        const camber_layer_dashes *other = plan->dash_lengths + i;
-        if (other->count == dashes->count &&
-            memcmp(other->lengths, dashes->lengths, dashes->count * sizeof *dashes->lengths) == 0)
-            return (uint32_t)i + 1;
+static size_t dash_slot(const camber_plan *plan, const camber_layer_dashes *dashes) {
+    const size_t size_bytes = dashes->count * sizeof *dashes->lengths;
+    const uint64_t hash = camber_hash(CAMBER_HASH_START, dashes->lengths, size_bytes);
+    size_t at = (size_t)(hash ^ hash >> 32) & (plan->dash_slot_count - 1);
+    for (; plan->dash_slots[at]; at = (at + 1) & (plan->dash_slot_count - 1)) {
+        const camber_layer_dashes *other = plan->dash_lengths + plan->dash_slots[at] - 1;
+        if (other->count == dashes->count && memcmp(other->lengths, dashes->lengths, size_bytes) == 0)
+            break;
     }
+    return at;
+}
+
+/* At most half of the slots are in use. */
+static bool grow_dash_slots(camber_plan *plan) {
+    if (plan->dash_slot_count > 2 * plan->dash_count)
+        return true;
+    const size_t count = plan->dash_slot_count ? 2 * plan->dash_slot_count : 16;
+    uint32_t *slots = camber_alloc_zero(plan->context, count, sizeof *slots);
+    if (!slots)
+        return false;
+    camber_free(plan->context, plan->dash_slots);
+    plan->dash_slots = slots;
+    plan->dash_slot_count = count;
+    for (size_t i = 0; i < plan->dash_count; i++)
+        slots[dash_slot(plan, plan->dash_lengths + i)] = (uint32_t)i + 1;
+    return true;
+}
+
+/* The number of a dash among the plan's, from 1; 0 where memory ran out. */
+static uint32_t intern_dash(camber_plan *plan, const camber_layer_dashes *dashes) {
+    if (!grow_dash_slots(plan))
+        return 0;
+    uint32_t *slot = plan->dash_slots + dash_slot(plan, dashes);
+    if (*slot)
+        return *slot;
     if (!camber_grow(plan->context, &plan->dash_lengths, &plan->dash_capacity, plan->dash_count + 1,
                      sizeof *plan->dash_lengths))
         return 0;
     plan->dash_lengths[plan->dash_count++] = *dashes;
-    return (uint32_t)plan->dash_count;
+    return *slot = (uint32_t)plan->dash_count;
 }
 
 /* What passes take, once the lengths stay where they are. */
@@ -424,6 +451,7 @@ void camber_plan_destroy(camber_plan *plan) {
     camber_free(plan->context, plan->ramps);
     camber_plan_patterns_free(&plan->patterns);
     camber_free(plan->context, plan->dashes);
+    camber_free(plan->context, plan->dash_slots);
     camber_free(plan->context, plan->dash_lengths);
     camber_free(plan->context, plan->entries);
     camber_free(plan->context, plan->pair_keys);

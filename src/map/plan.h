@@ -55,6 +55,8 @@ typedef struct camber_plan {
     camber_layer_dashes *dash_lengths; /* dash_count */
     camber_dash *dashes;               /* dash_count, of them */
     size_t dash_count, dash_capacity;
+    uint32_t *dash_slots; /* their numbers, hashed; dash_slot_count is a power of two */
+    size_t dash_slot_count;
     camber_ramp *ramps; /* ramp_count: the style's */
     size_t ramp_count;
     bool measured;       /* a paint has what lies along its lines */

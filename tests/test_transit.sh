@@ -71,3 +71,13 @@ PY
 if cmp -s lines.png dark.png; then echo "the themes are the same"; exit 1; fi
 if python3 "$script" 2>"$folder/log"; then echo "no file is no error"; exit 1; fi
 grep -q 'osmium tags-filter' "$folder/log"
+printf 'no XML\211' >text.osm
+mkdir folder.osm
+for file in none.osm text.osm folder.osm; do
+    status=0
+    python3 "$script" $file >/dev/null 2>log || status=$?
+    if [ "$status" != 1 ] || [ "$(wc -l <log)" != 1 ] || ! grep -q "^$file: .*; " log; then
+        echo "$file: exit status $status: $(cat log)"
+        exit 1
+    fi
+done

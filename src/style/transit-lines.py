@@ -289,7 +289,14 @@ def features(ways, routes):
 def main():
     if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
         sys.exit(__doc__)
-    json.dump({"type": "FeatureCollection", "features": list(features(*read(sys.argv[1])))}, sys.stdout,
+    path = sys.argv[1]
+    try:
+        ways, routes = read(path)
+    except OSError as error:
+        sys.exit(f"{path}: cannot be read: {error.strerror}; check the path and its permissions")
+    except (xml.ParseError, TypeError, ValueError) as error:
+        sys.exit(f"{path}: no OpenStreetMap XML: {error}; make it with osmium tags-filter ... -f osm")
+    json.dump({"type": "FeatureCollection", "features": list(features(ways, routes))}, sys.stdout,
               ensure_ascii=False, separators=(",", ":"))
 
 

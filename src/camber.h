@@ -352,9 +352,8 @@ typedef struct camber_tessellation_desc {
     size_t stroke_count;
     camber_method method;
     float fan_tolerance_px; /* farthest that a fan's chord lies from its arc, up to 64 chords a half turn. 0: 0.25 */
-    bool measured; /* records say how far along their polyline they lie, as dashes, trims and ramps need it: 32 bytes a
-                    * record
-                    */
+    bool measured; /* records say how far along their polyline they lie, as dashes, trims, ramps and patterns need it:
+                    * 32 bytes a record */
 } camber_tessellation_desc;
 
 /* How far the geometry reaches past the stroke's edge, so that every pixel an edge touches is shaded: exact
@@ -618,9 +617,11 @@ typedef struct camber_frame_stats {
 typedef bool camber_rows_fn(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count);
 
 /* Draws a frame and hands its rows over. rows may be NULL: the frame is drawn and finished, not read back.
- * stats may be NULL. Returns CAMBER_ERROR_ARGUMENT (a size out of range, a dash or a ramp that is none),
- * CAMBER_ERROR_DEVICE (a shader does not build, or the GL reported an error), CAMBER_ERROR_MEMORY, CAMBER_ERROR_IO
- * (rows returned false). */
+ * stats may be NULL. Returns CAMBER_ERROR_ARGUMENT (a size or a pitch out of range, a dash, a ramp or an image that is
+ * none, dashes, ramps, trims or patterns of a mesh that is not measured, or what CAMBER_DRAW_CL does not draw),
+ * CAMBER_ERROR_LIMIT (more rows of strokes and paints, or images of one pass, than textures hold), CAMBER_ERROR_DEVICE
+ * (a shader does not build, or the GL reported an error), CAMBER_ERROR_MEMORY, CAMBER_ERROR_IO (rows returned false).
+ */
 CAMBER_API camber_status camber_render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows,
                                        void *user, camber_frame_stats *stats);
 

@@ -137,7 +137,7 @@ mutant strip kernels/offset.cl "what is left of a neighbour" 'camber_span_of(&co
 
 mutant strip kernels/offset.h "to the other side" 'leg->ux * along - leg->uy * offset' 'leg->ux * along + leg->uy * offset'
 mutant strip kernels/offset.h "bends that hide nothing" 'return room;' 'return 0.0f;'
-mutant strip kernels/offset.h "lines that hide nothing" 'if (lo >= leg->length || hi <= 0.0f)' 'if (lo < leg->length)'
+mutant strip kernels/offset_spans.h "lines that hide nothing" 'if (lo >= leg->length || hi <= 0.0f)' 'if (lo < leg->length)'
 mutant strip kernels/offset.h "arcs of a single point" 'define CAMBER_ARC_POINTS_MAX 64u' 'define CAMBER_ARC_POINTS_MAX 1u'
 
 # ---- Join maths, which kernels and twin share: pixels tell ----

@@ -4,7 +4,7 @@
 
 #include "tess/tess.h"
 
-#include "kernels/offset.h"
+#include "kernels/offset_pieces.h"
 
 /* Whether a stroke has an offset. */
 bool camber_desc_has_offsets(const camber_tessellation_desc *desc);

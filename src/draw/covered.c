@@ -84,7 +84,7 @@ static camber_status refuse(camber_context *context) {
     return camber_fail(
         context, CAMBER_ERROR_ARGUMENT,
         "dashes, gaps, blur, trims, gradients, patterns, fills and pitch are not drawn in OpenCL yet; draw "
-        "with GL");
+        "with GL (--draw gl)");
 }
 
 static camber_status add_run(tables *t, const camber_run *run, camber_ink ink) {

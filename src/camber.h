@@ -555,9 +555,9 @@ typedef struct camber_fill {
 
 typedef enum camber_overlap {
     /* A translucent pass covers each pixel once, however often its lines cross it: coverage is gathered
-     * first and composited once. A run of polylines with equal alpha is flattened together. In
-     * GL, where that makes more than 32 layers of a pass, polylines of one alpha come together, the faintest lowest;
-     * where there are more than 16 alphas, one layer has them all, in which the last line alone is seen. */
+     * first and composited once. A run of polylines with equal alpha is flattened together.
+     * Where that makes more than 32 layers of a pass, polylines of one alpha come together, the faintest lowest; where
+     * there are more than 16 alphas, in GL one layer has them all, in which the last line alone is seen. */
     CAMBER_OVERLAP_FLATTEN = 0,
     CAMBER_OVERLAP_ACCUMULATE, /* overlaps of translucent lines darken */
     /* FLATTEN, and opaque runs of one colour are gathered and composited once as well. Where edges meet in a pixel, of

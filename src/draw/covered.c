@@ -61,7 +61,7 @@ static camber_status fill_table(tables *t, const camber_run *run, camber_ink ink
         uint32_t number = 0;
         memset(row, 0, CAMBER_COVER_ROW_WORDS * sizeof *row);
         row[0] = -1.0f;
-        if (!camber_pass_draws(pass, (uint32_t)i) || (run->layered && paint->color.a != run->alpha))
+        if (!camber_pass_draws(pass, (uint32_t)i) || (run->one_alpha && paint->color.a != run->alpha))
             continue;
         const camber_color color = united ? run->color : paint->color;
         ink.r = color.r;
@@ -114,17 +114,17 @@ static camber_status add_pass(tables *t, const camber_pass *pass) {
     camber_status status = CAMBER_OK;
     if (mesh->empty)
         return CAMBER_OK;
-    for (size_t first = pass->first_polyline; first < end && status == CAMBER_OK;) {
-        camber_run run = camber_pass_next_run(pass, first, end);
-        const bool alone = first == pass->first_polyline && run.end == end;
+    camber_runs runs = camber_runs_begin(pass, end, false);
+    camber_run run;
+    while (status == CAMBER_OK && camber_runs_next(&runs, &run)) {
+        const bool alone = !runs.by_alpha && run.first == pass->first_polyline && run.end == end;
         if (fades && alone && pass->overlap != CAMBER_OVERLAP_ACCUMULATE) {
             run.opacity = pass->opacity;
-            run.layered = true;
-        } else if (fades && first == pass->first_polyline) {
+            run.layered = run.one_alpha = true;
+        } else if (fades && ink.group == 0) {
             ink.group = ++t->layers;
             ink.group_opacity = pass->opacity;
         }
-        first = run.end;
         status = add_run(t, &run, ink);
     }
     return status;

@@ -175,13 +175,7 @@ camber_run camber_pass_next_run(const camber_pass *pass, size_t first, size_t en
 /* ---- Alphas that change from line to line ---- */
 
 /* A layer costs as much as all of its pixels: so many a pass, in the order of lines or an alpha each. */
-enum { LAYERS_MAX = 32, ALPHAS_MAX = 16 };
-
-typedef struct alpha_list {
-    float values[ALPHAS_MAX]; /* ascending */
-    size_t count;
-    bool more; /* than these */
-} alpha_list;
+enum { LAYERS_MAX = 32 };
 
 static bool changes_often(const camber_pass *pass, size_t end) {
     size_t first = pass->first_polyline, layers = 0;
@@ -193,13 +187,13 @@ static bool changes_often(const camber_pass *pass, size_t end) {
     return layers > LAYERS_MAX;
 }
 
-static void add_alpha(alpha_list *alphas, float alpha) {
+static void add_alpha(camber_alphas *alphas, float alpha) {
     size_t at = 0;
     while (at < alphas->count && alphas->values[at] < alpha)
         at++;
     if (at < alphas->count && alphas->values[at] <= alpha)
         return;
-    if (alphas->count == ALPHAS_MAX) {
+    if (alphas->count == CAMBER_ALPHAS_MAX) {
         alphas->more = true;
         return;
     }
@@ -225,6 +219,33 @@ static camber_run choose(const camber_pass *pass, size_t end, const float *alpha
     return end_run(&made);
 }
 
+camber_runs camber_runs_begin(const camber_pass *pass, size_t end, bool masks) {
+    camber_runs runs = {.pass = pass, .next = pass->first_polyline, .end = end};
+    if (!changes_often(pass, end))
+        return runs;
+    const uint32_t *rows = pass->mesh->polyline_rows;
+    for (size_t i = pass->first_polyline; i < end && !runs.alphas.more; i++)
+        if (camber_pass_draws(pass, rows[i]))
+            add_alpha(&runs.alphas, pass->paints[rows[i]].color.a);
+    runs.masked = runs.alphas.more && masks;
+    runs.by_alpha = !runs.alphas.more;
+    return runs;
+}
+
+bool camber_runs_next(camber_runs *runs, camber_run *run) {
+    if (runs->by_alpha) {
+        if (runs->alpha == runs->alphas.count)
+            return false;
+        *run = choose(runs->pass, runs->end, &runs->alphas.values[runs->alpha++]);
+        return true;
+    }
+    if (runs->next >= runs->end)
+        return false;
+    *run = runs->masked ? choose(runs->pass, runs->end, NULL) : camber_pass_next_run(runs->pass, runs->next, runs->end);
+    runs->next = run->end;
+    return true;
+}
+
 static camber_status draw_run(camber_renderer *renderer, const camber_run *run, const camber_piece *piece) {
     if (run->alpha <= 0.0f)
         return CAMBER_OK;
@@ -234,37 +255,13 @@ static camber_status draw_run(camber_renderer *renderer, const camber_run *run, 
     return status == CAMBER_OK ? draw_layered(renderer, run, piece) : status;
 }
 
-/* Where alphas change too often to keep the order of lines: a layer an alpha, the faintest lowest, or one for all, in
- * which a line hides those below it. */
-static camber_status draw_by_alpha(camber_renderer *renderer, const camber_pass *pass, size_t end,
-                                   const camber_piece *piece) {
-    const uint32_t *rows = pass->mesh->polyline_rows;
-    alpha_list alphas = {.count = 0};
-    for (size_t i = pass->first_polyline; i < end && !alphas.more; i++)
-        if (camber_pass_draws(pass, rows[i]))
-            add_alpha(&alphas, pass->paints[rows[i]].color.a);
-    if (alphas.more) {
-        const camber_run all = choose(pass, end, NULL);
-        return draw_run(renderer, &all, piece);
-    }
-    camber_status status = CAMBER_OK;
-    for (size_t i = 0; i < alphas.count && status == CAMBER_OK; i++) {
-        const camber_run run = choose(pass, end, &alphas.values[i]);
-        status = draw_run(renderer, &run, piece);
-    }
-    return status;
-}
-
 static camber_status draw_runs(camber_renderer *renderer, const camber_pass *pass, size_t end,
                                const camber_piece *piece) {
+    camber_runs runs = camber_runs_begin(pass, end, true);
+    camber_run run;
     camber_status status = CAMBER_OK;
-    if (changes_often(pass, end))
-        return draw_by_alpha(renderer, pass, end, piece);
-    for (size_t first = pass->first_polyline; first < end && status == CAMBER_OK;) {
-        const camber_run run = camber_pass_next_run(pass, first, end);
-        first = run.end;
+    while (status == CAMBER_OK && camber_runs_next(&runs, &run))
         status = draw_run(renderer, &run, piece);
-    }
     return status;
 }
 

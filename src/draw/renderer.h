@@ -229,6 +229,29 @@ void camber_patterns_release(camber_renderer *renderer, bool is_current);
 /* The longest run from a polyline on. Rows that are not drawn belong to any run. */
 camber_run camber_pass_next_run(const camber_pass *pass, size_t first, size_t end);
 
+enum { CAMBER_ALPHAS_MAX = 16 };
+
+typedef struct camber_alphas {
+    float values[CAMBER_ALPHAS_MAX]; /* ascending */
+    size_t count;
+    bool more; /* than these */
+} camber_alphas;
+
+/* The runs of a pass. Where alphas change too often to keep the order of lines, one an alpha, the faintest first; where
+ * there are too many alphas for that, one for all, in which a line hides those below it. */
+typedef struct camber_runs {
+    const camber_pass *pass;
+    size_t next, end; /* polylines */
+    bool by_alpha, masked;
+    camber_alphas alphas;
+    size_t alpha; /* the next one */
+} camber_runs;
+
+/* masks: whether one run can have lines of different alphas; else such a pass has its runs in the order of lines. */
+camber_runs camber_runs_begin(const camber_pass *pass, size_t end, bool masks);
+/* false: there is none any more. */
+bool camber_runs_next(camber_runs *runs, camber_run *run);
+
 /* covered.c: frames that kernels draw. */
 camber_status camber_covered_render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows,
                                     void *user, camber_frame_stats *stats);

@@ -108,6 +108,11 @@ CAMBER_FN camber_u32 camber_is_open_end(camber_u32 info) {
 
 /* ---- Legs ---- */
 
+/* Of a direction: 0 where two slots have one place, as they may where a camera sees a whole city in a pixel. */
+CAMBER_FN float camber_direction(float offset, float length) {
+    return length > 0.0f ? offset / length : 0.0f;
+}
+
 typedef struct camber_leg {
     float x, y; /* of its begin, px; not moved */
     float ux, uy, length;
@@ -119,8 +124,8 @@ CAMBER_FN camber_leg camber_leg_at(const camber_course *c, camber_u32 slot) {
     leg.y = c->y[slot];
     const float dx = c->x[slot + 1u] - leg.x, dy = c->y[slot + 1u] - leg.y;
     leg.length = CAMBER_SQRT(dx * dx + dy * dy);
-    leg.ux = dx / leg.length;
-    leg.uy = dy / leg.length;
+    leg.ux = camber_direction(dx, leg.length);
+    leg.uy = camber_direction(dy, leg.length);
     return leg;
 }
 
@@ -161,8 +166,8 @@ CAMBER_FN camber_bend camber_bend_at(const camber_course *c, camber_u32 slot, fl
     bend.s = turn.s;
     bend.in = CAMBER_SQRT(dx * dx + dy * dy);
     bend.out = CAMBER_SQRT(ex * ex + ey * ey);
-    bend.ix = dx / bend.in;
-    bend.iy = dy / bend.in;
+    bend.ix = camber_direction(dx, bend.in);
+    bend.iy = camber_direction(dy, bend.in);
     const float shorter = 2.0f * turn.half_shorter < reach ? 2.0f * turn.half_shorter : reach;
     const float aside = CAMBER_FABS(2.0f * turn.s * turn.c);
     const camber_u32 folds = turn.dot < 0.0f && aside < 0.05f && aside * shorter < 0.25f ? 1u : 0u;

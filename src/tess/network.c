@@ -306,15 +306,18 @@ static double offset_of(const camber_stroke *stroke) {
     return fmin(far * (stroke->join == CAMBER_JOIN_MITER ? fmax(limit, 1.1) : 1.1), fmax(far, LARGEST_REACH_PX));
 }
 
-/* Steps of the network, rounded outwards and bound to 32 bits. */
+/* Steps of the network, rounded outwards, down where by is below 0, and bound to 32 bits. What is too far or too small
+ * for a double is all of it. */
 static int32_t outwards(double offset, double step, double by) {
     const double steps = floor(offset / step) + by;
+    if (isnan(steps))
+        return by < 0.0 ? INT32_MIN : INT32_MAX;
     return steps <= (double)INT32_MIN ? INT32_MIN : steps >= (double)INT32_MAX ? INT32_MAX : (int32_t)steps;
 }
 
 static double origin_of(double offset, double step) {
     const double steps = floor(offset / step + 0.5);
-    return steps <= 0.0 ? 0.0 : steps >= STEPS ? STEPS : steps;
+    return !(steps > 0.0) ? 0.0 : steps >= STEPS ? STEPS : steps;
 }
 
 static double bound_px(double px) {

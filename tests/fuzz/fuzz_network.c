@@ -134,13 +134,16 @@ static void check_network(const camber_network *network) {
 
 /* How far outside the picture a point may lie. */
 static double margin_of(const input *from) {
-    double reach = 0;
+    double reach = 0, beside = 0, looks = 0;
     for (size_t i = 0; i < from->tessellation.stroke_count; i++) {
         const camber_stroke *stroke = from->strokes + i;
         const double limit = stroke->miter_limit > 0 ? (double)stroke->miter_limit : 2;
+        const double offset = fabs((double)stroke->offset_px);
         reach = fmax(reach, 0.5 * (double)stroke->width_px * fmax(limit, 1.5));
+        beside = fmax(beside, offset * fmax(limit, 1.1));
+        looks = fmax(looks, 8 * offset); /* what is as near may hide a line beside another */
     }
-    return 80 + fmin(reach, 70000);
+    return 80 + fmin(reach, 70000) + fmin(beside, 70000) + looks;
 }
 
 /* Pieces begin and end, points lie in the window, and those that follow each other differ. */

@@ -34,16 +34,9 @@ typedef struct drawing {
 } drawing;
 
 static inline picture along_draw(studio *s, const drawing *d) {
-    const uint32_t offsets[] = {0, (uint32_t)d->count};
-    const camber_polylines_desc desc = {
-        .points = d->points, .point_count = d->count, .offsets = offsets, .polyline_count = 1};
     const camber_tessellation_desc tessellation = {
         .strokes = &d->stroke, .stroke_count = 1, .method = d->method, .measured = true};
-    camber_polylines *polylines = NULL;
-    camber_mesh *mesh = NULL;
-    assert_int_equal(camber_polylines_create(s->context, &desc, &polylines), CAMBER_OK);
-    assert_int_equal(camber_mesh_create(s->device, studio_any(s), &mesh), CAMBER_OK);
-    assert_int_equal(camber_tessellate(mesh, polylines, &tessellation), CAMBER_OK);
+    camber_mesh *mesh = studio_line(s, d->points, d->count, &tessellation);
     const camber_pass pass = {.mesh = mesh,
                               .paints = &d->paint,
                               .paint_count = 1,
@@ -58,7 +51,6 @@ static inline picture along_draw(studio *s, const drawing *d) {
         &(camber_frame){
             .width = ALONG_SIDE, .height = ALONG_SIDE, .passes = &pass, .pass_count = 1, .coverage = d->coverage});
     camber_mesh_destroy(mesh);
-    camber_polylines_destroy(polylines);
     return p;
 }
 

@@ -91,9 +91,36 @@ static inline int studio_tear_down(void **state) {
     return 0;
 }
 
+/* What main of a test of pictures returns. */
+static inline int studio_run(const char *name, const struct CMUnitTest *tests, size_t count) {
+    char cache[64];
+    if (!studio_begin(cache))
+        return 77;
+    const int failed = _cmocka_run_group_tests(name, tests, count, studio_set_up, studio_tear_down);
+    folder_remove(cache);
+    return failed;
+}
+
+#define STUDIO_RUN(tests) studio_run(#tests, tests, sizeof(tests) / sizeof *(tests))
+
 /* The first back end that is there. */
 static inline camber_renderer *studio_any(const studio *s) {
     return s->renderer[0] ? s->renderer[0] : s->renderer[1];
+}
+
+/* A mesh of one polyline: count pairs of x, y. */
+static inline camber_mesh *studio_line(const studio *s, const float *points, size_t count,
+                                       const camber_tessellation_desc *desc) {
+    const uint32_t offsets[] = {0, (uint32_t)count};
+    const camber_polylines_desc line = {
+        .points = points, .point_count = count, .offsets = offsets, .polyline_count = 1};
+    camber_polylines *polylines = NULL;
+    camber_mesh *mesh = NULL;
+    assert_int_equal(camber_polylines_create(s->context, &line, &polylines), CAMBER_OK);
+    assert_int_equal(camber_mesh_create(s->device, studio_any(s), &mesh), CAMBER_OK);
+    assert_int_equal(camber_tessellate(mesh, polylines, desc), CAMBER_OK);
+    camber_polylines_destroy(polylines);
+    return mesh;
 }
 
 /* ---- Pictures ---- */

@@ -23,22 +23,14 @@ typedef struct drawing {
 } drawing;
 
 static picture draw(studio *s, const drawing *d) {
-    const uint32_t offsets[] = {0, (uint32_t)d->count};
-    const camber_polylines_desc desc = {
-        .points = d->points, .point_count = d->count, .offsets = offsets, .polyline_count = 1};
     const camber_tessellation_desc tessellation = {.strokes = &d->stroke, .stroke_count = 1, .method = d->method};
-    camber_polylines *polylines = NULL;
-    camber_mesh *mesh = NULL;
-    assert_int_equal(camber_polylines_create(s->context, &desc, &polylines), CAMBER_OK);
-    assert_int_equal(camber_mesh_create(s->device, studio_any(s), &mesh), CAMBER_OK);
-    assert_int_equal(camber_tessellate(mesh, polylines, &tessellation), CAMBER_OK);
+    camber_mesh *mesh = studio_line(s, d->points, d->count, &tessellation);
     const camber_pass pass = {
         .mesh = mesh, .paints = &d->paint, .paint_count = 1, .overlap = d->overlap, .opacity = d->opacity};
     picture p = picture_draw(
         studio_any(s),
         &(camber_frame){.width = SIDE, .height = SIDE, .passes = &pass, .pass_count = 1, .coverage = d->coverage});
     camber_mesh_destroy(mesh);
-    camber_polylines_destroy(polylines);
     return p;
 }
 

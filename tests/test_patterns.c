@@ -74,18 +74,9 @@ typedef struct drawing {
 } drawing;
 
 static camber_mesh *make_mesh(studio *s, const drawing *d, bool measured) {
-    const uint32_t offsets[] = {0, (uint32_t)d->count};
-    const camber_polylines_desc desc = {
-        .points = d->points, .point_count = d->count, .offsets = offsets, .polyline_count = 1};
     const camber_tessellation_desc tessellation = {
         .strokes = &d->stroke, .stroke_count = 1, .method = d->method, .measured = measured};
-    camber_polylines *polylines = NULL;
-    camber_mesh *mesh = NULL;
-    assert_int_equal(camber_polylines_create(s->context, &desc, &polylines), CAMBER_OK);
-    assert_int_equal(camber_mesh_create(s->device, studio_any(s), &mesh), CAMBER_OK);
-    assert_int_equal(camber_tessellate(mesh, polylines, &tessellation), CAMBER_OK);
-    camber_polylines_destroy(polylines);
-    return mesh;
+    return studio_line(s, d->points, d->count, &tessellation);
 }
 
 static picture draw(studio *s, const drawing *d) {
@@ -583,10 +574,5 @@ int main(void) {
         cmocka_unit_test(test_fill_color),   cmocka_unit_test(test_fill_images), cmocka_unit_test(test_pitched_line),
         cmocka_unit_test(test_pitched_fill), cmocka_unit_test(test_misuse),
     };
-    char cache[64];
-    if (!studio_begin(cache))
-        return 77;
-    const int failed = cmocka_run_group_tests(tests, studio_set_up, studio_tear_down);
-    folder_remove(cache);
-    return failed;
+    return STUDIO_RUN(tests);
 }

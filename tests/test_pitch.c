@@ -517,10 +517,5 @@ int main(void) {
         cmocka_unit_test(test_far_dashes), cmocka_unit_test(test_network),     cmocka_unit_test(test_window),
         cmocka_unit_test(test_bad_pitch),
     };
-    char cache[64];
-    if (!studio_begin(cache))
-        return 77;
-    const int failed = cmocka_run_group_tests(tests, studio_set_up, studio_tear_down);
-    folder_remove(cache);
-    return failed;
+    return STUDIO_RUN(tests);
 }

@@ -328,10 +328,5 @@ int main(void) {
         cmocka_unit_test(test_rows_refused),        cmocka_unit_test(test_background_is_premultiplied),
         cmocka_unit_test(test_empty_mesh),          cmocka_unit_test(test_surface_info),
     };
-    char cache[64];
-    if (!studio_begin(cache))
-        return 77;
-    const int failed = cmocka_run_group_tests(tests, studio_set_up, studio_tear_down);
-    folder_remove(cache);
-    return failed;
+    return STUDIO_RUN(tests);
 }

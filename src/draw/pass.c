@@ -177,12 +177,17 @@ camber_run camber_pass_next_run(const camber_pass *pass, size_t first, size_t en
 /* A layer costs as much as all of its pixels: so many a pass, in the order of lines or an alpha each. */
 enum { LAYERS_MAX = 32 };
 
-static bool changes_often(const camber_pass *pass, size_t end) {
-    size_t first = pass->first_polyline, layers = 0;
-    while (first < end && layers <= LAYERS_MAX) {
-        const camber_run run = camber_pass_next_run(pass, first, end);
-        layers += run.layered && run.alpha > 0.0f;
-        first = run.end;
+static bool makes_layer(const camber_run *run) {
+    return run->layered && run->alpha > 0.0f;
+}
+
+/* Whether the runs from the pass's first one on are more layers than a pass may have. */
+static bool changes_often(const camber_run *first, size_t end) {
+    size_t at = first->end, layers = makes_layer(first);
+    while (at < end && layers <= LAYERS_MAX) {
+        const camber_run run = camber_pass_next_run(first->pass, at, end);
+        layers += makes_layer(&run);
+        at = run.end;
     }
     return layers > LAYERS_MAX;
 }
@@ -221,7 +226,10 @@ static camber_run choose(const camber_pass *pass, size_t end, const float *alpha
 
 camber_runs camber_runs_begin(const camber_pass *pass, size_t end, bool masks) {
     camber_runs runs = {.pass = pass, .next = pass->first_polyline, .end = end};
-    if (!changes_often(pass, end))
+    if (pass->first_polyline >= end)
+        return runs;
+    runs.first = camber_pass_next_run(pass, pass->first_polyline, end);
+    if (!changes_often(&runs.first, end))
         return runs;
     const uint32_t *rows = pass->mesh->polyline_rows;
     for (size_t i = pass->first_polyline; i < end && !runs.alphas.more; i++)

@@ -242,6 +242,7 @@ typedef struct camber_alphas {
 typedef struct camber_runs {
     const camber_pass *pass;
     size_t next, end; /* polylines */
+    camber_run first; /* in the order of lines: most passes are this one */
     bool by_alpha, masked;
     camber_alphas alphas;
     size_t alpha; /* the next one */

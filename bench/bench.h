@@ -3,7 +3,7 @@
 #ifndef CAMBER_BENCH_H
 #define CAMBER_BENCH_H
 
-#include "camber.h"
+#include "camber_files.h"
 #include "peers/peer.h"
 
 #include <jansson.h>

@@ -14,7 +14,7 @@ typedef ulong camber_u64;
 #define CAMBER_FABS(x) fabs(x)
 #define CAMBER_PAD_PX 0.75f
 #else
-#include "camber.h"
+#include "camber_proof.h"
 #include <math.h>
 typedef uint32_t camber_u32;
 typedef int32_t camber_i32;
@@ -57,8 +57,8 @@ typedef struct camber_row {
     float fan_step;  /* the angle */
 } camber_row;
 
-/* Words of a record: see camber_record in camber.h. A measured mesh has as many again behind them, of which the first
- * two are camber_measure. */
+/* Words of a record: see camber_record in camber_proof.h. A measured mesh has as many again behind them, of which the
+ * first two are camber_measure. */
 #define CAMBER_RECORD_WORDS 4
 #ifndef CAMBER_MEASURED
 #define CAMBER_MEASURED 0

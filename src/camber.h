@@ -131,36 +131,6 @@ CAMBER_API camber_status camber_polylines_create(camber_context *context, const 
 CAMBER_API void camber_polylines_destroy(camber_polylines *polylines);
 CAMBER_API camber_polylines_stats camber_polylines_get_stats(const camber_polylines *polylines);
 
-/* Arrays in the form of camber_polylines_desc that the callee allocates; free with camber_lines_free. */
-typedef struct camber_lines {
-    float *points;
-    uint32_t *offsets;
-    size_t point_count;
-    size_t polyline_count;
-} camber_lines;
-
-/* Reads the interchange file: little-endian uint32 0x4c594c50, polyline count n, point count p; n + 1
- * uint32 offsets; p pairs of float32 x, y. bytes is the whole file; name stands in messages.
- * Returns CAMBER_ERROR_INPUT (wrong magic, cut off, bytes left over, offsets that do not ascend),
- * CAMBER_ERROR_MEMORY. */
-CAMBER_API camber_status camber_lines_parse(camber_context *context, const void *bytes, size_t size_bytes,
-                                            const char *name, camber_lines *lines);
-/* Drops points where the line that is left stays within tolerance_px of them (Douglas and Peucker). Ends stay, and
- * rings keep their seam. simplified is freed with camber_lines_free. Returns CAMBER_ERROR_ARGUMENT (a tolerance
- * that is negative or not a number), CAMBER_ERROR_MEMORY. Cost: n log n. */
-CAMBER_API camber_status camber_lines_simplify(camber_context *context, const camber_lines *lines, double tolerance_px,
-                                               camber_lines *simplified);
-CAMBER_API void camber_lines_free(camber_context *context, camber_lines *lines);
-
-/* Where output goes: returns false when the bytes could not be taken (the caller knows why). */
-typedef struct camber_sink {
-    bool (*write)(void *user, const void *bytes, size_t size_bytes);
-    void *user;
-} camber_sink;
-
-/* Writes the interchange file. Returns CAMBER_ERROR_IO when the sink refuses. */
-CAMBER_API camber_status camber_lines_write(camber_context *context, const camber_lines *lines, camber_sink sink);
-
 /* ---- Strokes: how wide, which joins and caps ------------------------------------------------------ */
 
 typedef enum camber_join {
@@ -359,21 +329,6 @@ typedef struct camber_tessellation_desc {
 /* How far the geometry reaches past the stroke's edge, so that every pixel an edge touches is shaded: exact
  * coverage reaches sqrt(1/2) px from the edge. */
 #define CAMBER_PAD_PX 0.75f
-
-/* What the device keeps of a point: 16 bytes, which the vertex shader reads. A strip has two vertices a record, the
- * left one and the right one, and no indices; kernels/join.h says which records a point has. kite and fan have a record
- * a point and indices of 4 bytes. */
-typedef struct camber_record {
-    float x, y;    /* px */
-    uint32_t join; /* CAMBER_JOIN_* in kernels/layout.h */
-    uint32_t last; /* row << 8 | flags: CAMBER_POINT_* and CAMBER_RECORD_* there */
-} camber_record;
-
-/* How far along its polyline a record of a measured mesh lies: the arc length over all of the polyline's points, those
- * of a network also where the camera leaves points out or cuts. */
-typedef struct camber_measure {
-    float along_px, total_px; /* from its first point, and to its last */
-} camber_measure;
 
 typedef struct camber_mesh_info {
     camber_method method;
@@ -642,33 +597,6 @@ CAMBER_API camber_status camber_render(camber_renderer *renderer, const camber_f
 CAMBER_API camber_status camber_render_begin(camber_renderer *renderer, const camber_frame *frame);
 CAMBER_API camber_status camber_render_end(camber_renderer *renderer, camber_rows_fn *rows, void *user,
                                            camber_frame_stats *stats);
-
-/* ---- PNG ------------------------------------------------------------------------------------------- */
-
-typedef struct camber_png_text {
-    const char *key;  /* 1 to 79 Latin-1 characters */
-    const char *text; /* UTF-8 */
-} camber_png_text;
-
-typedef struct camber_png_desc {
-    uint32_t width, height; /* px, 1 to 65535 */
-    bool opaque;            /* alpha is dropped: RGB instead of RGBA */
-    const camber_png_text *texts;
-    size_t text_count;
-    int compression; /* zlib's level 1 to 9. 0: 1 */
-} camber_png_desc;
-
-typedef struct camber_png camber_png;
-
-/* Writes the head of a PNG. Then camber_png_write_rows until all rows are there, then camber_png_finish. They return
- * CAMBER_ERROR_IO when the sink refuses, and CAMBER_ERROR_MEMORY; once a writer has failed, it stays so. */
-CAMBER_API camber_status camber_png_create(camber_context *context, const camber_png_desc *desc, camber_sink sink,
-                                           camber_png **png);
-/* rgba: premultiplied, row_count rows of width * 4 bytes; written unpremultiplied, as PNG wants it. */
-CAMBER_API camber_status camber_png_write_rows(camber_png *png, const uint8_t *rgba, uint32_t row_count);
-/* Writes the end. CAMBER_ERROR_IO when rows are missing or the sink refuses. */
-CAMBER_API camber_status camber_png_finish(camber_png *png);
-CAMBER_API void camber_png_destroy(camber_png *png);
 
 #ifdef __cplusplus
 }

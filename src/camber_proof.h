@@ -6,13 +6,28 @@
 #ifndef CAMBER_PROOF_H
 #define CAMBER_PROOF_H
 
-#include "camber.h"
+#include "camber_files.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 /* ---- Meshes in host memory ------------------------------------------------------------------------- */
+
+/* What the device keeps of a point: 16 bytes, which the vertex shader reads. A strip has two vertices a record, the
+ * left one and the right one, and no indices; kernels/join.h says which records a point has. kite and fan have a record
+ * a point and indices of 4 bytes. */
+typedef struct camber_record {
+    float x, y;    /* px */
+    uint32_t join; /* CAMBER_JOIN_* in kernels/layout.h */
+    uint32_t last; /* row << 8 | flags: CAMBER_POINT_* and CAMBER_RECORD_* there */
+} camber_record;
+
+/* How far along its polyline a record of a measured mesh lies: the arc length over all of the polyline's points, those
+ * of a network also where the camera leaves points out or cuts. */
+typedef struct camber_measure {
+    float along_px, total_px; /* from its first point, and to its last */
+} camber_measure;
 
 /* A vertex as the vertex shader makes it from records. A segment runs from A to B, u is its direction, L its length.
  * The vertex lies at P + u * clamp(along * g, -limit_px, +limit_px) + (-u.y, u.x) * across * g with g = half the width

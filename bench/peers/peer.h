@@ -3,7 +3,7 @@
 #ifndef CAMBER_BENCH_PEER_H
 #define CAMBER_BENCH_PEER_H
 
-#include "camber.h"
+#include "camber_files.h"
 
 #ifdef __cplusplus
 extern "C" {

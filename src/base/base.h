@@ -2,7 +2,7 @@
 #ifndef CAMBER_BASE_H
 #define CAMBER_BASE_H
 
-#include "camber.h"
+#include "camber_files.h"
 
 #include <stdarg.h>
 #include <string.h>

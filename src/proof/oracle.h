@@ -10,7 +10,7 @@
 #ifndef CAMBER_PROOF_ORACLE_H
 #define CAMBER_PROOF_ORACLE_H
 
-#include "camber.h"
+#include "camber_files.h"
 
 typedef struct camber_oracle_sample_set {
     uint64_t bits[4]; /* of 16 x 16 samples */

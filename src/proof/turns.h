@@ -2,7 +2,7 @@
 #ifndef CAMBER_PROOF_TURNS_H
 #define CAMBER_PROOF_TURNS_H
 
-#include "camber.h"
+#include "camber_files.h"
 
 #define CAMBER_TURN_CLASSES 6
 #define CAMBER_TURN_CLASS_DEG 30

@@ -169,7 +169,8 @@ constant float DOWN[16] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
 /* The cells, of rows first to last, that a segment may meet, a bit each: those of its box, and where that is large, of
  * its band. */
 static inline ulong box_of(global const float *shape, float left, float top, int first, int last) {
-    const float ax = shape[0], ay = shape[1], bx = shape[2], by = shape[3], reach = shape[11];
+    const float ax = shape[CAMBER_SHAPE_AX], ay = shape[CAMBER_SHAPE_AY], bx = shape[CAMBER_SHAPE_BX],
+                by = shape[CAMBER_SHAPE_BY], reach = shape[CAMBER_SHAPE_REACH];
     const float a_cell = 1.0f / CAMBER_CELL_PX, side = (float)(CAMBER_TILE_CELLS - 1);
     const float x0 = ((ax < bx ? ax : bx) - reach - left + 0.5f) * a_cell;
     const float x1 = ((ax < bx ? bx : ax) + reach - left - 0.5f) * a_cell;
@@ -204,7 +205,7 @@ static inline void draw_segment(private canvas *c, global const float *shape, fl
     if (!cells)
         return;
     camber_pen p;
-    camber_pen_of(shape, as_uint(shape[14]), &p);
+    camber_pen_of(shape, as_uint(shape[CAMBER_SHAPE_FLAGS]), &p);
     const float16 across = vload16(0, ACROSS), down = vload16(0, DOWN);
     const float16 lane_x = across * p.ux + down * p.uy, lane_y = down * p.ux - across * p.uy;
     const float16 lane_a = across * p.nax + down * p.nay, lane_b = across * p.nbx + down * p.nby;
@@ -282,7 +283,7 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void cover(
     for (camber_u32 k = starts[tile + 1]; k-- > starts[tile];) {
         global const float *shape = shapes + (size_t)CAMBER_SHAPE_WORDS * lists[k];
         ASK_FOR(shapes + (size_t)CAMBER_SHAPE_WORDS * lists[k > AHEAD ? k - AHEAD : 0]);
-        const camber_u32 ink = as_uint(shape[15]);
+        const camber_u32 ink = as_uint(shape[CAMBER_SHAPE_INK]);
         if (ink != current) {
             change_ink(&c, inks[ink]);
             current = ink;

@@ -27,7 +27,6 @@ typedef int camber_mask;
 #define CAMBER_CELL_PX 4
 #define CAMBER_TILE_CELLS 8               /* a side */
 #define CAMBER_TILES_MAX 256              /* a side of what is drawn at once: a box has a byte for each */
-#define CAMBER_SHAPE_WORDS 16             /* a segment as the tiles read it: camber_shape */
 #define CAMBER_LOOK_EVERY 16              /* segments of a cell: then it is looked whether it is full */
 #define CAMBER_NOTHING_PX (1.0f / 512.0f) /* of what lies below, less than this is not seen */
 #define CAMBER_NEVER_PX 1e6f
@@ -62,6 +61,25 @@ typedef struct camber_ink {
  * 12. The end at A, then that at B, then: coverage is a ramp. */
 #define CAMBER_SHAPE_END_BITS 13
 #define CAMBER_SHAPE_LINEAR (1u << 26)
+
+/* Where the words of a shape are. */
+#define CAMBER_SHAPE_AX 0u
+#define CAMBER_SHAPE_AY 1u
+#define CAMBER_SHAPE_BX 2u
+#define CAMBER_SHAPE_BY 3u
+#define CAMBER_SHAPE_UX 4u
+#define CAMBER_SHAPE_UY 5u
+#define CAMBER_SHAPE_NAX 6u
+#define CAMBER_SHAPE_NAY 7u
+#define CAMBER_SHAPE_NBX 8u
+#define CAMBER_SHAPE_NBY 9u
+#define CAMBER_SHAPE_HALF_WIDTH 10u
+#define CAMBER_SHAPE_REACH 11u
+#define CAMBER_SHAPE_SLOPE 12u
+#define CAMBER_SHAPE_CURVE 13u
+#define CAMBER_SHAPE_FLAGS 14u
+#define CAMBER_SHAPE_INK 15u
+#define CAMBER_SHAPE_WORDS 16u
 
 typedef struct camber_shape {
     camber_real ax, ay, bx, by, ux, uy; /* from A to B, and the direction */
@@ -160,10 +178,12 @@ CAMBER_FN camber_words camber_shape_box(const camber_shape *s, camber_mask drawn
  * last << 8. middle: of the row, px; left: of the first square; shape: its words. */
 CAMBER_FN camber_u32 camber_row_span(CAMBER_GLOBAL const float *shape, float middle, float left, camber_u32 first,
                                      camber_u32 last, float side) {
-    const float ax = shape[0], ay = shape[1], ux = shape[4], uy = shape[5];
+    const float ax = shape[CAMBER_SHAPE_AX], ay = shape[CAMBER_SHAPE_AY], ux = shape[CAMBER_SHAPE_UX],
+                uy = shape[CAMBER_SHAPE_UY];
     const float to_middle = 0.5f * side, a_square = 1.0f / side;
     const float slack = 1e-6f * (CAMBER_FABS(ax) + CAMBER_FABS(ay));
-    const float reach = shape[10] + CAMBER_PAD_PX + to_middle * (CAMBER_FABS(ux) + CAMBER_FABS(uy)) + slack;
+    const float reach =
+        shape[CAMBER_SHAPE_HALF_WIDTH] + CAMBER_PAD_PX + to_middle * (CAMBER_FABS(ux) + CAMBER_FABS(uy)) + slack;
     if (CAMBER_FABS(uy) < 1e-3f)
         return first | last << 8;
     const float scale = 1.0f / uy, across = (middle - ay) * ux;
@@ -210,19 +230,19 @@ CAMBER_FN float camber_cap_tip(camber_u32 end, float half_width) {
 
 /* Through a pointer: oclgrind does not know what compilers make of large results where a call is inlined. */
 CAMBER_FN void camber_pen_of(CAMBER_GLOBAL const float *shape, camber_u32 flags, camber_pen *p) {
-    p->ax = shape[0];
-    p->ay = shape[1];
-    p->bx = shape[2];
-    p->by = shape[3];
-    p->ux = shape[4];
-    p->uy = shape[5];
-    p->nax = shape[6];
-    p->nay = shape[7];
-    p->nbx = shape[8];
-    p->nby = shape[9];
-    p->half_width = shape[10];
-    p->slope = shape[12];
-    p->curve = shape[13];
+    p->ax = shape[CAMBER_SHAPE_AX];
+    p->ay = shape[CAMBER_SHAPE_AY];
+    p->bx = shape[CAMBER_SHAPE_BX];
+    p->by = shape[CAMBER_SHAPE_BY];
+    p->ux = shape[CAMBER_SHAPE_UX];
+    p->uy = shape[CAMBER_SHAPE_UY];
+    p->nax = shape[CAMBER_SHAPE_NAX];
+    p->nay = shape[CAMBER_SHAPE_NAY];
+    p->nbx = shape[CAMBER_SHAPE_NBX];
+    p->nby = shape[CAMBER_SHAPE_NBY];
+    p->half_width = shape[CAMBER_SHAPE_HALF_WIDTH];
+    p->slope = shape[CAMBER_SHAPE_SLOPE];
+    p->curve = shape[CAMBER_SHAPE_CURVE];
     p->length = (p->bx - p->ax) * p->ux + (p->by - p->ay) * p->uy;
     const float nx = CAMBER_FABS(p->ux), ny = CAMBER_FABS(p->uy), h = p->half_width;
     const camber_u32 linear = flags & CAMBER_SHAPE_LINEAR;

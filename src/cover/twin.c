@@ -62,7 +62,7 @@ static void put_shape(const twin *t, const camber_record *records, const camber_
     const float shape[CAMBER_SHAPE_WORDS] = {s.ax,  s.ay,  s.bx,         s.by,    s.ux,    s.uy,    s.nax, s.nay,
                                              s.nbx, s.nby, s.half_width, s.reach, s.slope, s.curve, 0,     row[3]};
     memcpy(words, shape, sizeof shape);
-    words[14] = as_float(s.flags);
+    words[CAMBER_SHAPE_FLAGS] = as_float(s.flags);
     *box = camber_shape_box(&s, ends && row[0] >= 0.0f, r->left, r->top, r->columns, r->rows);
 }
 
@@ -277,8 +277,9 @@ static void draw_cell(canvas *c, const camber_pen *p, cell *one, float px, float
 
 static void draw_segment(canvas *c, const float *shape, float left, float top) {
     camber_pen p;
-    camber_pen_of(shape, as_word(shape[14]), &p);
-    const float reach = shape[11], a_cell = 1.0f / CAMBER_CELL_PX, side = (float)(CAMBER_TILE_CELLS - 1);
+    camber_pen_of(shape, as_word(shape[CAMBER_SHAPE_FLAGS]), &p);
+    const float reach = shape[CAMBER_SHAPE_REACH], a_cell = 1.0f / CAMBER_CELL_PX,
+                side = (float)(CAMBER_TILE_CELLS - 1);
     const float x0 = (CAMBER_LESS(p.ax, p.bx) - reach - left + 0.5f) * a_cell;
     const float x1 = (CAMBER_MORE(p.ax, p.bx) + reach - left - 0.5f) * a_cell;
     const float y0 = (CAMBER_LESS(p.ay, p.by) - reach - top + 0.5f) * a_cell;
@@ -330,7 +331,7 @@ static void draw_tile(const twin *t, canvas *c, uint32_t column, uint32_t row) {
     c->now = t->scene->inks[0];
     for (uint32_t k = stages->starts[tile + 1]; k-- > stages->starts[tile];) {
         const float *shape = stages->shapes + (size_t)CAMBER_SHAPE_WORDS * stages->lists[k];
-        const uint32_t ink = as_word(shape[15]);
+        const uint32_t ink = as_word(shape[CAMBER_SHAPE_INK]);
         if (ink != current)
             change_ink(c, t->scene->inks[ink]);
         current = ink;

@@ -34,8 +34,10 @@ typedef struct bench {
     camber_context *context;
     camber_surface *surface;
     camber_device *device;
-    camber_renderer *renderer;
+    camber_renderer *renderer; /* GL */
     camber_mesh *mesh;
+    camber_renderer *covering; /* OpenCL, and no GL */
+    camber_mesh *covered;
     bench_size size;
     size_t warm_ups, runs;          /* up to BENCH_RUNS_MAX */
     const char *data;               /* the folder that has data/ with the larger cities, or NULL */
@@ -57,6 +59,7 @@ typedef struct bench_frame_desc {
     camber_camera camera;
     float width_px;
     camber_overlap overlap;
+    bool in_cl;       /* drawn by kernels, else by GL */
     uint8_t *picture; /* NULL: not read back */
 } bench_frame_desc;
 

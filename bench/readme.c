@@ -74,35 +74,35 @@ static void put_count(double count, FILE *to) {
 static void put_drawing(const page *p) {
     size_t i;
     const json_t *row;
-    fputs("| scene | segments | camber draws, ms | frame, ms |", p->to);
+    fputs("| scene | segments | camber, ms | at 0.1 px | through GL | at 0.1 px |", p->to);
     for (size_t k = 0; k < p->library_count; k++) {
         const json_t *peer = json_object_get(p->peers, p->libraries[k]);
         fprintf(p->to, " %s %s, ms | ratio |", bench_text(peer, "name"), bench_text(peer, "version"));
     }
-    fputs("\n|---|---|---|---|", p->to);
+    fputs("\n|---|---|---|---|---|---|", p->to);
     for (size_t k = 0; k < p->library_count; k++)
         fputs("---|---|", p->to);
     fputs("\n", p->to);
     json_array_foreach(rows_of(p, "frames"), i, row) {
-        const double draw_ms = bench_number(row, "simple_draw_ms");
+        const double frame_ms = bench_number(row, "cl_frame_ms");
         fprintf(p->to, "| %s, %g px |", bench_text(row, "scene"), bench_number(row, "width_px"));
         put_count(bench_number(row, "segments"), p->to);
-        fprintf(p->to, " %.1f | %.1f |", draw_ms, bench_number(row, "simple_frame_ms"));
+        fprintf(p->to, " %.1f | %.1f | %.1f | %.1f |", frame_ms, bench_number(row, "cl_simple_frame_ms"),
+                bench_number(row, "frame_ms"), bench_number(row, "simple_frame_ms"));
         for (size_t k = 0; k < p->library_count; k++) {
             const double ms = bench_best_peer(json_object_get(row, "peers"), p->libraries[k]);
             if (ms > 0)
-                fprintf(p->to, " %.1f | %.2f |", ms, ms / draw_ms);
+                fprintf(p->to, " %.1f | %.2f |", ms, ms / frame_ms);
             else
                 fputs(" - | - |", p->to);
         }
         fputs("\n", p->to);
     }
     fprintf(p->to,
-            "\ndraws: clear, draw, finish, at the default %g px of simplification; frame: from lines on the device to "
-            "pixels in "
-            "memory. Peers draw everything, from lines to pixels in memory, a line at a time or all as one path, "
-            "whichever is "
-            "faster; ratio: how many times camber's drawing fits into that. The picture of each peer is compared with "
+            "\nWhole frames, from lines in memory to pixels in memory: drawn by OpenCL kernels, every point; with what "
+            "lies closer than %g px left out, as the tool does by default (lines on the device); and the same through "
+            "GLES on llvmpipe. Peers draw everything, a line at a time or all as one path, whichever is faster; ratio: "
+            "how many times camber's first figure fits into that. The picture of each peer is compared with "
             "camber's.\n\n",
             BENCH_SIMPLIFY_PX);
 }

@@ -10,12 +10,27 @@ enum { PEERS_MAX = 8 };
  * that unite all lines to 3.9; an empty picture, of lines 2 px wide or more, comes to more than 100. */
 #define DIFFERENCE_MAX 20.0
 
+/* What is timed of camber: by GL and by kernels, of every point and of what BENCH_SIMPLIFY_PX leaves. */
+enum { DRAW, FRAME, SIMPLE_DRAW, SIMPLE_FRAME, UNITED_DRAW, CL_FRAME, CL_SIMPLE_FRAME, OURS };
+
+static const struct {
+    const char *key, *what, *heading;
+} ours[OURS] = {
+    [DRAW] = {"draw_ms", "draw", "draw"},
+    [FRAME] = {"frame_ms", "frame", "frame"},
+    [SIMPLE_DRAW] = {"simple_draw_ms", "draw at 0.1 px", "draw .1"},
+    [SIMPLE_FRAME] = {"simple_frame_ms", "frame at 0.1 px", "frame .1"},
+    [UNITED_DRAW] = {"united_draw_ms", "draw united at 0.1 px", "united"},
+    [CL_FRAME] = {"cl_frame_ms", "frame in OpenCL", "cl"},
+    [CL_SIMPLE_FRAME] = {"cl_simple_frame_ms", "frame in OpenCL at 0.1 px", "cl .1"},
+};
+
 typedef struct trial {
     bench *b;
     const bench_scene *scene;
     camber_network *network;
-    bench_series draw, frame, simple_draw, simple_frame, united_draw, peers[PEERS_MAX];
-    double differences[PEERS_MAX];
+    bench_series ours[OURS], peers[PEERS_MAX];
+    double differences[PEERS_MAX], cl_difference;
 } trial;
 
 static double difference_of(const uint8_t *a, const uint8_t *b) {
@@ -28,26 +43,31 @@ static double difference_of(const uint8_t *a, const uint8_t *b) {
     return drawn ? sum / (double)drawn : 0;
 }
 
+/* b->picture gets everything drawn by GL, which peers are held against. */
 static camber_status draw_ours(trial *t, bool counts) {
     bench *b = t->b;
-    bench_frame_times times = {0}, simple = {0}, united = {0};
+    bench_frame_times times = {0}, simple = {0}, united = {0}, covered = {0}, simply_covered = {0};
     bench_frame_desc desc = {.lines = &t->scene->lines, .width_px = t->scene->width_px, .picture = b->picture};
     camber_status status = bench_frame(b, &desc, &times);
+    desc.in_cl = true;
+    desc.picture = b->pictured;
+    if (status == CAMBER_OK)
+        status = bench_frame(b, &desc, &covered);
+    t->cl_difference = status == CAMBER_OK ? difference_of(b->picture, b->pictured) : 0;
     desc.network = t->network;
     desc.camera = bench_camera(BENCH_SIMPLIFY_PX);
-    desc.picture = b->pictured; /* the one of everything is what peers are held against */
+    if (status == CAMBER_OK)
+        status = bench_frame(b, &desc, &simply_covered);
+    desc.in_cl = false;
     if (status == CAMBER_OK)
         status = bench_frame(b, &desc, &simple);
     desc.overlap = CAMBER_OVERLAP_UNITE;
     if (status == CAMBER_OK)
         status = bench_frame(b, &desc, &united);
-    if (status == CAMBER_OK && counts) {
-        bench_series_add(&t->draw, times.draw_ms);
-        bench_series_add(&t->frame, times.frame_ms);
-        bench_series_add(&t->simple_draw, simple.draw_ms);
-        bench_series_add(&t->simple_frame, simple.frame_ms);
-        bench_series_add(&t->united_draw, united.draw_ms);
-    }
+    const double ms[OURS] = {times.draw_ms,  times.frame_ms,   simple.draw_ms,         simple.frame_ms,
+                             united.draw_ms, covered.frame_ms, simply_covered.frame_ms};
+    for (int i = 0; i < OURS && status == CAMBER_OK && counts; i++)
+        bench_series_add(t->ours + i, ms[i]);
     return status;
 }
 
@@ -62,31 +82,28 @@ static void draw_peers(trial *t, bool counts) {
 }
 
 static void add_figures(const trial *t, const json_t *peers, json_t *result) {
-    const struct {
-        const char *what;
-        const bench_series *series;
-    } ours[] = {{"draw", &t->draw},
-                {"draw at 0.1 px", &t->simple_draw},
-                {"frame", &t->frame},
-                {"frame at 0.1 px", &t->simple_frame},
-                {"draw united at 0.1 px", &t->united_draw}};
     for (size_t i = 0; i < bench_peer_count; i++) {
         const double peer_ms = strchr(bench_peers[i]->key, '_') ? 0 : bench_best_peer(peers, bench_peers[i]->key);
-        for (size_t k = 0; k < sizeof ours / sizeof *ours; k++)
+        for (int k = 0; k < OURS; k++)
             bench_result_add_figure(result, &(bench_figure){t->scene->key, ours[k].what, bench_peers[i]->name,
-                                                            peer_ms / bench_series_median(ours[k].series), false});
+                                                            peer_ms / bench_series_median(t->ours + k), false});
+    }
+    for (int k = CL_FRAME; k <= CL_SIMPLE_FRAME; k++) {
+        const bench_series *gl = t->ours + (k == CL_FRAME ? FRAME : SIMPLE_FRAME);
+        bench_result_add_figure(result,
+                                &(bench_figure){t->scene->key, ours[k].what, "GL",
+                                                bench_series_median(gl) / bench_series_median(t->ours + k), false});
     }
 }
 
 static void report(const trial *t, json_t *result) {
     json_t *peers = json_object();
-    json_t *row = json_pack(
-        "{s:s, s:s, s:f, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o}", "key", t->scene->key, "scene", t->scene->name,
-        "width_px", (double)t->scene->width_px, "polylines", (json_int_t)t->scene->lines.polyline_count, "segments",
-        (json_int_t)t->scene->segments, "draw_ms", bench_ms(bench_series_median(&t->draw)), "frame_ms",
-        bench_ms(bench_series_median(&t->frame)), "simple_draw_ms", bench_ms(bench_series_median(&t->simple_draw)),
-        "simple_frame_ms", bench_ms(bench_series_median(&t->simple_frame)), "united_draw_ms",
-        bench_ms(bench_series_median(&t->united_draw)), "peers", peers);
+    json_t *row = json_pack("{s:s, s:s, s:f, s:I, s:I, s:f}", "key", t->scene->key, "scene", t->scene->name, "width_px",
+                            (double)t->scene->width_px, "polylines", (json_int_t)t->scene->lines.polyline_count,
+                            "segments", (json_int_t)t->scene->segments, "cl_difference", t->cl_difference);
+    for (int i = 0; i < OURS; i++)
+        json_object_set_new(row, ours[i].key, bench_ms(bench_series_median(t->ours + i)));
+    json_object_set_new(row, "peers", peers);
     for (size_t i = 0; i < bench_peer_count; i++) {
         const double difference = t->differences[i];
         const bool alike = difference >= 0 && difference <= DIFFERENCE_MAX;
@@ -127,32 +144,42 @@ static void print_ratio(double peer_ms, double ours_ms, bool alike, FILE *to) {
         fprintf(to, " %9s %5s", "-", "-");
 }
 
-static void print(const json_t *result, FILE *to) {
+/* Every scene's row: what of camber comes first, and how often the one that counts fits into each peer. */
+static void print_table(const json_t *result, const int *columns, int counting, FILE *to) {
     size_t i;
     const json_t *row;
-    fprintf(to,
-            "Drawing, %d x %d px, round joins, butt caps, black on white, ms. draw: clear, draw, finish; frame: from "
-            "lines in\n"
-            "memory to pixels in memory; at %g px: what lies closer is left out. Peers: from lines to pixels in "
-            "memory, and\n"
-            "how many times camber's drawing at %g px fits into that.\n\n",
-            BENCH_SIDE_PX, BENCH_SIDE_PX, BENCH_SIMPLIFY_PX, BENCH_SIMPLIFY_PX);
-    fprintf(to, "%-12s %3s %9s %7s %7s %8s %8s %7s", "scene", "px", "segments", "draw", "frame", "draw .1", "frame .1",
-            "united");
-    json_t *first = json_object_get(json_array_get(bench_result_rows(result), 0), "peers"), *peer;
     const char *key;
+    json_t *first = json_object_get(json_array_get(bench_result_rows(result), 0), "peers"), *peer;
+    fprintf(to, "%-12s %3s %9s", "scene", "px", "segments");
+    for (const int *k = columns; *k < OURS; k++)
+        fprintf(to, " %8s", ours[*k].heading);
     json_object_foreach(first, key, peer) fprintf(to, " %15s", key);
     fprintf(to, "\n");
     json_array_foreach(bench_result_rows(result), i, row) {
-        fprintf(to, "%-12s %3g %9.0f %7.1f %7.1f %8.1f %8.1f %7.1f", bench_text(row, "scene"),
-                bench_number(row, "width_px"), bench_number(row, "segments"), bench_number(row, "draw_ms"),
-                bench_number(row, "frame_ms"), bench_number(row, "simple_draw_ms"),
-                bench_number(row, "simple_frame_ms"), bench_number(row, "united_draw_ms"));
+        fprintf(to, "%-12s %3g %9.0f", bench_text(row, "scene"), bench_number(row, "width_px"),
+                bench_number(row, "segments"));
+        for (const int *k = columns; *k < OURS; k++)
+            fprintf(to, " %8.1f", bench_number(row, ours[*k].key));
         json_object_foreach(json_object_get(row, "peers"), key, peer)
-            print_ratio(bench_number(peer, "ms"), bench_number(row, "simple_draw_ms"),
+            print_ratio(bench_number(peer, "ms"), bench_number(row, ours[counting].key),
                         json_is_true(json_object_get(peer, "alike")), to);
         fprintf(to, "\n");
     }
+}
+
+static void print(const json_t *result, FILE *to) {
+    static const int in_gl[] = {DRAW, FRAME, SIMPLE_DRAW, SIMPLE_FRAME, UNITED_DRAW, OURS};
+    static const int in_cl[] = {CL_FRAME, CL_SIMPLE_FRAME, FRAME, SIMPLE_FRAME, OURS};
+    fprintf(to,
+            "Drawing in GL, %d x %d px, round joins, butt caps, black on white, ms. draw: clear, draw, finish; frame: "
+            "from lines\nin memory to pixels in memory; .1: what lies closer than %g px is left out; united: draw .1, "
+            "all lines as one area.\nPeers: from lines to pixels in memory, and how many times camber's draw .1 fits "
+            "into that.\n\n",
+            BENCH_SIDE_PX, BENCH_SIDE_PX, BENCH_SIMPLIFY_PX);
+    print_table(result, in_gl, SIMPLE_DRAW, to);
+    fprintf(to, "\nDrawing in OpenCL, the same lines: cl, whole frames; frame: GL's. Peers: how many times cl, with "
+                "every point drawn, fits into theirs.\n\n");
+    print_table(result, in_cl, CL_FRAME, to);
 }
 
 const bench_section bench_section_frames = {"frames", measure, print};

@@ -88,6 +88,8 @@ static void check_frames(const json_t *document) {
         json_t *peer;
         assert_true(number_of(row, "draw_ms") > 0 && number_of(row, "simple_draw_ms") > 0);
         assert_true(number_of(row, "frame_ms") >= number_of(row, "draw_ms"));
+        assert_true(number_of(row, "cl_frame_ms") > 0 && number_of(row, "cl_simple_frame_ms") > 0);
+        assert_true(number_of(row, "cl_difference") < 1);
         assert_int_equal(json_object_size(json_object_get(row, "peers")), peers);
         json_object_foreach(json_object_get(row, "peers"), key, peer) {
             if (!json_is_true(json_object_get(peer, "alike")))

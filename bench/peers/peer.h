@@ -27,7 +27,8 @@ extern const size_t bench_peer_count;
 /* "Mapnik (libmapnik-dev), ...": what is not built in. "": nothing is missing. */
 extern const char *const bench_peers_missing;
 
-extern const bench_peer bench_peer_cairo, bench_peer_cairo_path, bench_peer_agg, bench_peer_agg_path, bench_peer_mapnik;
+extern const bench_peer bench_peer_cairo, bench_peer_cairo_path, bench_peer_agg, bench_peer_agg_path, bench_peer_mapnik,
+    bench_peer_blend2d, bench_peer_blend2d_path, bench_peer_blend2d_threads;
 
 #ifdef __cplusplus
 }

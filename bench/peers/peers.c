@@ -12,6 +12,11 @@ const bench_peer *const bench_peers[] = {
 #ifdef CAMBER_BENCH_MAPNIK
     &bench_peer_mapnik,
 #endif
+#ifdef CAMBER_BENCH_BLEND2D
+    &bench_peer_blend2d,
+    &bench_peer_blend2d_path,
+    &bench_peer_blend2d_threads,
+#endif
     NULL,
 };
 
@@ -26,5 +31,8 @@ const char *const bench_peers_missing = ""
 #endif
 #ifndef CAMBER_BENCH_MAPNIK
                                         "Mapnik (libmapnik-dev) "
+#endif
+#ifndef CAMBER_BENCH_BLEND2D
+                                        "Blend2D (no Debian package: blend2d_DIR) "
 #endif
     ;

@@ -1,8 +1,9 @@
 /* cover: the pixels of a tile, or of some rows of its cells, from the segments in its list.
- * Reads shapes, starts[tiles + 1], lists, inks, items[2 * n] (tile; first and last row of cells << 8); writes pixels,
- * rows of stride words. What is drawn last is seen first: the list is walked from its end, and what lies below cells
- * that are full is not looked at. Each colour in turn is gathered as what it lets through, and then put under what is
- * there. */
+ * Reads shapes, starts[tiles + 1], lists, inks, items[2 * n] (tile; first and last row of cells << 8), and of
+ * CAMBER_COVER_RICH measures[4 * shape count], more (as many as inks) and what that names in tail; writes pixels, rows
+ * of stride words. What is drawn last is seen first: the list is walked from its end, and what lies below cells that
+ * are full is not looked at. Each colour in turn is gathered as what it lets through, and then put under what is there.
+ */
 #define CELLS (CAMBER_TILE_CELLS * CAMBER_TILE_CELLS)
 #define LEVELS 3 /* the picture, a group, a layer */
 
@@ -31,6 +32,9 @@ typedef struct canvas {
     int is_open[LEVELS], is_ready[LEVELS], has_sums;
     uchar puts[CELLS]; /* segments that came */
     camber_ink now;
+#if CAMBER_COVER_RICH
+    camber_ink_more more; /* of it */
+#endif
 } canvas;
 
 static inline float most_of(float16 v) {
@@ -266,10 +270,18 @@ static inline void write_cells(private const canvas *c, global camber_u32 *pixel
     }
 }
 
+#if CAMBER_COVER_RICH
+#define MORE                                                                                                           \
+    , global const float *restrict measures, global const camber_ink_more *restrict more,                              \
+        global const float4 *restrict tail
+#else
+#define MORE
+#endif
+
 kernel __attribute__((reqd_work_group_size(1, 1, 1))) void cover(
     global const float *restrict shapes, global const camber_u32 *restrict starts,
     global const camber_u32 *restrict lists, global const camber_ink *restrict inks,
-    global const camber_u32 *restrict items, global camber_u32 *restrict pixels, const camber_sheet s) {
+    global const camber_u32 *restrict items, global camber_u32 *restrict pixels, const camber_sheet s MORE) {
     canvas c;
     const size_t tile = items[2 * get_global_id(0)];
     const camber_u32 cells = items[2 * get_global_id(0) + 1], column = (camber_u32)tile % s.columns,
@@ -286,6 +298,9 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void cover(
         const camber_u32 ink = as_uint(shape[CAMBER_SHAPE_INK]);
         if (ink != current) {
             change_ink(&c, inks[ink]);
+#if CAMBER_COVER_RICH
+            c.more = more[ink];
+#endif
             current = ink;
         }
         draw_segment(&c, shape, left, top, first, last);

@@ -7,6 +7,14 @@
 
 #include "layout.h"
 
+/* The host has all there is; what the device is built for, its build says. */
+#ifndef CAMBER_COVER_RICH
+#define CAMBER_COVER_RICH 0
+#endif
+#ifndef CAMBER_COVER_PITCHED
+#define CAMBER_COVER_PITCHED 0
+#endif
+
 #ifdef __OPENCL_VERSION__
 typedef float16 camber_real;
 typedef uint16 camber_words;

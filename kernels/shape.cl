@@ -1,7 +1,8 @@
 /* shape: sixteen records a work-item, the segments that end with them and the tiles that their boxes meet.
  * Reads records[CAMBER_RECORD_WORDS * stride * record_count], rows[CAMBER_COVER_ROW_WORDS * row count]; writes
  * shapes[CAMBER_SHAPE_WORDS * n] and boxes[n] from base on for the records from first on, n of them rounded up to
- * sixteens, with CAMBER_NO_BOX where no segment ends that is drawn. */
+ * sixteens, with CAMBER_NO_BOX where no segment ends that is drawn. Of CAMBER_COVER_RICH writes measures[4 * n] too:
+ * how far along its line A lies, how fast that grows, how long the line is; 0 where nothing is measured. */
 #define STARTS (CAMBER_POINT_FIRST | CAMBER_RECORD_BREAK | CAMBER_RECORD_START)
 
 typedef struct camber_shape_range {
@@ -39,11 +40,38 @@ static inline void turn_over(private float16 *words) {
     }
 }
 
+#if CAMBER_COVER_RICH
+#define MEASURES , global float *restrict measures
+
+static inline float2 measure_at(global const camber_u32 *records, int i, camber_shape_range r) {
+    const int last = (int)r.record_count - 1, at = i < 0 ? 0 : i > last ? last : i;
+    return r.stride == 2 ? as_float2(vload2(4 * (size_t)at + 2, records)) : (float2)(0.0f);
+}
+
+static inline void put_measures(global const camber_u32 *records, int first, camber_shape_range r,
+                                private const camber_shape *s, global float *measures) {
+    float from[16], to[16], total[16];
+    for (int k = 0; k < 16; k++) {
+        const int is_dot = record_at(records, first + k, r).s2 >> CAMBER_JOIN_KIND_SHIFT == CAMBER_KIND_DOT;
+        const float2 a = measure_at(records, is_dot ? first + k : first + k - 1, r);
+        from[k] = a.s0;
+        to[k] = measure_at(records, first + k, r).s0;
+        total[k] = a.s1;
+    }
+    const float16 along = vload16(0, from);
+    const float16 rates = camber_shape_rate(s, along, vload16(0, to));
+    for (int k = 0; k < 16; k++)
+        vstore4((float4)(from[k], ((private const float *)&rates)[k], total[k], 0.0f), (size_t)k, measures);
+}
+#else
+#define MEASURES
+#endif
+
 kernel __attribute__((reqd_work_group_size(1, 1, 1))) void shape(global const camber_u32 *restrict records,
                                                                  global const float *restrict rows,
                                                                  global float *restrict shapes,
                                                                  global camber_u32 *restrict boxes,
-                                                                 const camber_shape_range r) {
+                                                                 const camber_shape_range r MEASURES) {
     float px[16], py[16], ax[16], ay[16], bx[16], by[16], half_width[16], ink[16];
     uint join_a[16], join_b[16];
     int drawn[16];
@@ -82,6 +110,9 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void shape(global const ca
                          vload16(0, ink)};
     turn_over(words);
     const size_t at = r.base / 16 + group;
+#if CAMBER_COVER_RICH
+    put_measures(records, first, r, &s, measures + 64 * at);
+#endif
     vstore16(box, at, boxes);
     for (int k = 0; k < 16; k++)
         vstore16(words[k], 16 * at + (size_t)k, shapes);

@@ -36,10 +36,15 @@ lint_step(kernels_network
           -Wno-unused-function -Wno-unused-parameter -Wno-ignored-pragmas -D__OPENCL_VERSION__=120 ${CMAKE_BINARY_DIR}/src/network.cl
   DEPENDS ${CMAKE_BINARY_DIR}/src/network.cl)
 
-lint_step(kernels_cover
-  COMMAND ${CLANG} -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only -Wall -Wextra -Werror
-          -Wno-unused-function -Wno-unused-parameter -Wno-ignored-pragmas -D__OPENCL_VERSION__=120 ${CMAKE_BINARY_DIR}/src/cover.cl
-  DEPENDS ${CMAKE_BINARY_DIR}/src/cover.cl)
+foreach(variant 0,0 1,0 1,1)
+  string(REGEX REPLACE "(.),(.)" "-DCAMBER_COVER_RICH=\\1;-DCAMBER_COVER_PITCHED=\\2" macros ${variant})
+  string(REPLACE "," "_" variant ${variant})
+  lint_step(kernels_cover_${variant}
+    COMMAND ${CLANG} -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only -Wall -Wextra -Werror
+            -Wno-unused-function -Wno-unused-parameter -Wno-ignored-pragmas -D__OPENCL_VERSION__=120 ${macros}
+            ${CMAKE_BINARY_DIR}/src/cover.cl
+    DEPENDS ${CMAKE_BINARY_DIR}/src/cover.cl)
+endforeach()
 
 foreach(header camber.h camber_map.h)
   lint_step(c_${header} COMMAND ${CLANG} -std=c11 -pedantic -Wall -Wextra -Werror -fsyntax-only -x c ${PROJECT_SOURCE_DIR}/src/${header}

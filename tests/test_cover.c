@@ -19,6 +19,7 @@ typedef struct drawing {
     camber_paint paints[3][SCENE_ROWS];
     camber_pass passes[3];
     camber_frame frame;
+    bool measured;
 } drawing;
 
 static camber_color color_of(size_t i, float alpha) {
@@ -59,15 +60,52 @@ static void fill_scene(scene *lines, int which) {
 enum { SCENES = 5 };
 
 static camber_mesh *make_mesh(const easel *e, camber_renderer *renderer, const drawing *d, camber_method method) {
-    const camber_tessellation_desc desc = {d->strokes, SCENE_ROWS, method, 0, false};
+    const camber_tessellation_desc desc = {d->strokes, SCENE_ROWS, method, 0, d->measured};
     return studio_mesh(&e->s, renderer, &d->lines, &desc);
 }
 
 /* ---- Device and twin ---- */
 
-/* A scene of the stages alone: one table, an ink a row, with layers and a group among them. */
+static void compare_stages(const camber_cover_stages *device, const camber_cover_stages *twin) {
+    assert_int_equal(device->shape_count, twin->shape_count);
+    assert_int_equal(device->tile_count, twin->tile_count);
+    assert_memory_equal(device->boxes, twin->boxes, 4 * twin->shape_count);
+    for (size_t i = 0; i < twin->shape_count; i++) {
+        if ((twin->boxes[i] & 255u) > (twin->boxes[i] >> 16 & 255u))
+            continue;
+        assert_memory_equal(device->shapes + CAMBER_SHAPE_WORDS * i, twin->shapes + CAMBER_SHAPE_WORDS * i,
+                            4 * CAMBER_SHAPE_WORDS);
+        if (twin->measures)
+            assert_memory_equal(device->measures + CAMBER_SHAPE_MEASURES * i,
+                                twin->measures + CAMBER_SHAPE_MEASURES * i, 4 * CAMBER_SHAPE_MEASURES);
+    }
+    assert_memory_equal(device->starts, twin->starts, 4 * (twin->tile_count + 1));
+    assert_memory_equal(device->lists, twin->lists, 4 * (size_t)twin->starts[twin->tile_count]);
+}
+
+/* Draws on the device and on the host, which must do the same; gives the picture, which is freed with camber_free. */
+static uint8_t *draw_twice(const easel *e, const camber_cover_scene *drawn, camber_cover_area area) {
+    camber_cover *cover = NULL;
+    camber_cover_stages device, twin;
+    assert_int_equal(camber_cover_create(e->s.device, &cover), CAMBER_OK);
+    assert_int_equal(camber_cover_draw(cover, drawn, &area), CAMBER_OK);
+    assert_int_equal(camber_cover_read_stages(cover, &device), CAMBER_OK);
+    assert_int_equal(camber_cover_on_host(e->s.context, drawn, &area, &twin), CAMBER_OK);
+    compare_stages(&device, &twin);
+    assert_memory_equal(device.rgba, twin.rgba, 4 * (size_t)area.width * area.height);
+    uint8_t *rgba = device.rgba;
+    device.rgba = NULL;
+    camber_cover_stages_free(e->s.context, &device);
+    camber_cover_stages_free(e->s.context, &twin);
+    camber_cover_destroy(cover);
+    return rgba;
+}
+
+/* A scene of the stages alone: one table, an ink a row, with layers and a group among them. The rich variant makes the
+ * same of what is plain. */
 static void compare_with_twin(const easel *e, const drawing *d, camber_mesh *mesh, bool linear,
                               camber_cover_area area) {
+    static const camber_ink_more nothing[2 * SCENE_ROWS];
     float rows[2 * SCENE_ROWS][CAMBER_COVER_ROW_WORDS] = {{0}};
     camber_ink inks[2 * SCENE_ROWS + 1] = {{0}};
     for (uint32_t i = 0; i < 2 * SCENE_ROWS; i++) {
@@ -84,27 +122,13 @@ static void compare_with_twin(const easel *e, const drawing *d, camber_mesh *mes
     }
     const size_t count = mesh->polyline_count;
     const camber_cover_run runs[] = {{mesh, 0, count, 0}, {mesh, count / 3, count, SCENE_ROWS}};
-    const camber_cover_scene drawn = {rows[0], 2 * SCENE_ROWS,        inks,  2 * SCENE_ROWS, runs,
-                                      2,       {0.2f, 0.3f, 0.4f, 1}, linear};
-    camber_cover *cover = NULL;
-    camber_cover_stages device, twin;
-    assert_int_equal(camber_cover_create(e->s.device, &cover), CAMBER_OK);
-    assert_int_equal(camber_cover_draw(cover, &drawn, &area), CAMBER_OK);
-    assert_int_equal(camber_cover_read_stages(cover, &device), CAMBER_OK);
-    assert_int_equal(camber_cover_on_host(e->s.context, &drawn, &area, &twin), CAMBER_OK);
-    assert_int_equal(device.shape_count, twin.shape_count);
-    assert_int_equal(device.tile_count, twin.tile_count);
-    assert_memory_equal(device.boxes, twin.boxes, 4 * twin.shape_count);
-    for (size_t i = 0; i < twin.shape_count; i++)
-        if ((twin.boxes[i] & 255u) <= (twin.boxes[i] >> 16 & 255u))
-            assert_memory_equal(device.shapes + CAMBER_SHAPE_WORDS * i, twin.shapes + CAMBER_SHAPE_WORDS * i,
-                                4 * CAMBER_SHAPE_WORDS);
-    assert_memory_equal(device.starts, twin.starts, 4 * (twin.tile_count + 1));
-    assert_memory_equal(device.lists, twin.lists, 4 * (size_t)twin.starts[twin.tile_count]);
-    assert_memory_equal(device.rgba, twin.rgba, 4 * (size_t)area.width * area.height);
-    camber_cover_stages_free(e->s.context, &device);
-    camber_cover_stages_free(e->s.context, &twin);
-    camber_cover_destroy(cover);
+    camber_cover_scene drawn = {rows[0], 2 * SCENE_ROWS, inks, 2 * SCENE_ROWS, runs, 2, {0.2f, 0.3f, 0.4f, 1}, linear};
+    uint8_t *plain = draw_twice(e, &drawn, area);
+    drawn.more = nothing;
+    uint8_t *rich = draw_twice(e, &drawn, area);
+    assert_memory_equal(plain, rich, 4 * (size_t)area.width * area.height);
+    camber_free(e->s.context, rich);
+    camber_free(e->s.context, plain);
 }
 
 static void test_twin(void **state) {
@@ -114,6 +138,7 @@ static void test_twin(void **state) {
         for (int m = 0; m < 3; m++) {
             drawing d = begin_drawing();
             fill_scene(&d.lines, which);
+            d.measured = (which + m) % 2;
             camber_mesh *mesh = make_mesh(e, e->cl, &d, methods[m]);
             compare_with_twin(e, &d, mesh, which % 2, (camber_cover_area){32 * (uint32_t)m, 64, 500, 333});
             camber_mesh_destroy(mesh);

@@ -1,10 +1,19 @@
-/* Drawing in OpenCL: shape -> count -> total -> fill -> cover, of the records of meshes, and the CPU twin. */
+/* Drawing in OpenCL: shape -> count -> total -> fill -> cover, of the records of meshes, and the CPU twin.
+ *
+ * The kernels are built in variants, so that a plain frame pays for nothing that it has not. camber_cover_variant says
+ * which one a scene takes:
+ *     0                                          inks alone
+ *     CAMBER_COVER_RICH                          scene.more is there: for each ink what kernels/cover_bands.h lists,
+ * and the tail, float4s that it names. shape writes a measure a segment; an ink with no features is drawn to the same
+ * bytes as by the plain variant CAMBER_COVER_RICH | CAMBER_COVER_PITCHED   the plane of the lines is seen at an angle
+ * In kernels a variant is what #if CAMBER_COVER_RICH and #if CAMBER_COVER_PITCHED leave; the twin has all of them and
+ * goes by the scene. */
 #ifndef CAMBER_COVER_H
 #define CAMBER_COVER_H
 
 #include "tess/tess.h"
 
-#include "kernels/cover.h"
+#include "kernels/cover_bands.h"
 
 /* Polylines [first, end) of a mesh, drawn by a table of rows. */
 typedef struct camber_cover_run {
@@ -23,7 +32,13 @@ typedef struct camber_cover_scene {
     size_t run_count;
     float background[4]; /* premultiplied */
     bool linear;
+    const camber_ink_more *more; /* ink_count. NULL: the frame is plain */
+    const float *tail;           /* tail_count times 4 */
+    size_t tail_count;
 } camber_cover_scene;
+
+/* Of the program that draws it. */
+unsigned camber_cover_variant(const camber_cover_scene *scene);
 
 /* A part of the picture that is drawn at once, px; a multiple of CAMBER_TILE_PX from its edges, and no side longer than
  * CAMBER_TILES_MAX tiles. */
@@ -57,6 +72,7 @@ camber_cover_times camber_cover_get_times(const camber_cover *cover);
 typedef struct camber_cover_stages {
     float *shapes;   /* shape_count times CAMBER_SHAPE_WORDS */
     uint32_t *boxes; /* shape_count */
+    float *measures; /* shape_count times CAMBER_SHAPE_MEASURES. NULL: of a plain scene */
     size_t shape_count;
     uint32_t *starts; /* tile_count + 1 */
     size_t tile_count;

@@ -6,8 +6,11 @@
 enum {
     BUFFER_ROWS,
     BUFFER_INKS,
+    BUFFER_MORE,
+    BUFFER_TAIL,
     BUFFER_SHAPES,
     BUFFER_BOXES,
+    BUFFER_MEASURES,
     BUFFER_COUNTS,
     BUFFER_TOTALS,
     BUFFER_STARTS,
@@ -28,7 +31,8 @@ static const char *const stage_names[STAGES] = {"shape", "count", "total", "fill
 
 struct camber_cover {
     camber_device *device;
-    camber_program *program;
+    camber_program *program; /* of the variant */
+    unsigned variant;        /* of what was drawn last */
     cl_mem buffers[BUFFERS];
     size_t capacities[BUFFERS];
     uint32_t *starts, *items; /* of the host */
@@ -162,9 +166,10 @@ static camber_status make_shapes(camber_cover *cover, const camber_cover_scene *
                                       BUFFER(BUFFER_ROWS),
                                       BUFFER(BUFFER_SHAPES),
                                       BUFFER(BUFFER_BOXES),
-                                      VALUE(range)};
+                                      VALUE(range),
+                                      BUFFER(BUFFER_MEASURES)};
         const size_t items[2] = {0, (pieces[i].end - pieces[i].first + 15) / 16};
-        status = run(cover, STAGE_SHAPE, arguments, 5, items);
+        status = run(cover, STAGE_SHAPE, arguments, cover->variant ? 6 : 5, items);
     }
     return status;
 }
@@ -283,11 +288,27 @@ static camber_status cover_tiles(camber_cover *cover, const camber_cover_scene *
                                   BUFFER(BUFFER_INKS),
                                   BUFFER(BUFFER_ITEMS),
                                   BUFFER(BUFFER_PIXELS),
-                                  VALUE(s)};
+                                  VALUE(s),
+                                  BUFFER(BUFFER_MEASURES),
+                                  BUFFER(BUFFER_MORE),
+                                  BUFFER(BUFFER_TAIL)};
+    const cl_uint count = cover->variant ? 10 : 7;
     if (status == CAMBER_OK)
-        status = run(cover, STAGE_COVER, arguments, 7, (size_t[]){0, heavy});
+        status = run(cover, STAGE_COVER, arguments, count, (size_t[]){0, heavy});
     if (status == CAMBER_OK)
-        status = run(cover, STAGE_COVER, arguments, 7, (size_t[]){heavy, items - heavy});
+        status = run(cover, STAGE_COVER, arguments, count, (size_t[]){heavy, items - heavy});
+    return status;
+}
+
+/* What the rich variants read and write besides. */
+static camber_status prepare_more(camber_cover *cover, const camber_cover_scene *scene, size_t shapes) {
+    static const float nothing[4] = {0};
+    const bool bare = scene->tail_count == 0;
+    camber_status status = put(cover, BUFFER_MORE, scene->more, scene->ink_count * sizeof *scene->more);
+    if (status == CAMBER_OK)
+        status = put(cover, BUFFER_TAIL, bare ? nothing : scene->tail, (bare ? 1 : scene->tail_count) * sizeof nothing);
+    if (status == CAMBER_OK)
+        status = reserve(cover, BUFFER_MEASURES, 4 * CAMBER_SHAPE_MEASURES * shapes);
     return status;
 }
 
@@ -302,6 +323,8 @@ static camber_status prepare(camber_cover *cover, const camber_cover_scene *scen
         status = reserve(cover, BUFFER_SHAPES, 4 * CAMBER_SHAPE_WORDS * shapes);
     if (status == CAMBER_OK)
         status = reserve(cover, BUFFER_BOXES, 4 * shapes);
+    if (status == CAMBER_OK && cover->variant)
+        status = prepare_more(cover, scene, shapes);
     if (status == CAMBER_OK)
         status = reserve(cover, BUFFER_PIXELS, 4 * (size_t)cover->columns * rows * CAMBER_TILE_PX * CAMBER_TILE_PX);
     return status;
@@ -352,7 +375,8 @@ camber_status camber_cover_draw(camber_cover *cover, const camber_cover_scene *s
     memset(cover->ms, 0, sizeof cover->ms);
     cover->area = *area;
     cover->columns = camber_cover_tiles(area->width);
-    camber_status status = cover->program ? CAMBER_OK : camber_device_cover_program(cover->device, &cover->program);
+    cover->variant = camber_cover_variant(scene);
+    camber_status status = camber_device_cover_program(cover->device, cover->variant, &cover->program);
     if (status == CAMBER_OK)
         status = camber_cover_list_pieces(context, scene, &pieces, &piece_count, &cover->shape_count);
     if (status == CAMBER_OK)
@@ -416,6 +440,8 @@ camber_status camber_cover_read_stages(camber_cover *cover, camber_cover_stages 
     camber_status status = get(cover, BUFFER_SHAPES, 4 * CAMBER_SHAPE_WORDS * made.shape_count, &made.shapes);
     if (status == CAMBER_OK)
         status = get(cover, BUFFER_BOXES, 4 * made.shape_count, &made.boxes);
+    if (status == CAMBER_OK && cover->variant)
+        status = get(cover, BUFFER_MEASURES, 4 * CAMBER_SHAPE_MEASURES * made.shape_count, &made.measures);
     if (status == CAMBER_OK)
         status = get(cover, BUFFER_STARTS, 4 * (made.tile_count + 1), &made.starts);
     if (status == CAMBER_OK)

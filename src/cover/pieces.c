@@ -64,6 +64,10 @@ camber_status camber_cover_list_pieces(camber_context *context, const camber_cov
     return CAMBER_OK;
 }
 
+unsigned camber_cover_variant(const camber_cover_scene *scene) {
+    return scene->more ? CAMBER_COVER_RICH : 0;
+}
+
 camber_shape_range camber_cover_range(const camber_cover_scene *scene, const camber_cover_piece *piece,
                                       const camber_cover_area *area) {
     const camber_mesh *mesh = piece->mesh;
@@ -87,6 +91,7 @@ camber_shape_range camber_cover_range(const camber_cover_scene *scene, const cam
 void camber_cover_stages_free(camber_context *context, camber_cover_stages *stages) {
     camber_free(context, stages->shapes);
     camber_free(context, stages->boxes);
+    camber_free(context, stages->measures);
     camber_free(context, stages->starts);
     camber_free(context, stages->lists);
     camber_free(context, stages->rgba);

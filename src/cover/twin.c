@@ -20,10 +20,16 @@ typedef struct twin {
 
 /* ---- Shapes ---- */
 
-/* A record by its number, or the nearest there is. */
-static camber_record record_at(const camber_record *records, int64_t i, const camber_shape_range *r) {
+/* Of a part, as the device has them: padding is ghosts. */
+typedef struct part_records {
+    camber_record *records;
+    camber_measure *measures; /* NULL: not measured */
+} part_records;
+
+/* A record's number, or that of the nearest there is. */
+static size_t place_of(int64_t i, const camber_shape_range *r) {
     const int64_t last = (int64_t)r->record_count - 1;
-    return records[i < 0 ? 0 : i > last ? last : i];
+    return (size_t)(i < 0 ? 0 : i > last ? last : i);
 }
 
 static float as_float(uint32_t word) {
@@ -46,54 +52,78 @@ static bool ends_segment(const camber_record *b, const camber_shape_range *r) {
     return r->strips ? !(b->last & starts) : !(b->last & CAMBER_POINT_FIRST) || kind == CAMBER_KIND_DOT;
 }
 
+/* How far along its line a segment lies: from one record to another. */
+static void put_measure(const camber_measure *measures, size_t from, size_t to, const camber_shape *s,
+                        float measure[CAMBER_SHAPE_MEASURES]) {
+    memset(measure, 0, CAMBER_SHAPE_MEASURES * sizeof *measure);
+    if (!measures)
+        return;
+    measure[0] = measures[from].along_px;
+    measure[1] = camber_shape_rate(s, measures[from].along_px, measures[to].along_px);
+    measure[2] = measures[from].total_px;
+}
+
 /* The words of the segment that ends with a record; the box says whether there is one. */
-static void put_shape(const twin *t, const camber_record *records, const camber_shape_range *r, int64_t i,
-                      float words[CAMBER_SHAPE_WORDS], uint32_t *box) {
-    const camber_record b = record_at(records, i, r), before = record_at(records, i - 1, r);
+static void put_shape(const twin *t, const part_records *part, const camber_shape_range *r, int64_t i, size_t shape) {
+    const camber_record *records = part->records;
+    const camber_record b = records[place_of(i, r)], before = records[place_of(i - 1, r)];
     const bool is_dot = camber_join_kind(b.join) == CAMBER_KIND_DOT;
     const bool ends = i < r->end && ends_segment(&b, r);
     const camber_record a = is_dot ? b : before;
     const bool again = before.last & CAMBER_RECORD_START && camber_join_kind(before.join) == CAMBER_KIND_TIGHT;
-    const camber_record p = record_at(records, again ? i - 3 : i - 2, r);
+    const camber_record p = records[place_of(again ? i - 3 : i - 2, r)];
     const float *row =
         t->scene->rows + CAMBER_COVER_ROW_WORDS * (r->first_row + (ends ? b.last >> CAMBER_POINT_ROW_SHIFT : 0));
     const camber_shape s = camber_shape_of(p.x + row[1], p.y + row[2], a.x + row[1], a.y + row[2], b.x + row[1],
                                            b.y + row[2], a.join, b.join, row[0], r->linear);
-    const float shape[CAMBER_SHAPE_WORDS] = {s.ax,  s.ay,  s.bx,         s.by,    s.ux,    s.uy,    s.nax, s.nay,
+    const float words[CAMBER_SHAPE_WORDS] = {s.ax,  s.ay,  s.bx,         s.by,    s.ux,    s.uy,    s.nax, s.nay,
                                              s.nbx, s.nby, s.half_width, s.reach, s.slope, s.curve, 0,     row[3]};
-    memcpy(words, shape, sizeof shape);
-    words[CAMBER_SHAPE_FLAGS] = as_float(s.flags);
-    *box = camber_shape_box(&s, ends && row[0] >= 0.0f, r->left, r->top, r->columns, r->rows);
+    float *made = t->stages->shapes + CAMBER_SHAPE_WORDS * shape;
+    memcpy(made, words, sizeof words);
+    made[CAMBER_SHAPE_FLAGS] = as_float(s.flags);
+    t->stages->boxes[shape] = camber_shape_box(&s, ends && row[0] >= 0.0f, r->left, r->top, r->columns, r->rows);
+    if (t->stages->measures)
+        put_measure(part->measures, place_of(is_dot ? i : i - 1, r), place_of(i, r), &s,
+                    t->stages->measures + CAMBER_SHAPE_MEASURES * shape);
+}
+
+static void free_part(camber_context *context, part_records *part) {
+    camber_free(context, part->records);
+    camber_free(context, part->measures);
 }
 
 /* The records of a part, read as the device has them. */
-static camber_status read_part(camber_mesh *mesh, size_t which, camber_record **records) {
+static camber_status read_part(camber_mesh *mesh, size_t which, part_records *part) {
+    camber_context *context = mesh->device->context;
     camber_mesh_data data;
     const camber_status status = camber_mesh_read(mesh, &data);
     if (status != CAMBER_OK)
         return status;
-    const camber_mesh_part *part = mesh->parts + which;
-    const size_t count = mesh->mesh_info.strips ? part->record_count : part->slot_count;
-    const size_t kept = part->record_count < count ? part->record_count : count; /* padding is ghosts */
-    *records = camber_alloc_zero(mesh->device->context, count, sizeof **records);
-    if (*records)
-        memcpy(*records, data.records + part->first_record, kept * sizeof **records);
-    camber_mesh_data_free(mesh->device->context, &data);
-    return *records ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    const camber_mesh_part *from = mesh->parts + which;
+    const size_t count = mesh->mesh_info.strips ? from->record_count : from->slot_count;
+    const size_t kept = from->record_count < count ? from->record_count : count;
+    const bool measured = mesh->mesh_info.measured;
+    part_records made = {camber_alloc_zero(context, count, sizeof *made.records),
+                         measured ? camber_alloc_zero(context, count, sizeof *made.measures) : NULL};
+    if (made.records)
+        memcpy(made.records, data.records + from->first_record, kept * sizeof *made.records);
+    if (made.measures)
+        memcpy(made.measures, data.measures + from->first_record, kept * sizeof *made.measures);
+    camber_mesh_data_free(context, &data);
+    *part = made;
+    return made.records && (made.measures || !measured) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
 }
 
 static camber_status make_shapes(const twin *t, const camber_cover_piece *pieces, size_t piece_count) {
     camber_status status = CAMBER_OK;
     for (size_t p = 0; p < piece_count && status == CAMBER_OK; p++) {
         const camber_shape_range r = camber_cover_range(t->scene, pieces + p, t->area);
-        camber_record *records = NULL;
-        status = read_part(pieces[p].mesh, pieces[p].part, &records);
+        part_records part = {0};
+        status = read_part(pieces[p].mesh, pieces[p].part, &part);
         const size_t count = (pieces[p].end - pieces[p].first + 15) / 16 * 16;
         for (size_t i = 0; i < count && status == CAMBER_OK; i++)
-            put_shape(t, records, &r, (int64_t)(pieces[p].first + i),
-                      t->stages->shapes + CAMBER_SHAPE_WORDS * (pieces[p].base + i),
-                      t->stages->boxes + pieces[p].base + i);
-        camber_free(t->context, records);
+            put_shape(t, &part, &r, (int64_t)(pieces[p].first + i), pieces[p].base + i);
+        free_part(t->context, &part);
     }
     return status;
 }
@@ -368,9 +398,11 @@ camber_status camber_cover_on_host(camber_context *context, const camber_cover_s
         return status;
     made.shapes = camber_alloc(context, made.shape_count, CAMBER_SHAPE_WORDS * sizeof *made.shapes);
     made.boxes = camber_alloc(context, made.shape_count, sizeof *made.boxes);
+    if (scene->more)
+        made.measures = camber_alloc(context, made.shape_count, CAMBER_SHAPE_MEASURES * sizeof *made.measures);
     made.starts = camber_alloc(context, made.tile_count + 1, sizeof *made.starts);
     made.rgba = camber_alloc(context, 4 * (size_t)area->width, area->height);
-    if (!made.shapes || !made.boxes || !made.starts || !made.rgba)
+    if (!made.shapes || !made.boxes || (scene->more && !made.measures) || !made.starts || !made.rgba)
         status = CAMBER_ERROR_MEMORY;
     if (status == CAMBER_OK)
         status = make_shapes(&t, pieces, piece_count);

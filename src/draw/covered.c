@@ -14,8 +14,10 @@ typedef struct tables {
     camber_context *context;
     float *rows;
     camber_ink *inks;
+    camber_ink_more *more; /* as many */
     camber_cover_run *runs;
-    size_t row_count, row_capacity, ink_count, ink_capacity, run_count, run_capacity;
+    size_t row_count, row_capacity, ink_count, ink_capacity, more_capacity, run_count, run_capacity;
+    bool is_rich;    /* one of these has features */
     uint32_t layers; /* so far */
     /* The last table of what is not layered: the runs of a pass share it. */
     const camber_pass *pass;
@@ -24,20 +26,25 @@ typedef struct tables {
 
 static void free_tables(tables *t) {
     camber_free(t->context, t->runs);
+    camber_free(t->context, t->more);
     camber_free(t->context, t->inks);
     camber_free(t->context, t->rows);
 }
 
 /* The number of an ink, which may be one of the table's that begins with ink first. */
-static camber_status use_ink(tables *t, size_t first, const camber_ink *ink, uint32_t *number) {
+static camber_status use_ink(tables *t, size_t first, const camber_ink *ink, const camber_ink_more *more,
+                             uint32_t *number) {
     for (size_t i = t->ink_count; i > first && i + INKS_BACK > t->ink_count; i--)
-        if (memcmp(t->inks + i - 1, ink, sizeof *ink) == 0) {
+        if (memcmp(t->inks + i - 1, ink, sizeof *ink) == 0 && memcmp(t->more + i - 1, more, sizeof *more) == 0) {
             *number = (uint32_t)(i - 1);
             return CAMBER_OK;
         }
-    if (!camber_grow(t->context, &t->inks, &t->ink_capacity, t->ink_count + 1, sizeof *t->inks))
+    if (!camber_grow(t->context, &t->inks, &t->ink_capacity, t->ink_count + 1, sizeof *t->inks) ||
+        !camber_grow(t->context, &t->more, &t->more_capacity, t->ink_count + 1, sizeof *t->more))
         return CAMBER_ERROR_MEMORY;
     *number = (uint32_t)t->ink_count;
+    t->is_rich = t->is_rich || more->features;
+    t->more[t->ink_count] = *more;
     t->inks[t->ink_count++] = *ink;
     return CAMBER_OK;
 }
@@ -69,7 +76,8 @@ static camber_status fill_table(tables *t, const camber_run *run, camber_ink ink
         ink.b = color.b;
         ink.a = united ? run->alpha * run->opacity : run->layered ? 1.0f : color.a;
         ink.mode = united ? CAMBER_INK_UNION : CAMBER_INK_OVER;
-        const camber_status status = use_ink(t, first_ink, &ink, &number);
+        const camber_ink_more more = {0};
+        const camber_status status = use_ink(t, first_ink, &ink, &more, &number);
         if (status != CAMBER_OK)
             return status;
         row[0] = camber_paint_half_width(paint);
@@ -132,10 +140,11 @@ static camber_status add_pass(tables *t, const camber_pass *pass) {
 
 static camber_status make_tables(tables *t, const camber_frame *frame) {
     const camber_ink none = {0};
+    const camber_ink_more no_more = {0};
     uint32_t number;
     if (frame->pitch_deg > 0.0)
         return refuse(t->context);
-    camber_status status = use_ink(t, 0, &none, &number); /* there is one, also where nothing is drawn */
+    camber_status status = use_ink(t, 0, &none, &no_more, &number); /* there is one, also where nothing is drawn */
     for (size_t i = 0; i < frame->pass_count && status == CAMBER_OK; i++)
         status = add_pass(t, frame->passes + i);
     if (status == CAMBER_OK && !camber_grow(t->context, &t->rows, &t->row_capacity, t->row_count + 1,
@@ -240,6 +249,7 @@ camber_status camber_covered_render(camber_renderer *renderer, const camber_fram
         .run_count = t.run_count,
         .background = {back.r * back.a, back.g * back.a, back.b * back.a, back.a},
         .linear = frame->coverage == CAMBER_COVERAGE_LINEAR,
+        .more = t.is_rich ? t.more : NULL,
     };
     if (status == CAMBER_OK)
         status = draw_areas(renderer, frame, &scene, &to, &made);

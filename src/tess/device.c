@@ -313,7 +313,8 @@ void camber_device_destroy(camber_device *device) {
     camber_program_destroy(device->context, device->measures);
     for (size_t i = 0; i < 2; i++)
         camber_program_destroy(device->context, device->offset_programs[i]);
-    camber_program_destroy(device->context, device->cover);
+    for (size_t i = 0; i < sizeof device->cover / sizeof *device->cover; i++)
+        camber_program_destroy(device->context, device->cover[i]);
     if (device->queue)
         clReleaseCommandQueue(device->queue);
     if (device->cl)

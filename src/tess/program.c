@@ -188,10 +188,14 @@ camber_status camber_device_offsets(camber_device *device, bool measured, camber
     return use_program(device, &from, &device->offset_programs[measured], program);
 }
 
-camber_status camber_device_cover_program(camber_device *device, camber_program **program) {
+camber_status camber_device_cover_program(camber_device *device, unsigned variant, camber_program **program) {
     recipe from = {PROGRAM_COVER, "drawing", camber_cover_kernels_source, camber_cover_kernels_source_size, ""};
     set_options(device, -1, false, &from);
-    return use_program(device, &from, &device->cover, program);
+    const size_t used = strlen(from.options);
+    snprintf(from.options + used, sizeof from.options - used, "%s%s",
+             variant & CAMBER_COVER_RICH ? " -DCAMBER_COVER_RICH=1" : "",
+             variant & CAMBER_COVER_PITCHED ? " -DCAMBER_COVER_PITCHED=1" : "");
+    return use_program(device, &from, &device->cover[variant], program);
 }
 
 camber_status camber_device_network_program(camber_device *device, bool measured, bool pitched,

@@ -27,7 +27,7 @@ struct camber_device {
     struct camber_program *network_programs[2][2]; /* the second ones of a camera with a pitch */
     struct camber_program *measures;
     struct camber_program *offset_programs[2];
-    struct camber_program *cover; /* what draws */
+    struct camber_program *cover[4]; /* what draws, by its variant */
     /* What its meshes may hold (0: what they want), hold, and held at most. */
     uint64_t memory_bytes, held_bytes, most_held_bytes;
     camber_mesh *meshes; /* each knows the next */
@@ -64,13 +64,17 @@ typedef struct camber_program_desc {
     bool round_limits; /* a row has one; without them classify is a fifth faster on PoCL */
 } camber_program_desc;
 
+/* What kernels that draw are built for, as bits: the compiler has each that is set as a macro that is 1. */
+#define CAMBER_COVER_RICH 1
+#define CAMBER_COVER_PITCHED 2 /* with RICH */
+
 /* The kernels, built or loaded at first use. */
 camber_status camber_device_program(camber_device *device, camber_program_desc desc, camber_program **program);
 camber_status camber_device_network_program(camber_device *device, bool measured, bool pitched,
                                             camber_program **program);
 camber_status camber_device_measures(camber_device *device, camber_program **program);
 camber_status camber_device_offsets(camber_device *device, bool measured, camber_program **program);
-camber_status camber_device_cover_program(camber_device *device, camber_program **program);
+camber_status camber_device_cover_program(camber_device *device, unsigned variant, camber_program **program);
 /* Saves the binary if it is new. Called after the kernels have run: only then does PoCL's hold machine code. */
 void camber_program_save(camber_device *device, camber_program *program);
 void camber_program_destroy(camber_context *context, camber_program *program);

@@ -254,3 +254,9 @@ static bool write_bytes(void *user, const void *bytes, size_t size_bytes) {
 camber_sink fuzz_sink(fuzz_bytes *bytes) {
     return (camber_sink){.write = write_bytes, .user = bytes};
 }
+
+__attribute__((weak)) int LLVMFuzzerInitialize(int *argument_count, char ***arguments) {
+    (void)argument_count;
+    (void)arguments;
+    return 0;
+}

@@ -55,7 +55,7 @@ typedef struct fuzz_bytes {
 } fuzz_bytes;
 camber_sink fuzz_sink(fuzz_bytes *bytes);
 
-/* The target's own; libFuzzer and replay.c call them. */
+/* The target's own; libFuzzer and replay.c call them. A target with nothing to begin with has the first from fuzz.c. */
 int LLVMFuzzerInitialize(int *argument_count, char ***arguments);
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 

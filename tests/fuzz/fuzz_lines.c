@@ -130,12 +130,6 @@ static void use_repaired(fuzz_run *run, const uint8_t *bytes, size_t size) {
     free(copy);
 }
 
-int LLVMFuzzerInitialize(int *argument_count, char ***arguments) {
-    (void)argument_count;
-    (void)arguments;
-    return 0;
-}
-
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
     fuzz_each(bytes, size, use_file);
     if (size >= HEAD_BYTES + 4)

@@ -48,12 +48,6 @@ static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
     free(text);
 }
 
-int LLVMFuzzerInitialize(int *argument_count, char ***arguments) {
-    (void)argument_count;
-    (void)arguments;
-    return 0;
-}
-
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
     if (size)
         fuzz_each(bytes, size, use);

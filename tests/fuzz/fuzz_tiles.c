@@ -66,12 +66,6 @@ static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
     camber_style_destroy(style);
 }
 
-int LLVMFuzzerInitialize(int *argument_count, char ***arguments) {
-    (void)argument_count;
-    (void)arguments;
-    return 0;
-}
-
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
     fuzz_each(bytes, size, use);
     return 0;

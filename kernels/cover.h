@@ -39,6 +39,7 @@ typedef int camber_mask;
 #define CAMBER_NOTHING_PX (1.0f / 512.0f) /* of what lies below, less than this is not seen */
 #define CAMBER_NEVER_PX 1e6f
 #define CAMBER_ALWAYS_PX (-1e30f)
+#define CAMBER_FILL_PX 1e6f /* a fill is a line along y = 0, so long to either side and half so wide */
 
 /* Of a segment that is not drawn: its first tile lies behind the last one. */
 #define CAMBER_NO_BOX 0xffu

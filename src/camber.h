@@ -283,7 +283,7 @@ typedef enum camber_draw {
     CAMBER_DRAW_AUTO = 0, /* GL where there is a surface, else OpenCL */
     CAMBER_DRAW_GL,       /* GLES shaders */
     CAMBER_DRAW_CL, /* OpenCL kernels, which need no surface; not yet dashes, gaps, blur, trims, gradients, patterns,
-                       fills, pitch */
+                       pitch */
 } camber_draw;
 
 typedef struct camber_renderer_desc {

@@ -239,7 +239,7 @@ static int check_offsets(camber_context *context, camber_mesh *mesh, const scene
     return failures;
 }
 
-/* A picture of the lines, opaque and in a united layer, by the kernels that draw. */
+/* A picture of the lines, opaque and in a united layer over a veil, by the kernels that draw. */
 static int check_drawing(camber_device *device, camber_context *context, const scene *s, const camber_stroke *strokes) {
     const camber_polylines_desc desc = {.points = s->points,
                                         .point_count = s->point_count,
@@ -260,8 +260,9 @@ static int check_drawing(camber_device *device, camber_context *context, const s
                 camber_mesh_create(device, renderer, &mesh) == CAMBER_OK &&
                 camber_tessellate(mesh, polylines, &strips) == CAMBER_OK;
     const camber_pass passes[] = {{.mesh = mesh, .paints = paints[0], .paint_count = ROWS},
+                                  {.fill = {.color = {0, 1, 0, 0.3f}}},
                                   {.mesh = mesh, .paints = paints[1], .paint_count = ROWS, .opacity = 0.5f}};
-    const camber_frame frame = {.width = 150, .height = 130, .passes = passes, .pass_count = 2};
+    const camber_frame frame = {.width = 150, .height = 130, .passes = passes, .pass_count = 3};
     good = good && camber_render(renderer, &frame, NULL, NULL, NULL) == CAMBER_OK;
     if (!good)
         puts("not ok - drawing");

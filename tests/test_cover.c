@@ -101,12 +101,13 @@ static uint8_t *draw_twice(const easel *e, const camber_cover_scene *drawn, camb
     return rgba;
 }
 
-/* A scene of the stages alone: one table, an ink a row, with layers and a group among them. The rich variant makes the
- * same of what is plain. */
+/* A scene of the stages alone: one table, an ink a row, with layers and a group among them, and a fill. The rich
+ * variant makes the same of what is plain. */
 static void compare_with_twin(const easel *e, const drawing *d, camber_mesh *mesh, bool linear,
                               camber_cover_area area) {
-    static const camber_ink_more nothing[2 * SCENE_ROWS];
-    float rows[2 * SCENE_ROWS][CAMBER_COVER_ROW_WORDS] = {{0}};
+    static const camber_ink_more nothing[2 * SCENE_ROWS + 1];
+    const uint32_t fill = 2 * SCENE_ROWS;
+    float rows[2 * SCENE_ROWS + 1][CAMBER_COVER_ROW_WORDS] = {{0}};
     camber_ink inks[2 * SCENE_ROWS + 1] = {{0}};
     for (uint32_t i = 0; i < 2 * SCENE_ROWS; i++) {
         const bool over = i >= SCENE_ROWS;
@@ -120,9 +121,13 @@ static void compare_with_twin(const easel *e, const drawing *d, camber_mesh *mes
         inks[i].group = over ? 1 : 0;
         inks[i].layer = i % 4 == 1 ? i : 0;
     }
+    rows[fill][0] = CAMBER_FILL_PX;
+    memcpy(rows[fill] + 3, &fill, sizeof fill);
+    inks[fill] =
+        (camber_ink){.r = 0.1f, .g = 0.9f, .b = 0.4f, .a = linear ? 1 : 0.3f, .group = 1, .group_opacity = 0.6f};
     const size_t count = mesh->polyline_count;
-    const camber_cover_run runs[] = {{mesh, 0, count, 0}, {mesh, count / 3, count, SCENE_ROWS}};
-    camber_cover_scene drawn = {rows[0], 2 * SCENE_ROWS, inks, 2 * SCENE_ROWS, runs, 2, {0.2f, 0.3f, 0.4f, 1}, linear};
+    const camber_cover_run runs[] = {{mesh, 0, count, 0}, {NULL, 0, 0, fill}, {mesh, count / 3, count, SCENE_ROWS}};
+    camber_cover_scene drawn = {rows[0], fill + 1, inks, fill + 1, runs, 3, {0.2f, 0.3f, 0.4f, 1}, linear};
     uint8_t *plain = draw_twice(e, &drawn, area);
     drawn.more = nothing;
     uint8_t *rich = draw_twice(e, &drawn, area);

@@ -13,11 +13,12 @@
 
 #include "tess/tess.h"
 
+#include "camber_proof.h"
 #include "kernels/cover_bands.h"
 
 /* Polylines [first, end) of a mesh, drawn by a table of rows. */
 typedef struct camber_cover_run {
-    camber_mesh *mesh;
+    camber_mesh *mesh; /* NULL: the picture is filled with the ink of the first row, which is CAMBER_FILL_PX wide */
     size_t first, end;
     size_t first_row; /* of the table, in all rows */
 } camber_cover_run;
@@ -100,7 +101,7 @@ typedef struct camber_shape_range {
 
 /* Runs of records that are drawn by one table. */
 typedef struct camber_cover_piece {
-    camber_mesh *mesh;
+    camber_mesh *mesh; /* NULL: the records of a fill */
     size_t part;
     size_t first, end; /* records of the part */
     size_t base;       /* the first shape: a multiple of 16 */
@@ -112,6 +113,8 @@ camber_status camber_cover_list_pieces(camber_context *context, const camber_cov
                                        camber_cover_piece **pieces, size_t *piece_count, size_t *shape_count);
 camber_shape_range camber_cover_range(const camber_cover_scene *scene, const camber_cover_piece *piece,
                                       const camber_cover_area *area);
+enum { CAMBER_FILL_RECORDS = 2 };
+extern const camber_record camber_fill_records[CAMBER_FILL_RECORDS];
 static inline uint32_t camber_cover_tiles(uint32_t side_px) {
     return (side_px + CAMBER_TILE_PX - 1) / CAMBER_TILE_PX;
 }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 enum {
+    BUFFER_FILL, /* camber_fill_records */
     BUFFER_ROWS,
     BUFFER_INKS,
     BUFFER_MORE,
@@ -157,17 +158,14 @@ static camber_status make_shapes(camber_cover *cover, const camber_cover_scene *
     camber_status status = CAMBER_OK;
     for (size_t i = 0; i < piece_count && status == CAMBER_OK; i++) {
         camber_mesh *mesh = pieces[i].mesh;
-        camber_mesh_part *part = mesh->parts + pieces[i].part;
+        camber_mesh_part *part = mesh ? mesh->parts + pieces[i].part : NULL;
         const camber_shape_range range = camber_cover_range(scene, pieces + i, &cover->band);
-        status = camber_part_use(mesh, part);
+        status = part ? camber_part_use(mesh, part) : CAMBER_OK;
         if (status != CAMBER_OK)
             break;
-        const argument arguments[] = {{sizeof(cl_mem), &part->buffers[CAMBER_BUFFER_RECORDS].mem},
-                                      BUFFER(BUFFER_ROWS),
-                                      BUFFER(BUFFER_SHAPES),
-                                      BUFFER(BUFFER_BOXES),
-                                      VALUE(range),
-                                      BUFFER(BUFFER_MEASURES)};
+        const cl_mem *records = part ? &part->buffers[CAMBER_BUFFER_RECORDS].mem : cover->buffers + BUFFER_FILL;
+        const argument arguments[] = {{sizeof(cl_mem), records}, BUFFER(BUFFER_ROWS), BUFFER(BUFFER_SHAPES),
+                                      BUFFER(BUFFER_BOXES),      VALUE(range),        BUFFER(BUFFER_MEASURES)};
         const size_t items[2] = {0, (pieces[i].end - pieces[i].first + 15) / 16};
         status = run(cover, STAGE_SHAPE, arguments, cover->variant ? 6 : 5, items);
     }
@@ -317,6 +315,8 @@ static camber_status prepare(camber_cover *cover, const camber_cover_scene *scen
     const uint32_t rows = camber_cover_tiles(cover->area.height);
     camber_status status =
         put(cover, BUFFER_ROWS, scene->rows, scene->row_count * CAMBER_COVER_ROW_WORDS * sizeof *scene->rows);
+    if (status == CAMBER_OK)
+        status = put(cover, BUFFER_FILL, camber_fill_records, sizeof camber_fill_records);
     if (status == CAMBER_OK)
         status = put(cover, BUFFER_INKS, scene->inks, scene->ink_count * sizeof *scene->inks);
     if (status == CAMBER_OK)

@@ -65,7 +65,7 @@ static void put_measure(const camber_measure *measures, size_t from, size_t to, 
 
 /* The words of the segment that ends with a record; the box says whether there is one. */
 static void put_shape(const twin *t, const part_records *part, const camber_shape_range *r, int64_t i, size_t shape) {
-    const camber_record *records = part->records;
+    const camber_record *records = part->records ? part->records : camber_fill_records;
     const camber_record b = records[place_of(i, r)], before = records[place_of(i - 1, r)];
     const bool is_dot = camber_join_kind(b.join) == CAMBER_KIND_DOT;
     const bool ends = i < r->end && ends_segment(&b, r);
@@ -119,7 +119,7 @@ static camber_status make_shapes(const twin *t, const camber_cover_piece *pieces
     for (size_t p = 0; p < piece_count && status == CAMBER_OK; p++) {
         const camber_shape_range r = camber_cover_range(t->scene, pieces + p, t->area);
         part_records part = {0};
-        status = read_part(pieces[p].mesh, pieces[p].part, &part);
+        status = pieces[p].mesh ? read_part(pieces[p].mesh, pieces[p].part, &part) : CAMBER_OK;
         const size_t count = (pieces[p].end - pieces[p].first + 15) / 16 * 16;
         for (size_t i = 0; i < count && status == CAMBER_OK; i++)
             put_shape(t, &part, &r, (int64_t)(pieces[p].first + i), pieces[p].base + i);

@@ -17,8 +17,9 @@ typedef struct tables {
     camber_ink_more *more; /* as many */
     camber_cover_run *runs;
     size_t row_count, row_capacity, ink_count, ink_capacity, more_capacity, run_count, run_capacity;
-    bool is_rich;    /* one of these has features */
-    uint32_t layers; /* so far */
+    bool is_rich;        /* one of these has features */
+    uint32_t layers;     /* so far */
+    float background[4]; /* premultiplied: what lies below the first run */
     /* The last table of what is not layered: the runs of a pass share it. */
     const camber_pass *pass;
     size_t first_row;
@@ -89,10 +90,9 @@ static camber_status fill_table(tables *t, const camber_run *run, camber_ink ink
 }
 
 static camber_status refuse(camber_context *context) {
-    return camber_fail(
-        context, CAMBER_ERROR_ARGUMENT,
-        "dashes, gaps, blur, trims, gradients, patterns, fills and pitch are not drawn in OpenCL yet; draw "
-        "with GL (--draw gl)");
+    return camber_fail(context, CAMBER_ERROR_ARGUMENT,
+                       "dashes, gaps, blur, trims, gradients, patterns and pitch are not drawn in OpenCL yet; draw "
+                       "with GL (--draw gl)");
 }
 
 static camber_status add_run(tables *t, const camber_run *run, camber_ink ink) {
@@ -111,10 +111,50 @@ static camber_status add_run(tables *t, const camber_run *run, camber_ink ink) {
     return status;
 }
 
+/* A row by itself, of a fill. */
+static camber_status add_fill_row(tables *t, const camber_ink *ink) {
+    uint32_t number = 0;
+    if (!camber_grow(t->context, &t->rows, &t->row_capacity, t->row_count + 1,
+                     CAMBER_COVER_ROW_WORDS * sizeof *t->rows) ||
+        !camber_grow(t->context, &t->runs, &t->run_capacity, t->run_count + 1, sizeof *t->runs))
+        return CAMBER_ERROR_MEMORY;
+    const camber_ink_more more = {0};
+    const camber_status status = use_ink(t, 0, ink, &more, &number);
+    if (status != CAMBER_OK)
+        return status;
+    float *row = t->rows + CAMBER_COVER_ROW_WORDS * t->row_count;
+    row[0] = CAMBER_FILL_PX;
+    row[1] = row[2] = 0.0f;
+    memcpy(row + 3, &number, sizeof number);
+    t->runs[t->run_count++] = (camber_cover_run){.first_row = t->row_count++};
+    return CAMBER_OK;
+}
+
+/* What an opaque colour hides is not drawn; below all lines a fill is part of the background. */
+static camber_status add_fill(tables *t, const camber_pass *pass) {
+    const camber_color c = pass->fill.color;
+    const float a = c.a * (pass->opacity > 0.0f ? pass->opacity : 1.0f);
+    const float color[4] = {c.r * a, c.g * a, c.b * a, a};
+    const camber_ink ink = {.r = c.r, .g = c.g, .b = c.b, .a = a};
+    if (pass->fill.pattern)
+        return refuse(t->context);
+    if (!(a > 0.0f))
+        return CAMBER_OK;
+    if (a >= 1.0f) {
+        t->run_count = 0;
+        t->is_rich = false;
+    }
+    if (t->run_count > 0)
+        return add_fill_row(t, &ink);
+    for (int i = 0; i < 4; i++)
+        t->background[i] = color[i] + (1.0f - a) * t->background[i];
+    return CAMBER_OK;
+}
+
 static camber_status add_pass(tables *t, const camber_pass *pass) {
     const camber_mesh *mesh = pass->mesh;
     if (!mesh)
-        return refuse(t->context);
+        return add_fill(t, pass);
     const bool fades = pass->opacity > 0.0f && pass->opacity < 1.0f;
     size_t end = pass->polyline_count ? pass->first_polyline + pass->polyline_count : mesh->polyline_count;
     end = end < mesh->polyline_count ? end : mesh->polyline_count;
@@ -236,7 +276,8 @@ static camber_status draw_areas(camber_renderer *renderer, const camber_frame *f
 camber_status camber_covered_render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows,
                                     void *user, camber_frame_stats *stats) {
     const camber_color back = frame->background;
-    tables t = {.context = renderer->share.device->context};
+    tables t = {.context = renderer->share.device->context,
+                .background = {back.r * back.a, back.g * back.a, back.b * back.a, back.a}};
     target to = {.rows = rows, .user = user};
     camber_frame_stats made = {0};
     camber_status status = make_tables(&t, frame);
@@ -247,7 +288,7 @@ camber_status camber_covered_render(camber_renderer *renderer, const camber_fram
         .ink_count = t.ink_count,
         .runs = t.runs,
         .run_count = t.run_count,
-        .background = {back.r * back.a, back.g * back.a, back.b * back.a, back.a},
+        .background = {t.background[0], t.background[1], t.background[2], t.background[3]},
         .linear = frame->coverage == CAMBER_COVERAGE_LINEAR,
         .more = t.is_rich ? t.more : NULL,
     };

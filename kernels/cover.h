@@ -313,79 +313,125 @@ CAMBER_FN camber_real camber_clamp_to_one(camber_real x) {
     return least < 1.0f ? least : CAMBER_REAL(1.0f);
 }
 
+/* Of the second line across a sharp join: what does not turn over with the end of it that is looked out of. */
+typedef struct camber_second {
+    camber_u32 bevel, miter;
+    float outer, nx, ny; /* the side it lies on; its normal along and across */
+} camber_second;
+
+/* second_line of stroke.frag. */
+CAMBER_FN void camber_second_of(camber_u32 end, float c, float s, camber_second *l) {
+    const float sine = CAMBER_FABS(s);
+    l->bevel = end == 4u || end == 6u;
+    l->miter = end == 3u || end == 7u;
+    l->outer = s > 0.0f ? -1.0f : 1.0f;
+    l->nx = l->bevel ? sine : 2.0f * sine * c;
+    l->ny = l->bevel ? l->outer * c : l->outer * (c * c - sine * sine);
+}
+
+CAMBER_FN camber_real camber_second_inside(const camber_second *l, float half_width, camber_real past, camber_real y,
+                                           float c) {
+    return (l->bevel ? half_width * c : half_width) - (past * l->nx + y * l->ny);
+}
+
 /* cut_join of stroke.frag: (ux, uy) looks out of the end. */
 CAMBER_FN camber_real camber_cut_join(camber_real area, const camber_pen *p, camber_u32 end, camber_real past,
                                       camber_real y, float c, float s, float ux, float uy) {
-    const camber_u32 bevel = end == 4u || end == 6u, miter = end == 3u || end == 7u;
-    const float outer = s > 0.0f ? -1.0f : 1.0f, sine = CAMBER_FABS(s);
-    if (!bevel && !miter)
+    camber_second l;
+    camber_second_of(end, c, s, &l);
+    if (!l.bevel && !l.miter)
         return area;
-    const float nx = bevel ? sine : 2.0f * sine * c, ny = bevel ? outer * c : outer * (c * c - sine * sine);
-    const camber_real inside = (bevel ? p->half_width * c : p->half_width) - (past * nx + y * ny);
-    const float seen_x = CAMBER_FABS(nx * ux - ny * uy), seen_y = CAMBER_FABS(nx * uy + ny * ux);
+    const camber_real inside = camber_second_inside(&l, p->half_width, past, y, c);
+    const float seen_x = CAMBER_FABS(l.nx * ux - l.ny * uy), seen_y = CAMBER_FABS(l.nx * uy + l.ny * ux);
     const float more = seen_x > seen_y ? seen_x : seen_y, less = seen_x > seen_y ? seen_y : seen_x;
     const camber_u32 linear = p->corner == 0.0f && p->extent == 0.5f && p->slope == 1.0f;
     const float extent = linear ? 0.5f : 0.5f * (more + less), slope = linear ? 1.0f : 1.0f / more;
     const float curve = linear || less <= 1e-4f ? 0.0f : 0.5f / (more * less);
     const camber_real second = camber_covered(inside, extent, linear ? 0.0f : less, slope, curve);
     /* The area inside two edges: the smaller, the product, or what both leave, by the angle between them. */
-    const float cosine = outer * ny, weight = CAMBER_FABS(cosine);
+    const float cosine = l.outer * l.ny, weight = CAMBER_FABS(cosine);
     const camber_real smaller = CAMBER_LESS(area, second), product = area * second, both = area + second - 1.0f;
     const camber_real bound = cosine > 0.0f ? smaller : (both > 0.0f ? both : CAMBER_REAL(0.0f));
     const camber_real joined = product * (1.0f - weight) + bound * weight;
-    if (bevel)
+    if (l.bevel)
         return joined;
-    return ((past > -1.0f) & (y * outer > 0.0f)) ? joined : area;
+    return ((past > -1.0f) & (y * l.outer > 0.0f)) ? joined : area;
 }
 
-/* The area of pixels that are the segment's: x along it, y across, fa and fb past the bisectors at A and B, px. */
-CAMBER_FN camber_real camber_pen_area(const camber_pen *p, camber_real x, camber_real y, camber_real fa,
-                                      camber_real fb) {
-    const camber_real none = CAMBER_REAL(0.0f), past_a = -x, past_b = x - p->length;
-    const camber_real arc_a = past_a - p->round_a, arc_b = past_b - p->round_b;
+CAMBER_FN camber_real camber_cut_joins(const camber_pen *p, camber_real area, camber_real x, camber_real y) {
+    area = camber_cut_join(area, p, p->end_a, -x, y, p->ca, p->sa, -p->ux, p->uy);
+    return camber_cut_join(area, p, p->end_b, x - p->length, y, p->cb, p->sb, p->ux, p->uy);
+}
+
+/* How far past its round ends a pixel lies, px, and how far across the line, with what that bends aside by the joins:
+ * x along the segment, y across, fa and fb past the bisectors at A and B. */
+CAMBER_FN camber_real camber_pen_off(const camber_pen *p, camber_real x, camber_real y, camber_real fa, camber_real fb,
+                                     camber_real *bent) {
+    const camber_real none = CAMBER_REAL(0.0f), arc_a = -x - p->round_a, arc_b = x - p->length - p->round_b;
     const camber_real farther = CAMBER_MORE(arc_a, arc_b), arc = farther > 0.0f ? farther : none;
-    camber_real bent = y;
+    *bent = y;
     if (p->bends) {
         const camber_real near_a = 0.5f - fa, near_b = 0.5f + fb;
         const camber_real share_a = ((fa < 0.0f) | (near_a < 0.0f)) ? none : near_a;
         const camber_real share_b = ((fb > 0.0f) | (near_b < 0.0f)) ? none : near_b;
         const camber_real straight = 1.0f - arc;
         const camber_real bend = p->sa * share_a * share_a + p->sb * share_b * share_b;
-        bent = y - bend * (straight > 0.0f ? straight : none);
+        *bent = y - bend * (straight > 0.0f ? straight : none);
     }
-    const camber_real d = CAMBER_SQRT(arc * arc + bent * bent);
-    camber_real area = camber_inside_edge(p, p->half_width - d);
-    if (p->thin) {
-        const camber_real both = area + camber_inside_edge(p, p->half_width + d) - 1.0f;
-        area = both > 0.0f ? both : none;
-    }
-    if (p->tips) {
-        const camber_real tips = camber_clamp_to_one(p->tip_a - past_a) + camber_clamp_to_one(p->tip_b - past_b) - 1.0f;
-        area *= tips > 0.0f ? tips : none;
-    }
-    if (p->sharp) {
-        area = camber_cut_join(area, p, p->end_a, past_a, y, p->ca, p->sa, -p->ux, p->uy);
-        area = camber_cut_join(area, p, p->end_b, past_b, y, p->cb, p->sb, p->ux, p->uy);
-    }
-    if (p->flat) {
-        const camber_real caps =
-            camber_inside_edge(p, p->flat_a - past_a) + camber_inside_edge(p, p->flat_b - past_b) - 1.0f;
-        area *= caps > 0.0f ? caps : none;
-    }
+    return arc;
+}
+
+/* The area of pixels that lies half_width from the line at most, where they lie d from it. */
+CAMBER_FN camber_real camber_pen_band(const camber_pen *p, float half_width, camber_real d) {
+    const camber_real area = camber_inside_edge(p, half_width - d);
+    if (!p->thin)
+        return area;
+    const camber_real both = area + camber_inside_edge(p, half_width + d) - 1.0f;
+    return both > 0.0f ? both : CAMBER_REAL(0.0f);
+}
+
+/* What the round caps of thin lines leave of pixels, and flat caps. */
+CAMBER_FN camber_real camber_pen_tips(const camber_pen *p, camber_real x) {
+    const camber_real past_a = -x, past_b = x - p->length;
+    const camber_real tips = camber_clamp_to_one(p->tip_a - past_a) + camber_clamp_to_one(p->tip_b - past_b) - 1.0f;
+    return tips > 0.0f ? tips : CAMBER_REAL(0.0f);
+}
+
+CAMBER_FN camber_real camber_pen_caps(const camber_pen *p, camber_real x) {
+    const camber_real past_a = -x, past_b = x - p->length;
+    const camber_real caps =
+        camber_inside_edge(p, p->flat_a - past_a) + camber_inside_edge(p, p->flat_b - past_b) - 1.0f;
+    return caps > 0.0f ? caps : CAMBER_REAL(0.0f);
+}
+
+/* The area where a pixel is the segment's. */
+CAMBER_FN camber_real camber_pen_own(const camber_pen *p, camber_real area, camber_real x, camber_real y,
+                                     camber_real fa, camber_real fb) {
+    const camber_real past_a = -x, past_b = x - p->length;
     camber_mask foreign = ((fa < 0.0f) & (past_a > p->own_a)) | ((fb >= 0.0f) & (past_b > p->own_b));
     if (p->tight)
         foreign |= (past_a + p->slope_a * y > p->from_a) | (past_b + p->slope_b * y > p->from_b);
-    return foreign ? none : area;
+    return foreign ? CAMBER_REAL(0.0f) : area;
+}
+
+/* The area of pixels that are the segment's. */
+CAMBER_FN camber_real camber_pen_area(const camber_pen *p, camber_real x, camber_real y, camber_real fa,
+                                      camber_real fb) {
+    camber_real bent;
+    const camber_real arc = camber_pen_off(p, x, y, fa, fb, &bent);
+    camber_real area = camber_pen_band(p, p->half_width, CAMBER_SQRT(arc * arc + bent * bent));
+    if (p->tips)
+        area *= camber_pen_tips(p, x);
+    if (p->sharp)
+        area = camber_cut_joins(p, area, x, y);
+    if (p->flat)
+        area *= camber_pen_caps(p, x);
+    return camber_pen_own(p, area, x, y, fa, fb);
 }
 
 /* The same where the ends are too far away to matter. */
 CAMBER_FN camber_real camber_pen_side(const camber_pen *p, camber_real y) {
-    const camber_real none = CAMBER_REAL(0.0f), d = CAMBER_FABS(y);
-    const camber_real area = camber_inside_edge(p, p->half_width - d);
-    if (!p->thin)
-        return area;
-    const camber_real both = area + camber_inside_edge(p, p->half_width + d) - 1.0f;
-    return both > 0.0f ? both : none;
+    return camber_pen_band(p, p->half_width, CAMBER_FABS(y));
 }
 
 /* The normal into the stroke across the nearest edge, in the picture. */

@@ -14,11 +14,11 @@
 
 typedef struct errand {
     const char *key, *name;
-    const char *arguments[8]; /* behind the tool */
+    const char *arguments[9]; /* behind the tool */
 } errand;
 
 static double run_errand(const bench *b, const errand *e, const char *folder) {
-    const char *arguments[10] = {b->tool};
+    const char *arguments[11] = {b->tool};
     for (size_t i = 0; e->arguments[i]; i++)
         arguments[i + 1] = e->arguments[i];
     bench_child child = bench_child_run(arguments, folder, NULL);
@@ -77,6 +77,8 @@ static void measure_starts(bench *b, const char *only, json_t *result) {
     const errand errands[] = {
         {"info", "camber info", {"info", "-q", NULL}},
         {"render_small", "camber render of 40 streets", {"render", "-q", "-f", map, "-o", picture, NULL}},
+        {"render_gl", "  drawn in GL", {"render", "-q", "-f", map, "-o", picture, "--draw", "gl", NULL}},
+        {"render_cl", "  in OpenCL, no GL", {"render", "-q", "-f", map, "-o", picture, "--draw", "cl", NULL}},
         {"render_city", "camber render of Santa Cruz", {"render", "-q", "-f", CAMBER_DEMO_CITY, "-o", picture, NULL}},
     };
     if (write_small_map(map))

@@ -1,7 +1,7 @@
 // A flattened layer onto the picture. COVERAGE: it has one channel and takes a colour; UNION: it has the four that
 // stroke.frag leaves, and takes a colour; neither: it has its own colours. MASKED: these
 // may be translucent by themselves, and their alphas lie beside, so that a line that lies on itself shows once. FILL: there
-// is no layer, but a colour, and with IMAGES images side by side.
+// is no layer, but a colour, and with IMAGES images side by side. FLIPPED: its last row comes first.
 precision highp float;
 
 #if !FILL
@@ -76,13 +76,17 @@ void main() {
 }
 #else
 void main() {
-    vec4 layer = texelFetch(u_layer, ivec2(gl_FragCoord.xy), 0);
+    ivec2 at = ivec2(gl_FragCoord.xy);
+#ifdef FLIPPED
+    at.y = textureSize(u_layer, 0).y - 1 - at.y;
+#endif
+    vec4 layer = texelFetch(u_layer, at, 0);
 #if UNION
     o_color = u_color * united(layer);
 #elif COVERAGE
     o_color = u_color * layer.r;
 #elif MASKED
-    o_color = u_color * vec4(layer.rgb, texelFetch(u_alphas, ivec2(gl_FragCoord.xy), 0).r);
+    o_color = u_color * vec4(layer.rgb, texelFetch(u_alphas, at, 0).r);
 #else
     o_color = u_color * layer;
 #endif

@@ -245,10 +245,13 @@ typedef enum camber_backend {
 
 typedef struct camber_surface_desc {
     camber_backend backend;
+    /* A GLES context of the caller's (EGLContext) and its initialised display (EGLDisplay): the surface's own context
+     * shares textures and fences with it (camber_render_texture), and no state. NULL: none. Needs EGL. */
+    void *egl_context, *egl_display;
 } camber_surface_desc;
 
 typedef struct camber_surface_info {
-    const char *backend;  /* "EGL surfaceless", "EGL device", "OSMesa" */
+    const char *backend;  /* "EGL surfaceless", "EGL device", "EGL shared", "OSMesa" */
     const char *renderer; /* GL_RENDERER */
     const char *version;  /* GL_VERSION */
     uint32_t largest_target_px;
@@ -256,7 +259,7 @@ typedef struct camber_surface_info {
     bool buffer_storage;
 } camber_surface_info;
 
-/* Returns CAMBER_ERROR_DEVICE when the library or the driver is not there. */
+/* Returns CAMBER_ERROR_DEVICE when the library or the driver is not there, or a context cannot share the caller's. */
 CAMBER_API camber_status camber_surface_create(camber_context *context, const camber_surface_desc *desc,
                                                camber_surface **surface);
 CAMBER_API void camber_surface_destroy(camber_surface *surface);
@@ -294,12 +297,13 @@ typedef struct camber_renderer_desc {
 
 typedef struct camber_renderer camber_renderer;
 
-/* desc may be NULL, and so may the surface where OpenCL draws. Returns CAMBER_ERROR_DEVICE (the sharing path asked for
- * does not work), CAMBER_ERROR_MEMORY. Shaders are built when they are first used. */
+/* desc may be NULL, and so may the surface where OpenCL draws: its pictures need no GL, and only camber_render_texture
+ * uses a surface then, whose paths of sharing pixels take. Returns CAMBER_ERROR_DEVICE (the sharing path asked for does
+ * not work), CAMBER_ERROR_MEMORY. Shaders are built when they are first used. */
 CAMBER_API camber_status camber_renderer_create(camber_device *device, camber_surface *surface,
                                                 const camber_renderer_desc *desc, camber_renderer **renderer);
 CAMBER_API void camber_renderer_destroy(camber_renderer *renderer);
-/* CAMBER_SHARING_AUTO where OpenCL draws: nothing is shared. */
+/* CAMBER_SHARING_AUTO without a surface: nothing is shared. */
 CAMBER_API camber_sharing camber_renderer_get_sharing(const camber_renderer *renderer);
 CAMBER_API camber_draw camber_renderer_get_draw(const camber_renderer *renderer);
 /* "auto", "gl" or "cl". */
@@ -597,6 +601,30 @@ CAMBER_API camber_status camber_render(camber_renderer *renderer, const camber_f
 CAMBER_API camber_status camber_render_begin(camber_renderer *renderer, const camber_frame *frame);
 CAMBER_API camber_status camber_render_end(camber_renderer *renderer, camber_rows_fn *rows, void *user,
                                            camber_frame_stats *stats);
+
+/* ---- Drawing into textures: for engines that draw more than lines ----------------------------------- */
+
+/* Of the surface's GL context, or of one that shares its objects (camber_surface_desc). Pixels are premultiplied:
+ * engines put them over what they have by glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA). */
+typedef struct camber_texture {
+    uint32_t name;  /* a GL_TEXTURE_2D of GL_RGBA8, as wide and high as the frame */
+    bool keep;      /* the frame lies over what the texture holds. false: in place of it */
+    bool bottom_up; /* the picture's last row lies at t = 0, as in GL's framebuffers. false: its first row does */
+    void *ready;    /* a GLsync behind what other contexts did to the texture, which GL waits for. NULL: none */
+} camber_texture;
+
+/* Draws a frame into a texture, in GL or OpenCL as the renderer does, and reads nothing back: so pictures of engines
+ * lie below lines and above them, and renderers of both kinds draw into one texture in turn. All of it is one piece:
+ * its sides are the surface's largest_target_px at most, and layers take up to 25 bytes a px more.
+ *
+ * drawn: takes a GLsync behind the last command, which has been flushed; another context waits for it by glWaitSync
+ * before it uses the texture, and the caller deletes it. It may be NULL then: all is done. With drawn NULL the call
+ * itself waits. No frame may be in flight. The surface's context stays current: make your own one current again.
+ *
+ * Returns what camber_render does, and CAMBER_ERROR_ARGUMENT (no such texture, another size or format, a renderer
+ * without a surface), CAMBER_ERROR_LIMIT (a side too long). The texture's pixels are not defined on failure. */
+CAMBER_API camber_status camber_render_texture(camber_renderer *renderer, const camber_frame *frame,
+                                               const camber_texture *texture, void **drawn);
 
 #ifdef __cplusplus
 }

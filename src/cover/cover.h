@@ -63,6 +63,9 @@ camber_status camber_cover_create(camber_device *device, camber_cover **cover);
 void camber_cover_destroy(camber_cover *cover);
 /* Draws an area. What it was drawn from may go afterwards. */
 camber_status camber_cover_draw(camber_cover *cover, const camber_cover_scene *scene, const camber_cover_area *area);
+/* The same into a buffer of the caller's, of camber_cover_bytes; there is nothing to map then. */
+camber_status camber_cover_draw_into(camber_cover *cover, const camber_cover_scene *scene,
+                                     const camber_cover_area *area, cl_mem pixels);
 /* The pixels of the area that was drawn last, until they are unmapped. */
 camber_status camber_cover_map(camber_cover *cover, camber_cover_pixels *pixels);
 void camber_cover_unmap(camber_cover *cover, camber_cover_pixels pixels);
@@ -117,6 +120,13 @@ enum { CAMBER_FILL_RECORDS = 2 };
 extern const camber_record camber_fill_records[CAMBER_FILL_RECORDS];
 static inline uint32_t camber_cover_tiles(uint32_t side_px) {
     return (side_px + CAMBER_TILE_PX - 1) / CAMBER_TILE_PX;
+}
+/* Pixels from row to row of an area, and what all of it takes: whole tiles. */
+static inline size_t camber_cover_stride_px(const camber_cover_area *area) {
+    return (size_t)camber_cover_tiles(area->width) * CAMBER_TILE_PX;
+}
+static inline size_t camber_cover_bytes(const camber_cover_area *area) {
+    return 4 * camber_cover_stride_px(area) * camber_cover_tiles(area->height) * CAMBER_TILE_PX;
 }
 
 #endif

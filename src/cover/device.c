@@ -1,6 +1,7 @@
 /* shape -> count -> total -> fill -> cover on a device, an area of the picture at a time. */
 #include "cover/cover.h"
 
+#include <assert.h>
 #include <string.h>
 
 enum {
@@ -39,6 +40,7 @@ struct camber_cover {
     uint32_t *starts, *items; /* of the host */
     size_t start_capacity, item_capacity;
     camber_cover_area area; /* drawn last */
+    cl_mem given;           /* where its pixels are, if not in a buffer of its own */
     camber_cover_area band; /* of it: whole rows of tiles, as many as there is room for lists */
     uint32_t columns;       /* tiles */
     size_t shape_count, tile_count;
@@ -285,7 +287,7 @@ static camber_status cover_tiles(camber_cover *cover, const camber_cover_scene *
                                   BUFFER(BUFFER_LISTS),
                                   BUFFER(BUFFER_INKS),
                                   BUFFER(BUFFER_ITEMS),
-                                  BUFFER(BUFFER_PIXELS),
+                                  {sizeof(cl_mem), cover->given ? &cover->given : cover->buffers + BUFFER_PIXELS},
                                   VALUE(s),
                                   BUFFER(BUFFER_MEASURES),
                                   BUFFER(BUFFER_MORE),
@@ -312,7 +314,6 @@ static camber_status prepare_more(camber_cover *cover, const camber_cover_scene 
 
 static camber_status prepare(camber_cover *cover, const camber_cover_scene *scene) {
     const size_t shapes = cover->shape_count ? cover->shape_count : 16;
-    const uint32_t rows = camber_cover_tiles(cover->area.height);
     camber_status status =
         put(cover, BUFFER_ROWS, scene->rows, scene->row_count * CAMBER_COVER_ROW_WORDS * sizeof *scene->rows);
     if (status == CAMBER_OK)
@@ -325,8 +326,8 @@ static camber_status prepare(camber_cover *cover, const camber_cover_scene *scen
         status = reserve(cover, BUFFER_BOXES, 4 * shapes);
     if (status == CAMBER_OK && cover->variant)
         status = prepare_more(cover, scene, shapes);
-    if (status == CAMBER_OK)
-        status = reserve(cover, BUFFER_PIXELS, 4 * (size_t)cover->columns * rows * CAMBER_TILE_PX * CAMBER_TILE_PX);
+    if (status == CAMBER_OK && !cover->given)
+        status = reserve(cover, BUFFER_PIXELS, camber_cover_bytes(&cover->area));
     return status;
 }
 
@@ -368,12 +369,14 @@ static camber_status draw_bands(camber_cover *cover, const camber_cover_scene *s
     return status;
 }
 
-camber_status camber_cover_draw(camber_cover *cover, const camber_cover_scene *scene, const camber_cover_area *area) {
+camber_status camber_cover_draw_into(camber_cover *cover, const camber_cover_scene *scene,
+                                     const camber_cover_area *area, cl_mem pixels) {
     camber_context *context = cover->device->context;
     camber_cover_piece *pieces = NULL;
     size_t piece_count = 0;
     memset(cover->ms, 0, sizeof cover->ms);
     cover->area = *area;
+    cover->given = pixels;
     cover->columns = camber_cover_tiles(area->width);
     cover->variant = camber_cover_variant(scene);
     camber_status status = camber_device_cover_program(cover->device, cover->variant, &cover->program);
@@ -389,12 +392,17 @@ camber_status camber_cover_draw(camber_cover *cover, const camber_cover_scene *s
     return status;
 }
 
+camber_status camber_cover_draw(camber_cover *cover, const camber_cover_scene *scene, const camber_cover_area *area) {
+    return camber_cover_draw_into(cover, scene, area, NULL);
+}
+
 /* ---- Pixels ---- */
 
 camber_status camber_cover_map(camber_cover *cover, camber_cover_pixels *pixels) {
     const camber_device *device = cover->device;
-    const size_t row_bytes = 4 * (size_t)camber_cover_tiles(cover->area.width) * CAMBER_TILE_PX;
+    const size_t row_bytes = 4 * camber_cover_stride_px(&cover->area);
     cl_int code;
+    assert(!cover->given);
     const void *rgba = clEnqueueMapBuffer(device->queue, cover->buffers[BUFFER_PIXELS], CL_TRUE, CL_MAP_READ, 0,
                                           row_bytes * cover->area.height, 0, NULL, NULL, &code);
     if (code != CL_SUCCESS)

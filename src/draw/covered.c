@@ -211,7 +211,8 @@ static camber_cover_area first_area(const camber_device *device, const camber_fr
 typedef struct target {
     camber_rows_fn *rows;
     void *user;
-    uint8_t *band; /* of several areas, or where rows are not as wide as the picture */
+    camber_area_fn *draw; /* in place of rows */
+    uint8_t *band;        /* of several areas, or where rows are not as wide as the picture */
     uint32_t width;
 } target;
 
@@ -239,7 +240,8 @@ static camber_status draw_band(camber_renderer *renderer, const camber_cover_sce
     for (area.x = 0; area.x < to->width && status == CAMBER_OK; area.x += widest) {
         const double begin = camber_now_ms();
         area.width = to->width - area.x < widest ? to->width - area.x : widest;
-        status = camber_cover_draw(renderer->cover, scene, &area);
+        status =
+            to->draw ? to->draw(renderer, scene, &area, to->user) : camber_cover_draw(renderer->cover, scene, &area);
         const double drawn = camber_now_ms();
         stats->draw_ms += drawn - begin;
         stats->pieces++;
@@ -273,12 +275,11 @@ static camber_status draw_areas(camber_renderer *renderer, const camber_frame *f
     return status;
 }
 
-camber_status camber_covered_render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows,
-                                    void *user, camber_frame_stats *stats) {
+static camber_status render_to(camber_renderer *renderer, const camber_frame *frame, target *to,
+                               camber_frame_stats *stats) {
     const camber_color back = frame->background;
     tables t = {.context = renderer->share.device->context,
                 .background = {back.r * back.a, back.g * back.a, back.b * back.a, back.a}};
-    target to = {.rows = rows, .user = user};
     camber_frame_stats made = {0};
     camber_status status = make_tables(&t, frame);
     const camber_cover_scene scene = {
@@ -293,11 +294,24 @@ camber_status camber_covered_render(camber_renderer *renderer, const camber_fram
         .more = t.is_rich ? t.more : NULL,
     };
     if (status == CAMBER_OK)
-        status = draw_areas(renderer, frame, &scene, &to, &made);
+        status = draw_areas(renderer, frame, &scene, to, &made);
     if (status == CAMBER_OK)
         *stats = made;
     free_tables(&t);
     return status;
+}
+
+camber_status camber_covered_render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows,
+                                    void *user, camber_frame_stats *stats) {
+    target to = {.rows = rows, .user = user};
+    return render_to(renderer, frame, &to, stats);
+}
+
+camber_status camber_covered_each(camber_renderer *renderer, const camber_frame *frame, camber_area_fn *draw,
+                                  void *user) {
+    target to = {.draw = draw, .user = user};
+    camber_frame_stats stats;
+    return render_to(renderer, frame, &to, &stats);
 }
 
 /* ---- Frames in two steps ---- */

@@ -50,7 +50,7 @@ static camber_status check_paints(const camber_renderer *renderer, const camber_
     return CAMBER_OK;
 }
 
-static camber_status check_frame(camber_renderer *renderer, const camber_frame *frame) {
+camber_status camber_frame_check(camber_renderer *renderer, const camber_frame *frame) {
     if (frame->width < 1 || frame->width > SIDE_MAX_PX || frame->height < 1 || frame->height > SIDE_MAX_PX)
         return camber_fail(renderer->share.device->context, CAMBER_ERROR_ARGUMENT,
                            "a picture of %u x %u px; each side must be 1 to %d", frame->width, frame->height,
@@ -184,6 +184,20 @@ static camber_status draw_band(camber_renderer *renderer, camber_flight *flight,
 
 /* ---- A frame in flight ---- */
 
+camber_status camber_frame_draw(camber_renderer *renderer, const camber_frame *frame, int target) {
+    camber_flight flight = {.frame = *frame};
+    camber_piece piece = {.width = frame->width,
+                          .height = frame->height,
+                          .coverage = frame->coverage,
+                          .thinnest_px = camber_renderer_thinnest(frame),
+                          .target = target,
+                          .draw_calls = &flight.stats.draw_calls};
+    pitch_piece(frame, &piece);
+    const camber_status status = draw_piece(renderer, &flight, &piece);
+    drop_fence(renderer, &flight);
+    return status;
+}
+
 static bool has_one_piece(const camber_flight *flight) {
     return flight->first.width == flight->frame.width && flight->first.height == flight->frame.height;
 }
@@ -244,7 +258,7 @@ camber_status camber_render(camber_renderer *renderer, const camber_frame *frame
                             camber_frame_stats *stats) {
     assert(renderer->flight_count == 0);
     camber_flight flight = {0};
-    camber_status status = check_frame(renderer, frame);
+    camber_status status = camber_frame_check(renderer, frame);
     if (status == CAMBER_OK && renderer->cover) {
         status = camber_covered_render(renderer, frame, rows, user, &flight.stats);
     } else {
@@ -299,7 +313,7 @@ camber_status camber_render_begin(camber_renderer *renderer, const camber_frame 
         renderer->first_flight = 0;
     const size_t at = (renderer->first_flight + renderer->flight_count) % CAMBER_FRAMES_IN_FLIGHT;
     camber_flight *flight = renderer->flights + at;
-    camber_status status = check_frame(renderer, frame);
+    camber_status status = camber_frame_check(renderer, frame);
     if (status == CAMBER_OK)
         status = renderer->cover ? camber_covered_begin(renderer, frame, flight)
                                  : begin(renderer, frame, targets[at], flight);

@@ -28,6 +28,7 @@
     X(void, Flush, (void))                                                                                             \
     X(GLsync, FenceSync, (GLenum, GLbitfield))                                                                         \
     X(GLenum, ClientWaitSync, (GLsync, GLbitfield, GLuint64))                                                          \
+    X(void, WaitSync, (GLsync, GLbitfield, GLuint64))                                                                  \
     X(void, DeleteSync, (GLsync))                                                                                      \
     X(void, PixelStorei, (GLenum, GLint))                                                                              \
     X(void, ReadPixels, (GLint, GLint, GLsizei, GLsizei, GLenum, GLenum, void *))                                      \
@@ -69,6 +70,7 @@
     X(void, ActiveTexture, (GLenum))                                                                                   \
     X(void, BindTexture, (GLenum, GLuint))                                                                             \
     X(void, TexParameteri, (GLenum, GLenum, GLint))                                                                    \
+    X(void, GetTexLevelParameteriv, (GLenum, GLint, GLenum, GLint *))                                                  \
     X(void, TexStorage2D, (GLenum, GLsizei, GLenum, GLsizei, GLsizei))                                                 \
     X(void, TexSubImage2D, (GLenum, GLint, GLint, GLint, GLsizei, GLsizei, GLenum, GLenum, const void *))              \
     X(void, GenFramebuffers, (GLsizei, GLuint *))                                                                      \

@@ -9,6 +9,10 @@ static void close_gl(camber_renderer *renderer) {
     const bool is_current = camber_surface_try_current(renderer->share.surface);
     camber_frames_forget(renderer, is_current);
     camber_patterns_release(renderer, is_current);
+    if (!is_current)
+        renderer->pixels.gl_name = 0; /* it goes with its context */
+    if (renderer->path)
+        renderer->path->ops.release(&renderer->share, &renderer->pixels);
     if (is_current) {
         for (int i = 0; i < CAMBER_STROKES_MAX; i++)
             gl->DeleteProgram(renderer->strokes[i].program);
@@ -46,9 +50,12 @@ camber_status camber_renderer_create(camber_device *device, camber_surface *surf
     camber_renderer *made = camber_alloc_zero(device->context, 1, sizeof *made);
     if (!made)
         return CAMBER_ERROR_MEMORY;
-    made->share = (camber_share){.device = device, .surface = in_cl ? NULL : surface};
-    const camber_status status = in_cl ? camber_cover_create(device, &made->cover) : open_gl(made, full.sharing);
+    made->share = (camber_share){.device = device, .surface = surface};
+    camber_status status = in_cl ? camber_cover_create(device, &made->cover) : CAMBER_OK;
+    if (status == CAMBER_OK && surface)
+        status = open_gl(made, full.sharing);
     if (status != CAMBER_OK) {
+        camber_cover_destroy(made->cover);
         camber_free(device->context, made);
         return status;
     }
@@ -60,10 +67,10 @@ void camber_renderer_destroy(camber_renderer *renderer) {
     if (!renderer)
         return;
     camber_context *context = renderer->share.device->context;
-    if (renderer->cover)
-        camber_frames_forget(renderer, false);
-    else
+    if (renderer->share.surface)
         close_gl(renderer);
+    else
+        camber_frames_forget(renderer, false);
     camber_cover_destroy(renderer->cover);
     camber_free(context, renderer->batch.counts);
     camber_free(context, renderer->batch.firsts);

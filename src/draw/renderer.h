@@ -37,6 +37,7 @@ typedef enum camber_flatten_kind {
     CAMBER_FLATTEN_MASKED,   /* colours, and their alphas beside them */
     CAMBER_FLATTEN_FILL,     /* nothing: one colour, */
     CAMBER_FLATTEN_IMAGES,   /* or images side by side */
+    CAMBER_FLATTEN_FLIPPED,  /* colours, upside down */
     CAMBER_FLATTEN_KINDS
 } camber_flatten_kind;
 
@@ -63,6 +64,7 @@ enum {
     CAMBER_TARGET_MASKED, /* a layer whose colours are translucent by themselves */
     CAMBER_TARGET_GROUP,  /* a pass with an opacity of its own */
     CAMBER_TARGET_COUNTS,
+    CAMBER_TARGET_GIVEN, /* a texture of the caller's, while a call draws into it */
     CAMBER_TARGETS
 };
 
@@ -153,7 +155,10 @@ typedef struct camber_flight {
 
 struct camber_renderer {
     camber_share share;
-    struct camber_cover *cover; /* draws in OpenCL; no surface then, and nothing of what follows. NULL: GL draws */
+    /* Draws in OpenCL. Of what follows, only what brings its pixels into textures is used then, and without a surface
+     * nothing. NULL: GL draws. */
+    struct camber_cover *cover;
+    camber_buffer pixels; /* that kernels draw and GL reads */
     const camber_share_path *path;
     camber_shader strokes[CAMBER_STROKES_MAX]; /* in the order they were built */
     size_t strokes_built;
@@ -195,6 +200,9 @@ camber_status camber_renderer_count_shader(camber_renderer *renderer, camber_met
 camber_status camber_renderer_bind_target(camber_renderer *renderer, int which, GLsizei width, GLsizei height);
 GLsizei camber_renderer_guard(const camber_renderer *renderer, int axis, GLsizei side);
 void camber_renderer_release_targets(camber_renderer *renderer);
+/* Makes a caller's texture the given target, until it is let go. */
+camber_status camber_renderer_give_target(camber_renderer *renderer, GLuint texture, GLsizei width, GLsizei height);
+void camber_renderer_let_go(camber_renderer *renderer);
 
 /* pass.c */
 float camber_renderer_thinnest(const camber_frame *frame);
@@ -259,6 +267,13 @@ camber_status camber_covered_render(camber_renderer *renderer, const camber_fram
 /* What one area holds is drawn at once, and kept; else all of it when the frame ends. */
 camber_status camber_covered_begin(camber_renderer *renderer, const camber_frame *frame, camber_flight *flight);
 camber_status camber_covered_end(camber_renderer *renderer, camber_flight *flight, camber_rows_fn *rows, void *user);
+/* Hands over the areas of a frame, from the top down, to be drawn and taken. */
+struct camber_cover_scene;
+struct camber_cover_area;
+typedef camber_status camber_area_fn(camber_renderer *renderer, const struct camber_cover_scene *scene,
+                                     const struct camber_cover_area *area, void *user);
+camber_status camber_covered_each(camber_renderer *renderer, const camber_frame *frame, camber_area_fn *draw,
+                                  void *user);
 
 /* rows.c: the row texture. */
 bool camber_renderer_holds_rows(const camber_renderer *renderer, size_t row_count, size_t tail_texels);
@@ -302,6 +317,9 @@ void camber_renderer_draw_indices(camber_renderer *renderer, const camber_mesh *
 
 /* frame.c: drops what is in flight. */
 void camber_frames_forget(camber_renderer *renderer, bool is_current);
+camber_status camber_frame_check(camber_renderer *renderer, const camber_frame *frame);
+/* Draws all of a frame in GL, as one piece, into a target. */
+camber_status camber_frame_draw(camber_renderer *renderer, const camber_frame *frame, int target);
 
 /* Logs what GL reports; CAMBER_OK where it reports nothing. */
 camber_status camber_renderer_check(camber_renderer *renderer, const char *what);

@@ -147,7 +147,8 @@ camber_status camber_renderer_flatten_shader(camber_renderer *renderer, camber_f
         "#define COVERAGE 0\n#define UNION 1\n#define MASKED 0\n#define FILL 0\n#define IMAGES 0\n",
         "#define COVERAGE 0\n#define UNION 0\n#define MASKED 1\n#define FILL 0\n#define IMAGES 0\n",
         "#define COVERAGE 0\n#define UNION 0\n#define MASKED 0\n#define FILL 1\n#define IMAGES 0\n",
-        "#define COVERAGE 0\n#define UNION 0\n#define MASKED 0\n#define FILL 1\n#define IMAGES 1\n"};
+        "#define COVERAGE 0\n#define UNION 0\n#define MASKED 0\n#define FILL 1\n#define IMAGES 1\n",
+        "#define COVERAGE 0\n#define UNION 0\n#define MASKED 0\n#define FILL 0\n#define IMAGES 0\n#define FLIPPED\n"};
     camber_shader *wanted = renderer->flatten + kind;
     if (!wanted->program) {
         const camber_status status = build(renderer, heads[kind], camber_flatten_vert, camber_flatten_frag, wanted);

@@ -108,12 +108,15 @@ static void describe(camber_surface *surface) {
     surface->records_max = texels > 0 ? (uint32_t)texels : 65536; /* what the specification promises */
 }
 
-static camber_status open_backend(camber_context *context, const camber_surface_ops *ops, camber_surface **surface) {
+static camber_status open_backend(camber_context *context, const camber_surface_ops *ops,
+                                  const camber_surface_desc *desc, camber_surface **surface) {
     camber_surface *made = camber_alloc_zero(context, 1, sizeof *made);
     if (!made)
         return CAMBER_ERROR_MEMORY;
     made->context = context;
     made->ops = ops;
+    made->egl_context = desc->egl_context;
+    made->egl_display = desc->egl_display;
     camber_status status = ops->create(made);
     if (status == CAMBER_OK)
         status = load_gl(made);
@@ -126,13 +129,13 @@ static camber_status open_backend(camber_context *context, const camber_surface_
     return CAMBER_OK;
 }
 
-static camber_status try_backend(camber_context *context, const camber_surface_ops *ops, bool is_last,
-                                 camber_surface **surface) {
+static camber_status try_backend(camber_context *context, const camber_surface_ops *ops,
+                                 const camber_surface_desc *desc, bool is_last, camber_surface **surface) {
     if (is_last)
-        return open_backend(context, ops, surface);
+        return open_backend(context, ops, desc, surface);
     camber_soft_log kept;
     camber_log_soften(context, &kept); /* a back end that is not there is no error while another may be */
-    const camber_status status = open_backend(context, ops, surface);
+    const camber_status status = open_backend(context, ops, desc, surface);
     camber_log_restore(context, &kept);
     if (status == CAMBER_ERROR_MEMORY) /* no other is tried then */
         return camber_fail(context, status, "out of memory for a GL surface; give it more memory");
@@ -143,12 +146,16 @@ camber_status camber_surface_create(camber_context *context, const camber_surfac
                                     camber_surface **surface) {
     static const camber_surface_ops *const backends[] = {&camber_surface_egl, &camber_surface_osmesa};
     const size_t count = sizeof backends / sizeof *backends;
-    const camber_backend wanted = desc ? desc->backend : CAMBER_BACKEND_AUTO;
+    const camber_surface_desc full = desc ? *desc : (camber_surface_desc){0};
+    const camber_backend wanted =
+        full.egl_context && full.backend == CAMBER_BACKEND_AUTO ? CAMBER_BACKEND_EGL : full.backend;
     camber_status status = CAMBER_ERROR_ARGUMENT;
+    if (full.egl_context && wanted == CAMBER_BACKEND_OSMESA)
+        return camber_fail(context, status, "OSMesa shares nothing with a context of EGL's; use the back end EGL");
     for (size_t i = 0; i < count; i++) {
         if (wanted != CAMBER_BACKEND_AUTO && wanted != backends[i]->backend)
             continue;
-        status = try_backend(context, backends[i], wanted != CAMBER_BACKEND_AUTO || i + 1 == count, surface);
+        status = try_backend(context, backends[i], &full, wanted != CAMBER_BACKEND_AUTO || i + 1 == count, surface);
         if (status == CAMBER_OK || status == CAMBER_ERROR_MEMORY)
             return status;
     }

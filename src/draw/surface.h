@@ -22,8 +22,9 @@ extern const camber_surface_ops camber_surface_osmesa;
 struct camber_surface {
     camber_context *context;
     const camber_surface_ops *ops;
-    void *state;      /* the back end's */
-    const char *name; /* set by create: "EGL surfaceless", ... */
+    void *egl_context, *egl_display; /* of the caller, that the context shares objects with. NULL: none */
+    void *state;                     /* the back end's */
+    const char *name;                /* set by create: "EGL surfaceless", ... */
     camber_gl gl;
     camber_surface_info info;
     bool half_float_targets; /* can be drawn into, with blending */

@@ -52,7 +52,7 @@ static camber_function *load(camber_surface *surface, const char *name) {
 
 /* A GLES 3 context that tells of its loss, where there are such; else one that may draw garbage then, or end the
  * process. */
-static EGLContext create_context(const egl_state *egl, EGLConfig config) {
+static EGLContext create_context(const egl_state *egl, EGLConfig config, EGLContext shared) {
     static const EGLint telling[] = {EGL_CONTEXT_MAJOR_VERSION_KHR, 3,
                                      EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT, EGL_LOSE_CONTEXT_ON_RESET_EXT,
                                      EGL_NONE};
@@ -60,12 +60,12 @@ static EGLContext create_context(const egl_state *egl, EGLConfig config) {
     const char *extensions = egl->eglQueryString(egl->display, EGL_EXTENSIONS);
     EGLContext made = EGL_NO_CONTEXT;
     if (extensions && strstr(extensions, "EGL_EXT_create_context_robustness"))
-        made = egl->eglCreateContext(egl->display, config, EGL_NO_CONTEXT, telling);
-    return made != EGL_NO_CONTEXT ? made : egl->eglCreateContext(egl->display, config, EGL_NO_CONTEXT, plain);
+        made = egl->eglCreateContext(egl->display, config, shared, telling);
+    return made != EGL_NO_CONTEXT ? made : egl->eglCreateContext(egl->display, config, shared, plain);
 }
 
 /* A context on a display that is initialised; false leaves nothing behind but the display. */
-static bool make_context(egl_state *egl) {
+static bool make_context(egl_state *egl, EGLContext shared) {
     static const EGLint config_wanted[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_ES3_BIT_KHR, EGL_SURFACE_TYPE, 0, EGL_NONE};
     EGLConfig config = NULL;
     EGLint count = 0;
@@ -73,7 +73,7 @@ static bool make_context(egl_state *egl) {
         return false;
     if (!egl->eglChooseConfig(egl->display, config_wanted, &config, 1, &count) || count < 1)
         config = NULL; /* EGL_NO_CONFIG_KHR: no surface is ever made */
-    egl->context = create_context(egl, config);
+    egl->context = create_context(egl, config, shared);
     if (egl->context == EGL_NO_CONTEXT)
         return false;
     if (egl->eglMakeCurrent(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, egl->context))
@@ -83,11 +83,11 @@ static bool make_context(egl_state *egl) {
     return false;
 }
 
-static bool open_display(egl_state *egl, EGLDisplay display) {
+static bool open_display(egl_state *egl, EGLDisplay display, EGLContext shared) {
     if (display == EGL_NO_DISPLAY || !egl->eglInitialize(display, NULL, NULL))
         return false;
     egl->display = display;
-    if (make_context(egl))
+    if (make_context(egl, shared))
         return true;
     egl->display = EGL_NO_DISPLAY; /* not terminated: another surface may be on it */
     return false;
@@ -105,7 +105,7 @@ static bool open_any(camber_surface *surface, egl_state *egl) {
         return false;
     surface->name = "EGL surfaceless";
     if (strstr(client, "EGL_MESA_platform_surfaceless") &&
-        open_display(egl, get_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL)))
+        open_display(egl, get_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL), EGL_NO_CONTEXT))
         return true;
     surface->name = "EGL device";
     EGLDeviceEXT devices[DEVICES_MAX];
@@ -113,7 +113,7 @@ static bool open_any(camber_surface *surface, egl_state *egl) {
     if (!query_devices || !query_devices(DEVICES_MAX, devices, &count))
         return false;
     for (EGLint i = 0; i < count; i++)
-        if (open_display(egl, get_display(EGL_PLATFORM_DEVICE_EXT, devices[i], NULL)))
+        if (open_display(egl, get_display(EGL_PLATFORM_DEVICE_EXT, devices[i], NULL), EGL_NO_CONTEXT))
             return true;
     return false;
 }
@@ -126,6 +126,14 @@ static camber_status create(camber_surface *surface) {
     surface->state = egl;
     if (!load_library(egl))
         return camber_fail(surface->context, CAMBER_ERROR_DEVICE, "EGL: libEGL.so.1 cannot be loaded; install libegl1");
+    if (surface->egl_context) {
+        surface->name = "EGL shared";
+        if (!open_display(egl, surface->egl_display, surface->egl_context))
+            return camber_fail(surface->context, CAMBER_ERROR_DEVICE,
+                               "EGL: no GLES 3 context shares objects with the caller's; give a GLES context and its "
+                               "own display");
+        return CAMBER_OK;
+    }
     if (!open_any(surface, egl))
         return camber_fail(surface->context, CAMBER_ERROR_DEVICE,
                            "EGL: neither the surfaceless nor a device platform gives a GLES 3 context; install "

@@ -11,6 +11,19 @@ static void release(const camber_gl *gl, camber_target *target) {
     *target = (camber_target){0};
 }
 
+/* Whether GL takes the target that is bound. */
+static camber_status check_target(camber_renderer *renderer, GLsizei width, GLsizei height) {
+    const GLenum complete = renderer->share.surface->gl.CheckFramebufferStatus(GL_FRAMEBUFFER);
+    char what[64];
+    snprintf(what, sizeof what, "a target of %d x %d px", (int)width, (int)height);
+    const camber_status status = camber_renderer_check(renderer, what);
+    if (status == CAMBER_OK && complete != GL_FRAMEBUFFER_COMPLETE)
+        return camber_fail(renderer->share.device->context, CAMBER_ERROR_DEVICE,
+                           "%s: not complete (0x%x) on %s; draw smaller pieces, or update its driver", what, complete,
+                           renderer->share.surface->info.renderer);
+    return status;
+}
+
 /* With the depth that nobody needs: stencil alone is not a framebuffer's everywhere. */
 static void add_stencil(const camber_gl *gl, camber_target *target, GLsizei width, GLsizei height) {
     gl->GenRenderbuffers(1, &target->stencil);
@@ -56,14 +69,7 @@ static camber_status resize(camber_renderer *renderer, int which, GLsizei width,
         add_stencil(gl, target, width, height);
     if (which == CAMBER_TARGET_MASKED)
         add_alphas(gl, target, width, height);
-    const GLenum complete = gl->CheckFramebufferStatus(GL_FRAMEBUFFER);
-    char what[64];
-    snprintf(what, sizeof what, "a target of %d x %d px", (int)width, (int)height);
-    camber_status status = camber_renderer_check(renderer, what);
-    if (status == CAMBER_OK && complete != GL_FRAMEBUFFER_COMPLETE)
-        status = camber_fail(renderer->share.device->context, CAMBER_ERROR_DEVICE,
-                             "%s: not complete (0x%x) on %s; draw smaller pieces, or update its driver", what, complete,
-                             renderer->share.surface->info.renderer);
+    const camber_status status = check_target(renderer, width, height);
     if (status != CAMBER_OK) {
         release(gl, target);
         return status;
@@ -95,4 +101,27 @@ camber_status camber_renderer_bind_target(camber_renderer *renderer, int which, 
 void camber_renderer_release_targets(camber_renderer *renderer) {
     for (int i = 0; i < CAMBER_TARGETS; i++)
         release(&renderer->share.surface->gl, renderer->targets + i);
+}
+
+/* Only the framebuffer is the target's own. */
+void camber_renderer_let_go(camber_renderer *renderer) {
+    renderer->targets[CAMBER_TARGET_GIVEN].texture = 0;
+    release(&renderer->share.surface->gl, renderer->targets + CAMBER_TARGET_GIVEN);
+}
+
+camber_status camber_renderer_give_target(camber_renderer *renderer, GLuint texture, GLsizei width, GLsizei height) {
+    const camber_gl *gl = &renderer->share.surface->gl;
+    camber_target *target = renderer->targets + CAMBER_TARGET_GIVEN;
+    target->texture = texture;
+    gl->GenFramebuffers(1, &target->framebuffer);
+    gl->BindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
+    gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture, 0);
+    const camber_status status = check_target(renderer, width, height);
+    if (status != CAMBER_OK) {
+        camber_renderer_let_go(renderer);
+        return status;
+    }
+    target->width = width;
+    target->height = height;
+    return CAMBER_OK;
 }

@@ -259,6 +259,12 @@ typedef struct camber_surface_info {
     bool buffer_storage;
 } camber_surface_info;
 
+/* false: GL on such a surface would be a software rasteriser, or is not there, and OpenCL draws the same picture
+ * sooner. true: it may be hardware, and camber_surface_info.software of an open surface tells. Looks for what GPUs'
+ * drivers are reached through (on Linux files in /dev, render nodes among them), and loads no GL library: some
+ * microseconds. */
+CAMBER_API bool camber_surface_may_be_hardware(const camber_surface_desc *desc);
+
 /* Returns CAMBER_ERROR_DEVICE when the library or the driver is not there, or a context cannot share the caller's. */
 CAMBER_API camber_status camber_surface_create(camber_context *context, const camber_surface_desc *desc,
                                                camber_surface **surface);

@@ -30,7 +30,8 @@ static inline bool studio_open(studio *s) {
     for (int i = 0; i < BACKENDS; i++) {
         const camber_surface_desc desc = {BACKEND[i]};
         if (camber_surface_create(s->context, &desc, &s->surface[i]) == CAMBER_OK &&
-            camber_renderer_create(s->device, s->surface[i], NULL, &s->renderer[i]) == CAMBER_OK)
+            camber_renderer_create(s->device, s->surface[i], &(camber_renderer_desc){.draw = CAMBER_DRAW_GL},
+                                   &s->renderer[i]) == CAMBER_OK)
             any = true;
         else
             printf("%s is not there: %s\n", BACKEND_NAME[i], s->h.last);

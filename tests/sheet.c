@@ -65,7 +65,9 @@ bool sheet_open(camber_method method, sheet **opened) {
     return camber_context_create(&desc, &s->context) == CAMBER_OK &&
            (draws_in_cl() || camber_surface_create(s->context, NULL, &s->surface) == CAMBER_OK) &&
            camber_device_create(s->context, NULL, s->surface, &s->device) == CAMBER_OK &&
-           camber_renderer_create(s->device, s->surface, NULL, &s->renderer) == CAMBER_OK &&
+           camber_renderer_create(s->device, s->surface,
+                                  &(camber_renderer_desc){.draw = draws_in_cl() ? CAMBER_DRAW_CL : CAMBER_DRAW_GL},
+                                  &s->renderer) == CAMBER_OK &&
            camber_mesh_create(s->device, s->renderer, &s->mesh) == CAMBER_OK;
 }
 

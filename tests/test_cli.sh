@@ -165,6 +165,17 @@ expect 0 "info on an unknown device" info --device 'no such device' --json
 has "$tmp/stdout" '"unavailable"'
 expect 0 "info on what draws" info --draw cl
 has "$tmp/stdout" '^draw *cl: asked for'
+# A machine without GL: its libraries are no libraries.
+mkdir "$tmp/nogl"
+for library in libEGL.so.1 libOSMesa.so.8 libOSMesa.so.6 libOSMesa.so; do
+    echo 'no library' >"$tmp/nogl/$library"
+done
+without_gl=(env LD_LIBRARY_PATH="$tmp/nogl${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}")
+run "${without_gl[@]}" "$tool" info
+name="info without GL"
+verify 0
+has "$tmp/stdout" '^GL *egl: not available: .*; install' '^GL *osmesa: not available: .*; install' '^draw *cl: ' \
+    '^sharing *none: no GL takes part'
 
 # ---- Render ----
 
@@ -208,6 +219,21 @@ says 'not drawn in OpenCL yet'
 expect 0 "in one thread" render "$osm" -o one.png --size 300x200 --draw cl --threads 1
 cmp -s one.png cl.png || fail "other bytes than with all threads"
 rm -f cl.png one.png
+run "${without_gl[@]}" "$tool" render "$osm" -o bare.png --size 300x200 --json
+name="render without GL"
+verify 0
+has "$tmp/stdout" '"draw": "cl"' '"draw_reason": "no ' '"gl_renderer": null'
+expect 0 "the same, asked for" render "$osm" -o asked.png --size 300x200 --draw cl
+cmp -s bare.png asked.png || fail "other bytes than --draw cl"
+rm -f bare.png asked.png
+run "${without_gl[@]}" "$tool" render "$osm" -o bare.png --draw gl
+name="GL where there is none"
+verify 69
+says 'neither EGL nor OSMesa .*; install libegl1.*--draw cl'
+run "${without_gl[@]}" "$tool" render "$osm" -o bare.png --backend egl
+name="EGL where there is none"
+verify 69
+says 'EGL: .*; install libegl1'
 expect 0 "few draw calls" render "$osm" -o calls.png --size 512x512 --json
 has "$tmp/stdout" '"draw_calls": [1-4],'
 rm -f calls.png
@@ -381,9 +407,30 @@ if command -v python3 >/dev/null; then
         "${small[@]}" --json
     holds 'n[1]["polylines"] == 0 and n[1]["methods"]["strip"]["vertices"] == 0 and n[0]["polylines"] > 0'
     says '^camber: warning: '
+    # Kernels have no fragments and no draw calls; they draw any mesh alike, and what they draw is held to the truth.
+    expect 0 "compare in OpenCL" compare "$osm" "${filters[@]:0:2}" "${small[@]}" --json --draw cl
+    holds 'j["draw"] == "cl" and j["draw_reason"] == "asked for" and j["gl_renderer"] is None'
+    for member in draw_calls draw_calls_16_bit fragments drawn_pixels repeated_pixels repeated_at_plain_joins \
+        repeated_at_tight_joins repeated_at_split_joins repeated_elsewhere; do
+        holds "all(r['methods'][m]['$member'] is None for r in n + [a] for m in r['methods'])"
+        holds "j['ratio_to_kite']['fan']['$member'] is None"
+    done
+    for member in vertices triangles bytes mean_error max_error tessellate_ms draw_ms; do
+        holds "all(r['methods'][m]['$member'] > 0 for r in n for m in ('fan', 'kite', 'strip'))"
+    done
+    holds 'all(r["methods"][m]["mean_error"] < 10 for r in n for m in r["methods"])'
+    run "${without_gl[@]}" "$tool" compare "$osm" "${filters[@]:0:2}" "${small[@]}" --json
+    name="compare without GL"
+    verify 0
+    holds 'j["draw"] == "cl" and n[0]["methods"]["kite"]["fragments"] is None'
 else
     echo "skipped: what compare counts: no python3 to read its JSON"
 fi
+expect 0 "compare in OpenCL, as a table" compare "$osm" "${filters[@]:0:2}" "${small[@]}" --draw cl
+has "$tmp/stdout" 'drawn in OpenCL' "are GL's alone"
+lacks "$tmp/stdout" 'fragments: shaded'
+expect 0 "compare counts in GL, unless asked" compare "$osm" "${filters[@]:0:2}" "${small[@]}" --json
+has "$tmp/stdout" '"draw": "gl"'
 expect 0 "compare as a table" compare "$osm" "${filters[@]}" "${small[@]}"
 has "$tmp/stdout" '^network .* polylines .* joins .* 150-180' '^average .* fan ' '^average .* kite ' '^average .* strip ' \
     "^to one of kite's  *fan "
@@ -481,6 +528,20 @@ expect 0 "validate a map" validate "$tiger" --method kite --size 200x200 --backe
 passes 40
 has "$tmp/stdout" ': network, zoomed in: kite: as the CPU twin, on '
 lacks "$tmp/stdout" 'EGL'
+expect 0 "validate what kernels draw" validate --polylines "$lines" --draw cl --windows 8
+passes 12
+has "$tmp/stdout" ': pixels, on .*, OpenCL$' ': united, on .*, OpenCL$'
+lacks "$tmp/stdout" 'EGL'
+lacks "$tmp/stdout" 'OSMesa'
+expect 0 "validate what GL draws" validate --polylines "$lines" --draw gl --method strip --windows 8
+lacks "$tmp/stdout" ', OpenCL$'
+expect 0 "validate both" validate --polylines "$lines" --method strip --windows 8
+has "$tmp/stdout" ': OpenCL as E\|: OpenCL as O'
+run "${without_gl[@]}" "$tool" validate --polylines "$lines" --method strip --windows 8
+name="validate without GL"
+verify 0
+passes 12
+has "$tmp/stdout" ': pixels, on .*, OpenCL$' '^ok .* EGL # SKIP .' '^ok .* OSMesa # SKIP .'
 name="odd names"
 odd=$tmp/in/$'a#b\\<c>&"d\'\xff\n\x01.bin'
 cp "$lines" "$odd"

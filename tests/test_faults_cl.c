@@ -417,7 +417,7 @@ static camber_paint paints[SCENE_ROWS];
 static camber_status try_renderer(stage_set *s, void *user) {
     const easel *e = user;
     camber_renderer *renderer = NULL;
-    const camber_renderer_desc desc = {.sharing = e->sharing};
+    const camber_renderer_desc desc = {.sharing = e->sharing, .draw = CAMBER_DRAW_GL};
     const camber_status status = camber_renderer_create(s->device, e->surface, &desc, &renderer);
     camber_renderer_destroy(renderer);
     return status;
@@ -483,7 +483,7 @@ static void test_drawing(void **state) {
             paints[i] = (camber_paint){.width_px = fminf(s.strokes[i].width_px, 2),
                                        .color = {1, 0.5f, (float)i / SCENE_ROWS, 1}};
         const camber_surface_desc surface_desc = {BACKEND[k / 3]};
-        const camber_renderer_desc renderer_desc = {.sharing = e.sharing};
+        const camber_renderer_desc renderer_desc = {.sharing = e.sharing, .draw = CAMBER_DRAW_GL};
         if (camber_surface_create(s.context, &surface_desc, &e.surface) == CAMBER_OK &&
             camber_renderer_create(s.device, e.surface, &renderer_desc, &e.renderer) == CAMBER_OK) {
             each_call_fails(&s, try_renderer, &e, "sharing '", 2);

@@ -68,8 +68,9 @@ static camber_status draw(easel *e) {
                                              {.width_px = 5, .color = {1, 0, 1, 0.7f}}};
     camber_status status = CAMBER_OK;
     if (!e->renderer)
-        status =
-            camber_renderer_create(e->device, e->surface, &(camber_renderer_desc){.sharing = e->sharing}, &e->renderer);
+        status = camber_renderer_create(e->device, e->surface,
+                                        &(camber_renderer_desc){.sharing = e->sharing, .draw = CAMBER_DRAW_GL},
+                                        &e->renderer);
     for (int i = 0; i < MESHES && status == CAMBER_OK; i++) {
         camber_stroke strokes[ROWS];
         for (int k = 0; k < ROWS; k++)

@@ -202,7 +202,8 @@ static camber_status try_drawing(camber_context *context, void *user) {
     camber_mesh *mesh = NULL;
     camber_status status = camber_surface_create(context, &(camber_surface_desc){BACKEND[d->backend]}, &surface);
     if (status == CAMBER_OK)
-        status = camber_renderer_create(d->s.device, surface, NULL, &renderer);
+        status =
+            camber_renderer_create(d->s.device, surface, &(camber_renderer_desc){.draw = CAMBER_DRAW_GL}, &renderer);
     if (status == CAMBER_OK)
         status = camber_mesh_create(d->s.device, renderer, &mesh);
     if (status == CAMBER_OK)
@@ -383,7 +384,9 @@ static void test_same_objects(void **state) {
         camber_renderer *renderer = NULL;
         if (!d->s.renderer[i])
             continue;
-        assert_int_equal(camber_renderer_create(d->s.device, d->s.surface[i], NULL, &renderer), CAMBER_OK);
+        assert_int_equal(camber_renderer_create(d->s.device, d->s.surface[i],
+                                                &(camber_renderer_desc){.draw = CAMBER_DRAW_GL}, &renderer),
+                         CAMBER_OK);
         size_t n = 1;
         for (bool reached = true; reached; n++) {
             camber_mesh *mesh = NULL;

@@ -181,7 +181,9 @@ static void test_renderer_destroyed(void **state) {
         camber_renderer *renderer = NULL;
         if (!s->surface[i])
             continue;
-        assert_int_equal(camber_renderer_create(s->device, s->surface[i], NULL, &renderer), CAMBER_OK);
+        assert_int_equal(camber_renderer_create(s->device, s->surface[i],
+                                                &(camber_renderer_desc){.draw = CAMBER_DRAW_GL}, &renderer),
+                         CAMBER_OK);
         camber_mesh *mesh = make_mesh(s, renderer);
         fill(s, mesh, 3);
         begin(renderer, mesh, 0);

@@ -328,7 +328,8 @@ static camber_status cycle_meshes(atelier *a, int backend) {
 static camber_status draw_on(atelier *a, camber_context *context, camber_device *device, camber_surface *surface) {
     camber_renderer *renderer = NULL;
     camber_mesh *mesh = NULL;
-    camber_status status = camber_renderer_create(device, surface, NULL, &renderer);
+    camber_status status =
+        camber_renderer_create(device, surface, &(camber_renderer_desc){.draw = CAMBER_DRAW_GL}, &renderer);
     if (status == CAMBER_OK)
         status = camber_mesh_create(device, renderer, &mesh);
     if (status == CAMBER_OK)

@@ -20,7 +20,8 @@ static picture draw_anew(const char *cache_dir, camber_backend backend, size_t *
     assert_int_equal(camber_context_create(&context_desc, &context), CAMBER_OK);
     assert_int_equal(camber_device_create(context, NULL, NULL, &device), CAMBER_OK);
     assert_int_equal(camber_surface_create(context, &(camber_surface_desc){backend}, &surface), CAMBER_OK);
-    assert_int_equal(camber_renderer_create(device, surface, NULL, &renderer), CAMBER_OK);
+    assert_int_equal(
+        camber_renderer_create(device, surface, &(camber_renderer_desc){.draw = CAMBER_DRAW_GL}, &renderer), CAMBER_OK);
     assert_int_equal(camber_mesh_create(device, renderer, &mesh), CAMBER_OK);
     const float points[] = {4, 4, 40, 30, 60, 8};
     const uint32_t offsets[] = {0, 3};

@@ -626,8 +626,9 @@ static bool easel_open(easel *e, uint64_t memory_bytes, camber_backend backend, 
     memset(&watch, 0, sizeof watch);
     if (camber_surface_create(e->context, &(camber_surface_desc){backend}, &e->surface) != CAMBER_OK ||
         camber_device_create(e->context, &desc, e->surface, &e->device) != CAMBER_OK ||
-        camber_renderer_create(e->device, e->surface, &(camber_renderer_desc){.sharing = sharing}, &e->renderer) !=
-            CAMBER_OK) {
+        camber_renderer_create(e->device, e->surface,
+                               &(camber_renderer_desc){.sharing = sharing, .draw = CAMBER_DRAW_GL},
+                               &e->renderer) != CAMBER_OK) {
         easel_close(e);
         return false;
     }

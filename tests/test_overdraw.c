@@ -405,7 +405,9 @@ static void test_parts(void **state) {
         camber_device_create(s->context, &(camber_device_desc){.largest_buffer_bytes = 1 << 15}, NULL, &small),
         CAMBER_OK);
     assert_int_equal(camber_surface_create(s->context, NULL, &surface), CAMBER_OK);
-    assert_int_equal(camber_renderer_create(small, surface, NULL, &renderers[1]), CAMBER_OK);
+    assert_int_equal(
+        camber_renderer_create(small, surface, &(camber_renderer_desc){.draw = CAMBER_DRAW_GL}, &renderers[1]),
+        CAMBER_OK);
     for (int method = 0; method < 3; method++) {
         counts made[2][3];
         for (int i = 0; i < 2; i++) {

@@ -518,7 +518,7 @@ static bool draw(uint64_t limit, camber_backend backend, camber_sharing sharing,
     camber_context *context = host_context(&h);
     const camber_device_desc device_desc = {.largest_buffer_bytes = limit};
     const camber_surface_desc surface_desc = {backend};
-    const camber_renderer_desc renderer_desc = {.sharing = sharing};
+    const camber_renderer_desc renderer_desc = {.sharing = sharing, .draw = CAMBER_DRAW_GL};
     camber_surface *surface = NULL;
     camber_device *device = NULL;
     camber_renderer *renderer = NULL;

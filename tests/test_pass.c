@@ -190,7 +190,9 @@ static void test_without_half_floats(void **state) {
     line(&lines, 0, 4, 30.5, 60, 30.5);
     camber_renderer *renderer = NULL, *old = studio_any(s);
     surface->half_float_targets = false;
-    assert_int_equal(camber_renderer_create(s->device, surface, NULL, &renderer), CAMBER_OK);
+    assert_int_equal(
+        camber_renderer_create(s->device, surface, &(camber_renderer_desc){.draw = CAMBER_DRAW_GL}, &renderer),
+        CAMBER_OK);
     const int which = s->renderer[0] ? 0 : 1;
     s->renderer[which] = renderer;
     picture p =

@@ -543,7 +543,7 @@ static camber_status try_frame(camber_context *context, void *user) {
     camber_surface *surface = a->s->surface[a->s->renderer[0] ? 0 : 1];
     camber_renderer *renderer = NULL;
     (void)context;
-    const camber_renderer_desc desc = {.sharing = CAMBER_SHARING_COPY};
+    const camber_renderer_desc desc = {.sharing = CAMBER_SHARING_COPY, .draw = CAMBER_DRAW_GL};
     camber_status status = camber_renderer_create(a->s->device, surface, &desc, &renderer);
     if (status == CAMBER_OK)
         status = camber_render(renderer, a->frame, NULL, NULL, NULL);

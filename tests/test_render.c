@@ -128,7 +128,8 @@ static void test_sharing_paths_agree(void **state) {
             camber_renderer *renderer = NULL;
             s->h.errors = 0;
             const camber_status status = camber_renderer_create(
-                s->device, s->surface[i], &(camber_renderer_desc){.sharing = paths[path]}, &renderer);
+                s->device, s->surface[i], &(camber_renderer_desc){.sharing = paths[path], .draw = CAMBER_DRAW_GL},
+                &renderer);
             if (status != CAMBER_OK) {
                 assert_int_equal(status, CAMBER_ERROR_DEVICE);
                 assert_story(&s->h, camber_sharing_name(paths[path]));

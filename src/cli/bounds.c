@@ -26,6 +26,10 @@ static const camber_pixel_bounds linear = {3.5, 0.020, 0.0010};
  * bytes. */
 static const camber_pixel_bounds backends = {0.25, 0.0020, 0.0005};
 
+/* Kernels round once where GL rounds at every line (pixels that hundreds of lines cross), and of right angles whose
+ * bisector runs through the pixels' centres they are the nearer to the truth. */
+static const camber_pixel_bounds kernels = {0.85, 0.0150, 0.0005};
+
 /* How much more the union of all lines may be off: it has their crossings too, and a city in 256 px is crossings all
  * over. */
 static const double UNITED_MORE = 0.25, UNITED_MORE_OF_INPUT = 1.0;
@@ -65,6 +69,6 @@ camber_pixel_bounds camber_bounds_of_simplified(camber_pixel_bounds whole) {
     return whole;
 }
 
-camber_pixel_bounds camber_bounds_of_backends(void) {
-    return backends;
+camber_pixel_bounds camber_bounds_of_drawers(bool alike) {
+    return alike ? backends : kernels;
 }

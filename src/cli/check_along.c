@@ -151,7 +151,7 @@ int camber_check_along(camber_validation *v) {
     const camber_options *options = v->session->options;
     int status = CAMBER_EXIT_DONE;
     for (size_t r = 0; r < v->rigs.count; r++)
-        for (size_t e = 0; e < v->rigs.list[r].easel_count; e++)
+        for (size_t e = 0; e < v->rigs.list[r].easel_count && v->rigs.list[r].easels[e].surface; e++)
             for (int method = 0; method < 3; method++)
                 for (size_t i = 0; i < sizeof rows / sizeof *rows && status == CAMBER_EXIT_DONE; i++)
                     if ((options->method < 0 || options->method == method) && !v->rigs.list[r].broken[method])

@@ -1,5 +1,5 @@
-/* Pictures: against the oracle on sampled windows, the sharing paths against each other, the GL back ends against each
- * other. */
+/* Pictures: against the oracle on sampled windows, the sharing paths against each other, the GL back ends and OpenCL
+ * against each other. */
 #include "cli/samples.h"
 #include "cli/scenes.h"
 
@@ -172,14 +172,14 @@ static int check_path(job *j, camber_easel *easel, size_t path) {
     return status;
 }
 
-/* A back end's picture against the first back end's. */
-static int check_backend(job *j, const camber_easel *easel) {
+/* What one draws against what the first does. */
+static int check_drawer(job *j, const camber_easel *easel) {
     camber_check check = camber_check_start(j->rig->name, easel->name, "%s: %s, %s: %s as %s, on %s", j->s->name,
                                             camber_method_name(j->desc.method), j->style, easel->name,
                                             j->rig->easels[0].name, j->rig->name);
     size_t pixel = 0;
     check.has_error = true;
-    check.most = camber_bounds_of_backends();
+    check.most = camber_bounds_of_drawers(easel->draw == j->rig->easels[0].draw);
     int status = camber_report_status(
         j->v->session->report, camber_pictures_compare(j->first, j->own, j->s->width, j->s->height, &check.error));
     camber_finding past = {0};
@@ -235,10 +235,13 @@ static int check_easel(job *j, size_t which) {
         status = check_truth(j, &check, CAMBER_TRUTH_OVER, j->own);
     if (status == CAMBER_EXIT_DONE && j->desc.method == CAMBER_METHOD_STRIP && !j->s->network)
         status = check_united(j, easel);
-    if (status == CAMBER_EXIT_DONE && j->is_drawn_once && j->desc.method != CAMBER_METHOD_FAN)
+    const bool counts = easel->draw == CAMBER_DRAW_GL && j->desc.method != CAMBER_METHOD_FAN;
+    if (status == CAMBER_EXIT_DONE && j->is_drawn_once && counts)
         status = check_once(j, easel);
-    if (status == CAMBER_EXIT_DONE && which > 0)
-        status = check_backend(j, easel);
+    /* Kernels draw any mesh as strips are. */
+    const bool alike = easel->draw == j->rig->easels[0].draw;
+    if (status == CAMBER_EXIT_DONE && which > 0 && (alike || j->desc.method == CAMBER_METHOD_STRIP))
+        status = check_drawer(j, easel);
     for (size_t path = 1; path < easel->path_count && j->is_shared && status == CAMBER_EXIT_DONE; path++)
         status = check_path(j, easel, path);
     if (which == 0)

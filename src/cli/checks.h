@@ -99,8 +99,8 @@ bool camber_bounds_of_pixels(const char *scene, double tight_share, camber_cover
 camber_pixel_bounds camber_bounds_of_united(const char *scene, camber_pixel_bounds over);
 /* And for lines that a camera leaves points of out. */
 camber_pixel_bounds camber_bounds_of_simplified(camber_pixel_bounds whole);
-/* Of one GL back end's picture against another's. */
-camber_pixel_bounds camber_bounds_of_backends(void);
+/* Of one picture against another: of two GL back ends, or of GL and OpenCL. */
+camber_pixel_bounds camber_bounds_of_drawers(bool alike);
 
 /* ---- Drawing: drawing.c ---- */
 

@@ -193,6 +193,14 @@ static camber_status count_pixels(const trial *t, const camber_mesh_data *mesh) 
     return status;
 }
 
+/* What kernels have no such thing of. */
+static void leave_out_gl(const trial *t) {
+    double *measures = t->row->measures[t->method];
+    measures[CAMBER_MEASURE_DRAW_CALLS_16_BIT] = measures[CAMBER_MEASURE_DRAW_CALLS] = NAN;
+    for (int i = CAMBER_MEASURE_OF_PIXELS; i < CAMBER_MEASURE_COUNT; i++)
+        measures[i] = NAN;
+}
+
 static camber_status try_method(const trial *t) {
     camber_frame_stats stats = {0};
     camber_mesh_data mesh;
@@ -205,7 +213,10 @@ static camber_status try_method(const trial *t) {
     if (status != CAMBER_OK)
         return status;
     count_mesh(t, &mesh);
-    status = count_pixels(t, &mesh);
+    if (t->comparison->session->draw == CAMBER_DRAW_GL)
+        status = count_pixels(t, &mesh);
+    else
+        leave_out_gl(t);
     camber_mesh_data_free(t->comparison->session->context, &mesh);
     return status;
 }

@@ -54,8 +54,9 @@ extern const camber_method camber_methods_shown[CAMBER_METHODS];
 typedef struct camber_comparison_row {
     const char *name; /* of the network */
     double figures[CAMBER_FIGURE_COUNT];
-    double measures[CAMBER_METHODS][CAMBER_MEASURE_COUNT]; /* as camber_methods_shown */
-    size_t max_at[CAMBER_METHODS];                         /* the pixel of the maximum error */
+    /* As camber_methods_shown; NAN: of GL alone, and kernels draw. */
+    double measures[CAMBER_METHODS][CAMBER_MEASURE_COUNT];
+    size_t max_at[CAMBER_METHODS]; /* the pixel of the maximum error */
 } camber_comparison_row;
 
 typedef struct camber_comparison {

@@ -150,11 +150,12 @@ static void put_panel(const camber_comparison *c, const panel *p, FILE *script) 
     int bars = 0;
     fputs("$bars << END\n", script);
     for (int i = 0; i < CAMBER_METHODS; i++) {
-        const double value = c->average.measures[i][p->measure];
-        char text[32];
+        const double measure = c->average.measures[i][p->measure], value = isnan(measure) ? 0 : measure;
+        char text[32] = "of GL alone";
         if (!c->shown[i])
             continue;
-        abbreviate(value, text, sizeof text);
+        if (!isnan(measure))
+            abbreviate(value, text, sizeof text);
         fprintf(script, "%d %.9g %s \"%s\" \"%s\"\n", -bars++, value, colors[i],
                 camber_method_name(camber_methods_shown[i]), text);
         most = value > most ? value : most;

@@ -3,10 +3,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* What draws; the last are kernels, which need no surface. */
 static const struct {
+    camber_draw draw;
     camber_backend backend;
     const char *name;
-} backends[CAMBER_RIG_EASELS] = {{CAMBER_BACKEND_EGL, "EGL"}, {CAMBER_BACKEND_OSMESA, "OSMesa"}};
+} drawers[CAMBER_RIG_EASELS] = {{CAMBER_DRAW_GL, CAMBER_BACKEND_EGL, "EGL"},
+                                {CAMBER_DRAW_GL, CAMBER_BACKEND_OSMESA, "OSMesa"},
+                                {CAMBER_DRAW_CL, CAMBER_BACKEND_AUTO, "OpenCL"}};
 
 static const camber_sharing paths[CAMBER_RIG_PATHS] = {CAMBER_SHARING_GL, CAMBER_SHARING_ZERO_COPY,
                                                        CAMBER_SHARING_COPY};
@@ -43,11 +47,12 @@ camber_status camber_rig_open_small(const camber_rig *rig, camber_session *sessi
     return status;
 }
 
-/* ---- Back ends ---- */
+/* ---- What draws ---- */
 
 static void open_path(const camber_rig *rig, camber_easel *easel, camber_sharing sharing, camber_verdicts *verdicts) {
-    const camber_renderer_desc desc = {.sharing = sharing};
-    camber_path path = {.name = camber_sharing_name(sharing)};
+    const bool in_gl = easel->draw == CAMBER_DRAW_GL;
+    const camber_renderer_desc desc = {.sharing = sharing, .draw = easel->draw};
+    camber_path path = {.name = in_gl ? camber_sharing_name(sharing) : "no sharing"};
     camber_status status = camber_renderer_create(easel->device, easel->surface, &desc, &path.renderer);
     if (status == CAMBER_OK)
         status = camber_mesh_create(easel->device, path.renderer, &path.mesh);
@@ -71,23 +76,38 @@ static void close_easel(camber_easel *easel) {
     *easel = (camber_easel){0};
 }
 
-/* The back end number which of the table; one that is not there is skipped, or an error where it was asked for. */
+/* Whether it was named: what is not there is an error then. */
+static bool is_asked_for(size_t which, const camber_options *options) {
+    return drawers[which].draw == CAMBER_DRAW_CL ? (camber_draw)options->draw == CAMBER_DRAW_CL
+                                                 : options->backend == (int)drawers[which].backend;
+}
+
+/* --draw leaves one kind, and --backend a back end of GL's. */
+static bool is_wanted(size_t which, const camber_options *options) {
+    const camber_draw draw = (camber_draw)options->draw;
+    if (is_asked_for(which, options))
+        return draw == CAMBER_DRAW_AUTO || draw == drawers[which].draw;
+    return options->backend == CAMBER_BACKEND_AUTO && (draw == CAMBER_DRAW_AUTO || draw == drawers[which].draw);
+}
+
+/* The row number which of the table; one that is not there is skipped, or an error where it was asked for. */
 static int open_easel(camber_rig *rig, size_t which, camber_session *session, camber_verdicts *verdicts) {
-    const camber_surface_desc desc = {.backend = backends[which].backend};
-    camber_easel easel = {.name = backends[which].name};
-    camber_status status = camber_surface_create(session->context, &desc, &easel.surface);
+    const camber_surface_desc desc = {.backend = drawers[which].backend};
+    camber_easel easel = {.name = drawers[which].name, .draw = drawers[which].draw};
+    const bool in_gl = easel.draw == CAMBER_DRAW_GL;
+    camber_status status = in_gl ? camber_surface_create(session->context, &desc, &easel.surface) : CAMBER_OK;
     if (status == CAMBER_OK)
         status = open_device(rig, session, &(camber_device_desc){0}, easel.surface, &easel.device);
-    for (size_t i = 0; i < CAMBER_RIG_PATHS && status == CAMBER_OK; i++)
-        open_path(rig, &easel, paths[i], verdicts);
+    for (size_t i = 0; i < (in_gl ? CAMBER_RIG_PATHS : 1) && status == CAMBER_OK; i++)
+        open_path(rig, &easel, in_gl ? paths[i] : CAMBER_SHARING_AUTO, verdicts);
     if (easel.path_count) {
         rig->easels[rig->easel_count++] = easel;
         return CAMBER_EXIT_DONE;
     }
     close_easel(&easel);
-    if (session->options->backend != CAMBER_BACKEND_AUTO)
+    if (is_asked_for(which, session->options))
         return camber_report_status(session->report, status == CAMBER_OK ? CAMBER_ERROR_DEVICE : status);
-    const char *name = backends[which].name;
+    const char *name = drawers[which].name;
     skip(verdicts, camber_check_start(rig->name, name, "pictures, on %s, %s", rig->name, name), status);
     return CAMBER_EXIT_DONE;
 }
@@ -131,11 +151,9 @@ static int open_rig(camber_rigs *rigs, camber_rig *rig, camber_session *session,
     }
     rigs->count++;
     int opened = CAMBER_EXIT_DONE;
-    for (size_t i = 0; i < CAMBER_RIG_EASELS && opened == CAMBER_EXIT_DONE; i++) {
-        const int wanted = session->options->backend;
-        if (wanted == CAMBER_BACKEND_AUTO || wanted == (int)backends[i].backend)
+    for (size_t i = 0; i < CAMBER_RIG_EASELS && opened == CAMBER_EXIT_DONE; i++)
+        if (is_wanted(i, session->options))
             opened = open_easel(rig, i, session, verdicts);
-    }
     return opened;
 }
 

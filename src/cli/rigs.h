@@ -1,23 +1,25 @@
-/* What the checks of validate run on: every OpenCL device, alone and with every GL back end and every sharing path. */
+/* What the checks of validate run on: every OpenCL device, alone, with every GL back end and every sharing path, and
+ * drawing itself. */
 #ifndef CAMBER_CLI_RIGS_H
 #define CAMBER_CLI_RIGS_H
 
 #include "cli/session.h"
 #include "cli/verdicts.h"
 
-enum { CAMBER_RIG_EASELS = 2, CAMBER_RIG_PATHS = 3, CAMBER_RIG_GROUPS = 2 };
+enum { CAMBER_RIG_EASELS = 3, CAMBER_RIG_PATHS = 3, CAMBER_RIG_GROUPS = 2 };
 
-/* A way for a mesh to reach GL. */
+/* A way for a mesh to reach what draws it. */
 typedef struct camber_path {
     const char *name;
     camber_renderer *renderer;
     camber_mesh *mesh;
 } camber_path;
 
-/* A GL back end, with the device opened once more for it. */
+/* A GL back end, or OpenCL without any, with the device opened once more for it. */
 typedef struct camber_easel {
-    const char *name; /* "EGL", "OSMesa" */
-    camber_surface *surface;
+    const char *name; /* "EGL", "OSMesa", "OpenCL" */
+    camber_draw draw;
+    camber_surface *surface; /* NULL: OpenCL draws */
     camber_device *device;
     camber_path paths[CAMBER_RIG_PATHS]; /* path_count, those that work; never none */
     size_t path_count;
@@ -43,8 +45,8 @@ typedef struct camber_rigs {
     size_t count;
 } camber_rigs;
 
-/* Opens what --device and --backend allow. What is not there becomes a skip; no device at all, or not the one that was
- * asked for, is CAMBER_EXIT_UNAVAILABLE, its line printed. Can be closed in any case. */
+/* Opens what --device, --draw and --backend allow. What is not there becomes a skip; no device at all, or not the one
+ * that was asked for, is CAMBER_EXIT_UNAVAILABLE, its line printed. Can be closed in any case. */
 int camber_rigs_open(camber_rigs *rigs, camber_session *session, camber_verdicts *verdicts);
 void camber_rigs_close(camber_rigs *rigs);
 

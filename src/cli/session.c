@@ -5,6 +5,7 @@
 #endif
 
 #include <pthread.h>
+#include <stdarg.h>
 #include <stdlib.h>
 
 static camber_status prepare(camber_session *session) {
@@ -15,21 +16,82 @@ static camber_status prepare(camber_session *session) {
     return session->context ? CAMBER_OK : camber_context_create(&desc, &session->context);
 }
 
-static camber_status open_drawing(camber_session *session, camber_context *context, camber_needs needs) {
+/* ---- What draws ---- */
+
+static void say_draw(camber_session *session, camber_report *report, camber_draw draw, const char *format, ...) {
+    char text[512];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(session->draw_reason, sizeof session->draw_reason, format, list);
+    va_end(list);
+    session->draw = draw;
+    snprintf(text, sizeof text, "draw: %s: %s", camber_draw_name(draw), session->draw_reason);
+    camber_report_log(report, CAMBER_LOG_INFO, text);
+}
+
+/* While kernels refuse some of what styles have, GL draws where it is there. */
+static const bool KERNELS_DRAW_ALL = false;
+
+/* Without a wish, kernels draw where GL would be a software rasteriser, or is not there; of compare, whose figures are
+ * GL's own for the most part, where it is not there. A surface stays open where GL draws. */
+static camber_status choose_draw(camber_session *session, camber_context *context, camber_report *report) {
+    const camber_options *options = session->options;
+    const camber_surface_desc desc = {.backend = (camber_backend)options->backend};
+    const bool counts = options->verb == CAMBER_VERB_COMPARE, prefers_gl = counts || !KERNELS_DRAW_ALL;
+    if (!prefers_gl && !camber_surface_may_be_hardware(&desc)) {
+        say_draw(session, report, CAMBER_DRAW_CL, "no GPU is here that GL could draw on");
+        return CAMBER_OK;
+    }
+    const camber_status status = camber_surface_create(context, &desc, &session->surface);
+    if (status == CAMBER_ERROR_MEMORY)
+        return status;
+    if (status != CAMBER_OK) {
+        say_draw(session, report, CAMBER_DRAW_CL, "no GL is here");
+        report->error[0] = 0; /* it is no failure */
+        return CAMBER_OK;
+    }
+    const camber_surface_info info = camber_surface_get_info(session->surface);
+    if (info.software && !prefers_gl) {
+        say_draw(session, report, CAMBER_DRAW_CL, "GL is a software rasteriser: %s", info.renderer);
+        camber_surface_destroy(session->surface);
+        session->surface = NULL;
+        return CAMBER_OK;
+    }
+    if (counts)
+        say_draw(session, report, CAMBER_DRAW_GL, "fragments and repeated pixels are counted in GL");
+    else if (info.software)
+        say_draw(session, report, CAMBER_DRAW_GL, "draws all that styles have");
+    else
+        say_draw(session, report, CAMBER_DRAW_GL, "GL is hardware: %s", info.renderer);
+    return CAMBER_OK;
+}
+
+static camber_status open_gl(camber_session *session, camber_context *context, camber_report *report) {
+    const camber_options *options = session->options;
+    const camber_draw wish = (camber_draw)options->draw;
+    const camber_surface_desc desc = {.backend = (camber_backend)options->backend};
+    const bool named = options->backend != CAMBER_BACKEND_AUTO, shares = options->sharing != CAMBER_SHARING_AUTO;
+    if (wish == CAMBER_DRAW_AUTO && !named && !shares)
+        return choose_draw(session, context, report);
+    if (wish == CAMBER_DRAW_AUTO)
+        say_draw(session, report, CAMBER_DRAW_GL, "--%s asks for GL", named ? "backend" : "sharing");
+    else
+        say_draw(session, report, wish, "asked for");
+    return session->draw == CAMBER_DRAW_GL ? camber_surface_create(context, &desc, &session->surface) : CAMBER_OK;
+}
+
+static camber_status open_drawing(camber_session *session, camber_context *context, camber_report *report,
+                                  camber_needs needs) {
     const camber_options *options = session->options;
     camber_status status = CAMBER_OK;
-    const bool in_gl = (camber_draw)options->draw != CAMBER_DRAW_CL;
-    if (needs >= CAMBER_NEEDS_RENDERER && !session->surface && in_gl) {
-        const camber_surface_desc desc = {.backend = (camber_backend)options->backend};
-        status = camber_surface_create(context, &desc, &session->surface);
-    }
+    if (needs >= CAMBER_NEEDS_RENDERER && !session->renderer && !session->surface)
+        status = open_gl(session, context, report);
     if (status == CAMBER_OK && needs >= CAMBER_NEEDS_DEVICE && !session->device) {
         const camber_device_desc desc = {.match = options->device, .memory_bytes = options->memory_bytes};
         status = camber_device_create(context, &desc, session->surface, &session->device);
     }
     if (status == CAMBER_OK && needs >= CAMBER_NEEDS_RENDERER && !session->renderer) {
-        const camber_renderer_desc desc = {.sharing = (camber_sharing)options->sharing,
-                                           .draw = (camber_draw)options->draw};
+        const camber_renderer_desc desc = {.sharing = (camber_sharing)options->sharing, .draw = session->draw};
         status = camber_renderer_create(session->device, session->surface, &desc, &session->renderer);
     }
     return status;
@@ -86,7 +148,7 @@ static void *open_beside(void *user) {
         .log = log_beside, .log_user = opener, .progress = camber_report_progress, .progress_user = &opener->report};
     opener->status = camber_context_create(&desc, &opener->context);
     if (opener->status == CAMBER_OK)
-        opener->status = open_drawing(opener->session, opener->context, CAMBER_NEEDS_RENDERER);
+        opener->status = open_drawing(opener->session, opener->context, &opener->report, CAMBER_NEEDS_RENDERER);
     if (opener->status == CAMBER_OK)
         warm_up(opener->session, opener->context);
     if (opener->session->surface)
@@ -145,7 +207,11 @@ int camber_session_need(camber_session *session, camber_needs needs) {
         session->opener->told = session->report;
         return camber_report_status(&session->opener->report, session->opener->status);
     }
-    return camber_report_status(session->report, open_drawing(session, session->context, needs));
+    return camber_report_status(session->report, camber_session_open(session, needs));
+}
+
+camber_status camber_session_open(camber_session *session, camber_needs needs) {
+    return open_drawing(session, session->context, session->report, needs);
 }
 
 void camber_session_close(camber_session *session) {
@@ -182,11 +248,9 @@ void camber_session_describe(const camber_session *session, json_t *object) {
     }
     if (session->renderer) {
         const camber_sharing sharing = camber_renderer_get_sharing(session->renderer);
-        const camber_draw draw = camber_renderer_get_draw(session->renderer);
-        const bool in_gl = draw == CAMBER_DRAW_GL, asked = (camber_draw)session->options->draw == draw;
-        json_object_set_new(object, "draw", camber_json_text(camber_draw_name(draw)));
-        json_object_set_new(object, "draw_reason",
-                            camber_json_text(asked ? "asked for" : "draws all that styles have"));
+        const bool in_gl = session->draw == CAMBER_DRAW_GL;
+        json_object_set_new(object, "draw", camber_json_text(camber_draw_name(session->draw)));
+        json_object_set_new(object, "draw_reason", camber_json_text(session->draw_reason));
         json_object_set_new(object, "sharing", camber_json_text(in_gl ? camber_sharing_name(sharing) : "none"));
         if (!in_gl)
             json_object_set_new(object, "gl_renderer", json_null());

@@ -22,6 +22,8 @@ typedef struct camber_session {
     camber_surface *surface;
     camber_device *device;
     camber_renderer *renderer;
+    camber_draw draw; /* what the renderer draws with, and why: once one was asked for */
+    char draw_reason[256];
     camber_opener *opener; /* NULL: not started */
     double start_ms;
 } camber_session;
@@ -32,12 +34,14 @@ void camber_session_start(camber_session *session);
 
 /* Opens what is needed and not open yet. Returns an exit status, its line printed. */
 int camber_session_need(camber_session *session, camber_needs needs);
+/* The same where it is no failure that something is missing. There is a context, and no renderer opens beside. */
+camber_status camber_session_open(camber_session *session, camber_needs needs);
 void camber_session_close(camber_session *session);
 
 /* The method that the options ask for, or the default. */
 camber_method camber_session_method(const camber_session *session);
 
-/* "gl_renderer": ..., "device": ..., "sharing": ... of what is open. */
+/* "device", "gl_renderer", "draw", "draw_reason", "sharing" of what is open. */
 void camber_session_describe(const camber_session *session, json_t *object);
 
 #endif

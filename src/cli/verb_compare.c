@@ -9,6 +9,8 @@
 /* ---- JSON ---- */
 
 static json_t *number_json(double value, int decimals) {
+    if (isnan(value))
+        return json_null();
     return decimals == 0 && value == floor(value) ? json_integer((json_int_t)value) : json_real(value);
 }
 
@@ -94,6 +96,10 @@ static int print_json(const camber_comparison *c) {
 /* Right-aligned, thousands set apart by commas. */
 static void put_number(double value, int decimals, int width) {
     char digits[64], text[96];
+    if (isnan(value)) {
+        printf("%*s", width, "-");
+        return;
+    }
     const int size = snprintf(digits, sizeof digits, "%.*f", decimals, value);
     const int whole = decimals ? size - decimals - 1 : size;
     int used = 0;
@@ -169,13 +175,8 @@ static void print_measures(const camber_comparison *c, int width, int first, int
         }
     for (int method = 0; method < CAMBER_METHODS && c->session->options->method < 0; method++) {
         printf("%-*s  %-7s", width, method ? "" : "to one of kite's", camber_method_name(camber_methods_shown[method]));
-        for (int k = first; k < end; k++) {
-            const double ratio = camber_comparison_ratio(c, method, k);
-            if (isnan(ratio))
-                printf("%*s", camber_measures[k].width, "-");
-            else
-                put_number(ratio, 2, camber_measures[k].width);
-        }
+        for (int k = first; k < end; k++)
+            put_number(camber_comparison_ratio(c, method, k), 2, camber_measures[k].width);
         putchar('\n');
     }
 }
@@ -185,7 +186,8 @@ static int print_text(const camber_comparison *c) {
     const camber_device_info device = camber_device_get_info(c->session->device);
     int width = name_width(c);
     width = width < 16 ? 16 : width;
-    printf("%s; %s\n", device.name, camber_surface_get_info(c->session->surface).renderer);
+    const bool in_gl = c->session->draw == CAMBER_DRAW_GL;
+    printf("%s; %s\n", device.name, in_gl ? camber_surface_get_info(c->session->surface).renderer : "drawn in OpenCL");
     printf("%u x %u px", networks->width, networks->height);
     if (networks->features)
         printf(" at zoom %.2f", networks->info.zoom);
@@ -195,6 +197,12 @@ static int print_text(const camber_comparison *c) {
     puts("16-bit: batches of 65,535 vertices; times: medians, tess. is the kernels; error: mean absolute difference "
          "from 256\n"
          "samples a pixel, in 255ths, over the pixels that lines or picture touch; max: the largest");
+    if (!in_gl) {
+        puts("kernels draw the segments of any mesh alike, without its triangles: draw calls, fragments and pixels "
+             "that\n"
+             "triangles repeat are GL's alone (--draw gl)");
+        return camber_report_flush(c->session->report);
+    }
     print_measures(c, width, CAMBER_MEASURE_OF_PIXELS, CAMBER_MEASURE_COUNT);
     puts("fragments: shaded; drawn: pixels, once a polyline; repeated: more than once within a polyline; at plain, "
          "tight, split\n"

@@ -67,19 +67,9 @@ static void add_backends(camber_session *session, json_t *object) {
     }
 }
 
-/* What a picture would be drawn with, in the order that a verb opens it. */
+/* What a picture would be drawn with, and why. */
 static void add_choice(camber_session *session, json_t *object) {
-    const camber_options *options = session->options;
-    const camber_surface_desc surface = {.backend = (camber_backend)options->backend};
-    const bool in_gl = (camber_draw)options->draw != CAMBER_DRAW_CL;
-    camber_status status = in_gl ? camber_surface_create(session->context, &surface, &session->surface) : CAMBER_OK;
-    const camber_device_desc device = {.match = options->device};
-    if (status == CAMBER_OK)
-        status = camber_device_create(session->context, &device, session->surface, &session->device);
-    const camber_renderer_desc renderer = {.sharing = (camber_sharing)options->sharing,
-                                           .draw = (camber_draw)options->draw};
-    if (status == CAMBER_OK)
-        status = camber_renderer_create(session->device, session->surface, &renderer, &session->renderer);
+    const camber_status status = camber_session_open(session, CAMBER_NEEDS_RENDERER);
     camber_session_describe(session, object);
     if (status != CAMBER_OK)
         json_object_set_new(object, "unavailable", take_error(session->report, status));
@@ -155,6 +145,8 @@ static void print_text(const json_t *object) {
         printf("draw      %s: %s\n", text_of(object, "draw"), text_of(object, "draw_reason"));
     if (json_object_get(object, "unavailable"))
         printf("sharing   none: %s\n", text_of(object, "unavailable"));
+    else if (strcmp(text_of(object, "draw"), "cl") == 0)
+        printf("sharing   none: no GL takes part\n");
     else
         printf("sharing   %s, between %s and %s\n", text_of(object, "sharing"), text_of(object, "device"),
                text_of(object, "gl_renderer"));

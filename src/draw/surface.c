@@ -129,12 +129,11 @@ static camber_status open_backend(camber_context *context, const camber_surface_
     return CAMBER_OK;
 }
 
+/* A back end that is not there is no error while another may be. */
 static camber_status try_backend(camber_context *context, const camber_surface_ops *ops,
-                                 const camber_surface_desc *desc, bool is_last, camber_surface **surface) {
-    if (is_last)
-        return open_backend(context, ops, desc, surface);
+                                 const camber_surface_desc *desc, camber_surface **surface) {
     camber_soft_log kept;
-    camber_log_soften(context, &kept); /* a back end that is not there is no error while another may be */
+    camber_log_soften(context, &kept);
     const camber_status status = open_backend(context, ops, desc, surface);
     camber_log_restore(context, &kept);
     if (status == CAMBER_ERROR_MEMORY) /* no other is tried then */
@@ -149,18 +148,21 @@ camber_status camber_surface_create(camber_context *context, const camber_surfac
     const camber_surface_desc full = desc ? *desc : (camber_surface_desc){0};
     const camber_backend wanted =
         full.egl_context && full.backend == CAMBER_BACKEND_AUTO ? CAMBER_BACKEND_EGL : full.backend;
-    camber_status status = CAMBER_ERROR_ARGUMENT;
+    camber_status status = CAMBER_ERROR_DEVICE;
     if (full.egl_context && wanted == CAMBER_BACKEND_OSMESA)
-        return camber_fail(context, status, "OSMesa shares nothing with a context of EGL's; use the back end EGL");
-    for (size_t i = 0; i < count; i++) {
-        if (wanted != CAMBER_BACKEND_AUTO && wanted != backends[i]->backend)
-            continue;
-        status = try_backend(context, backends[i], &full, wanted != CAMBER_BACKEND_AUTO || i + 1 == count, surface);
-        if (status == CAMBER_OK || status == CAMBER_ERROR_MEMORY)
-            return status;
-    }
-    return status == CAMBER_ERROR_ARGUMENT
-               ? camber_fail(context, status, "no GL back end %d; see camber_backend", (int)wanted)
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT,
+                           "OSMesa shares nothing with a context of EGL's; use the back end EGL");
+    for (size_t i = 0; i < count; i++)
+        if (wanted == backends[i]->backend)
+            return open_backend(context, backends[i], &full, surface);
+    if (wanted != CAMBER_BACKEND_AUTO)
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "no GL back end %d; see camber_backend", (int)wanted);
+    for (size_t i = 0; i < count && status != CAMBER_OK && status != CAMBER_ERROR_MEMORY; i++)
+        status = try_backend(context, backends[i], &full, surface);
+    return status == CAMBER_ERROR_DEVICE
+               ? camber_fail(context, status,
+                             "no GL: neither EGL nor OSMesa gives a context; install libegl1, libegl-mesa0 and "
+                             "libgl1-mesa-dri, or draw in OpenCL (--draw cl)")
                : status;
 }
 

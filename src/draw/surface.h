@@ -34,6 +34,9 @@ struct camber_surface {
     bool lost; /* the GL context: nothing that is in it comes back */
 };
 
+/* hardware.c: whether a folder, /dev but in tests, has what a GPU's driver is reached through. */
+bool camber_hardware_in(const char *folder);
+
 /* Every public call that draws begins with it: the two libraries share one dispatch, and another surface may have
  * been current. */
 camber_status camber_surface_make_current(camber_surface *surface);

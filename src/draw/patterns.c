@@ -1,121 +1,29 @@
-/* Images that rows and fills are drawn with: each at about the size it is drawn in, side by side in one texture, with
- * what lies beyond its edges around it, so that no filter reaches into a neighbour. */
+/* Images that rows and fills are drawn with, side by side in one texture. */
 #include "draw/renderer.h"
 
 #include <assert.h>
 #include <math.h>
 #include <string.h>
 
-enum { TEXTURE_WIDTH = 2048, FIRST_HEIGHT = 256, LAST_HEIGHT = 4096, SIDE_MAX = TEXTURE_WIDTH - 2 };
-
-bool camber_image_is_valid(const camber_image *image) {
-    return image->rgba && image->width >= 1 && image->width <= CAMBER_IMAGE_SIDE_MAX && image->height >= 1 &&
-           image->height <= CAMBER_IMAGE_SIDE_MAX &&
-           (image->stride_bytes == 0 || image->stride_bytes >= 4 * (size_t)image->width);
-}
-
-/* ---- Sizes ---- */
-
-/* An image at a size in the picture. */
-typedef struct pattern_use {
-    uint32_t pattern; /* of the pass, from 1 */
-    double width_px, height_px;
-    bool tiled; /* downwards, too */
-} pattern_use;
-
-static pattern_use use_of_fill(const camber_pass *pass) {
-    const camber_fill *fill = &pass->fill;
-    const camber_image *image = pass->images + fill->pattern - 1;
-    return (pattern_use){fill->pattern, fill->width_px > 0.0f ? (double)fill->width_px : image->width,
-                         fill->height_px > 0.0f ? (double)fill->height_px : image->height, true};
-}
-
-static pattern_use mean_of_fill(const camber_pass *pass) {
-    return (pattern_use){pass->fill.pattern, 0.0, 0.0, true};
-}
-
-/* Texels for a side that is drawn so long: all there are, unless they are finer than pixels by far. Sizes in steps of
- * sqrt(2) keep a zoom from filling the texture. */
-static uint32_t texels_for(uint32_t side_px, double drawn_px) {
-    const double most = (double)(side_px < SIDE_MAX ? side_px : SIDE_MAX), step = 1.4142135623730951;
-    if (!(drawn_px * step < most))
-        return (uint32_t)most;
-    const double exponent = ceil(log2(fmax(drawn_px, 1.0)) * 2.0);
-    return (uint32_t)fmax(fmin(ceil(exp2(0.5 * exponent)), most), 1.0);
-}
-
-static const uint8_t *image_row(const camber_image *image, uint32_t y) {
-    return image->rgba + y * (image->stride_bytes ? image->stride_bytes : 4 * (size_t)image->width);
-}
-
-/* Averages of as many px of a row as fall on each texel, by their share. */
-static void shrink_row(const camber_image *image, uint32_t y, float *texels, uint32_t count) {
-    const uint8_t *row = image_row(image, y);
-    const double share = (double)image->width / count;
-    for (uint32_t i = 0; i < count; i++) {
-        const double from = i * share, to = fmin((i + 1) * share, image->width);
-        double sums[4] = {0};
-        for (uint32_t k = (uint32_t)from; k < to; k++)
-            for (size_t c = 0; c < 4; c++)
-                sums[c] += (fmin(to, k + 1.0) - fmax(from, k)) * row[4 * (size_t)k + c];
-        for (size_t c = 0; c < 4; c++)
-            texels[4 * (size_t)i + c] = (float)(sums[c] / (to - from));
-    }
-}
-
-/* The same down the columns, a row of texels after the other. line and sums: a row each. */
-static void shrink(const camber_image *image, const camber_placed *placed, float *line, float *sums, uint8_t *texels) {
-    const size_t floats = 4 * (size_t)placed->width, stride = floats + 8;
-    const double share = (double)image->height / placed->height;
-    uint32_t row = 0;
-    memset(sums, 0, floats * sizeof *sums);
-    for (uint32_t y = 0; y < image->height; y++) {
-        shrink_row(image, y, line, placed->width);
-        while (row < placed->height && row * share < y + 1.0) {
-            const double from = row * share, to = fmin((row + 1) * share, image->height);
-            const float part = (float)((fmin(to, y + 1.0) - fmax(from, y)) / (to - from));
-            for (size_t i = 0; i < floats; i++)
-                sums[i] += part * line[i];
-            if (to > y + 1.0)
-                break;
-            for (size_t i = 0; i < floats; i++)
-                texels[stride * row + i] = (uint8_t)fminf(sums[i] + 0.5f, 255.0f);
-            memset(sums, 0, floats * sizeof *sums);
-            row++;
-        }
-    }
-}
+enum { TEXTURE_WIDTH = 2048, FIRST_HEIGHT = 256, LAST_HEIGHT = 4096 };
+_Static_assert(CAMBER_TEXELS_SIDE_MAX + 2 == TEXTURE_WIDTH, "the widest image has a shelf of its own");
 
 /* ---- The texture ---- */
-
-/* What lies beyond the edges: the other edge; above and below of what is not tiled the same edge. */
-static void add_border(const camber_placed *placed, uint8_t *texels) {
-    const size_t width = placed->width, height = placed->height, stride = 4 * (width + 2);
-    for (size_t y = 1; y <= height; y++) {
-        memcpy(texels + stride * y, texels + stride * y + 4 * width, 4);
-        memcpy(texels + stride * y + 4 * (width + 1), texels + stride * y + 4, 4);
-    }
-    memcpy(texels, texels + stride * (placed->tiled ? height : 1), stride);
-    memcpy(texels + stride * (height + 1), texels + stride * (placed->tiled ? 1 : height), stride);
-}
 
 static camber_status upload(camber_renderer *renderer, const camber_image *image, const camber_placed *placed) {
     camber_context *context = renderer->share.device->context;
     const camber_gl *gl = &renderer->share.surface->gl;
     const size_t width = (size_t)placed->width + 2, height = (size_t)placed->height + 2;
     uint8_t *texels = camber_alloc(context, width * height, 4);
-    float *rows = texels ? camber_alloc(context, 2 * width, 4 * sizeof *rows) : NULL;
-    const bool held = rows != NULL;
-    if (held) {
-        shrink(image, placed, rows, rows + 4 * width, texels + 4 * width + 4);
-        add_border(placed, texels);
+    const camber_texels size = {placed->width, placed->height, placed->tiled};
+    const camber_status status = texels ? camber_image_shrink(context, image, size, texels) : CAMBER_ERROR_MEMORY;
+    if (status == CAMBER_OK) {
         gl->BindTexture(GL_TEXTURE_2D, renderer->patterns.texture);
         gl->TexSubImage2D(GL_TEXTURE_2D, 0, placed->x - 1, placed->y - 1, (GLsizei)width, (GLsizei)height, GL_RGBA,
                           GL_UNSIGNED_BYTE, texels);
     }
-    camber_free(context, rows);
     camber_free(context, texels);
-    return held ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    return status;
 }
 
 static GLsizei most_height(const camber_renderer *renderer) {
@@ -170,7 +78,7 @@ static bool find_room(camber_patterns *patterns, camber_placed *placed) {
 static uint64_t hash_of(const camber_image *image) {
     uint64_t hash = camber_hash(CAMBER_HASH_START, &image->width, sizeof image->width);
     for (uint32_t y = 0; y < image->height; y++)
-        hash = camber_hash(hash, image_row(image, y), 4 * (size_t)image->width);
+        hash = camber_hash(hash, camber_image_row(image, y), 4 * (size_t)image->width);
     return hash;
 }
 
@@ -222,12 +130,11 @@ static camber_status place(camber_renderer *renderer, const camber_image *image,
 }
 
 /* Where in the texture the image is, as coordinates there: from where, how far. */
-static camber_status find_place(camber_renderer *renderer, const camber_pass *pass, pattern_use use, float texel[4],
-                                bool *full) {
+static camber_status find_place(camber_renderer *renderer, const camber_pass *pass, camber_image_use use,
+                                float texel[4], bool *full) {
     const camber_image *image = pass->images + use.pattern - 1;
-    camber_placed wanted = {.width = texels_for(image->width, use.width_px * renderer->patterns.nearest),
-                            .height = texels_for(image->height, use.height_px * renderer->patterns.nearest),
-                            .tiled = use.tiled};
+    const camber_texels size = camber_image_texels(image, &use, renderer->patterns.nearest);
+    camber_placed wanted = {.width = size.width, .height = size.height, .tiled = size.tiled};
     camber_status status = hash_once(renderer, pass, use.pattern - 1, &wanted.hash);
     if (status != CAMBER_OK)
         return status;
@@ -250,11 +157,7 @@ static camber_status find_place(camber_renderer *renderer, const camber_pass *pa
 
 static camber_status put_row(camber_renderer *renderer, const camber_pass *pass, const camber_paint *paint,
                              float texels[8], bool *full) {
-    const camber_image *image = pass->images + paint->pattern - 1;
-    const double whole_px = 2.0 * (double)camber_paint_half_width(paint);
-    const double length_px =
-        paint->pattern_px > 0.0f ? (double)paint->pattern_px : whole_px * image->width / image->height;
-    const pattern_use use = {paint->pattern, fmin(fmax(length_px, 1e-3), 1e9), whole_px, false};
+    const camber_image_use use = camber_image_use_of_paint(pass, paint);
     texels[4] = (float)use.width_px;
     return find_place(renderer, pass, use, texels, full);
 }
@@ -273,8 +176,9 @@ static camber_status try_to_hold(camber_renderer *renderer, const camber_pass *p
     camber_status status = CAMBER_OK;
     *full = false;
     if (!pass->mesh) {
-        status = find_place(renderer, pass, use_of_fill(pass), texels, full);
-        return status == CAMBER_OK && !*full ? find_place(renderer, pass, mean_of_fill(pass), texels, full) : status;
+        status = find_place(renderer, pass, camber_image_use_of_fill(pass), texels, full);
+        return status == CAMBER_OK && !*full ? find_place(renderer, pass, camber_image_mean_of_fill(pass), texels, full)
+                                             : status;
     }
     for (uint32_t i = 0; i < pass->mesh->row_count && status == CAMBER_OK && !*full; i++)
         if (camber_pass_draws(pass, i) && pass->paints[i].pattern)
@@ -301,13 +205,13 @@ camber_status camber_patterns_hold(camber_renderer *renderer, const camber_pass 
 }
 
 camber_status camber_patterns_put_fill(camber_renderer *renderer, const camber_pass *pass, camber_fill_place *place) {
-    const pattern_use use = use_of_fill(pass);
+    const camber_image_use use = camber_image_use_of_fill(pass);
     bool full = false;
     place->size_px[0] = (float)use.width_px;
     place->size_px[1] = (float)use.height_px;
     camber_status status = find_place(renderer, pass, use, place->place, &full);
     if (status == CAMBER_OK)
-        status = find_place(renderer, pass, mean_of_fill(pass), place->mean, &full);
+        status = find_place(renderer, pass, camber_image_mean_of_fill(pass), place->mean, &full);
     assert(!full);
     return status;
 }

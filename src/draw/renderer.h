@@ -216,8 +216,35 @@ static inline float camber_paint_half_width(const camber_paint *paint) {
     return paint->gap_px > 0.0f ? 0.5f * paint->gap_px + paint->width_px : 0.5f * paint->width_px;
 }
 
-/* patterns.c */
+/* images.c: the texels of images, for a size in the picture. */
 bool camber_image_is_valid(const camber_image *image);
+
+typedef struct camber_image_use {
+    uint32_t pattern; /* of the pass, from 1 */
+    double width_px, height_px;
+    bool tiled; /* downwards, too */
+} camber_image_use;
+
+camber_image_use camber_image_use_of_paint(const camber_pass *pass, const camber_paint *paint);
+camber_image_use camber_image_use_of_fill(const camber_pass *pass);
+/* One texel. */
+camber_image_use camber_image_mean_of_fill(const camber_pass *pass);
+
+enum { CAMBER_TEXELS_SIDE_MAX = 2046 };
+
+typedef struct camber_texels {
+    uint32_t width, height;
+    bool tiled; /* with its other edge above and below */
+} camber_texels;
+
+/* nearest: px of the picture a px of the plane, at most. */
+camber_texels camber_image_texels(const camber_image *image, const camber_image_use *use, double nearest);
+/* RGBA8, a texel more on each side. Returns CAMBER_ERROR_MEMORY. */
+camber_status camber_image_shrink(camber_context *context, const camber_image *image, camber_texels size,
+                                  uint8_t *texels);
+const uint8_t *camber_image_row(const camber_image *image, uint32_t y);
+
+/* patterns.c */
 /* Puts all images that the pass draws into the texture; draws what waits before another of them has to go. Returns
  * CAMBER_ERROR_LIMIT where they do not fit at once. */
 camber_status camber_patterns_hold(camber_renderer *renderer, const camber_pass *pass, const camber_piece *piece);

@@ -1,9 +1,9 @@
 /* cover: the pixels of a tile, or of some rows of its cells, from the segments in its list.
  * Reads shapes, starts[tiles + 1], lists, inks, items[2 * n] (tile; first and last row of cells << 8), and of
  * CAMBER_COVER_RICH measures[4 * shape count], more (as many as inks) and what that names in tail; writes pixels, rows
- * of stride words. What is drawn last is seen first: the list is walked from its end, and what lies below cells that
- * are full is not looked at. Each colour in turn is gathered as what it lets through, and then put under what is there.
- */
+ * of stride words; where shapes are cut into slices, kept[tiles * tile_words] for the next one instead. What is drawn
+ * last is seen first: the list is walked from its end, and what lies below cells that are full is not looked at. Each
+ * colour in turn is gathered as what it lets through, and then put under what is there. */
 #define CELLS (CAMBER_TILE_CELLS * CAMBER_TILE_CELLS)
 #define LEVELS 3 /* the picture, a group, a layer */
 
@@ -22,6 +22,20 @@ typedef struct camber_sheet {
     float r, g, b, a; /* background, premultiplied */
     camber_u32 above; /* rows of pixels before these */
 } camber_sheet;
+
+/* Slices of the shapes are drawn one after the other, the last in drawing order first. Of a tile there is kept between
+ * them: bits and counts of its cells, a word a row of cells, and planes of a cell's sixteen floats, from KEPT_WORDS on:
+ * the ink, the picture's level, and from where it is said here, what unions, groups and layers have besides. */
+typedef struct camber_slice {
+    camber_u32 is_first, is_last; /* as they are drawn */
+    camber_u32 tile_words, sums, group, layer;
+} camber_slice;
+
+#define KEPT_WORDS 48
+#define KEPT_PUTS 48 /* bytes: six of a bit a cell lie before them */
+#define KEPT_ROWS 28 /* words */
+#define KEPT_INK 0x3fffffffu
+#define KEPT_FULL 0x3ffffffeu /* a row of cells that nothing shows through */
 
 typedef struct canvas {
     float16 ink[4][CELLS];           /* let through; of unions the sums of areas and of normals besides */
@@ -121,6 +135,12 @@ static inline void open_level(private canvas *c, int level) {
     c->is_open[level] = c->is_ready[level] = 1;
 }
 
+static inline void clear_sums(private canvas *c) {
+    for (int i = 0; i < CELLS; i++)
+        c->ink[1][i] = c->ink[2][i] = c->ink[3][i] = (float16)(0.0f);
+    c->has_sums = 1;
+}
+
 /* Closes what the ink has nothing to do with, and opens what it lies in. */
 static inline void change_ink(private canvas *c, camber_ink next) {
     close_ink(c);
@@ -132,11 +152,8 @@ static inline void change_ink(private canvas *c, camber_ink next) {
         open_level(c, 1);
     if (next.layer && !c->is_open[2])
         open_level(c, 2);
-    if (next.mode == CAMBER_INK_UNION && !c->has_sums) {
-        for (int i = 0; i < CELLS; i++)
-            c->ink[1][i] = c->ink[2][i] = c->ink[3][i] = (float16)(0.0f);
-        c->has_sums = 1;
-    }
+    if (next.mode == CAMBER_INK_UNION && !c->has_sums)
+        clear_sums(c);
     c->now = next;
 }
 
@@ -164,6 +181,82 @@ static inline void put_whole(private canvas *c, int i) {
     c->ink[0][i] *= is_union ? 0.0f : 1.0f - c->now.a;
     if (is_union || c->now.a == 1.0f)
         c->filled |= 1ul << i;
+}
+
+/* ---- Between slices ---- */
+
+static inline void keep_planes(global float *planes, private const float16 (*from)[CELLS], camber_u32 plane,
+                               camber_u32 count, ulong cells) {
+    for (; cells; cells &= cells - 1)
+        for (camber_u32 k = 0; k < count; k++)
+            vstore16(from[k][lowest(cells)], (size_t)(plane + k) * CELLS + (size_t)lowest(cells), planes);
+}
+
+static inline void take_planes(global const float *planes, private float16 (*to)[CELLS], camber_u32 plane,
+                               camber_u32 count, ulong cells) {
+    for (; cells; cells &= cells - 1)
+        for (camber_u32 k = 0; k < count; k++)
+            to[k][lowest(cells)] = vload16((size_t)(plane + k) * CELLS + (size_t)lowest(cells), planes);
+}
+
+/* As far as cells are not what they begin as. */
+static inline void keep_cells(private const canvas *c, global float *kept, camber_slice s, int first, int last,
+                              camber_u32 now) {
+    global uchar *bits = (global uchar *)kept, *puts = bits + KEPT_PUTS;
+    global camber_u32 *rows = (global camber_u32 *)kept + KEPT_ROWS;
+    global float *planes = kept + KEPT_WORDS;
+    const ulong of[6] = {c->inked, c->filled, c->done, c->touched[0], c->touched[1], c->touched[2]};
+    for (int j = first; j <= last; j++) {
+        for (int k = 0; k < 6; k++)
+            bits[CAMBER_TILE_CELLS * k + j] = (uchar)(of[k] >> (CAMBER_TILE_CELLS * j));
+        vstore8(vload8((size_t)j, c->puts), (size_t)j, puts);
+        rows[j] = now;
+    }
+    keep_planes(planes, c->ink, 0, 1, c->inked);
+    keep_planes(planes, c->level[0], 1, 4, c->touched[0]);
+    if (c->now.mode == CAMBER_INK_UNION)
+        keep_planes(planes, c->ink + 1, s.sums, 3, c->inked);
+    keep_planes(planes, c->level[1], s.group, 4, c->touched[1]);
+    keep_planes(planes, c->level[2], s.layer, 4, c->touched[2]);
+}
+
+/* Gives the ink that was drawn last, or KEPT_FULL. Rows of cells that are not full have seen the same list, so that all
+ * of them have the same ink and levels. */
+static inline camber_u32 take_cells(private canvas *c, global const float *kept, global const camber_ink *inks,
+                                    camber_slice s, int first, int last) {
+    global const uchar *bits = (global const uchar *)kept, *puts = bits + KEPT_PUTS;
+    global const camber_u32 *rows = (global const camber_u32 *)kept + KEPT_ROWS;
+    global const float *planes = kept + KEPT_WORDS;
+    ulong of[6] = {0, 0, 0, 0, 0, 0};
+    camber_u32 now = KEPT_FULL;
+    for (int j = first; j <= last; j++) {
+        for (int k = 0; k < 6; k++)
+            of[k] |= (ulong)bits[CAMBER_TILE_CELLS * k + j] << (CAMBER_TILE_CELLS * j);
+        vstore8(vload8((size_t)j, puts), (size_t)j, c->puts);
+        now = rows[j] == KEPT_FULL ? now : rows[j];
+    }
+    c->inked = of[0];
+    c->filled = of[1];
+    c->done |= of[2];
+    for (int k = 0; k < LEVELS; k++)
+        c->touched[k] = of[3 + k];
+    take_planes(planes, c->ink, 0, 1, c->inked);
+    take_planes(planes, c->level[0], 1, 4, c->touched[0]);
+    if (now == KEPT_FULL)
+        return now;
+    for (int k = 1; k < LEVELS; k++)
+        if (now >> (29 + k) & 1u) {
+            open_level(c, k);
+            take_planes(planes, c->level[k], k == 1 ? s.group : s.layer, 4, c->touched[k]);
+        }
+    if ((now & KEPT_INK) == KEPT_INK)
+        return ~0u;
+    c->now = inks[now & KEPT_INK];
+    if (c->now.mode == CAMBER_INK_UNION) {
+        clear_sums(c);
+        take_planes(planes, c->ink + 1, s.sums, 3, c->inked);
+    }
+    return now & KEPT_INK;
 }
 
 /* The pixels of a cell, from its first one. */
@@ -281,7 +374,8 @@ static inline void write_cells(private const canvas *c, global camber_u32 *pixel
 kernel __attribute__((reqd_work_group_size(1, 1, 1))) void cover(
     global const float *restrict shapes, global const camber_u32 *restrict starts,
     global const camber_u32 *restrict lists, global const camber_ink *restrict inks,
-    global const camber_u32 *restrict items, global camber_u32 *restrict pixels, const camber_sheet s MORE) {
+    global const camber_u32 *restrict items, global camber_u32 *restrict pixels, const camber_sheet s,
+    global float *restrict kept, const camber_slice slice MORE) {
     canvas c;
     const size_t tile = items[2 * get_global_id(0)];
     const camber_u32 cells = items[2 * get_global_id(0) + 1], column = (camber_u32)tile % s.columns,
@@ -292,6 +386,16 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void cover(
     camber_u32 current = ~0u;
     begin_canvas(&c, own);
     c.now = inks[0];
+    global float *own_kept = kept + tile * slice.tile_words;
+    if (!slice.is_first) {
+        if (!slice.is_last && starts[tile] == starts[tile + 1])
+            return;
+        current = take_cells(&c, own_kept, inks, slice, first, last);
+#if CAMBER_COVER_RICH
+        if (current != ~0u && current != KEPT_FULL)
+            c.more = more[current];
+#endif
+    }
     for (camber_u32 k = starts[tile + 1]; k-- > starts[tile];) {
         global const float *shape = shapes + (size_t)CAMBER_SHAPE_WORDS * lists[k];
         ASK_FOR(shapes + (size_t)CAMBER_SHAPE_WORDS * lists[k > AHEAD ? k - AHEAD : 0]);
@@ -307,11 +411,22 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void cover(
         if (is_full(&c))
             break;
     }
+    const int full = is_full(&c);
+    if (!slice.is_last && !full) {
+        const camber_u32 open = (camber_u32)c.is_open[1] << 30 | (camber_u32)c.is_open[2] << 31;
+        keep_cells(&c, own_kept, slice, first, last, (current & KEPT_INK) | open);
+        return;
+    }
     close_ink(&c);
     if (c.is_open[2])
         close_level(&c, 2, c.now.layer_opacity);
     if (c.is_open[1])
         close_level(&c, 1, c.now.group_opacity);
+    if (!slice.is_last) {
+        c.done = ~0ul;
+        keep_cells(&c, own_kept, slice, first, last, KEPT_FULL);
+        return;
+    }
     write_cells(&c, pixels + ((size_t)row * CAMBER_TILE_PX + s.above) * s.stride + (size_t)column * CAMBER_TILE_PX, s,
                 first, last);
 }

@@ -41,6 +41,9 @@ typedef int camber_mask;
 #define CAMBER_ALWAYS_PX (-1e30f)
 #define CAMBER_FILL_PX 1e6f /* a fill is a line along y = 0, so long to either side and half so wide */
 
+/* What is kept of a tile between slices of segments, at most: sixteen planes of its pixels, and a few words. */
+#define CAMBER_KEPT_BYTES (16 * 4096 + 192)
+
 /* Of a segment that is not drawn: its first tile lies behind the last one. */
 #define CAMBER_NO_BOX 0xffu
 
@@ -163,11 +166,14 @@ CAMBER_FN camber_shape camber_shape_of(camber_real px, camber_real py, camber_re
 CAMBER_FN camber_words camber_shape_box(const camber_shape *s, camber_mask drawn, float left, float top,
                                         camber_u32 columns, camber_u32 rows) {
     const float a_tile = 1.0f / CAMBER_TILE_PX, right = (float)(columns - 1u), bottom = (float)(rows - 1u);
+    /* To the middles of pixels, as cells have it, and a little farther: no cell's own box lies past its tile's. Tiles
+     * are counted from the picture's first one before the area's are, so that they are the same in every area. */
+    const float inset = 0.4375f, from_x = left * a_tile, from_y = top * a_tile;
     const camber_real none = CAMBER_REAL(0.0f);
-    const camber_real x0 = (CAMBER_LESS(s->ax, s->bx) - s->reach - left + 0.5f) * a_tile;
-    const camber_real x1 = (CAMBER_MORE(s->ax, s->bx) + s->reach - left - 0.5f) * a_tile;
-    const camber_real y0 = (CAMBER_LESS(s->ay, s->by) - s->reach - top + 0.5f) * a_tile;
-    const camber_real y1 = (CAMBER_MORE(s->ay, s->by) + s->reach - top - 0.5f) * a_tile;
+    const camber_real x0 = (CAMBER_LESS(s->ax, s->bx) - s->reach + inset) * a_tile - from_x;
+    const camber_real x1 = (CAMBER_MORE(s->ax, s->bx) + s->reach - inset) * a_tile - from_x;
+    const camber_real y0 = (CAMBER_LESS(s->ay, s->by) - s->reach + inset) * a_tile - from_y;
+    const camber_real y1 = (CAMBER_MORE(s->ay, s->by) + s->reach - inset) * a_tile - from_y;
     const camber_mask meets = drawn & (x0 < right + 1.0f) & (y0 < bottom + 1.0f) & (x1 >= 0.0f) & (y1 >= 0.0f);
     const camber_real fx = CAMBER_MORE(x0, none), fy = CAMBER_MORE(y0, none);
     const camber_real lx = x1 < right ? x1 : CAMBER_REAL(right), ly = y1 < bottom ? y1 : CAMBER_REAL(bottom);
@@ -198,12 +204,49 @@ CAMBER_FN camber_u32 camber_row_span(CAMBER_GLOBAL const float *shape, float mid
     const float scale = 1.0f / uy, across = (middle - ay) * ux;
     const float one = ax + (across - reach) * scale, other = ax + (across + reach) * scale;
     /* Of the squares' middles. */
-    const float from = ((one < other ? one : other) - left - to_middle) * a_square;
-    const float to = ((one < other ? other : one) - left - to_middle) * a_square;
+    const float from = ((one < other ? one : other) - to_middle) * a_square - left * a_square;
+    const float to = ((one < other ? other : one) - to_middle) * a_square - left * a_square;
     if (from > (float)last || to < (float)first)
         return 1u; /* the last lies before the first */
     const camber_u32 begin = from > (float)first ? (camber_u32)from : first;
     return (from > (float)begin ? begin + 1u : begin) | (to < (float)last ? (camber_u32)to : last) << 8;
+}
+
+/* Whether the box of a segment lies in one column or in one row of tiles, as camber_shape_box has them before an area's
+ * edges cut it. */
+CAMBER_FN camber_u32 camber_same_tile(float from, float to) {
+    const float a_tile = 1.0f / CAMBER_TILE_PX, least = -1e9f, most = 1e9f, inset = 0.4375f;
+    const float a = (from + inset) * a_tile, b = (to - inset) * a_tile;
+    const float lower = a < least ? least : a > most ? most : a, upper = b < least ? least : b > most ? most : b;
+    const int first = (int)lower, last = (int)upper;
+    return first - (lower < (float)first) == last - (upper < (float)last);
+}
+
+CAMBER_FN camber_u32 camber_shape_is_narrow(CAMBER_GLOBAL const float *shape) {
+    const float ax = shape[CAMBER_SHAPE_AX], ay = shape[CAMBER_SHAPE_AY], bx = shape[CAMBER_SHAPE_BX],
+                by = shape[CAMBER_SHAPE_BY], reach = shape[CAMBER_SHAPE_REACH];
+    return camber_same_tile(CAMBER_LESS(ax, bx) - reach, CAMBER_MORE(ax, bx) + reach) ||
+           camber_same_tile(CAMBER_LESS(ay, by) - reach, CAMBER_MORE(ay, by) + reach);
+}
+
+/* An area of the picture: its first tile, px, and its tiles. */
+typedef struct camber_tiles {
+    float left, top;
+    camber_u32 columns, rows;
+} camber_tiles;
+
+/* Of a box, the tiles in row y that a segment meets, as camber_row_span has them: boxes of one column or row have all.
+ * What lies at the area's edge may be cut, and must be as it is in any other area. */
+CAMBER_FN camber_u32 camber_tile_span(CAMBER_GLOBAL const float *shape, camber_u32 box, camber_u32 y,
+                                      const camber_tiles *of) {
+    const camber_u32 first = box & 255u, last = box >> 16 & 255u, top = box >> 8 & 255u, bottom = box >> 24;
+    const camber_u32 all = first | last << 8;
+    if ((first == last && first - 1u < of->columns - 2u) || (top == bottom && top - 1u < of->rows - 2u))
+        return all;
+    if ((first == last || top == bottom) && camber_shape_is_narrow(shape))
+        return all;
+    const float middle = of->top + ((float)y + 0.5f) * CAMBER_TILE_PX;
+    return camber_row_span(shape, middle, of->left, first, last, CAMBER_TILE_PX);
 }
 
 /* ---- Pixels ---- */

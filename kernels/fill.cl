@@ -10,15 +10,16 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void fill(global const flo
                                                                 const camber_chunks c) {
     const size_t chunk = get_global_id(0), first = chunk * c.a_chunk;
     const size_t end = first + c.a_chunk < c.shape_count ? first + c.a_chunk : c.shape_count;
+    const camber_tiles of = c.of;
     global camber_u32 *own = counts + chunk * c.tiles;
     for (size_t i = first; i < end; i++) {
         const camber_u32 box = boxes[i];
         if (FIRST_X(box) > LAST_X(box))
             continue;
         for (camber_u32 y = FIRST_Y(box); y <= LAST_Y(box); y++) {
-            const camber_u32 span = span_of(shapes, i, box, y, c);
+            const camber_u32 span = camber_tile_span(shapes + CAMBER_SHAPE_WORDS * i, box, y, &of);
             for (camber_u32 x = span & 255u; x <= span >> 8; x++) {
-                const camber_u32 tile = y * c.columns + x;
+                const camber_u32 tile = y * of.columns + x;
                 lists[starts[tile] + own[tile]++] = (camber_u32)i;
             }
         }

@@ -206,7 +206,9 @@ typedef struct camber_device_desc {
      * keeps, what is read back, or pictures (largest_piece_px bounds those). Meshes are made in parts then, of an
      * eighth of it or less; what does not fit is tessellated again when it is read or drawn, and is the same bytes and
      * pixels. No polyline may take more than half of it: about 50 bytes a point that is seen. 65536 at least. 0: three
-     * quarters of the device's memory; no bound where that is the host's. */
+     * quarters of the device's memory; no bound where that is the host's.
+     * A renderer that draws in OpenCL takes a quarter of it while it is there, or 4 MB besides where that is less, for
+     * segments and the lists of tiles; meshes have the rest. What takes more is drawn in slices, to the same bytes. */
     uint64_t memory_bytes;
 } camber_device_desc;
 
@@ -229,7 +231,7 @@ CAMBER_API void camber_device_destroy(camber_device *device);
 CAMBER_API camber_device_info camber_device_get_info(const camber_device *device);
 
 typedef struct camber_device_memory {
-    uint64_t allowed_bytes;          /* to the device's meshes, as camber_device_desc has it. 0: no bound */
+    uint64_t allowed_bytes; /* to the device's meshes and what draws, as camber_device_desc has it. 0: no bound */
     uint64_t held_bytes, most_bytes; /* of what is counted: now, and at any time since the device was opened */
 } camber_device_memory;
 

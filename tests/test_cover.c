@@ -3,6 +3,7 @@
 #include "picture.h"
 
 #include "cover/cover.h"
+#include "draw/renderer.h"
 
 enum { SIDE_PX = 600 };
 
@@ -208,18 +209,36 @@ static void test_gl(void **state) {
 static void test_areas(void **state) {
     const easel *e = *state;
     static const uint32_t sides[] = {0, 33, 64, 320, 599};
-    drawing d = begin_drawing();
-    scene_walks(&d.lines, &(uint64_t){5});
-    d.passes[1].opacity = 0.5f;
-    picture whole = draw_with(e, e->cl, &d, 3, CAMBER_METHOD_STRIP);
-    for (size_t i = 0; i < sizeof sides / sizeof *sides; i++) {
-        d.frame.largest_piece_px = sides[i];
-        picture p = draw_with(e, e->cl, &d, 3, CAMBER_METHOD_STRIP);
-        picture_assert_same(&whole, &p);
-        picture_free(&p);
+    for (int which = 0; which < SCENES; which++) {
+        drawing d = begin_drawing();
+        fill_scene(&d.lines, which);
+        d.passes[0].overlap = which % 2 ? CAMBER_OVERLAP_UNITE : CAMBER_OVERLAP_ACCUMULATE;
+        d.passes[1].opacity = 0.5f;
+        picture whole = draw_with(e, e->cl, &d, 3, CAMBER_METHOD_STRIP);
+        for (size_t i = 0; i < sizeof sides / sizeof *sides; i++) {
+            d.frame.largest_piece_px = sides[i];
+            picture p = draw_with(e, e->cl, &d, 3, CAMBER_METHOD_STRIP);
+            picture_assert_same(&whole, &p);
+            picture_free(&p);
+        }
+        picture_free(&whole);
+        scene_free(&d.lines);
     }
-    picture_free(&whole);
-    scene_free(&d.lines);
+}
+
+/* The same picture on another device; gives the slices of its last area. */
+static uint32_t compare_on(const easel *e, const camber_device_desc *desc, drawing *d, size_t pass_count,
+                           const picture *whole) {
+    easel small = {.s = {.context = e->s.context}};
+    assert_int_equal(camber_device_create(e->s.context, desc, NULL, &small.s.device), CAMBER_OK);
+    assert_int_equal(camber_renderer_create(small.s.device, NULL, NULL, &small.cl), CAMBER_OK);
+    picture p = draw_with(&small, small.cl, d, pass_count, CAMBER_METHOD_STRIP);
+    const uint32_t slices = camber_cover_slices(small.cl->cover);
+    picture_assert_same(whole, &p);
+    picture_free(&p);
+    camber_renderer_destroy(small.cl);
+    camber_device_destroy(small.s.device);
+    return slices;
 }
 
 /* Where lists and pixels may take little, rows of tiles are drawn by halves. */
@@ -232,18 +251,77 @@ static void test_little_memory(void **state) {
         scene_end(&d.lines, i % 2 ? 8 : (size_t)i % SCENE_ROWS); /* every other one very wide */
     }
     picture whole = draw_with(e, e->cl, &d, 3, CAMBER_METHOD_STRIP);
-    static const uint64_t largest[] = {2048 * 1024, 1024 * 1024, 512 * 1024};
+    static const uint64_t largest[] = {2048 * 1024, 256 * 1024, 96 * 1024};
     for (size_t i = 0; i < sizeof largest / sizeof *largest; i++) {
-        easel small = {.s = {.context = e->s.context}};
         const camber_device_desc desc = {.largest_buffer_bytes = largest[i], .memory_bytes = 1 << (19 - i)};
-        assert_int_equal(camber_device_create(e->s.context, &desc, NULL, &small.s.device), CAMBER_OK);
-        assert_int_equal(camber_renderer_create(small.s.device, NULL, NULL, &small.cl), CAMBER_OK);
-        picture p = draw_with(&small, small.cl, &d, 3, CAMBER_METHOD_STRIP);
-        picture_assert_same(&whole, &p);
-        picture_free(&p);
-        camber_renderer_destroy(small.cl);
-        camber_device_destroy(small.s.device);
+        compare_on(e, &desc, &d, 3, &whole);
     }
+    picture_free(&whole);
+    scene_free(&d.lines);
+}
+
+/* Shapes that no buffer has room for are drawn in slices: with layers, unions and groups open between them, in tiles
+ * that are heavy in some slices only, and where nothing of a slice is. */
+static void test_slices(void **state) {
+    const easel *e = *state;
+    static const uint64_t largest[] = {1024 * 1024, 300 * 1024, 140 * 1024};
+    for (int which = 0; which < 4; which++) {
+        drawing d = begin_drawing();
+        uint64_t seed = 21;
+        if (which == 3)
+            for (int i = 0; i < 1500; i++) {
+                scene_walk(&d.lines, &seed, 7, (const double[]){66, 90}, 1);
+                scene_end(&d.lines, 1 + (size_t)i % 2);
+            }
+        fill_scene(&d.lines, which);
+        d.passes[0].overlap = which == 0 ? CAMBER_OVERLAP_UNITE : CAMBER_OVERLAP_ACCUMULATE;
+        d.passes[1].opacity = which % 2 ? 0.5f : 1.0f;
+        d.passes[2].overlap = which < 2 ? CAMBER_OVERLAP_FLATTEN : CAMBER_OVERLAP_UNITE;
+        d.passes[2].opacity = 0.8f;
+        d.paints[1][3].color.a = 0.3f;
+        picture whole = draw_with(e, e->cl, &d, 3, CAMBER_METHOD_STRIP);
+        assert_int_equal(camber_cover_slices(e->cl->cover), 1);
+        uint32_t most = 0;
+        for (size_t i = 0; i < sizeof largest / sizeof *largest; i++) {
+            const camber_device_desc desc = {.largest_buffer_bytes = largest[i]};
+            const uint32_t slices = compare_on(e, &desc, &d, 3, &whole);
+            most = slices > most ? slices : most;
+        }
+        printf("# %u slices at most\n", most);
+        assert_true(most > 3);
+        picture_free(&whole);
+        scene_free(&d.lines);
+    }
+}
+
+/* What drawing holds counts: a quarter of what is allowed, and meshes have the rest. */
+static void test_bound(void **state) {
+    const easel *e = *state;
+    const uint64_t allowed = 24 * 1024 * 1024;
+    const camber_device_desc desc = {.memory_bytes = allowed};
+    easel bound = {.s = {.context = e->s.context}};
+    drawing d = begin_drawing();
+    uint64_t seed = 4;
+    for (int i = 0; i < 3000; i++) {
+        scene_walk(&d.lines, &seed, 40, (const double[]){20, 500}, 1);
+        scene_end(&d.lines, (size_t)i % 3);
+    }
+    picture whole = draw_with(e, e->cl, &d, 3, CAMBER_METHOD_STRIP);
+    assert_int_equal(camber_device_create(e->s.context, &desc, NULL, &bound.s.device), CAMBER_OK);
+    assert_int_equal(camber_renderer_create(bound.s.device, NULL, NULL, &bound.cl), CAMBER_OK);
+    assert_true(camber_device_get_memory(bound.s.device).allowed_bytes == allowed);
+    picture p = draw_with(&bound, bound.cl, &d, 3, CAMBER_METHOD_STRIP);
+    picture_assert_same(&whole, &p);
+    const camber_device_memory memory = camber_device_get_memory(bound.s.device);
+    printf("# %u slices, %llu of %llu bytes at most\n", camber_cover_slices(bound.cl->cover),
+           (unsigned long long)memory.most_bytes, (unsigned long long)memory.allowed_bytes);
+    assert_true(camber_cover_slices(bound.cl->cover) > 3);
+    assert_true(memory.held_bytes > allowed / 16 && memory.most_bytes <= allowed);
+    camber_renderer_destroy(bound.cl);
+    assert_true(camber_device_get_memory(bound.s.device).held_bytes == 0);
+    assert_true(camber_device_get_memory(bound.s.device).allowed_bytes == allowed);
+    camber_device_destroy(bound.s.device);
+    picture_free(&p);
     picture_free(&whole);
     scene_free(&d.lines);
 }
@@ -354,6 +432,7 @@ int main(void) {
         cmocka_unit_test(test_twin),          cmocka_unit_test(test_gl),
         cmocka_unit_test(test_areas),         cmocka_unit_test(test_steps),
         cmocka_unit_test(test_little_memory), cmocka_unit_test(test_loads),
+        cmocka_unit_test(test_slices),        cmocka_unit_test(test_bound),
         cmocka_unit_test(test_refused),
     };
     const int failed = cmocka_run_group_tests(tests, set_up, tear_down);

@@ -70,6 +70,10 @@ camber_status camber_cover_draw_into(camber_cover *cover, const camber_cover_sce
 camber_status camber_cover_map(camber_cover *cover, camber_cover_pixels *pixels);
 void camber_cover_unmap(camber_cover *cover, camber_cover_pixels pixels);
 camber_cover_times camber_cover_get_times(const camber_cover *cover);
+/* px; of an area, where memory is bounded: a row of its tiles can be kept between slices. */
+uint32_t camber_cover_widest(const camber_cover *cover);
+/* How many slices of shapes, in bands, the area that was drawn last took. */
+uint32_t camber_cover_slices(const camber_cover *cover);
 
 /* ---- Stages in host memory, for proofs: freed with camber_cover_stages_free ---- */
 
@@ -84,7 +88,7 @@ typedef struct camber_cover_stages {
     uint8_t *rgba;   /* of the area */
 } camber_cover_stages;
 
-/* Of the area that was drawn last. */
+/* Of the area that was drawn last: the last slice of its last band. */
 camber_status camber_cover_read_stages(camber_cover *cover, camber_cover_stages *stages);
 /* The CPU twin, from what the meshes hold. */
 camber_status camber_cover_on_host(camber_context *context, const camber_cover_scene *scene,

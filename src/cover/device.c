@@ -1,56 +1,17 @@
 /* shape -> count -> total -> fill -> cover on a device, an area of the picture at a time. */
-#include "cover/cover.h"
+#include "cover/device.h"
 
-#include <assert.h>
 #include <string.h>
-
-enum {
-    BUFFER_FILL, /* camber_fill_records */
-    BUFFER_ROWS,
-    BUFFER_INKS,
-    BUFFER_MORE,
-    BUFFER_TAIL,
-    BUFFER_SHAPES,
-    BUFFER_BOXES,
-    BUFFER_MEASURES,
-    BUFFER_COUNTS,
-    BUFFER_TOTALS,
-    BUFFER_STARTS,
-    BUFFER_LISTS,
-    BUFFER_ITEMS,
-    BUFFER_PIXELS,
-    BUFFERS
-};
 
 /* Segments a chunk, at least; chunks, at most: each has a count of every tile. A tile with more segments than HEAVY is
  * drawn by as many work-items as it has rows of cells. */
 enum { CHUNK = 8192, CHUNKS_MAX = 64, HEAVY = 2048 };
-/* What lists may take: where they would take more, rows of tiles are drawn by halves. */
-static const uint64_t LISTS_BYTES = 256 * 1024 * 1024;
-
-enum { STAGE_SHAPE, STAGE_COUNT, STAGE_TOTAL, STAGE_FILL, STAGE_COVER, STAGES };
 static const char *const stage_names[STAGES] = {"shape", "count", "total", "fill", "cover"};
-
-struct camber_cover {
-    camber_device *device;
-    camber_program *program; /* of the variant */
-    unsigned variant;        /* of what was drawn last */
-    cl_mem buffers[BUFFERS];
-    size_t capacities[BUFFERS];
-    uint32_t *starts, *items; /* of the host */
-    size_t start_capacity, item_capacity;
-    camber_cover_area area; /* drawn last */
-    cl_mem given;           /* where its pixels are, if not in a buffer of its own */
-    camber_cover_area band; /* of it: whole rows of tiles, as many as there is room for lists */
-    uint32_t columns;       /* tiles */
-    size_t shape_count, tile_count;
-    double ms[STAGES];
-};
 
 /* As count and fill read them. */
 typedef struct chunks {
-    uint32_t shape_count, a_chunk, columns, tiles;
-    float left, top;
+    uint32_t shape_count, a_chunk, tiles;
+    camber_tiles of;
 } chunks;
 
 /* As cover reads it. */
@@ -61,63 +22,18 @@ typedef struct sheet {
     uint32_t above; /* rows of pixels before these */
 } sheet;
 
-camber_status camber_cover_create(camber_device *device, camber_cover **cover) {
-    camber_cover *made = camber_alloc_zero(device->context, 1, sizeof *made);
-    if (!made)
-        return CAMBER_ERROR_MEMORY;
-    made->device = device;
-    *cover = made;
-    return CAMBER_OK;
-}
+/* What tiles keep between slices, as cover reads it. */
+typedef struct kept {
+    uint32_t is_first, is_last, tile_words, sums, group, layer;
+} kept;
+enum { KEPT_WORDS = 48, PLANE_WORDS = CAMBER_TILE_PX * CAMBER_TILE_PX };
 
-void camber_cover_destroy(camber_cover *cover) {
-    if (!cover)
-        return;
-    for (int i = 0; i < BUFFERS; i++)
-        if (cover->buffers[i])
-            clReleaseMemObject(cover->buffers[i]);
-    camber_free(cover->device->context, cover->items);
-    camber_free(cover->device->context, cover->starts);
-    camber_free(cover->device->context, cover);
-}
-
-camber_cover_times camber_cover_get_times(const camber_cover *cover) {
-    return (camber_cover_times){cover->ms[STAGE_SHAPE], cover->ms[STAGE_COUNT], cover->ms[STAGE_TOTAL],
-                                cover->ms[STAGE_FILL], cover->ms[STAGE_COVER]};
-}
-
-/* ---- Buffers ---- */
-
-static camber_status reserve(camber_cover *cover, int which, size_t size_bytes) {
-    const camber_device *device = cover->device;
-    if (size_bytes <= cover->capacities[which])
-        return CAMBER_OK;
-    if (size_bytes > device->info.largest_buffer_bytes)
-        return camber_fail(device->context, CAMBER_ERROR_LIMIT,
-                           "drawing takes a buffer of %zu bytes, and %s makes none above %llu; draw less at once",
-                           size_bytes, device->info.name, (unsigned long long)device->info.largest_buffer_bytes);
-    if (cover->buffers[which])
-        clReleaseMemObject(cover->buffers[which]);
-    cover->buffers[which] = NULL;
-    cover->capacities[which] = 0;
-    const size_t more = size_bytes + size_bytes / 4,
-                 room = more < device->info.largest_buffer_bytes ? more : size_bytes;
-    const cl_mem_flags flags = CL_MEM_READ_WRITE | (which == BUFFER_PIXELS ? CL_MEM_ALLOC_HOST_PTR : 0);
-    cl_int code;
-    cover->buffers[which] = clCreateBuffer(device->cl, flags, room, NULL, &code);
-    if (code != CL_SUCCESS) {
-        cover->buffers[which] = NULL;
-        return camber_fail_cl(device->context, "clCreateBuffer", code);
-    }
-    cover->capacities[which] = room;
-    return CAMBER_OK;
-}
-
-static camber_status put(camber_cover *cover, int which, const void *bytes, size_t size_bytes) {
-    const camber_status status = reserve(cover, which, size_bytes);
-    return status == CAMBER_OK ? camber_write_buffer(cover->device, cover->buffers[which], 0, size_bytes, bytes)
-                               : status;
-}
+/* What is drawn of an area. */
+typedef struct picture {
+    const camber_cover_scene *scene;
+    const camber_cover_piece *pieces;
+    size_t piece_count, shape_count;
+} picture;
 
 /* ---- Stages ---- */
 
@@ -155,20 +71,34 @@ static camber_status run(camber_cover *cover, int stage, const argument *argumen
     return code == CL_SUCCESS ? CAMBER_OK : camber_fail_stage(device, "clWaitForEvents", stage_names[stage], code);
 }
 
+/* What of a piece lies in the slice: its first record begins a work-item, as the piece's does. */
+static bool cut_piece(const camber_cover *cover, camber_cover_piece *piece) {
+    const size_t from = cover->first_shape, to = from + cover->shape_count, base = piece->base;
+    const size_t before = from > base ? from - base : 0, past = to > base ? to - base : 0;
+    if (piece->end - piece->first > past)
+        piece->end = piece->first + past;
+    piece->first += before;
+    piece->base = base + before - from;
+    return piece->first < piece->end;
+}
+
 static camber_status make_shapes(camber_cover *cover, const camber_cover_scene *scene, const camber_cover_piece *pieces,
                                  size_t piece_count) {
     camber_status status = CAMBER_OK;
     for (size_t i = 0; i < piece_count && status == CAMBER_OK; i++) {
-        camber_mesh *mesh = pieces[i].mesh;
-        camber_mesh_part *part = mesh ? mesh->parts + pieces[i].part : NULL;
-        const camber_shape_range range = camber_cover_range(scene, pieces + i, &cover->band);
+        camber_cover_piece piece = pieces[i];
+        if (!cut_piece(cover, &piece))
+            continue;
+        camber_mesh *mesh = piece.mesh;
+        camber_mesh_part *part = mesh ? mesh->parts + piece.part : NULL;
+        const camber_shape_range range = camber_cover_range(scene, &piece, &cover->band);
         status = part ? camber_part_use(mesh, part) : CAMBER_OK;
         if (status != CAMBER_OK)
             break;
         const cl_mem *records = part ? &part->buffers[CAMBER_BUFFER_RECORDS].mem : cover->buffers + BUFFER_FILL;
         const argument arguments[] = {{sizeof(cl_mem), records}, BUFFER(BUFFER_ROWS), BUFFER(BUFFER_SHAPES),
                                       BUFFER(BUFFER_BOXES),      VALUE(range),        BUFFER(BUFFER_MEASURES)};
-        const size_t items[2] = {0, (pieces[i].end - pieces[i].first + 15) / 16};
+        const size_t items[2] = {0, (piece.end - piece.first + 15) / 16};
         status = run(cover, STAGE_SHAPE, arguments, cover->variant ? 6 : 5, items);
     }
     return status;
@@ -182,18 +112,18 @@ static chunks cut_chunks(const camber_cover *cover, uint32_t *chunk_count) {
     const size_t count = wanted < bound || bound == 0 ? wanted : bound;
     const size_t a_chunk = count ? (cover->shape_count + count - 1) / count : 0;
     *chunk_count = (uint32_t)count;
-    return (chunks){(uint32_t)cover->shape_count,
-                    (uint32_t)a_chunk,
-                    camber_cover_tiles(area->width),
-                    (uint32_t)tiles,
-                    (float)area->x,
-                    (float)area->y};
+    return (chunks){
+        (uint32_t)cover->shape_count,
+        (uint32_t)a_chunk,
+        (uint32_t)tiles,
+        {(float)area->x, (float)area->y, camber_cover_tiles(area->width), camber_cover_tiles(area->height)}};
 }
 
 static camber_status count_tiles(camber_cover *cover, chunks c, uint32_t chunk_count) {
-    camber_status status = reserve(cover, BUFFER_COUNTS, 4 * (size_t)c.tiles * (chunk_count ? chunk_count : 1));
+    camber_status status =
+        camber_cover_reserve(cover, BUFFER_COUNTS, 4 * (size_t)c.tiles * (chunk_count ? chunk_count : 1));
     if (status == CAMBER_OK)
-        status = reserve(cover, BUFFER_TOTALS, 4 * (size_t)c.tiles);
+        status = camber_cover_reserve(cover, BUFFER_TOTALS, 4 * (size_t)c.tiles);
     const argument count[] = {BUFFER(BUFFER_SHAPES), BUFFER(BUFFER_BOXES), BUFFER(BUFFER_COUNTS), VALUE(c)};
     const argument total[] = {BUFFER(BUFFER_COUNTS), BUFFER(BUFFER_TOTALS), VALUE(c.tiles), VALUE(chunk_count)};
     if (status == CAMBER_OK)
@@ -203,14 +133,8 @@ static camber_status count_tiles(camber_cover *cover, chunks c, uint32_t chunk_c
     return status;
 }
 
-static uint64_t lists_limit(const camber_device *device) {
-    const uint64_t largest = device->info.largest_buffer_bytes, share = camber_device_share(device, 1);
-    const uint64_t least = share < LISTS_BYTES ? share : LISTS_BYTES;
-    return (largest < least ? largest : least) / 4;
-}
-
 /* The host's part of the scan: where each tile's list begins. *fits is false where they take too much for a band that
- * can be halved. */
+ * can be halved, or a slice. */
 static camber_status start_lists(camber_cover *cover, bool *fits) {
     const camber_device *device = cover->device;
     const size_t tiles = cover->tile_count;
@@ -228,15 +152,16 @@ static camber_status start_lists(camber_cover *cover, bool *fits) {
     }
     cover->starts[tiles] = (uint32_t)sum;
     clEnqueueUnmapMemObject(device->queue, cover->buffers[BUFFER_TOTALS], totals, 0, NULL, NULL);
-    *fits = sum <= lists_limit(device) || cover->band.height <= CAMBER_TILE_PX;
+    *fits =
+        4 * sum <= camber_cover_most_bytes(cover) || (cover->band.height <= CAMBER_TILE_PX && cover->shape_count <= 16);
     if (!*fits)
         return CAMBER_OK;
     if (sum > UINT32_MAX)
         return camber_fail(device->context, CAMBER_ERROR_LIMIT, "%llu segments in tiles; draw less at once",
                            (unsigned long long)sum);
-    camber_status status = put(cover, BUFFER_STARTS, cover->starts, 4 * (tiles + 1));
+    camber_status status = camber_cover_put(cover, BUFFER_STARTS, cover->starts, 4 * (tiles + 1));
     if (status == CAMBER_OK)
-        status = reserve(cover, BUFFER_LISTS, 4 * (sum ? (size_t)sum : 1));
+        status = camber_cover_reserve(cover, BUFFER_LISTS, 4 * (sum ? (size_t)sum : 1));
     return status;
 }
 
@@ -269,10 +194,25 @@ static camber_status list_items(camber_cover *cover, size_t *heavy_count, size_t
     }
     *heavy_count = by_rows;
     *item_count = count;
-    return put(cover, BUFFER_ITEMS, cover->items, 2 * count * sizeof *cover->items);
+    return camber_cover_put(cover, BUFFER_ITEMS, cover->items, 2 * count * sizeof *cover->items);
 }
 
-static camber_status cover_tiles(camber_cover *cover, const camber_cover_scene *scene) {
+/* Where planes lie that a scene needs: an ink's and the picture's five, three of unions, four a level. */
+static kept plan_kept(const camber_cover_scene *scene) {
+    bool unions = false, groups = false, layers = false;
+    for (size_t i = 0; i < scene->ink_count; i++) {
+        unions = unions || scene->inks[i].mode == CAMBER_INK_UNION;
+        groups = groups || scene->inks[i].group;
+        layers = layers || scene->inks[i].layer;
+    }
+    kept k = {.sums = 5};
+    k.group = k.sums + (unions ? 3 : 0);
+    k.layer = k.group + (groups ? 4 : 0);
+    k.tile_words = KEPT_WORDS + (k.layer + (layers ? 4 : 0)) * PLANE_WORDS;
+    return k;
+}
+
+static camber_status cover_tiles(camber_cover *cover, const camber_cover_scene *scene, kept k) {
     const camber_cover_area *band = &cover->band;
     sheet s = {.left = (float)band->x,
                .top = (float)band->y,
@@ -282,6 +222,9 @@ static camber_status cover_tiles(camber_cover *cover, const camber_cover_scene *
     size_t heavy = 0, items = 0;
     memcpy(s.background, scene->background, sizeof s.background);
     camber_status status = list_items(cover, &heavy, &items);
+    if (status == CAMBER_OK)
+        status = camber_cover_reserve(cover, BUFFER_KEPT,
+                                      k.is_first && k.is_last ? 4 : 4 * cover->tile_count * k.tile_words);
     const argument arguments[] = {BUFFER(BUFFER_SHAPES),
                                   BUFFER(BUFFER_STARTS),
                                   BUFFER(BUFFER_LISTS),
@@ -289,10 +232,12 @@ static camber_status cover_tiles(camber_cover *cover, const camber_cover_scene *
                                   BUFFER(BUFFER_ITEMS),
                                   {sizeof(cl_mem), cover->given ? &cover->given : cover->buffers + BUFFER_PIXELS},
                                   VALUE(s),
+                                  BUFFER(BUFFER_KEPT),
+                                  VALUE(k),
                                   BUFFER(BUFFER_MEASURES),
                                   BUFFER(BUFFER_MORE),
                                   BUFFER(BUFFER_TAIL)};
-    const cl_uint count = cover->variant ? 10 : 7;
+    const cl_uint count = cover->variant ? 12 : 9;
     if (status == CAMBER_OK)
         status = run(cover, STAGE_COVER, arguments, count, (size_t[]){0, heavy});
     if (status == CAMBER_OK)
@@ -304,55 +249,94 @@ static camber_status cover_tiles(camber_cover *cover, const camber_cover_scene *
 static camber_status prepare_more(camber_cover *cover, const camber_cover_scene *scene, size_t shapes) {
     static const float nothing[4] = {0};
     const bool bare = scene->tail_count == 0;
-    camber_status status = put(cover, BUFFER_MORE, scene->more, scene->ink_count * sizeof *scene->more);
+    camber_status status = camber_cover_put(cover, BUFFER_MORE, scene->more, scene->ink_count * sizeof *scene->more);
     if (status == CAMBER_OK)
-        status = put(cover, BUFFER_TAIL, bare ? nothing : scene->tail, (bare ? 1 : scene->tail_count) * sizeof nothing);
+        status = camber_cover_put(cover, BUFFER_TAIL, bare ? nothing : scene->tail,
+                                  (bare ? 1 : scene->tail_count) * sizeof nothing);
     if (status == CAMBER_OK)
-        status = reserve(cover, BUFFER_MEASURES, 4 * CAMBER_SHAPE_MEASURES * shapes);
+        status = camber_cover_reserve(cover, BUFFER_MEASURES, 4 * CAMBER_SHAPE_MEASURES * shapes);
     return status;
+}
+
+static size_t shapes_at_once(const camber_cover *cover) {
+    const size_t count = (size_t)(camber_cover_most_bytes(cover) / (4 * CAMBER_SHAPE_WORDS)) / 16 * 16;
+    return count ? count : 16;
 }
 
 static camber_status prepare(camber_cover *cover, const camber_cover_scene *scene) {
-    const size_t shapes = cover->shape_count ? cover->shape_count : 16;
-    camber_status status =
-        put(cover, BUFFER_ROWS, scene->rows, scene->row_count * CAMBER_COVER_ROW_WORDS * sizeof *scene->rows);
+    const size_t most = shapes_at_once(cover), wanted = cover->shape_count ? cover->shape_count : 16;
+    const size_t shapes = wanted < most ? wanted : most;
+    camber_status status = camber_cover_put(cover, BUFFER_ROWS, scene->rows,
+                                            scene->row_count * CAMBER_COVER_ROW_WORDS * sizeof *scene->rows);
     if (status == CAMBER_OK)
-        status = put(cover, BUFFER_FILL, camber_fill_records, sizeof camber_fill_records);
+        status = camber_cover_put(cover, BUFFER_FILL, camber_fill_records, sizeof camber_fill_records);
     if (status == CAMBER_OK)
-        status = put(cover, BUFFER_INKS, scene->inks, scene->ink_count * sizeof *scene->inks);
+        status = camber_cover_put(cover, BUFFER_INKS, scene->inks, scene->ink_count * sizeof *scene->inks);
     if (status == CAMBER_OK)
-        status = reserve(cover, BUFFER_SHAPES, 4 * CAMBER_SHAPE_WORDS * shapes);
+        status = camber_cover_reserve(cover, BUFFER_SHAPES, 4 * CAMBER_SHAPE_WORDS * shapes);
     if (status == CAMBER_OK)
-        status = reserve(cover, BUFFER_BOXES, 4 * shapes);
+        status = camber_cover_reserve(cover, BUFFER_BOXES, 4 * shapes);
     if (status == CAMBER_OK && cover->variant)
         status = prepare_more(cover, scene, shapes);
     if (status == CAMBER_OK && !cover->given)
-        status = reserve(cover, BUFFER_PIXELS, camber_cover_bytes(&cover->area));
+        status = camber_cover_reserve(cover, BUFFER_PIXELS, camber_cover_bytes(&cover->area));
     return status;
 }
 
-/* Draws the band, unless its lists do not fit. */
-static camber_status draw_band(camber_cover *cover, const camber_cover_scene *scene, const camber_cover_piece *pieces,
-                               size_t piece_count, bool *fits) {
+/* Draws the slice of the band, unless its lists do not fit. */
+static camber_status draw_slice(camber_cover *cover, const picture *p, kept k, bool *fits) {
     uint32_t chunk_count;
-    cover->tile_count = (size_t)cover->columns * camber_cover_tiles(cover->band.height);
     const chunks c = cut_chunks(cover, &chunk_count);
-    camber_status status = make_shapes(cover, scene, pieces, piece_count);
+    camber_status status = make_shapes(cover, p->scene, p->pieces, p->piece_count);
     if (status == CAMBER_OK)
         status = count_tiles(cover, c, chunk_count);
     if (status == CAMBER_OK)
         status = start_lists(cover, fits);
     if (status != CAMBER_OK || !*fits)
         return status;
+    cover->slice_count++;
     status = fill_lists(cover, c, chunk_count);
-    return status == CAMBER_OK ? cover_tiles(cover, scene) : status;
+    return status == CAMBER_OK ? cover_tiles(cover, p->scene, k) : status;
+}
+
+/* Slice after slice, from the last one to the first, unless the band can be halved where the lists of one do not fit.
+ */
+static camber_status draw_band(camber_cover *cover, const picture *p, bool *fits) {
+    size_t most = shapes_at_once(cover), left = p->shape_count;
+    kept k = plan_kept(p->scene);
+    camber_status status = CAMBER_OK;
+    cover->tile_count = (size_t)cover->columns * camber_cover_tiles(cover->band.height);
+    do {
+        cover->shape_count = left < most ? left : most;
+        cover->first_shape = left - cover->shape_count;
+        k.is_first = left == p->shape_count;
+        k.is_last = cover->first_shape == 0;
+        *fits = true;
+        status = draw_slice(cover, p, k, fits);
+        if (*fits)
+            left = cover->first_shape;
+        else if (cover->band.height > CAMBER_TILE_PX)
+            return status;
+        else
+            most = (cover->shape_count / 2 + 15) / 16 * 16;
+    } while (status == CAMBER_OK && left > 0);
+    return status;
+}
+
+/* Rows of tiles of a band: all, or of what is drawn in slices as many as may be kept. */
+static uint32_t rows_at_once(const camber_cover *cover, const picture *p) {
+    const uint32_t rows = camber_cover_tiles(cover->area.height);
+    const uint64_t row_bytes = 4 * (uint64_t)plan_kept(p->scene).tile_words * cover->columns;
+    const uint64_t most = camber_cover_most_bytes(cover) / row_bytes;
+    if (p->shape_count <= shapes_at_once(cover) || most >= rows)
+        return rows;
+    return most > 0 ? (uint32_t)most : 1;
 }
 
 /* Band after band; one whose lists do not fit is halved, and so are those after it. */
-static camber_status draw_bands(camber_cover *cover, const camber_cover_scene *scene, const camber_cover_piece *pieces,
-                                size_t piece_count) {
+static camber_status draw_bands(camber_cover *cover, const picture *p) {
     const camber_cover_area *area = &cover->area;
-    uint32_t rows = camber_cover_tiles(area->height);
+    uint32_t rows = rows_at_once(cover, p);
     camber_status status = CAMBER_OK;
     cover->band = *area;
     for (uint32_t done = 0; done < area->height && status == CAMBER_OK;) {
@@ -360,7 +344,7 @@ static camber_status draw_bands(camber_cover *cover, const camber_cover_scene *s
         bool fits = true;
         cover->band.y = area->y + done;
         cover->band.height = left < tallest ? left : tallest;
-        status = draw_band(cover, scene, pieces, piece_count, &fits);
+        status = draw_band(cover, p, &fits);
         if (fits)
             done += cover->band.height;
         else
@@ -373,20 +357,23 @@ camber_status camber_cover_draw_into(camber_cover *cover, const camber_cover_sce
                                      const camber_cover_area *area, cl_mem pixels) {
     camber_context *context = cover->device->context;
     camber_cover_piece *pieces = NULL;
-    size_t piece_count = 0;
+    picture p = {.scene = scene};
     memset(cover->ms, 0, sizeof cover->ms);
+    cover->slice_count = 0;
     cover->area = *area;
     cover->given = pixels;
     cover->columns = camber_cover_tiles(area->width);
     cover->variant = camber_cover_variant(scene);
     camber_status status = camber_device_cover_program(cover->device, cover->variant, &cover->program);
     if (status == CAMBER_OK)
-        status = camber_cover_list_pieces(context, scene, &pieces, &piece_count, &cover->shape_count);
+        status = camber_cover_list_pieces(context, scene, &pieces, &p.piece_count, &p.shape_count);
+    p.pieces = pieces;
+    cover->shape_count = p.shape_count;
     if (status == CAMBER_OK)
         status = prepare(cover, scene);
     if (status == CAMBER_OK)
-        status = draw_bands(cover, scene, pieces, piece_count);
-    if (status == CAMBER_OK && cover->shape_count > 0)
+        status = draw_bands(cover, &p);
+    if (status == CAMBER_OK && p.shape_count > 0)
         camber_program_save(cover->device, cover->program);
     camber_free(context, pieces);
     return status;
@@ -394,72 +381,4 @@ camber_status camber_cover_draw_into(camber_cover *cover, const camber_cover_sce
 
 camber_status camber_cover_draw(camber_cover *cover, const camber_cover_scene *scene, const camber_cover_area *area) {
     return camber_cover_draw_into(cover, scene, area, NULL);
-}
-
-/* ---- Pixels ---- */
-
-camber_status camber_cover_map(camber_cover *cover, camber_cover_pixels *pixels) {
-    const camber_device *device = cover->device;
-    const size_t row_bytes = 4 * camber_cover_stride_px(&cover->area);
-    cl_int code;
-    assert(!cover->given);
-    const void *rgba = clEnqueueMapBuffer(device->queue, cover->buffers[BUFFER_PIXELS], CL_TRUE, CL_MAP_READ, 0,
-                                          row_bytes * cover->area.height, 0, NULL, NULL, &code);
-    if (code != CL_SUCCESS)
-        return camber_fail_cl(device->context, "clEnqueueMapBuffer", code);
-    *pixels = (camber_cover_pixels){rgba, row_bytes};
-    return CAMBER_OK;
-}
-
-void camber_cover_unmap(camber_cover *cover, camber_cover_pixels pixels) {
-    clEnqueueUnmapMemObject(cover->device->queue, cover->buffers[BUFFER_PIXELS], (void *)(uintptr_t)pixels.rgba, 0,
-                            NULL, NULL);
-}
-
-/* ---- Stages, read back ---- */
-
-static camber_status get(camber_cover *cover, int which, size_t size_bytes, void *copy) {
-    const camber_device *device = cover->device;
-    void **bytes = copy;
-    *bytes = camber_alloc(device->context, size_bytes, 1);
-    if (!*bytes)
-        return CAMBER_ERROR_MEMORY;
-    const cl_int code = size_bytes ? clEnqueueReadBuffer(device->queue, cover->buffers[which], CL_TRUE, 0, size_bytes,
-                                                         *bytes, 0, NULL, NULL)
-                                   : CL_SUCCESS;
-    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(device->context, "clEnqueueReadBuffer", code);
-}
-
-static camber_status copy_pixels(camber_cover *cover, uint8_t **rgba) {
-    const camber_cover_area *area = &cover->area;
-    camber_cover_pixels pixels = {0};
-    *rgba = camber_alloc(cover->device->context, 4 * (size_t)area->width, area->height);
-    camber_status status = *rgba ? camber_cover_map(cover, &pixels) : CAMBER_ERROR_MEMORY;
-    if (status != CAMBER_OK)
-        return status;
-    for (size_t y = 0; y < area->height; y++)
-        memcpy(*rgba + 4 * y * area->width, pixels.rgba + y * pixels.row_bytes, 4 * (size_t)area->width);
-    camber_cover_unmap(cover, pixels);
-    return CAMBER_OK;
-}
-
-camber_status camber_cover_read_stages(camber_cover *cover, camber_cover_stages *stages) {
-    camber_cover_stages made = {.shape_count = cover->shape_count, .tile_count = cover->tile_count};
-    camber_status status = get(cover, BUFFER_SHAPES, 4 * CAMBER_SHAPE_WORDS * made.shape_count, &made.shapes);
-    if (status == CAMBER_OK)
-        status = get(cover, BUFFER_BOXES, 4 * made.shape_count, &made.boxes);
-    if (status == CAMBER_OK && cover->variant)
-        status = get(cover, BUFFER_MEASURES, 4 * CAMBER_SHAPE_MEASURES * made.shape_count, &made.measures);
-    if (status == CAMBER_OK)
-        status = get(cover, BUFFER_STARTS, 4 * (made.tile_count + 1), &made.starts);
-    if (status == CAMBER_OK)
-        status = get(cover, BUFFER_LISTS, 4 * (size_t)made.starts[made.tile_count], &made.lists);
-    if (status == CAMBER_OK)
-        status = copy_pixels(cover, &made.rgba);
-    if (status != CAMBER_OK) {
-        camber_cover_stages_free(cover->device->context, &made);
-        return status;
-    }
-    *stages = made;
-    return CAMBER_OK;
 }

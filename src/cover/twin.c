@@ -134,11 +134,9 @@ static camber_status make_shapes(const twin *t, const camber_cover_piece *pieces
 static void each_tile(const twin *t, size_t shape, uint32_t *counts, bool fill) {
     const uint32_t box = t->stages->boxes[shape];
     const uint32_t x0 = box & 255u, y0 = box >> 8 & 255u, x1 = box >> 16 & 255u, y1 = box >> 24;
+    const camber_tiles of = {(float)t->area->x, (float)t->area->y, t->columns, t->rows};
     for (uint32_t y = y0; x0 <= x1 && y <= y1; y++) {
-        const float middle = (float)t->area->y + ((float)y + 0.5f) * CAMBER_TILE_PX;
-        const uint32_t span = x0 == x1 || y0 == y1 ? x0 | x1 << 8
-                                                   : camber_row_span(t->stages->shapes + CAMBER_SHAPE_WORDS * shape,
-                                                                     middle, (float)t->area->x, x0, x1, CAMBER_TILE_PX);
+        const uint32_t span = camber_tile_span(t->stages->shapes + CAMBER_SHAPE_WORDS * shape, box, y, &of);
         for (uint32_t x = span & 255u; x <= span >> 8; x++) {
             uint32_t *count = counts + y * t->columns + x;
             if (fill)

@@ -196,11 +196,14 @@ static camber_status make_tables(tables *t, const camber_frame *frame) {
 }
 
 /* Whole rows where they fit. */
-static camber_cover_area first_area(const camber_device *device, const camber_frame *frame) {
+static camber_cover_area first_area(const camber_renderer *renderer, const camber_frame *frame) {
+    const camber_device *device = renderer->share.device;
     uint32_t side = AREA_SIDE_PX;
     if (frame->largest_piece_px && frame->largest_piece_px < side)
         side = frame->largest_piece_px < CAMBER_TILE_PX ? CAMBER_TILE_PX
                                                         : frame->largest_piece_px / CAMBER_TILE_PX * CAMBER_TILE_PX;
+    if (camber_cover_widest(renderer->cover) < side)
+        side = camber_cover_widest(renderer->cover);
     const uint32_t width = frame->width < side ? frame->width : side;
     const uint64_t most = device->info.largest_buffer_bytes / 4, pixels = most < AREA_PX ? most : AREA_PX;
     const uint32_t fitting = (uint32_t)(pixels / (width + CAMBER_TILE_PX)) / CAMBER_TILE_PX * CAMBER_TILE_PX;
@@ -257,7 +260,7 @@ static camber_status draw_band(camber_renderer *renderer, const camber_cover_sce
 static camber_status draw_areas(camber_renderer *renderer, const camber_frame *frame, const camber_cover_scene *scene,
                                 target *to, camber_frame_stats *stats) {
     camber_context *context = renderer->share.device->context;
-    camber_cover_area area = first_area(renderer->share.device, frame);
+    camber_cover_area area = first_area(renderer, frame);
     const uint32_t tallest = area.height;
     camber_status status = CAMBER_OK;
     to->width = frame->width;
@@ -325,7 +328,7 @@ static bool keep_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint3
 
 camber_status camber_covered_begin(camber_renderer *renderer, const camber_frame *frame, camber_flight *flight) {
     camber_context *context = renderer->share.device->context;
-    const camber_cover_area area = first_area(renderer->share.device, frame);
+    const camber_cover_area area = first_area(renderer, frame);
     camber_flight made = {.frame = *frame, .first = {.width = area.width, .height = area.height}};
     camber_status status = CAMBER_OK;
     if (area.width == frame->width && area.height == frame->height) {

@@ -30,7 +30,8 @@ struct camber_device {
     struct camber_program *cover[4]; /* what draws, by its variant */
     /* What its meshes may hold (0: what they want), hold, and held at most. */
     uint64_t memory_bytes, held_bytes, most_held_bytes;
-    camber_mesh *meshes; /* each knows the next */
+    uint64_t drawing_allowed_bytes, drawing_bytes; /* the same of its renderers' buffers */
+    camber_mesh *meshes;                           /* each knows the next */
 };
 
 /* What a surface tells OpenCL about its GL context, for cl_khr_gl_sharing. Zero: it cannot be told. */
@@ -280,6 +281,17 @@ camber_status camber_fail_stage(const camber_device *device, const char *call, c
 
 /* memory.c. So many eighths of what the device's meshes may hold. */
 uint64_t camber_device_share(const camber_device *device, unsigned eighths);
+
+/* What a renderer's buffers may hold and do. */
+typedef struct camber_drawing_memory {
+    uint64_t allowed_bytes; /* 0: no bound */
+    uint64_t taken_bytes;   /* of what meshes were allowed */
+    uint64_t held_bytes;
+} camber_drawing_memory;
+
+void camber_drawing_open(camber_device *device, camber_drawing_memory *memory);
+void camber_drawing_count(camber_device *device, camber_drawing_memory *memory, uint64_t now_bytes);
+void camber_drawing_close(camber_device *device, camber_drawing_memory *memory);
 /* Whether there is room for that much many times over. */
 bool camber_device_is_roomy(const camber_device *device, uint64_t size_bytes);
 /* Counts what is held anew, after buffers have been made or let go. */

@@ -251,10 +251,12 @@ static void change_ink(canvas *c, camber_ink next) {
     c->now = next;
 }
 
-/* A segment's part of a pixel. */
-static void put_pixel(const canvas *c, const camber_pen *pen, pixel *p, const float place[4], bool aside) {
-    const float x = place[0], y = place[1];
-    const float area = aside ? camber_pen_side(pen, y) : camber_pen_area(pen, x, y, place[2], place[3]);
+/* A segment's part of a pixel: near its ends, or on its sides. */
+static void put_pixel(const canvas *c, const camber_pen *pen, pixel *p, float px, float py, bool nears) {
+    const float qx = px - pen->ax, qy = py - pen->ay;
+    const float x = qx * pen->ux + qy * pen->uy, y = qy * pen->ux - qx * pen->uy;
+    const float fa = qx * pen->nax + qy * pen->nay, fb = (px - pen->bx) * pen->nbx + (py - pen->by) * pen->nby;
+    const float area = nears ? camber_pen_area(pen, x, y, fa, fb) : camber_pen_side(pen, y);
     if (c->now.mode != CAMBER_INK_UNION) {
         p->ink *= 1.0f - area * c->now.a;
         return;
@@ -277,28 +279,23 @@ static float most_ink(const cell *c) {
     return most;
 }
 
-static void draw_cell(canvas *c, const camber_pen *p, cell *one, float px, float py) {
-    const float qx = px - p->ax, qy = py - p->ay;
-    const float x = qx * p->ux + qy * p->uy, y = qy * p->ux - qx * p->uy;
-    const float fa = qx * p->nax + qy * p->nay, fb = (px - p->bx) * p->nbx + (py - p->by) * p->nby;
-    const camber_u32 meets = camber_cell_meets(p, x + 1.5f * (p->ux + p->uy), y + 1.5f * (p->ux - p->uy),
-                                               fa + 1.5f * (p->nax + p->nay), fb + 1.5f * (p->nbx + p->nby));
+/* left and top: of the cell. */
+static void draw_cell(canvas *c, const camber_pen *p, cell *one, float left, float top) {
     const bool is_union = c->now.mode == CAMBER_INK_UNION;
-    if (one->done || one->filled || meets == CAMBER_CELL_OUTSIDE)
+    camber_meeting meeting;
+    camber_cells_meet(p, left + 0.5f * CAMBER_CELL_PX, top + 0.5f * CAMBER_CELL_PX, &meeting);
+    if (one->done || one->filled || !meeting.meets)
         return;
     one->inked = true;
-    if (meets == CAMBER_CELL_INSIDE) {
+    if (p->half_width > 2.0f && meeting.inside && !meeting.nears) {
         for (int i = 0; i < CELL_PIXELS; i++)
             one->pixels[i].ink *= is_union ? 0.0f : 1.0f - c->now.a;
         one->filled = is_union || c->now.a == 1.0f;
         return;
     }
-    for (int i = 0; i < CELL_PIXELS; i++) {
-        const float across = (float)(i % CAMBER_CELL_PX), down = (float)(i / CAMBER_CELL_PX);
-        const float place[4] = {x + (across * p->ux + down * p->uy), y + (down * p->ux - across * p->uy),
-                                fa + (across * p->nax + down * p->nay), fb + (across * p->nbx + down * p->nby)};
-        put_pixel(c, p, one->pixels + i, place, meets == CAMBER_CELL_ASIDE);
-    }
+    for (int i = 0; i < CELL_PIXELS; i++)
+        put_pixel(c, p, one->pixels + i, left + (float)(i % CAMBER_CELL_PX) + 0.5f,
+                  top + (float)(i / CAMBER_CELL_PX) + 0.5f, meeting.nears);
     if (!is_union && ++one->puts % CAMBER_LOOK_EVERY == 0 && c->now.a == 1.0f)
         one->filled = most_ink(one) < CAMBER_NOTHING_PX;
 }
@@ -318,8 +315,8 @@ static void draw_segment(canvas *c, const float *shape, float left, float top) {
     const int from_y = y0 > 0.0f ? (int)y0 : 0, to_y = y1 < side ? (int)y1 : CAMBER_TILE_CELLS - 1;
     for (int j = from_y; j <= to_y; j++)
         for (int k = from_x; k <= to_x; k++)
-            draw_cell(c, &p, c->cells + CAMBER_TILE_CELLS * j + k, left + 0.5f + (float)(CAMBER_CELL_PX * k),
-                      top + 0.5f + (float)(CAMBER_CELL_PX * j));
+            draw_cell(c, &p, c->cells + CAMBER_TILE_CELLS * j + k, left + (float)(CAMBER_CELL_PX * k),
+                      top + (float)(CAMBER_CELL_PX * j));
 }
 
 static uint8_t level_of(float value) {

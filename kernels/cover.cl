@@ -21,6 +21,9 @@ typedef struct camber_sheet {
     camber_u32 columns, stride;
     float r, g, b, a; /* background, premultiplied */
     camber_u32 above; /* rows of pixels before these */
+    float horizon;    /* of CAMBER_COVER_PITCHED: rows of pixels of the picture in which nothing is drawn */
+    camber_eye eye;
+    float sky[4]; /* what they have, premultiplied */
 } camber_sheet;
 
 /* Slices of the shapes are drawn one after the other, the last in drawing order first. Of a tile there is kept between
@@ -59,7 +62,7 @@ static inline float most_of(float16 v) {
 }
 
 static inline int lowest(ulong bits) {
-    return (int)popcount((bits - 1) & ~bits);
+    return 63 - (int)clz(bits & (~bits + 1));
 }
 
 static inline void clear_level(private canvas *c, int level) {
@@ -157,17 +160,15 @@ static inline void change_ink(private canvas *c, camber_ink next) {
     c->now = next;
 }
 
-/* What a segment of an ink that is no union lets through. */
-static inline void put_over(private canvas *c, int i, float16 area, float opacity) {
-    const float16 through = c->ink[0][i] * (1.0f - area * opacity);
-    c->ink[0][i] = through;
-    if (++c->puts[i] % CAMBER_LOOK_EVERY == 0 && opacity == 1.0f && most_of(through) < CAMBER_NOTHING_PX)
+static inline void put_over(private canvas *c, int i, float16 area) {
+    c->ink[0][i] *= 1.0f - area * c->now.a;
+    if (++c->puts[i] % CAMBER_LOOK_EVERY == 0 && c->now.a == 1.0f && most_of(c->ink[0][i]) < CAMBER_NOTHING_PX)
         c->filled |= 1ul << i;
 }
 
 static inline void put_area(private canvas *c, private const camber_pen *p, int i, float16 area, float16 x, float16 y) {
     if (c->now.mode != CAMBER_INK_UNION) {
-        put_over(c, i, area, c->now.a);
+        put_over(c, i, area);
         return;
     }
     c->ink[0][i] *= 1.0f - area;
@@ -182,13 +183,11 @@ static inline void put_area(private canvas *c, private const camber_pen *p, int 
 }
 
 /* All of a cell's pixels lie inside the stroke. */
-static inline void put_whole(private canvas *c, ulong cells) {
+static inline void put_whole(private canvas *c, int i) {
     const int is_union = c->now.mode == CAMBER_INK_UNION;
-    const float through = is_union ? 0.0f : 1.0f - c->now.a;
-    for (ulong left = cells; left; left &= left - 1)
-        c->ink[0][lowest(left)] *= through;
-    if (through == 0.0f)
-        c->filled |= cells;
+    c->ink[0][i] *= is_union ? 0.0f : 1.0f - c->now.a;
+    if (is_union || c->now.a == 1.0f)
+        c->filled |= 1ul << i;
 }
 
 /* ---- Between slices ---- */
@@ -267,35 +266,15 @@ static inline camber_u32 take_cells(private canvas *c, global const float *kept,
     return now & KEPT_INK;
 }
 
-/* Where pixels of cells, and cells of four by four of them, lie in the picture: by the first one's column or row. */
-typedef struct places {
-    float16 x[CAMBER_TILE_CELLS], y[CAMBER_TILE_CELLS];
-    float16 middle_x[CAMBER_TILE_CELLS], middle_y[CAMBER_TILE_CELLS];
-} places;
-
+/* The pixels of a cell, from its first one. */
 constant float ACROSS[16] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
 constant float DOWN[16] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
 
-static inline void begin_places(private places *at, float left, float top) {
-    const float16 across = vload16(0, ACROSS), down = vload16(0, DOWN);
-    for (int i = 0; i < CAMBER_TILE_CELLS; i++) {
-        const float from = (float)(CAMBER_CELL_PX * i), middle = 0.5f * CAMBER_CELL_PX;
-        at->x[i] = left + from + 0.5f + across;
-        at->y[i] = top + from + 0.5f + down;
-        at->middle_x[i] = left + from + middle + CAMBER_CELL_PX * across;
-        at->middle_y[i] = top + from + middle + CAMBER_CELL_PX * down;
-    }
-}
-
-typedef struct cell_box {
-    int from_x, from_y, to_x, to_y;
-} cell_box;
-
-/* The cells, of rows first to last, in the box of a segment, a bit each. */
-static inline ulong box_of(global const float *shape, float left, float top, int first, int last,
-                           private cell_box *box) {
-    const float ax = shape[CAMBER_SHAPE_AX], ay = shape[CAMBER_SHAPE_AY];
-    const float bx = shape[CAMBER_SHAPE_BX], by = shape[CAMBER_SHAPE_BY], reach = shape[CAMBER_SHAPE_REACH];
+/* The cells, of rows first to last, that a segment may meet, a bit each: those of its box, and where that is large, of
+ * its band. */
+static inline ulong box_of(global const float *shape, float left, float top, int first, int last) {
+    const float ax = shape[CAMBER_SHAPE_AX], ay = shape[CAMBER_SHAPE_AY], bx = shape[CAMBER_SHAPE_BX],
+                by = shape[CAMBER_SHAPE_BY], reach = shape[CAMBER_SHAPE_REACH];
     const float a_cell = 1.0f / CAMBER_CELL_PX, side = (float)(CAMBER_TILE_CELLS - 1);
     const float x0 = ((ax < bx ? ax : bx) - reach - left + 0.5f) * a_cell;
     const float x1 = ((ax < bx ? bx : ax) + reach - left - 0.5f) * a_cell;
@@ -307,115 +286,109 @@ static inline ulong box_of(global const float *shape, float left, float top, int
     const int from_y = y0 > (float)first ? (int)y0 : first, to_y = y1 < (float)last ? (int)y1 : last;
     if (to_x < from_x || to_y < from_y)
         return 0;
-    *box = (cell_box){from_x, from_y, to_x, to_y};
+    if (to_x - from_x > 1 && to_y - from_y > 1) {
+        ulong cells = 0;
+        for (int j = from_y; j <= to_y; j++) {
+            const float middle = top + CAMBER_CELL_PX * ((float)j + 0.5f);
+            const camber_u32 span =
+                camber_row_span(shape, middle, left, (camber_u32)from_x, (camber_u32)to_x, CAMBER_CELL_PX);
+            const camber_u32 begin = span & 255u, end = span >> 8;
+            if (begin <= end)
+                cells |= ((255ul >> (CAMBER_TILE_CELLS - 1u - end + begin)) << begin) << (CAMBER_TILE_CELLS * j);
+        }
+        return cells;
+    }
     const ulong row = (255ul >> (CAMBER_TILE_CELLS - 1 - to_x + from_x)) << from_x;
     return (row * (0x0101010101010101ul >> (CAMBER_TILE_CELLS * (CAMBER_TILE_CELLS - 1 - to_y + from_y))))
            << (CAMBER_TILE_CELLS * from_y);
 }
 
-/* Of four by four cells, the bits as a tile has them. */
-static inline uint bits_of(int16 cells) {
-    const uint16 each = (uint16)(0x1, 0x2, 0x4, 0x8, 0x100, 0x200, 0x400, 0x800, 0x10000, 0x20000, 0x40000, 0x80000,
-                                 0x1000000, 0x2000000, 0x4000000, 0x8000000);
-    const uint16 bits = as_uint16(cells) & each;
-    const uint8 b = bits.lo | bits.hi;
-    const uint4 d = b.lo | b.hi;
-    const uint2 e = d.lo | d.hi;
-    return e.x | e.y;
-}
-
-/* Of a box's cells, those that the segment meets, those near its ends, and those all inside the stroke. */
-typedef struct cell_sets {
-    ulong meets, nears, inside;
-} cell_sets;
-
-static inline void sort_cells(private const camber_pen *p, private const places *at, cell_box box, ulong cells,
-                              private cell_sets *sets) {
-    const int may_be_inside = p->half_width > 2.0f;
-    sets->meets = sets->nears = sets->inside = 0;
-    for (int j = box.from_y; j <= box.to_y; j += 4)
-        for (int i = box.from_x; i <= box.to_x; i += 4) {
-            camber_meeting m;
-            const int first = CAMBER_TILE_CELLS * j + i;
-            if (!(cells >> first & 0x0f0f0f0ful))
-                continue;
-            camber_cells_meet(p, at->middle_x[i], at->middle_y[j], &m);
-            sets->meets |= (ulong)bits_of(m.meets) << first;
-            sets->nears |= (ulong)bits_of(m.nears) << first;
-            if (may_be_inside)
-                sets->inside |= (ulong)bits_of(m.inside) << first;
-        }
-    sets->meets &= cells;
-    sets->nears &= sets->meets;
-    sets->inside &= sets->meets & ~sets->nears;
-}
-
-/* Pixels as a segment has them: x along it, y across, and past the bisectors at its ends. */
-typedef struct pixel_set {
-    float16 x, y, fa, fb;
-} pixel_set;
-
-static inline void find_pixels(private const camber_pen *p, private const places *at, int i, private pixel_set *set) {
-    const float16 px = at->x[i % CAMBER_TILE_CELLS], py = at->y[i / CAMBER_TILE_CELLS];
-    const float16 qx = px - p->ax, qy = py - p->ay;
-    set->x = qx * p->ux + qy * p->uy;
-    set->y = qy * p->ux - qx * p->uy;
-    set->fa = qx * p->nax + qy * p->nay;
-    set->fb = (px - p->bx) * p->nbx + (py - p->by) * p->nby;
-}
-
-/* Where the ends or the ink are more than plain. Not a part of what draws the others: what this needs of a pen, they
- * would work out for nothing. */
-static __attribute__((noinline)) void draw_odd_cells(private canvas *c, private const places *at,
-                                                     global const float *shape, ulong nears, ulong sides) {
-    camber_pen p;
-    pixel_set set;
-    camber_pen_of(shape, as_uint(shape[CAMBER_SHAPE_FLAGS]), &p);
-    for (ulong left = nears | sides; left; left &= left - 1) {
-        const int i = lowest(left);
-        find_pixels(&p, at, i, &set);
-        const float16 area =
-            nears >> i & 1ul ? camber_pen_area(&p, set.x, set.y, set.fa, set.fb) : camber_pen_side(&p, set.y);
-        put_area(c, &p, i, area, set.x, set.y);
-    }
-}
-
-static inline void draw_plain_cells(private canvas *c, private const places *at, private const camber_pen *p,
-                                    ulong nears, ulong sides) {
-    const float opacity = c->now.a;
-    pixel_set set;
-    for (ulong left = nears; left; left &= left - 1) {
-        const int i = lowest(left);
-        find_pixels(p, at, i, &set);
-        put_over(c, i, camber_plain_area(p, set.x, set.y, set.fa, set.fb), opacity);
-    }
-    for (ulong left = sides; left; left &= left - 1) {
-        const int i = lowest(left);
-        find_pixels(p, at, i, &set);
-        put_over(c, i, camber_inside_edge(p, p->half_width - fabs(set.y)), opacity);
-    }
-}
-
-static inline void draw_segment(private canvas *c, private const places *at, global const float *shape, float left,
-                                float top, int first, int last) {
-    const uint flags = as_uint(shape[CAMBER_SHAPE_FLAGS]);
-    cell_box box;
-    cell_sets sets;
-    camber_pen p;
-    const ulong cells = box_of(shape, left, top, first, last, &box) & ~(c->done | c->filled);
+static inline void draw_segment(private canvas *c, global const float *shape, float left, float top, int first,
+                                int last) {
+    ulong cells = box_of(shape, left, top, first, last) & ~(c->done | c->filled), inked = 0;
     if (!cells)
         return;
-    camber_pen_of(shape, flags, &p);
-    sort_cells(&p, at, box, cells, &sets);
-    const ulong sides = sets.meets & ~(sets.nears | sets.inside);
-    if (camber_is_plain(flags, p.half_width) && c->now.mode != CAMBER_INK_UNION)
-        draw_plain_cells(c, at, &p, sets.nears, sides);
-    else
-        draw_odd_cells(c, at, shape, sets.nears, sides);
-    if (sets.inside)
-        put_whole(c, sets.inside);
-    c->inked |= sets.meets;
+    camber_pen p;
+    camber_pen_of(shape, as_uint(shape[CAMBER_SHAPE_FLAGS]), &p);
+    const float16 across = vload16(0, ACROSS), down = vload16(0, DOWN);
+    const float16 lane_x = across * p.ux + down * p.uy, lane_y = down * p.ux - across * p.uy;
+    const float16 lane_a = across * p.nax + down * p.nay, lane_b = across * p.nbx + down * p.nby;
+    for (; cells; cells &= cells - 1) {
+        const int i = lowest(cells);
+        const float px = left + 0.5f + (float)(CAMBER_CELL_PX * (i % CAMBER_TILE_CELLS)), qx = px - p.ax;
+        const float py = top + 0.5f + (float)(CAMBER_CELL_PX * (i / CAMBER_TILE_CELLS)), qy = py - p.ay;
+        const float x = qx * p.ux + qy * p.uy, y = qy * p.ux - qx * p.uy;
+        const float fa = qx * p.nax + qy * p.nay, fb = (px - p.bx) * p.nbx + (py - p.by) * p.nby;
+        const camber_u32 meets = camber_cell_meets(&p, x + 1.5f * (p.ux + p.uy), y + 1.5f * (p.ux - p.uy),
+                                                   fa + 1.5f * (p.nax + p.nay), fb + 1.5f * (p.nbx + p.nby));
+        if (meets == CAMBER_CELL_OUTSIDE)
+            continue;
+        inked |= 1ul << i;
+        if (meets == CAMBER_CELL_INSIDE) {
+            put_whole(c, i);
+            continue;
+        }
+        const float16 xs = x + lane_x, ys = y + lane_y;
+        const float16 area = meets == CAMBER_CELL_ASIDE ? camber_pen_side(&p, ys)
+                                                        : camber_pen_area(&p, xs, ys, fa + lane_a, fb + lane_b);
+        put_area(c, &p, i, area, xs, ys);
+    }
+    c->inked |= inked;
 }
+
+#if CAMBER_COVER_PITCHED
+static inline void put_tilted(private canvas *c, private const camber_pitch_pen *p, int i, float16 area,
+                              private const camber_pitch_pixel *at) {
+    c->ink[0][i] *= 1.0f - area;
+    float16 nx, ny;
+    const int16 thick = camber_pitch_inward(p, at, &nx, &ny);
+    const float16 none = (float16)(0.0f), edge = area * (1.0f - area);
+    c->ink[1][i] += thick ? area : none;
+    c->ink[2][i] += thick ? nx * edge : none;
+    c->ink[3][i] += thick ? ny * edge : none;
+}
+
+/* Rows of cells of a tile, which lies in the picture. */
+typedef struct tilted_tile {
+    float left, top;
+    int first, last;
+    camber_eye eye;
+} tilted_tile;
+
+static inline void draw_tilted(private canvas *c, global const float *shape, global const float *plane,
+                               tilted_tile to) {
+    ulong cells = box_of(shape, to.left, to.top, to.first, to.last) & ~(c->done | c->filled), inked = 0;
+    const int is_union = c->now.mode == CAMBER_INK_UNION;
+    if (!cells)
+        return;
+    camber_pitch_pen p;
+    camber_pitch_pen_of(to.eye, shape, plane, as_uint(shape[CAMBER_SHAPE_FLAGS]), &p);
+    const float16 across = vload16(0, ACROSS), down = vload16(0, DOWN);
+    for (; cells; cells &= cells - 1) {
+        const int i = lowest(cells);
+        const float x = to.left + 0.5f + (float)(CAMBER_CELL_PX * (i % CAMBER_TILE_CELLS)) - to.eye.x;
+        const float y = to.top + 0.5f + (float)(CAMBER_CELL_PX * (i / CAMBER_TILE_CELLS)) - to.eye.y;
+        const camber_u32 meets = camber_pitch_cell_meets(&p, x + 1.5f, y + 1.5f);
+        if (meets == CAMBER_CELL_OUTSIDE)
+            continue;
+        inked |= 1ul << i;
+        if (meets == CAMBER_CELL_INSIDE) {
+            put_whole(c, i);
+        } else if (meets == CAMBER_CELL_ASIDE && !is_union) {
+            put_over(c, i, camber_pitch_side(&p, x, y, across, down));
+        } else {
+            camber_pitch_pixel at;
+            camber_pitch_look(&p, x, y, across, down, &at);
+            const float16 area = camber_pitch_area(&p, &at);
+            if (is_union)
+                put_tilted(c, &p, i, area, &at);
+            else
+                put_over(c, i, area);
+        }
+    }
+    c->inked |= inked;
+}
+#endif
 
 /* Whether nothing that is still to come shows. What is filled by an ink of a layer shows as much as the layer does. */
 static inline int is_full(private const canvas *c) {
@@ -434,14 +407,22 @@ static inline uint16 pixels_of(private const float16 *r, private const float16 *
            level_of(1.0f - through + through * s.a) << 24;
 }
 
-static inline void write_cells(private const canvas *c, global camber_u32 *pixels, camber_sheet s, int first,
+static inline void write_cells(private const canvas *c, global camber_u32 *pixels, camber_sheet s, float top, int first,
                                int last) {
     const float16 none = (float16)(0.0f);
     const uint16 bare = pixels_of(&none, &none, &none, (float16)(1.0f), s);
+#if CAMBER_COVER_PITCHED
+    const uint16 sky = level_of((float16)(s.sky[0])) | level_of((float16)(s.sky[1])) << 8 |
+                       level_of((float16)(s.sky[2])) << 16 | level_of((float16)(s.sky[3])) << 24;
+#endif
     for (int i = CAMBER_TILE_CELLS * first; i < CAMBER_TILE_CELLS * (last + 1); i++) {
         uint16 rgba = bare;
         if (c->touched[0] >> i & 1ul)
             rgba = pixels_of(c->level[0][0] + i, c->level[0][1] + i, c->level[0][2] + i, c->level[0][3][i], s);
+#if CAMBER_COVER_PITCHED
+        const float16 y = top + (float)(CAMBER_CELL_PX * (i / CAMBER_TILE_CELLS)) + vload16(0, DOWN);
+        rgba = y < s.horizon ? sky : rgba;
+#endif
         global camber_u32 *at = pixels + (size_t)(i / CAMBER_TILE_CELLS * CAMBER_CELL_PX) * s.stride +
                                 i % CAMBER_TILE_CELLS * CAMBER_CELL_PX;
         vstore4(rgba.s0123, 0, at);
@@ -452,9 +433,14 @@ static inline void write_cells(private const canvas *c, global camber_u32 *pixel
 }
 
 #if CAMBER_COVER_RICH
+#if CAMBER_COVER_PITCHED
+#define PLANES_TOO , global const float *restrict planes
+#else
+#define PLANES_TOO
+#endif
 #define MORE                                                                                                           \
     , global const float *restrict measures, global const camber_ink_more *restrict more,                              \
-        global const float4 *restrict tail
+        global const float4 *restrict tail PLANES_TOO
 #else
 #define MORE
 #endif
@@ -465,7 +451,6 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void cover(
     global const camber_u32 *restrict items, global camber_u32 *restrict pixels, const camber_sheet s,
     global float *restrict kept, const camber_slice slice MORE) {
     canvas c;
-    places at;
     const size_t tile = items[2 * get_global_id(0)];
     const camber_u32 cells = items[2 * get_global_id(0) + 1], column = (camber_u32)tile % s.columns,
                      row = (camber_u32)tile / s.columns;
@@ -474,7 +459,11 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void cover(
     const ulong own = (~0ul >> (64 - CAMBER_TILE_CELLS * (last - first + 1))) << (CAMBER_TILE_CELLS * first);
     camber_u32 current = ~0u;
     begin_canvas(&c, own);
-    begin_places(&at, left, top);
+#if CAMBER_COVER_PITCHED
+    for (int j = first; j <= last; j++) /* what shows nothing needs no looking at */
+        if (top + (float)(CAMBER_CELL_PX * (j + 1)) <= s.horizon)
+            c.done |= 255ul << (CAMBER_TILE_CELLS * j);
+#endif
     c.now = inks[0];
     global float *own_kept = kept + tile * slice.tile_words;
     if (!slice.is_first) {
@@ -497,7 +486,12 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void cover(
 #endif
             current = ink;
         }
-        draw_segment(&c, &at, shape, left, top, first, last);
+#if CAMBER_COVER_PITCHED
+        draw_tilted(&c, shape, planes + (size_t)CAMBER_PLANE_WORDS * lists[k],
+                    (tilted_tile){left, top, first, last, s.eye});
+#else
+        draw_segment(&c, shape, left, top, first, last);
+#endif
         if (is_full(&c))
             break;
     }
@@ -518,5 +512,5 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void cover(
         return;
     }
     write_cells(&c, pixels + ((size_t)row * CAMBER_TILE_PX + s.above) * s.stride + (size_t)column * CAMBER_TILE_PX, s,
-                first, last);
+                top, first, last);
 }

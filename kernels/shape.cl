@@ -2,7 +2,9 @@
  * Reads records[CAMBER_RECORD_WORDS * stride * record_count], rows[CAMBER_COVER_ROW_WORDS * row count]; writes
  * shapes[CAMBER_SHAPE_WORDS * n] and boxes[n] from base on for the records from first on, n of them rounded up to
  * sixteens, with CAMBER_NO_BOX where no segment ends that is drawn. Of CAMBER_COVER_RICH writes measures[4 * n] too:
- * how far along its line A lies, how fast that grows, how long the line is; 0 where nothing is measured. */
+ * how far along its line A lies, how fast that grows, how long the line is; 0 where nothing is measured. Of
+ * CAMBER_COVER_PITCHED shapes are bands of the picture, and planes[CAMBER_PLANE_WORDS * n] has what lies in the plane.
+ */
 #define STARTS (CAMBER_POINT_FIRST | CAMBER_RECORD_BREAK | CAMBER_RECORD_START)
 
 typedef struct camber_shape_range {
@@ -11,6 +13,8 @@ typedef struct camber_shape_range {
     camber_u32 base, first_row;          /* of the shapes, and of the table of rows */
     float left, top;                     /* of what is drawn, in the picture, px */
     camber_u32 columns, rows;            /* tiles */
+    float horizon;                       /* in the picture, px from its top */
+    camber_eye eye;
 } camber_shape_range;
 
 static inline uint4 record_at(global const camber_u32 *records, int i, camber_shape_range r) {
@@ -67,11 +71,33 @@ static inline void put_measures(global const camber_u32 *records, int first, cam
 #define MEASURES
 #endif
 
+static inline void put_shapes(private float16 *words, global float *shapes, size_t a_shape) {
+    turn_over(words);
+    for (int k = 0; k < 16; k++)
+        vstore16(words[k], 0, shapes + a_shape * (size_t)k);
+}
+
+#if CAMBER_COVER_PITCHED
+#define PLANES , global float *restrict planes
+
+static inline void put_planes(private const camber_shape *s, private const camber_plane *p, global float *planes) {
+    const float16 none = (float16)(0.0f);
+    float16 words[16] = {s->ax,  s->ay,  s->bx,         s->by,    s->ux,    s->uy,       s->nax,      s->nay,
+                         s->nbx, s->nby, s->half_width, p->own_a, p->own_b, p->cut_a[0], p->cut_a[1], p->cut_a[2]};
+    put_shapes(words, planes, CAMBER_PLANE_WORDS);
+    float16 rest[16] = {p->cut_a[3], p->cut_b[0], p->cut_b[1], p->cut_b[2], p->cut_b[3], p->ends, p->margin, p->left[0],
+                        p->left[1],  p->left[2],  p->right[0], p->right[1], p->right[2], none,    none,      none};
+    put_shapes(rest, planes + 16, CAMBER_PLANE_WORDS);
+}
+#else
+#define PLANES
+#endif
+
 kernel __attribute__((reqd_work_group_size(1, 1, 1))) void shape(global const camber_u32 *restrict records,
                                                                  global const float *restrict rows,
                                                                  global float *restrict shapes,
                                                                  global camber_u32 *restrict boxes,
-                                                                 const camber_shape_range r MEASURES) {
+                                                                 const camber_shape_range r MEASURES PLANES) {
     float px[16], py[16], ax[16], ay[16], bx[16], by[16], half_width[16], ink[16];
     uint join_a[16], join_b[16];
     int drawn[16];
@@ -91,29 +117,40 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void shape(global const ca
         drawn[k] = is_real && ends && row.s0 >= 0.0f ? -1 : 0;
         half_width[k] = row.s0;
         ink[k] = row.s3;
-        px[k] = as_float(p.s0) + row.s1;
-        py[k] = as_float(p.s1) + row.s2;
-        ax[k] = as_float(a.s0) + row.s1;
-        ay[k] = as_float(a.s1) + row.s2;
-        bx[k] = as_float(b.s0) + row.s1;
-        by[k] = as_float(b.s1) + row.s2;
+#if CAMBER_COVER_PITCHED
+        const float x = row.s1 - r.eye.x, y = row.s2 - r.eye.y;
+#else
+        const float x = row.s1, y = row.s2;
+#endif
+        px[k] = as_float(p.s0) + x;
+        py[k] = as_float(p.s1) + y;
+        ax[k] = as_float(a.s0) + x;
+        ay[k] = as_float(a.s1) + y;
+        bx[k] = as_float(b.s0) + x;
+        by[k] = as_float(b.s1) + y;
         join_a[k] = a.s2;
         join_b[k] = b.s2;
     }
-    const camber_shape s =
+    camber_shape s =
         camber_shape_of(vload16(0, px), vload16(0, py), vload16(0, ax), vload16(0, ay), vload16(0, bx), vload16(0, by),
                         vload16(0, join_a), vload16(0, join_b), vload16(0, half_width), r.linear);
-    const uint16 box = camber_shape_box(&s, vload16(0, drawn), r.left, r.top, r.columns, r.rows);
-    float16 words[16] = {s.ax,           s.ay,    s.bx,    s.by,    s.ux,
-                         s.uy,           s.nax,   s.nay,   s.nbx,   s.nby,
-                         s.half_width,   s.reach, s.slope, s.curve, as_float16(s.flags),
-                         vload16(0, ink)};
-    turn_over(words);
+    int16 is_drawn = vload16(0, drawn);
     const size_t at = r.base / 16 + group;
 #if CAMBER_COVER_RICH
     put_measures(records, first, r, &s, measures + 64 * at);
 #endif
+#if CAMBER_COVER_PITCHED
+    camber_shape band;
+    camber_plane plane;
+    is_drawn &= camber_pitch_shape_of(r.eye, r.horizon, &s, &band, &plane);
+    put_planes(&s, &plane, planes + 16 * CAMBER_PLANE_WORDS * at);
+    s = band;
+#endif
+    const uint16 box = camber_shape_box(&s, is_drawn, r.left, r.top, r.columns, r.rows);
+    float16 words[16] = {s.ax,           s.ay,    s.bx,    s.by,    s.ux,
+                         s.uy,           s.nax,   s.nay,   s.nbx,   s.nby,
+                         s.half_width,   s.reach, s.slope, s.curve, as_float16(s.flags),
+                         vload16(0, ink)};
+    put_shapes(words, shapes + 16 * CAMBER_SHAPE_WORDS * at, CAMBER_SHAPE_WORDS);
     vstore16(box, at, boxes);
-    for (int k = 0; k < 16; k++)
-        vstore16(words[k], 16 * at + (size_t)k, shapes);
 }

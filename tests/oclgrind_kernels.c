@@ -263,7 +263,10 @@ static int check_drawing(camber_device *device, camber_context *context, const s
                                   {.fill = {.color = {0, 1, 0, 0.3f}}},
                                   {.mesh = mesh, .paints = paints[1], .paint_count = ROWS, .opacity = 0.5f}};
     const camber_frame frame = {.width = 150, .height = 130, .passes = passes, .pass_count = 3};
-    good = good && camber_render(renderer, &frame, NULL, NULL, NULL) == CAMBER_OK;
+    camber_frame tilted = frame;
+    tilted.pitch_deg = 75;
+    good = good && camber_render(renderer, &frame, NULL, NULL, NULL) == CAMBER_OK &&
+           camber_render(renderer, &tilted, NULL, NULL, NULL) == CAMBER_OK;
     if (!good)
         puts("not ok - drawing");
     camber_mesh_destroy(mesh);

@@ -9,6 +9,7 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <stdint.h>
 
 #define CAMBER_PITCH_MAX_DEG 85.0
 
@@ -33,6 +34,12 @@ static inline camber_perspective camber_perspective_of(double pitch_deg, double 
     p.farthest = 1.01 * (top * horizon > p.cosine ? p.cosine / top : horizon);
     p.far_y = -(p.cosine / p.fall) * (1.0 - 1.0 / p.farthest);
     return p;
+}
+
+/* Rows of the picture, from its top, in which nothing is drawn: their middles lie past the far plane. */
+static inline uint32_t camber_perspective_horizon(const camber_perspective *p, uint32_t height_px) {
+    const double row = floor(0.5 * height_px + p->far_y + 0.5);
+    return row > 0.0 ? (uint32_t)row : 0;
 }
 
 static inline bool camber_pitch_is_valid(double pitch_deg) {

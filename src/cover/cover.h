@@ -15,6 +15,7 @@
 
 #include "camber_proof.h"
 #include "kernels/cover_bands.h"
+#include "kernels/cover_pitch.h"
 
 /* Polylines [first, end) of a mesh, drawn by a table of rows. */
 typedef struct camber_cover_run {
@@ -33,6 +34,10 @@ typedef struct camber_cover_scene {
     size_t run_count;
     float background[4]; /* premultiplied */
     bool linear;
+    bool pitched; /* the plane of the lines is seen at an angle: there is more */
+    camber_eye eye;
+    uint32_t horizon;            /* rows of the picture, from its top, in which nothing is drawn */
+    float sky[4];                /* what they have, premultiplied */
     const camber_ink_more *more; /* ink_count. NULL: the frame is plain */
     const float *tail;           /* tail_count times 4 */
     size_t tail_count;
@@ -81,6 +86,7 @@ typedef struct camber_cover_stages {
     float *shapes;   /* shape_count times CAMBER_SHAPE_WORDS */
     uint32_t *boxes; /* shape_count */
     float *measures; /* shape_count times CAMBER_SHAPE_MEASURES. NULL: of a plain scene */
+    float *planes;   /* shape_count times CAMBER_PLANE_WORDS. NULL: not pitched */
     size_t shape_count;
     uint32_t *starts; /* tile_count + 1 */
     size_t tile_count;
@@ -104,6 +110,8 @@ typedef struct camber_shape_range {
     uint32_t base, first_row;
     float left, top;
     uint32_t columns, rows;
+    float horizon;
+    camber_eye eye;
 } camber_shape_range;
 
 /* Runs of records that are drawn by one table. */

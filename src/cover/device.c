@@ -20,6 +20,9 @@ typedef struct sheet {
     uint32_t columns, stride;
     float background[4];
     uint32_t above; /* rows of pixels before these */
+    float horizon;
+    camber_eye eye;
+    float sky[4];
 } sheet;
 
 /* What tiles keep between slices, as cover reads it. */
@@ -71,6 +74,15 @@ static camber_status run(camber_cover *cover, int stage, const argument *argumen
     return code == CL_SUCCESS ? CAMBER_OK : camber_fail_stage(device, "clWaitForEvents", stage_names[stage], code);
 }
 
+static bool is_pitched(const camber_cover *cover) {
+    return cover->variant & CAMBER_COVER_PITCHED;
+}
+
+/* Of a kernel: those of the rich variants, and one more of those that are pitched. */
+static cl_uint more_arguments(const camber_cover *cover, cl_uint rich) {
+    return (cover->variant ? rich : 0) + is_pitched(cover);
+}
+
 /* What of a piece lies in the slice: its first record begins a work-item, as the piece's does. */
 static bool cut_piece(const camber_cover *cover, camber_cover_piece *piece) {
     const size_t from = cover->first_shape, to = from + cover->shape_count, base = piece->base;
@@ -97,9 +109,10 @@ static camber_status make_shapes(camber_cover *cover, const camber_cover_scene *
             break;
         const cl_mem *records = part ? &part->buffers[CAMBER_BUFFER_RECORDS].mem : cover->buffers + BUFFER_FILL;
         const argument arguments[] = {{sizeof(cl_mem), records}, BUFFER(BUFFER_ROWS), BUFFER(BUFFER_SHAPES),
-                                      BUFFER(BUFFER_BOXES),      VALUE(range),        BUFFER(BUFFER_MEASURES)};
+                                      BUFFER(BUFFER_BOXES),      VALUE(range),        BUFFER(BUFFER_MEASURES),
+                                      BUFFER(BUFFER_PLANES)};
         const size_t items[2] = {0, (piece.end - piece.first + 15) / 16};
-        status = run(cover, STAGE_SHAPE, arguments, cover->variant ? 6 : 5, items);
+        status = run(cover, STAGE_SHAPE, arguments, 5 + more_arguments(cover, 1), items);
     }
     return status;
 }
@@ -218,9 +231,12 @@ static camber_status cover_tiles(camber_cover *cover, const camber_cover_scene *
                .top = (float)band->y,
                .columns = cover->columns,
                .stride = cover->columns * CAMBER_TILE_PX,
-               .above = band->y - cover->area.y};
+               .above = band->y - cover->area.y,
+               .horizon = (float)scene->horizon,
+               .eye = scene->eye};
     size_t heavy = 0, items = 0;
     memcpy(s.background, scene->background, sizeof s.background);
+    memcpy(s.sky, scene->sky, sizeof s.sky);
     camber_status status = list_items(cover, &heavy, &items);
     if (status == CAMBER_OK)
         status = camber_cover_reserve(cover, BUFFER_KEPT,
@@ -236,8 +252,9 @@ static camber_status cover_tiles(camber_cover *cover, const camber_cover_scene *
                                   VALUE(k),
                                   BUFFER(BUFFER_MEASURES),
                                   BUFFER(BUFFER_MORE),
-                                  BUFFER(BUFFER_TAIL)};
-    const cl_uint count = cover->variant ? 12 : 9;
+                                  BUFFER(BUFFER_TAIL),
+                                  BUFFER(BUFFER_PLANES)};
+    const cl_uint count = 9 + more_arguments(cover, 3);
     if (status == CAMBER_OK)
         status = run(cover, STAGE_COVER, arguments, count, (size_t[]){0, heavy});
     if (status == CAMBER_OK)
@@ -255,11 +272,14 @@ static camber_status prepare_more(camber_cover *cover, const camber_cover_scene 
                                   (bare ? 1 : scene->tail_count) * sizeof nothing);
     if (status == CAMBER_OK)
         status = camber_cover_reserve(cover, BUFFER_MEASURES, 4 * CAMBER_SHAPE_MEASURES * shapes);
+    if (status == CAMBER_OK && is_pitched(cover))
+        status = camber_cover_reserve(cover, BUFFER_PLANES, 4 * CAMBER_PLANE_WORDS * shapes);
     return status;
 }
 
 static size_t shapes_at_once(const camber_cover *cover) {
-    const size_t count = (size_t)(camber_cover_most_bytes(cover) / (4 * CAMBER_SHAPE_WORDS)) / 16 * 16;
+    const size_t a_shape = is_pitched(cover) ? CAMBER_PLANE_WORDS : CAMBER_SHAPE_WORDS;
+    const size_t count = (size_t)(camber_cover_most_bytes(cover) / (4 * a_shape)) / 16 * 16;
     return count ? count : 16;
 }
 

@@ -90,7 +90,7 @@ camber_status camber_cover_list_pieces(camber_context *context, const camber_cov
 }
 
 unsigned camber_cover_variant(const camber_cover_scene *scene) {
-    return scene->more ? CAMBER_COVER_RICH : 0;
+    return (scene->more ? CAMBER_COVER_RICH : 0u) | (scene->pitched ? CAMBER_COVER_PITCHED : 0u);
 }
 
 camber_shape_range camber_cover_range(const camber_cover_scene *scene, const camber_cover_piece *piece,
@@ -113,6 +113,8 @@ camber_shape_range camber_cover_range(const camber_cover_scene *scene, const cam
         .top = (float)area->y,
         .columns = camber_cover_tiles(area->width),
         .rows = camber_cover_tiles(area->height),
+        .horizon = (float)scene->horizon,
+        .eye = scene->eye,
     };
 }
 
@@ -120,6 +122,7 @@ void camber_cover_stages_free(camber_context *context, camber_cover_stages *stag
     camber_free(context, stages->shapes);
     camber_free(context, stages->boxes);
     camber_free(context, stages->measures);
+    camber_free(context, stages->planes);
     camber_free(context, stages->starts);
     camber_free(context, stages->lists);
     camber_free(context, stages->rgba);

@@ -63,6 +63,24 @@ static void put_measure(const camber_measure *measures, size_t from, size_t to, 
     measure[2] = measures[from].total_px;
 }
 
+static void put_words(const camber_shape *s, float ink, float *made) {
+    const float words[CAMBER_SHAPE_WORDS] = {s->ax,    s->ay,    s->bx,  s->by,  s->ux,         s->uy,
+                                             s->nax,   s->nay,   s->nbx, s->nby, s->half_width, s->reach,
+                                             s->slope, s->curve, 0,      ink};
+    memcpy(made, words, sizeof words);
+    made[CAMBER_SHAPE_FLAGS] = as_float(s->flags);
+}
+
+static void put_plane(const camber_shape *s, const camber_plane *p, float *made) {
+    const float words[] = {
+        s->ax,       s->ay,       s->bx,         s->by,       s->ux,       s->uy,       s->nax,      s->nay,
+        s->nbx,      s->nby,      s->half_width, p->own_a,    p->own_b,    p->cut_a[0], p->cut_a[1], p->cut_a[2],
+        p->cut_a[3], p->cut_b[0], p->cut_b[1],   p->cut_b[2], p->cut_b[3], p->ends,     p->margin,   p->left[0],
+        p->left[1],  p->left[2],  p->right[0],   p->right[1], p->right[2], 0,           0,           0};
+    _Static_assert(sizeof words == 4 * CAMBER_PLANE_WORDS, "all words of a plane");
+    memcpy(made, words, sizeof words);
+}
+
 /* The words of the segment that ends with a record; the box says whether there is one. */
 static void put_shape(const twin *t, const part_records *part, const camber_shape_range *r, int64_t i, size_t shape) {
     const camber_record *records = part->records ? part->records : camber_fill_records;
@@ -74,17 +92,24 @@ static void put_shape(const twin *t, const part_records *part, const camber_shap
     const camber_record p = records[place_of(again ? i - 3 : i - 2, r)];
     const float *row =
         t->scene->rows + CAMBER_COVER_ROW_WORDS * (r->first_row + (ends ? b.last >> CAMBER_POINT_ROW_SHIFT : 0));
-    const camber_shape s = camber_shape_of(p.x + row[1], p.y + row[2], a.x + row[1], a.y + row[2], b.x + row[1],
-                                           b.y + row[2], a.join, b.join, row[0], r->linear);
-    const float words[CAMBER_SHAPE_WORDS] = {s.ax,  s.ay,  s.bx,         s.by,    s.ux,    s.uy,    s.nax, s.nay,
-                                             s.nbx, s.nby, s.half_width, s.reach, s.slope, s.curve, 0,     row[3]};
-    float *made = t->stages->shapes + CAMBER_SHAPE_WORDS * shape;
-    memcpy(made, words, sizeof words);
-    made[CAMBER_SHAPE_FLAGS] = as_float(s.flags);
-    t->stages->boxes[shape] = camber_shape_box(&s, ends && row[0] >= 0.0f, r->left, r->top, r->columns, r->rows);
+    const float x = row[1] - r->eye.x, y = row[2] - r->eye.y; /* 0 where there is no pitch */
+    camber_shape s =
+        camber_shape_of(p.x + x, p.y + y, a.x + x, a.y + y, b.x + x, b.y + y, a.join, b.join, row[0], r->linear);
+    bool drawn = ends && row[0] >= 0.0f;
     if (t->stages->measures)
         put_measure(part->measures, place_of(is_dot ? i : i - 1, r), place_of(i, r), &s,
                     t->stages->measures + CAMBER_SHAPE_MEASURES * shape);
+    if (t->stages->planes) {
+        camber_shape band;
+        camber_plane plane;
+        drawn = drawn && camber_pitch_shape_of(r->eye, r->horizon, &s, &band, &plane);
+        if (drawn) {
+            put_plane(&s, &plane, t->stages->planes + CAMBER_PLANE_WORDS * shape);
+            s = band;
+        }
+    }
+    put_words(&s, row[3], t->stages->shapes + CAMBER_SHAPE_WORDS * shape);
+    t->stages->boxes[shape] = camber_shape_box(&s, drawn, r->left, r->top, r->columns, r->rows);
 }
 
 static void free_part(camber_context *context, part_records *part) {
@@ -251,12 +276,10 @@ static void change_ink(canvas *c, camber_ink next) {
     c->now = next;
 }
 
-/* A segment's part of a pixel: near its ends, or on its sides. */
-static void put_pixel(const canvas *c, const camber_pen *pen, pixel *p, float px, float py, bool nears) {
-    const float qx = px - pen->ax, qy = py - pen->ay;
-    const float x = qx * pen->ux + qy * pen->uy, y = qy * pen->ux - qx * pen->uy;
-    const float fa = qx * pen->nax + qy * pen->nay, fb = (px - pen->bx) * pen->nbx + (py - pen->by) * pen->nby;
-    const float area = nears ? camber_pen_area(pen, x, y, fa, fb) : camber_pen_side(pen, y);
+/* A segment's part of a pixel. */
+static void put_pixel(const canvas *c, const camber_pen *pen, pixel *p, const float place[4], bool aside) {
+    const float x = place[0], y = place[1];
+    const float area = aside ? camber_pen_side(pen, y) : camber_pen_area(pen, x, y, place[2], place[3]);
     if (c->now.mode != CAMBER_INK_UNION) {
         p->ink *= 1.0f - area * c->now.a;
         return;
@@ -279,44 +302,127 @@ static float most_ink(const cell *c) {
     return most;
 }
 
-/* left and top: of the cell. */
-static void draw_cell(canvas *c, const camber_pen *p, cell *one, float left, float top) {
+static void fill_cell(const canvas *c, cell *one) {
     const bool is_union = c->now.mode == CAMBER_INK_UNION;
-    camber_meeting meeting;
-    camber_cells_meet(p, left + 0.5f * CAMBER_CELL_PX, top + 0.5f * CAMBER_CELL_PX, &meeting);
-    if (one->done || one->filled || !meeting.meets)
-        return;
-    one->inked = true;
-    if (p->half_width > 2.0f && meeting.inside && !meeting.nears) {
-        for (int i = 0; i < CELL_PIXELS; i++)
-            one->pixels[i].ink *= is_union ? 0.0f : 1.0f - c->now.a;
-        one->filled = is_union || c->now.a == 1.0f;
-        return;
-    }
     for (int i = 0; i < CELL_PIXELS; i++)
-        put_pixel(c, p, one->pixels + i, left + (float)(i % CAMBER_CELL_PX) + 0.5f,
-                  top + (float)(i / CAMBER_CELL_PX) + 0.5f, meeting.nears);
-    if (!is_union && ++one->puts % CAMBER_LOOK_EVERY == 0 && c->now.a == 1.0f)
+        one->pixels[i].ink *= is_union ? 0.0f : 1.0f - c->now.a;
+    one->filled = is_union || c->now.a == 1.0f;
+}
+
+/* Looks whether a cell is full, once in so many times. */
+static void count_put(const canvas *c, cell *one) {
+    if (c->now.mode != CAMBER_INK_UNION && ++one->puts % CAMBER_LOOK_EVERY == 0 && c->now.a == 1.0f)
         one->filled = most_ink(one) < CAMBER_NOTHING_PX;
 }
 
-static void draw_segment(canvas *c, const float *shape, float left, float top) {
-    camber_pen p;
-    camber_pen_of(shape, as_word(shape[CAMBER_SHAPE_FLAGS]), &p);
+/* One of them is NULL. */
+typedef struct pens {
+    const camber_pen *flat;
+    const camber_pitch_pen *tilted;
+    camber_eye eye;
+} pens;
+
+static void draw_cell(canvas *c, const camber_pen *p, cell *one, float px, float py) {
+    const float qx = px - p->ax, qy = py - p->ay;
+    const float x = qx * p->ux + qy * p->uy, y = qy * p->ux - qx * p->uy;
+    const float fa = qx * p->nax + qy * p->nay, fb = (px - p->bx) * p->nbx + (py - p->by) * p->nby;
+    const camber_u32 meets = camber_cell_meets(p, x + 1.5f * (p->ux + p->uy), y + 1.5f * (p->ux - p->uy),
+                                               fa + 1.5f * (p->nax + p->nay), fb + 1.5f * (p->nbx + p->nby));
+    if (one->done || one->filled || meets == CAMBER_CELL_OUTSIDE)
+        return;
+    one->inked = true;
+    if (meets == CAMBER_CELL_INSIDE) {
+        fill_cell(c, one);
+        return;
+    }
+    for (int i = 0; i < CELL_PIXELS; i++) {
+        const float across = (float)(i % CAMBER_CELL_PX), down = (float)(i / CAMBER_CELL_PX);
+        const float place[4] = {x + (across * p->ux + down * p->uy), y + (down * p->ux - across * p->uy),
+                                fa + (across * p->nax + down * p->nay), fb + (across * p->nbx + down * p->nby)};
+        put_pixel(c, p, one->pixels + i, place, meets == CAMBER_CELL_ASIDE);
+    }
+    count_put(c, one);
+}
+
+static void put_tilted(const canvas *c, const camber_pitch_pen *pen, pixel *p, camber_pitch_pixel *at) {
+    const float area = camber_pitch_area(pen, at);
+    if (c->now.mode != CAMBER_INK_UNION) {
+        p->ink *= 1.0f - area * c->now.a;
+        return;
+    }
+    const float edge = area * (1.0f - area);
+    float nx, ny;
+    p->ink *= 1.0f - area;
+    if (camber_pitch_inward(pen, at, &nx, &ny)) {
+        p->sum += area;
+        p->normal[0] += nx * edge;
+        p->normal[1] += ny * edge;
+    }
+}
+
+static void draw_tilted_cell(canvas *c, const camber_pitch_pen *p, cell *one, float x, float y) {
+    const camber_u32 meets = camber_pitch_cell_meets(p, x + 1.5f, y + 1.5f);
+    const bool is_union = c->now.mode == CAMBER_INK_UNION;
+    if (one->done || one->filled || meets == CAMBER_CELL_OUTSIDE)
+        return;
+    one->inked = true;
+    if (meets == CAMBER_CELL_INSIDE) {
+        fill_cell(c, one);
+        return;
+    }
+    for (int i = 0; i < CELL_PIXELS; i++) {
+        const float across = (float)(i % CAMBER_CELL_PX), down = (float)(i / CAMBER_CELL_PX);
+        camber_pitch_pixel at;
+        if (meets == CAMBER_CELL_ASIDE && !is_union) {
+            one->pixels[i].ink *= 1.0f - camber_pitch_side(p, x, y, across, down) * c->now.a;
+        } else {
+            camber_pitch_look(p, x, y, across, down, &at);
+            put_tilted(c, p, one->pixels + i, &at);
+        }
+    }
+    count_put(c, one);
+}
+
+/* The cells of a tile that a segment may meet. */
+static void draw_cells(canvas *c, const float *shape, const pens *p, float left, float top) {
     const float reach = shape[CAMBER_SHAPE_REACH], a_cell = 1.0f / CAMBER_CELL_PX,
                 side = (float)(CAMBER_TILE_CELLS - 1);
-    const float x0 = (CAMBER_LESS(p.ax, p.bx) - reach - left + 0.5f) * a_cell;
-    const float x1 = (CAMBER_MORE(p.ax, p.bx) + reach - left - 0.5f) * a_cell;
-    const float y0 = (CAMBER_LESS(p.ay, p.by) - reach - top + 0.5f) * a_cell;
-    const float y1 = (CAMBER_MORE(p.ay, p.by) + reach - top - 0.5f) * a_cell;
+    const float ax = shape[CAMBER_SHAPE_AX], ay = shape[CAMBER_SHAPE_AY], bx = shape[CAMBER_SHAPE_BX],
+                by = shape[CAMBER_SHAPE_BY];
+    const float x0 = (CAMBER_LESS(ax, bx) - reach - left + 0.5f) * a_cell;
+    const float x1 = (CAMBER_MORE(ax, bx) + reach - left - 0.5f) * a_cell;
+    const float y0 = (CAMBER_LESS(ay, by) - reach - top + 0.5f) * a_cell;
+    const float y1 = (CAMBER_MORE(ay, by) + reach - top - 0.5f) * a_cell;
     if (x1 < 0.0f || y1 < 0.0f || x0 >= side + 1.0f || y0 >= side + 1.0f)
         return;
     const int from_x = x0 > 0.0f ? (int)x0 : 0, to_x = x1 < side ? (int)x1 : CAMBER_TILE_CELLS - 1;
     const int from_y = y0 > 0.0f ? (int)y0 : 0, to_y = y1 < side ? (int)y1 : CAMBER_TILE_CELLS - 1;
     for (int j = from_y; j <= to_y; j++)
-        for (int k = from_x; k <= to_x; k++)
-            draw_cell(c, &p, c->cells + CAMBER_TILE_CELLS * j + k, left + (float)(CAMBER_CELL_PX * k),
-                      top + (float)(CAMBER_CELL_PX * j));
+        for (int k = from_x; k <= to_x; k++) {
+            cell *one = c->cells + CAMBER_TILE_CELLS * j + k;
+            const float x = left + 0.5f + (float)(CAMBER_CELL_PX * k), y = top + 0.5f + (float)(CAMBER_CELL_PX * j);
+            if (p->tilted)
+                draw_tilted_cell(c, p->tilted, one, x - p->eye.x, y - p->eye.y);
+            else
+                draw_cell(c, p->flat, one, x, y);
+        }
+}
+
+static void draw_segment(canvas *c, const twin *t, uint32_t which, float left, float top) {
+    const float *shape = t->stages->shapes + (size_t)CAMBER_SHAPE_WORDS * which;
+    const uint32_t flags = as_word(shape[CAMBER_SHAPE_FLAGS]);
+    camber_pen flat;
+    camber_pitch_pen tilted;
+    pens p = {.eye = t->scene->eye};
+    if (t->stages->planes) {
+        const float *plane = t->stages->planes + (size_t)CAMBER_PLANE_WORDS * which;
+        camber_pitch_pen_of(p.eye, shape, plane, flags, &tilted);
+        p.tilted = &tilted;
+    } else {
+        camber_pen_of(shape, flags, &flat);
+        p.flat = &flat;
+    }
+    draw_cells(c, shape, &p, left, top);
 }
 
 static uint8_t level_of(float value) {
@@ -334,6 +440,12 @@ static void write_tile(const twin *t, const canvas *c, uint32_t column, uint32_t
             const uint32_t i = (y - top) % CAMBER_CELL_PX * CAMBER_CELL_PX + (x - left) % CAMBER_CELL_PX;
             const level *l = c->cells[CAMBER_TILE_CELLS * cy + cx].pixels[i].levels;
             uint8_t *rgba = t->stages->rgba + 4 * ((size_t)y * t->area->width + x);
+            const float *sky = t->scene->sky;
+            if (t->area->y + y < t->scene->horizon) {
+                for (int k = 0; k < 4; k++)
+                    rgba[k] = level_of(sky[k]);
+                continue;
+            }
             for (int k = 0; k < 3; k++)
                 rgba[k] = level_of(l->color[k] + l->through * back[k]);
             rgba[3] = level_of(1.0f - l->through + l->through * back[3]);
@@ -360,7 +472,7 @@ static void draw_tile(const twin *t, canvas *c, uint32_t column, uint32_t row) {
         if (ink != current)
             change_ink(c, t->scene->inks[ink]);
         current = ink;
-        draw_segment(c, shape, left, top);
+        draw_segment(c, t, stages->lists[k], left, top);
     }
     close_ink(c);
     if (c->is_open[2])
@@ -395,9 +507,12 @@ camber_status camber_cover_on_host(camber_context *context, const camber_cover_s
     made.boxes = camber_alloc(context, made.shape_count, sizeof *made.boxes);
     if (scene->more)
         made.measures = camber_alloc(context, made.shape_count, CAMBER_SHAPE_MEASURES * sizeof *made.measures);
+    if (scene->pitched)
+        made.planes = camber_alloc(context, made.shape_count, CAMBER_PLANE_WORDS * sizeof *made.planes);
     made.starts = camber_alloc(context, made.tile_count + 1, sizeof *made.starts);
     made.rgba = camber_alloc(context, 4 * (size_t)area->width, area->height);
-    if (!made.shapes || !made.boxes || (scene->more && !made.measures) || !made.starts || !made.rgba)
+    if (!made.shapes || !made.boxes || (scene->more && !made.measures) || (scene->pitched && !made.planes) ||
+        !made.starts || !made.rgba)
         status = CAMBER_ERROR_MEMORY;
     if (status == CAMBER_OK)
         status = make_shapes(&t, pieces, piece_count);

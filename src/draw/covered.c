@@ -1,5 +1,6 @@
 /* Frames that kernels draw: passes become runs of polylines, tables of rows and inks, and the picture is drawn an area
  * after the other. */
+#include "base/perspective.h"
 #include "cover/cover.h"
 #include "draw/renderer.h"
 
@@ -91,7 +92,7 @@ static camber_status fill_table(tables *t, const camber_run *run, camber_ink ink
 
 static camber_status refuse(camber_context *context) {
     return camber_fail(context, CAMBER_ERROR_ARGUMENT,
-                       "dashes, gaps, blur, trims, gradients, patterns and pitch are not drawn in OpenCL yet; draw "
+                       "dashes, gaps, blur, trims, gradients and patterns are not drawn in OpenCL yet; draw "
                        "with GL (--draw gl)");
 }
 
@@ -182,8 +183,6 @@ static camber_status make_tables(tables *t, const camber_frame *frame) {
     const camber_ink none = {0};
     const camber_ink_more no_more = {0};
     uint32_t number;
-    if (frame->pitch_deg > 0.0)
-        return refuse(t->context);
     camber_status status = use_ink(t, 0, &none, &no_more, &number); /* there is one, also where nothing is drawn */
     for (size_t i = 0; i < frame->pass_count && status == CAMBER_OK; i++)
         status = add_pass(t, frame->passes + i);
@@ -278,6 +277,18 @@ static camber_status draw_areas(camber_renderer *renderer, const camber_frame *f
     return status;
 }
 
+static void pitch_scene(const camber_frame *frame, camber_cover_scene *scene) {
+    if (!(frame->pitch_deg > 0.0))
+        return;
+    const camber_perspective p = camber_perspective_of(frame->pitch_deg, frame->height);
+    const camber_color back = frame->background;
+    scene->pitched = true;
+    scene->eye = (camber_eye){0.5f * (float)frame->width, 0.5f * (float)frame->height, (float)p.cosine, (float)p.fall};
+    scene->horizon = camber_perspective_horizon(&p, frame->height);
+    const float sky[4] = {back.r * back.a, back.g * back.a, back.b * back.a, back.a};
+    memcpy(scene->sky, sky, sizeof sky);
+}
+
 static camber_status render_to(camber_renderer *renderer, const camber_frame *frame, target *to,
                                camber_frame_stats *stats) {
     const camber_color back = frame->background;
@@ -285,7 +296,7 @@ static camber_status render_to(camber_renderer *renderer, const camber_frame *fr
                 .background = {back.r * back.a, back.g * back.a, back.b * back.a, back.a}};
     camber_frame_stats made = {0};
     camber_status status = make_tables(&t, frame);
-    const camber_cover_scene scene = {
+    camber_cover_scene scene = {
         .rows = t.rows,
         .row_count = t.row_count + 1,
         .inks = t.inks,
@@ -294,8 +305,9 @@ static camber_status render_to(camber_renderer *renderer, const camber_frame *fr
         .run_count = t.run_count,
         .background = {t.background[0], t.background[1], t.background[2], t.background[3]},
         .linear = frame->coverage == CAMBER_COVERAGE_LINEAR,
-        .more = t.is_rich ? t.more : NULL,
+        .more = t.is_rich || frame->pitch_deg > 0.0 ? t.more : NULL,
     };
+    pitch_scene(frame, &scene);
     if (status == CAMBER_OK)
         status = draw_areas(renderer, frame, &scene, to, &made);
     if (status == CAMBER_OK)

@@ -88,13 +88,12 @@ static void pitch_piece(const camber_frame *frame, camber_piece *piece) {
     if (!(frame->pitch_deg > 0.0))
         return;
     const camber_perspective p = camber_perspective_of(frame->pitch_deg, frame->height);
-    const double horizon = floor(0.5 * frame->height + p.far_y + 0.5);
     piece->pitched = true;
     piece->eye[0] = 0.5f * (float)frame->width;
     piece->eye[1] = 0.5f * (float)frame->height;
     piece->eye[2] = (float)p.cosine;
     piece->eye[3] = (float)p.fall;
-    piece->horizon = horizon > 0.0 ? (uint32_t)horizon : 0;
+    piece->horizon = camber_perspective_horizon(&p, frame->height);
 }
 
 /* ---- A piece ---- */

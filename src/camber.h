@@ -577,6 +577,7 @@ typedef struct camber_frame_stats {
     size_t pieces;
     double draw_ms; /* clear, draw, finish; of a frame that overlaps others, what its calls take */
     double read_ms;
+    double shape_ms, count_ms, total_ms, fill_ms, cover_ms; /* of CAMBER_DRAW_CL's kernels on the device's queue */
 } camber_frame_stats;
 
 /* Takes row_count rows of width * 4 bytes, premultiplied RGBA8, from the top down; a return of false stops the

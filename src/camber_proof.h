@@ -127,6 +127,35 @@ CAMBER_API camber_status camber_stages_on_host(camber_context *context, const ca
                                                const camber_tessellation_desc *desc, camber_stages *stages);
 CAMBER_API void camber_stages_free(camber_context *context, camber_stages *stages);
 
+/* ---- Stages of drawing: what CAMBER_DRAW_CL's kernels found for a frame ------------------------------ */
+
+/* Of a frame's first area, which is all of it up to 16 M px and 8192 px a side. Tiles are 32 px square. Free with
+ * camber_drawing_stages_free. */
+typedef struct camber_drawing_stages {
+    /* shape: what each record of the passes, in drawing order, ends, rounded up to sixteens for each part of a mesh:
+     * shape_words floats and bits that tiles and pixels are drawn from, of what is drawn, and the tiles of its box, a
+     * byte each: the first one's column, its row, the last one's column, its row. Where the last column lies before the
+     * first, nothing is drawn. */
+    float *shapes;   /* shape_words * shape_count */
+    uint32_t *boxes; /* shape_count */
+    size_t shape_count, shape_words;
+    /* count and total: where the list of each tile begins, columns * rows + 1, row by row. */
+    uint32_t *starts;
+    uint32_t columns, rows;
+    uint32_t *lists; /* fill: the shapes of each tile in drawing order */
+    uint8_t *rgba;   /* cover: width * height pixels, premultiplied */
+    uint32_t width, height;
+} camber_drawing_stages;
+
+/* Draws the frame. Returns what camber_render returns, CAMBER_ERROR_LIMIT also where it takes several slices. The
+ * renderer draws in OpenCL. */
+CAMBER_API camber_status camber_drawing_read_stages(camber_renderer *renderer, const camber_frame *frame,
+                                                    camber_drawing_stages *stages);
+/* The CPU twin's, from the records that the device has: the same bytes, but for shapes that are not drawn. */
+CAMBER_API camber_status camber_drawing_stages_on_host(camber_renderer *renderer, const camber_frame *frame,
+                                                       camber_drawing_stages *stages);
+CAMBER_API void camber_drawing_stages_free(camber_context *context, camber_drawing_stages *stages);
+
 /* ---- Overdraw: what the GPU does for a mesh, counted on it ----------------------------------------- */
 
 /* Consecutive indices of a mesh, as camber_mesh_read numbers them: of triangles whole triangles, of strips a part of

@@ -44,6 +44,8 @@ int camber_check_meshes(camber_validation *validation, const camber_subject *sub
 int camber_check_networks(camber_validation *validation, const camber_subject *subject, camber_network *network,
                           const camber_camera *camera, const camber_tessellation_desc *desc);
 int camber_check_pixels(camber_validation *validation, const camber_subject *subject);
+/* The kernels that draw against their twin. */
+int camber_check_drawing(camber_validation *validation, const camber_subject *subject);
 /* Lines beside others, of the CPU twin: how far they lie from these. */
 int camber_check_offsets(camber_validation *validation);
 /* Gaps, blurs, dashes, trims and ramps, of lines of its own. */

@@ -10,6 +10,7 @@
 /* Times of a run; every member is a series. */
 typedef struct run_times {
     double tessellate, draw, frame, survey, project, classify, scan, emit;
+    double shape, count, total, fill, cover; /* of kernels that draw */
 } run_times;
 
 #define TIMES (sizeof(run_times) / sizeof(double))
@@ -63,6 +64,11 @@ static int time_run(job *j, run_times *times) {
     if (status == CAMBER_OK)
         status = camber_render(j->session->renderer, &frame, NULL, NULL, &j->stats);
     times->draw = j->stats.draw_ms;
+    times->shape = j->stats.shape_ms;
+    times->count = j->stats.count_ms;
+    times->total = j->stats.total_ms;
+    times->fill = j->stats.fill_ms;
+    times->cover = j->stats.cover_ms;
     return camber_report_status(j->session->report, status);
 }
 
@@ -181,8 +187,11 @@ static int print_json(const job *j) {
     json_object_set_new(object, "draw_ms", summary_json(&j->summaries[1]));
     json_object_set_new(object, "frame_ms", summary_json(&j->summaries[2]));
     json_t *stages = json_object();
-    static const char *const names[] = {"survey", "project", "classify", "scan", "emit"};
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+    /* The kernels that draw are there where they drew. */
+    static const char *const names[] = {"survey", "project", "classify", "scan", "emit",
+                                        "shape",  "count",   "total",    "fill", "cover"};
+    const size_t count = camber_renderer_get_draw(session->renderer) == CAMBER_DRAW_CL ? 10 : 5;
+    for (size_t i = 0; i < count; i++)
         json_object_set_new(stages, names[i], summary_json(&j->summaries[3 + i]));
     json_object_set_new(object, "stage_ms", stages);
     return camber_report_json(session->report, object);
@@ -208,10 +217,11 @@ static int print_text(const job *j) {
             lines.kept_segments, j->input.segments_in);
     fprintf(file, "%zu vertices, %zu triangles, %.1f MB, %zu draw calls, peak memory %.0f MB\n", mesh.vertex_count,
             mesh.triangle_count, (double)mesh.bytes / 1e6, j->stats.draw_calls, (double)camber_peak_rss_bytes() / 1e6);
-    static const char *const names[TIMES] = {"tessellate", "draw",     "frame", "survey",
-                                             "project",    "classify", "scan",  "emit"};
+    static const char *const names[TIMES] = {"tessellate", "draw",  "frame", "survey", "project", "classify", "scan",
+                                             "emit",       "shape", "count", "total",  "fill",    "cover"};
+    const size_t count = camber_renderer_get_draw(session->renderer) == CAMBER_DRAW_CL ? TIMES : 8;
     fprintf(file, "\n%-12s %10s %10s %10s   ms, %u runs\n", "", "min", "median", "max", options->runs);
-    for (size_t i = 0; i < TIMES; i++)
+    for (size_t i = 0; i < count; i++)
         fprintf(file, "%-12s %10.3f %10.3f %10.3f\n", names[i], j->summaries[i].min, j->summaries[i].median,
                 j->summaries[i].max);
     const double kernels_ms = j->summaries[5].median + j->summaries[6].median + j->summaries[7].median;

@@ -12,6 +12,8 @@
 static int check_subject(camber_validation *v, const camber_subject *s) {
     int status = camber_check_meshes(v, s);
     if (status == CAMBER_EXIT_DONE)
+        status = camber_check_drawing(v, s);
+    if (status == CAMBER_EXIT_DONE)
         status = camber_check_pixels(v, s);
     return status;
 }

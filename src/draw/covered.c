@@ -234,6 +234,15 @@ static camber_status take_area(camber_renderer *renderer, const camber_cover_are
     return status;
 }
 
+static void add_times(const camber_renderer *renderer, camber_frame_stats *stats) {
+    const camber_cover_times times = camber_cover_get_times(renderer->cover);
+    stats->shape_ms += times.shape_ms;
+    stats->count_ms += times.count_ms;
+    stats->total_ms += times.total_ms;
+    stats->fill_ms += times.fill_ms;
+    stats->cover_ms += times.cover_ms;
+}
+
 /* The areas of a band of rows, from left to right. */
 static camber_status draw_band(camber_renderer *renderer, const camber_cover_scene *scene, camber_cover_area area,
                                target *to, camber_frame_stats *stats) {
@@ -247,6 +256,7 @@ static camber_status draw_band(camber_renderer *renderer, const camber_cover_sce
         const double drawn = camber_now_ms();
         stats->draw_ms += drawn - begin;
         stats->pieces++;
+        add_times(renderer, stats);
         if (status == CAMBER_OK && to->rows)
             status = take_area(renderer, &area, to);
         stats->read_ms += camber_now_ms() - drawn;

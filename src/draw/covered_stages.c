@@ -1,0 +1,77 @@
+/* What the kernels that draw found, and their twin: for proofs. */
+#include "camber_proof.h"
+#include "cover/cover.h"
+#include "draw/renderer.h"
+
+#include <assert.h>
+
+typedef struct reading {
+    bool on_host;
+    bool done;
+    camber_cover_stages stages;
+    camber_cover_area area;
+} reading;
+
+static camber_status read_area(camber_renderer *renderer, const camber_cover_scene *scene,
+                               const camber_cover_area *area, void *user) {
+    camber_context *context = renderer->share.device->context;
+    reading *r = user;
+    if (r->done)
+        return CAMBER_OK;
+    r->done = true;
+    r->area = *area;
+    if (r->on_host)
+        return camber_cover_on_host(context, scene, area, &r->stages);
+    const camber_status status = camber_cover_draw(renderer->cover, scene, area);
+    if (status != CAMBER_OK)
+        return status;
+    if (camber_cover_slices(renderer->cover) > 1)
+        return camber_fail(
+            context, CAMBER_ERROR_LIMIT,
+            "the stages of what is drawn in slices are not kept; read those of less, or allow more memory");
+    return camber_cover_read_stages(renderer->cover, &r->stages);
+}
+
+static camber_status read_stages(camber_renderer *renderer, const camber_frame *frame, bool on_host,
+                                 camber_drawing_stages *stages) {
+    reading r = {.on_host = on_host};
+    assert(renderer->cover);
+    const camber_status status = camber_covered_each(renderer, frame, read_area, &r);
+    if (status != CAMBER_OK) {
+        camber_cover_stages_free(renderer->share.device->context, &r.stages);
+        return status;
+    }
+    *stages = (camber_drawing_stages){
+        .shapes = r.stages.shapes,
+        .shape_words = CAMBER_SHAPE_WORDS,
+        .boxes = r.stages.boxes,
+        .shape_count = r.stages.shape_count,
+        .starts = r.stages.starts,
+        .columns = camber_cover_tiles(r.area.width),
+        .rows = camber_cover_tiles(r.area.height),
+        .lists = r.stages.lists,
+        .rgba = r.stages.rgba,
+        .width = r.area.width,
+        .height = r.area.height,
+    };
+    return CAMBER_OK;
+}
+
+camber_status camber_drawing_read_stages(camber_renderer *renderer, const camber_frame *frame,
+                                         camber_drawing_stages *stages) {
+    return read_stages(renderer, frame, false, stages);
+}
+
+camber_status camber_drawing_stages_on_host(camber_renderer *renderer, const camber_frame *frame,
+                                            camber_drawing_stages *stages) {
+    return read_stages(renderer, frame, true, stages);
+}
+
+void camber_drawing_stages_free(camber_context *context, camber_drawing_stages *stages) {
+    camber_free(context, stages->shapes);
+    camber_free(context, stages->boxes);
+    camber_free(context, stages->starts);
+    camber_free(context, stages->lists);
+    camber_free(context, stages->rgba);
+    *stages = (camber_drawing_stages){0};
+}

@@ -1,6 +1,6 @@
 /* Another engine's pictures of line layers (CAMBER_DATA/line-tests): camber draws each style, and all but the
- * exceptions below come as close as the style asks, by pixelmatch's measure. What does not stays in line-tests/ of the
- * build tree. */
+ * exceptions below come as close as the style asks, by pixelmatch's measure, in GL and in OpenCL. What does not stays
+ * in line-tests/ or line-tests/cl/ of the build tree. */
 #include "core.h"
 #include "pixelmatch.h"
 
@@ -228,12 +228,16 @@ static int run(const style_case *c, const char *style, const char *picture, cons
         if (!freopen(log, "w", stderr))
             _exit(126);
         execl(CAMBER_TOOL, CAMBER_TOOL, "render", "--style", style, "-o", picture, "--force", "--size", size, "--ratio",
-              ratio, (char *)NULL);
+              ratio, "--draw", draws_in_cl() ? "cl" : "gl", (char *)NULL);
         _exit(127);
     }
     int status = 0;
     assert_true(child > 0 && waitpid(child, &status, 0) == child);
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+static const char *out_folder(void) {
+    return draws_in_cl() ? CAMBER_LINE_PICTURES "/cl" : CAMBER_LINE_PICTURES;
 }
 
 /* ---- Verdicts ---- */
@@ -310,8 +314,9 @@ static void print_file(const char *path) {
 
 static bool draw(style_case *c, const char *folder, style_change change) {
     char base[PATH_SIZE], style[2 * PATH_SIZE], picture[2 * PATH_SIZE], log[2 * PATH_SIZE];
-    snprintf(base, sizeof base, "%s/%s", CAMBER_LINE_PICTURES, c->name);
-    for (char *at = base + strlen(CAMBER_LINE_PICTURES) + 1; *at; at++)
+    const int folded = snprintf(base, sizeof base, "%s/", out_folder());
+    snprintf(base + folded, sizeof base - (size_t)folded, "%s", c->name);
+    for (char *at = base + folded; *at; at++)
         *at = *at == '/' ? '-' : *at;
     snprintf(style, sizeof style, "%s%s.json", base, change ? ".changed" : "");
     snprintf(picture, sizeof picture, "%s.actual.png", base);
@@ -376,7 +381,7 @@ static void test_pictures(void **state) {
         seen += exception_of(cases[i].name) >= 0;
     printf("%zu pictures, %zu of them exceptions\n", count, seen);
     if (bad)
-        fail_msg("%zu of %zu pictures; see %s", bad, count, CAMBER_LINE_PICTURES);
+        fail_msg("%zu of %zu pictures; see %s", bad, count, out_folder());
 }
 
 /* The measure itself: a level off counts nothing, a black pixel on white does, a smooth edge that moved by half a pixel

@@ -160,8 +160,8 @@ static void test_flatten_is_even(void **state) {
  * other a quarter. A third one over the second adds nothing to its edge. */
 static void test_united_edges(void **state) {
     studio *s = *state;
-    camber_surface *surface = studio_any(s)->share.surface;
-    if (!surface->half_float_targets)
+    const camber_surface *surface = studio_any(s)->share.surface;
+    if (surface && !surface->half_float_targets)
         skip();
     scene lines = {0};
     line(&lines, 0, 4, 20.5, 60, 20.5); /* 15.5 to 25.5 */
@@ -184,6 +184,8 @@ static void test_united_edges(void **state) {
 static void test_without_half_floats(void **state) {
     studio *s = *state;
     camber_surface *surface = studio_any(s)->share.surface;
+    if (!surface)
+        skip();
     const bool had = surface->half_float_targets;
     scene lines = {0};
     line(&lines, 0, 4, 20.5, 60, 20.5);
@@ -286,7 +288,8 @@ static void test_alphas_in_turn(void **state) {
                                           {.width_px = 1, .color = {0, 1, 0, 1}},
                                           {.width_px = 1, .color = {0, 0, 1, 0.5f}}};
     picture p;
-    assert_in_range(draw_stripes(s, paints, 3, &p), 3, 5);
+    const size_t calls = draw_stripes(s, paints, 3, &p);
+    assert_true(draws_in_cl() ? calls == 0 : calls >= 3 && calls <= 5);
     for (uint32_t i = 0; i < STRIPES; i++) {
         const camber_color c = paints[i % 3].color;
         const float wanted[4] = {c.r * c.a, c.g * c.a, c.b * c.a, c.a};
@@ -307,10 +310,12 @@ static void test_many_alphas(void **state) {
     for (size_t i = 0; i < STRIPES; i++)
         paints[i] = (camber_paint){.width_px = 1, .color = {1, 1, 1, (float)(i + 1) / (STRIPES + 1)}};
     picture p;
-    assert_in_range(draw_stripes(s, paints, STRIPES, &p), 1, 2);
+    const size_t calls = draw_stripes(s, paints, STRIPES, &p);
+    assert_true(draws_in_cl() ? calls == 0 : calls >= 1 && calls <= 2);
     for (uint32_t i = 0; i < STRIPES; i++) {
-        assert_value(&p, 20, i, 3, (double)paints[i].color.a);
-        assert_value(&p, 40, i, 3, (double)paints[0].color.a);
+        const double own = (double)paints[i].color.a, last = (double)paints[0].color.a;
+        assert_value(&p, 20, i, 3, own);
+        assert_value(&p, 40, i, 3, draws_in_cl() ? last + own * (1.0 - last) : last); /* kernels keep the order */
     }
     picture_free(&p);
 }
@@ -375,7 +380,7 @@ static void test_some_rows(void **state) {
     picture p = picture_draw(studio_any(s), &frame);
     camber_frame_stats stats;
     assert_int_equal(camber_render(studio_any(s), &frame, NULL, NULL, &stats), CAMBER_OK);
-    assert_int_equal(stats.draw_calls, 2); /* the run and its flattening */
+    assert_int_equal(stats.draw_calls, draws_in_cl() ? 0 : 2); /* the run and its flattening */
     assert_value(&p, 32, 16, 3, 0.5);
     assert_value(&p, 32, 32, 3, 0);
     assert_value(&p, 32, 48, 3, 0.5);
@@ -558,16 +563,18 @@ static void test_passes_of_one_mesh(void **state) {
         picture one = draw(s, together, PASSES), many = draw(s, apart, PASSES);
         assert_memory_equal(one.rgba, many.rgba, (size_t)4 * 64 * 64);
         const camber_frame frame = {.width = 64, .height = 64, .passes = together, .pass_count = PASSES};
-        camber_gl *gl = &studio_any(s)->share.surface->gl;
-        camber_gl_multi_draw_arrays_fn *multi = gl->MultiDrawArrays;
+        camber_surface *surface = studio_any(s)->share.surface;
+        camber_gl_multi_draw_arrays_fn *multi = surface ? surface->gl.MultiDrawArrays : NULL;
         camber_frame_stats stats;
         assert_int_equal(camber_render(studio_any(s), &frame, NULL, NULL, &stats), CAMBER_OK);
-        assert_int_equal(stats.draw_calls, multi && method == 0 ? 1 : PASSES);
-        gl->MultiDrawArrays = NULL;
-        picture looped = draw(s, together, PASSES);
-        gl->MultiDrawArrays = multi;
-        assert_memory_equal(one.rgba, looped.rgba, (size_t)4 * 64 * 64);
-        picture_free(&looped);
+        assert_int_equal(stats.draw_calls, !surface ? 0 : multi && method == 0 ? 1 : PASSES);
+        if (surface) {
+            surface->gl.MultiDrawArrays = NULL;
+            picture looped = draw(s, together, PASSES);
+            surface->gl.MultiDrawArrays = multi;
+            assert_memory_equal(one.rgba, looped.rgba, (size_t)4 * 64 * 64);
+            picture_free(&looped);
+        }
         picture_free(&many);
         picture_free(&one);
         for (size_t p = 0; p < PASSES; p++)

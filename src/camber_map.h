@@ -31,6 +31,10 @@ CAMBER_API camber_status camber_style_parse(camber_context *context, const char 
 /* The built-in road style. */
 CAMBER_API camber_status camber_style_builtin(camber_context *context, camber_theme theme, camber_style **style);
 CAMBER_API void camber_style_destroy(camber_style *style);
+/* Whether its layers ask for no more than lines of one colour: none of those that a zoom shows (NAN: any zoom) names
+ * dashes, gap widths, blurs, trims, gradients, borders or patterns. OpenCL draws such frames with kernels that have
+ * less to do, so that a program can make ready which ones it will need. */
+CAMBER_API bool camber_style_is_plain(const camber_style *style, double zoom);
 
 /* Names of the styles that ship with camber: "roads", the built-in one; "openmaptiles", roads, rails, rivers and
  * borders in tiles of the OpenMapTiles schema, of openmaptiles.mbtiles in the working folder; "transit", lines of

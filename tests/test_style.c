@@ -361,6 +361,33 @@ static void test_states(void **state) {
     teardown(&f);
 }
 
+/* What kernels it takes is known from the layers that a zoom shows. */
+static void test_plain(void **state) {
+    (void)state;
+    static const char *const more[] = {
+        "\"line-dasharray\": [2, 1]", "\"line-gap-width\": 2",          "\"line-blur\": 1",
+        "\"line-pattern\": \"a\"",    "\"line-trim-offset\": [0, 0.5]", "\"line-border-width\": 1"};
+    fixture f;
+    for (size_t i = 0; i < sizeof more / sizeof *more; i++) {
+        char json[512];
+        setup(&f);
+        snprintf(json, sizeof json,
+                 "{\"version\": 8, \"layers\": [{\"id\": \"a\", \"type\": \"line\", \"paint\": {\"line-width\": 3}}, "
+                 "{\"id\": \"b\", \"type\": \"line\", \"minzoom\": 5, \"maxzoom\": 9, \"paint\": {%s}}]}",
+                 more[i]);
+        assert_int_equal(parse(&f, json), CAMBER_OK);
+        assert_false(camber_style_is_plain(f.style, (double)NAN));
+        assert_false(camber_style_is_plain(f.style, 5));
+        assert_true(camber_style_is_plain(f.style, 4.9));
+        assert_true(camber_style_is_plain(f.style, 9));
+        teardown(&f);
+    }
+    setup(&f);
+    assert_int_equal(camber_style_builtin(f.context, CAMBER_THEME_LIGHT, &f.style), CAMBER_OK);
+    assert_true(camber_style_is_plain(f.style, (double)NAN));
+    teardown(&f);
+}
+
 static void test_warnings(void **state) {
     (void)state;
     fixture f;
@@ -741,10 +768,11 @@ static void test_reference(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_builtin), cmocka_unit_test(test_layer),     cmocka_unit_test(test_warnings),
-        cmocka_unit_test(test_states),  cmocka_unit_test(test_reference), cmocka_unit_test(test_wrong),
-        cmocka_unit_test(test_nesting), cmocka_unit_test(test_many),      cmocka_unit_test(test_many_names),
-        cmocka_unit_test(test_damage),  cmocka_unit_test(test_memory),    cmocka_unit_test(test_long_pointers),
+        cmocka_unit_test(test_builtin),       cmocka_unit_test(test_layer),   cmocka_unit_test(test_plain),
+        cmocka_unit_test(test_warnings),      cmocka_unit_test(test_states),  cmocka_unit_test(test_reference),
+        cmocka_unit_test(test_wrong),         cmocka_unit_test(test_nesting), cmocka_unit_test(test_many),
+        cmocka_unit_test(test_many_names),    cmocka_unit_test(test_damage),  cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_long_pointers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

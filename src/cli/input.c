@@ -172,8 +172,17 @@ static void take_view(camber_input *input) {
     }
 }
 
+/* What is read decides the zoom of a view that fits. */
+static void start_opening(const camber_input *input) {
+    const camber_view_desc *view = &input->view;
+    const double zoom = view->kind == CAMBER_VIEW_CENTER ? view->zoom : NAN;
+    const camber_outlook outlook = camber_style_is_plain(input->style, zoom) ? CAMBER_OUTLOOK_PLAIN
+                                   : view->kind == CAMBER_VIEW_CENTER        ? CAMBER_OUTLOOK_RICH
+                                                                             : CAMBER_OUTLOOK_OPEN;
+    camber_session_start(input->session, outlook, view->pitch_deg);
+}
+
 static int read_sources(camber_input *input) {
-    take_view(input);
     return camber_report_status(input->session->report,
                                 camber_features_read_sources(input->features, &input->view, input->base_path));
 }
@@ -199,6 +208,10 @@ static int open_map(camber_input *input) {
     camber_session *session = input->session;
     const double start_ms = camber_clock_ms();
     int status = open_style(input);
+    if (status == CAMBER_EXIT_DONE && session->options->input_count == 0)
+        take_view(input);
+    if (status == CAMBER_EXIT_DONE && session->opens_beside)
+        start_opening(input);
     if (status == CAMBER_EXIT_DONE)
         status = camber_report_status(session->report,
                                       camber_features_create(session->context, input->style, &input->features));

@@ -105,32 +105,44 @@ struct camber_opener {
     camber_report report;
     camber_report *told; /* report while the thread runs, then the session's */
     camber_status status;
+    camber_outlook outlook;
+    double pitch_deg;
     pthread_t thread;
     bool running;
 };
 
 /* One line through the kernels and the shaders that maps use: drivers compile them now, not in the first frame. What
  * fails here fails there again, and is told there. */
-static void warm_up(const camber_session *session, camber_context *context) {
+static void warm_up(const camber_opener *opener) {
+    static const float lengths[] = {1, 1};
+    const camber_session *session = opener->session;
+    camber_context *context = opener->context;
+    const bool rich = opener->outlook == CAMBER_OUTLOOK_RICH && session->draw == CAMBER_DRAW_CL;
+    /* Kernels that may not be needed take seconds where the cache lacks them, and milliseconds later where it has them.
+     */
+    const bool draws = session->draw == CAMBER_DRAW_GL || opener->outlook != CAMBER_OUTLOOK_OPEN;
+    const camber_dash dash = {lengths, 2};
     const double points[] = {2, 2, 14, 2, 14, 14};
     const size_t offsets[] = {0, 3};
-    const camber_network_desc lines = {.points = points, .offsets = offsets, .polyline_count = 1};
-    const camber_camera camera = {.x = 8, .y = 8, .scale_px = 1, .width = 16, .height = 16};
+    const camber_network_desc lines = {.points = points, .offsets = offsets, .polyline_count = 1, .measured = rich};
+    const camber_camera camera = {
+        .x = 8, .y = 8, .scale_px = 1, .width = 16, .height = 16, .pitch_deg = opener->pitch_deg};
     const camber_stroke stroke = {.width_px = 3};
-    const camber_paint paint = {.width_px = 3, .color = {0, 0, 0, 1}};
+    const camber_paint paint = {.width_px = 3, .color = {0, 0, 0, 1}, .dash = rich};
     const camber_tessellation_desc tessellation = {
-        .strokes = &stroke, .stroke_count = 1, .method = camber_session_method(session)};
+        .strokes = &stroke, .stroke_count = 1, .method = camber_session_method(session), .measured = rich};
     camber_network *network = NULL;
     camber_mesh *mesh = NULL;
     if (camber_network_create(context, &lines, &network) == CAMBER_OK &&
         camber_mesh_create(session->device, session->renderer, &mesh) == CAMBER_OK &&
-        camber_tessellate_network(mesh, network, &camera, &tessellation) == CAMBER_OK) {
-        const camber_pass pass = {.mesh = mesh, .paints = &paint, .paint_count = 1};
+        camber_tessellate_network(mesh, network, &camera, &tessellation) == CAMBER_OK && draws) {
+        const camber_pass pass = {.mesh = mesh, .paints = &paint, .paint_count = 1, .dashes = &dash, .dash_count = 1};
         const camber_frame frame = {.width = 16,
                                     .height = 16,
                                     .passes = &pass,
                                     .pass_count = 1,
-                                    .coverage = (camber_coverage)session->options->coverage};
+                                    .coverage = (camber_coverage)session->options->coverage,
+                                    .pitch_deg = opener->pitch_deg};
         (void)camber_render(session->renderer, &frame, NULL, NULL, NULL);
     }
     camber_mesh_destroy(mesh);
@@ -150,7 +162,7 @@ static void *open_beside(void *user) {
     if (opener->status == CAMBER_OK)
         opener->status = open_drawing(opener->session, opener->context, &opener->report, CAMBER_NEEDS_RENDERER);
     if (opener->status == CAMBER_OK)
-        warm_up(opener->session, opener->context);
+        warm_up(opener);
     if (opener->session->surface)
         camber_surface_release(opener->session->surface);
     return NULL;
@@ -167,7 +179,7 @@ static bool needs_gdal(const camber_options *options) {
 }
 #endif
 
-void camber_session_start(camber_session *session) {
+void camber_session_start(camber_session *session, camber_outlook outlook, double pitch_deg) {
     if (prepare(session) != CAMBER_OK)
         return;
 #ifdef CAMBER_MAP
@@ -179,6 +191,8 @@ void camber_session_start(camber_session *session) {
     if (!opener)
         return;
     opener->session = session;
+    opener->outlook = outlook;
+    opener->pitch_deg = pitch_deg;
     opener->report = *session->report;
     opener->report.bars = false;
     opener->told = &opener->report;

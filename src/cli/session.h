@@ -10,6 +10,13 @@ typedef enum camber_needs {
     CAMBER_NEEDS_RENDERER,
 } camber_needs;
 
+/* What a picture will need of kernels, as far as is known before its lines are. */
+typedef enum camber_outlook {
+    CAMBER_OUTLOOK_PLAIN = 0, /* lines of one colour */
+    CAMBER_OUTLOOK_RICH,      /* dashes and the like */
+    CAMBER_OUTLOOK_OPEN,      /* the one or the other */
+} camber_outlook;
+
 /* A renderer that opens on a thread of its own while a file is read. It has its own context and report, since those
  * serve one thread at a time. */
 typedef struct camber_opener camber_opener;
@@ -24,13 +31,14 @@ typedef struct camber_session {
     camber_renderer *renderer;
     camber_draw draw; /* what the renderer draws with, and why: once one was asked for */
     char draw_reason[256];
+    bool opens_beside;     /* camber_input_open starts a renderer, once it knows the style */
     camber_opener *opener; /* NULL: not started */
     double start_ms;
 } camber_session;
 
-/* Starts opening a renderer beside what the caller does next; camber_session_need(CAMBER_NEEDS_RENDERER) waits for it
- * and tells how it went. */
-void camber_session_start(camber_session *session);
+/* Starts opening a renderer beside what the caller does next, and makes ready what a picture of this outlook and pitch
+ * needs; camber_session_need(CAMBER_NEEDS_RENDERER) waits for it and tells how it went. */
+void camber_session_start(camber_session *session, camber_outlook outlook, double pitch_deg);
 
 /* Opens what is needed and not open yet. Returns an exit status, its line printed. */
 int camber_session_need(camber_session *session, camber_needs needs);

@@ -21,7 +21,7 @@ static int draw(job *j) {
         status = camber_session_need(session, CAMBER_NEEDS_CONTEXT);
     if (status != CAMBER_EXIT_DONE)
         return status;
-    camber_session_start(session);
+    session->opens_beside = true;
     status = camber_input_open(&j->input, session);
     if (status == CAMBER_EXIT_DONE)
         status = camber_input_project(&j->input);

@@ -216,6 +216,7 @@ typedef struct target {
     camber_area_fn *draw; /* in place of rows */
     uint8_t *band;        /* of several areas, or where rows are not as wide as the picture */
     uint32_t width;
+    double user_ms; /* that the user took with an area: no part of reading back */
 } target;
 
 /* Copies the area into the band, or hands it over as it is. */
@@ -226,8 +227,10 @@ static camber_status take_area(camber_renderer *renderer, const camber_cover_are
     camber_status status = camber_cover_map(renderer->cover, &pixels);
     if (status != CAMBER_OK)
         return status;
+    const double begin = camber_now_ms();
     if (direct && !to->rows(to->user, pixels.rgba, area->y, area->height))
         status = CAMBER_ERROR_IO;
+    to->user_ms += camber_now_ms() - begin;
     for (size_t y = 0; !direct && y < area->height; y++)
         memcpy(to->band + y * row_bytes + 4 * (size_t)area->x, pixels.rgba + y * pixels.row_bytes, width_bytes);
     camber_cover_unmap(renderer->cover, pixels);
@@ -250,6 +253,7 @@ static camber_status draw_band(camber_renderer *renderer, const camber_cover_sce
     camber_status status = CAMBER_OK;
     for (area.x = 0; area.x < to->width && status == CAMBER_OK; area.x += widest) {
         const double begin = camber_now_ms();
+        to->user_ms = 0;
         area.width = to->width - area.x < widest ? to->width - area.x : widest;
         status =
             to->draw ? to->draw(renderer, scene, &area, to->user) : camber_cover_draw(renderer->cover, scene, &area);
@@ -259,7 +263,7 @@ static camber_status draw_band(camber_renderer *renderer, const camber_cover_sce
         add_times(renderer, stats);
         if (status == CAMBER_OK && to->rows)
             status = take_area(renderer, &area, to);
-        stats->read_ms += camber_now_ms() - drawn;
+        stats->read_ms += camber_now_ms() - drawn - to->user_ms;
     }
     if (status == CAMBER_OK && to->band && to->rows && !to->rows(to->user, to->band, area.y, area.height))
         status = CAMBER_ERROR_IO;

@@ -370,3 +370,17 @@ void camber_style_destroy(camber_style *style) {
     camber_free(context, style->layers);
     camber_free(context, style);
 }
+
+bool camber_style_is_plain(const camber_style *style, double zoom) {
+    static const camber_property_id more[] = {
+        CAMBER_LINE_GAP_WIDTH, CAMBER_LINE_BLUR,        CAMBER_LINE_DASHARRAY,    CAMBER_LINE_PATTERN,
+        CAMBER_LINE_GRADIENT,  CAMBER_LINE_TRIM_OFFSET, CAMBER_LINE_BORDER_WIDTH, CAMBER_BACKGROUND_PATTERN};
+    for (size_t i = 0; i < style->layer_count; i++) {
+        const camber_style_layer *layer = style->layers + i;
+        const bool out = zoom < layer->min_zoom || (zoom >= layer->max_zoom && layer->max_zoom < 24.0);
+        for (size_t k = 0; k < sizeof more / sizeof *more && layer->visible && !out; k++)
+            if (layer->properties[more[k]])
+                return false;
+    }
+    return true;
+}

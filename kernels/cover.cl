@@ -62,7 +62,7 @@ static inline float most_of(float16 v) {
 }
 
 static inline int lowest(ulong bits) {
-    return 63 - (int)clz(bits & (~bits + 1));
+    return (int)popcount((bits - 1) & ~bits);
 }
 
 static inline void clear_level(private canvas *c, int level) {
@@ -160,15 +160,17 @@ static inline void change_ink(private canvas *c, camber_ink next) {
     c->now = next;
 }
 
-static inline void put_over(private canvas *c, int i, float16 area) {
-    c->ink[0][i] *= 1.0f - area * c->now.a;
-    if (++c->puts[i] % CAMBER_LOOK_EVERY == 0 && c->now.a == 1.0f && most_of(c->ink[0][i]) < CAMBER_NOTHING_PX)
+/* What a segment of an ink that is no union lets through. */
+static inline void put_over(private canvas *c, int i, float16 area, float opacity) {
+    const float16 through = c->ink[0][i] * (1.0f - area * opacity);
+    c->ink[0][i] = through;
+    if (++c->puts[i] % CAMBER_LOOK_EVERY == 0 && opacity == 1.0f && most_of(through) < CAMBER_NOTHING_PX)
         c->filled |= 1ul << i;
 }
 
 static inline void put_area(private canvas *c, private const camber_pen *p, int i, float16 area, float16 x, float16 y) {
     if (c->now.mode != CAMBER_INK_UNION) {
-        put_over(c, i, area);
+        put_over(c, i, area, c->now.a);
         return;
     }
     c->ink[0][i] *= 1.0f - area;
@@ -183,11 +185,13 @@ static inline void put_area(private canvas *c, private const camber_pen *p, int 
 }
 
 /* All of a cell's pixels lie inside the stroke. */
-static inline void put_whole(private canvas *c, int i) {
+static inline void put_whole(private canvas *c, ulong cells) {
     const int is_union = c->now.mode == CAMBER_INK_UNION;
-    c->ink[0][i] *= is_union ? 0.0f : 1.0f - c->now.a;
-    if (is_union || c->now.a == 1.0f)
-        c->filled |= 1ul << i;
+    const float through = is_union ? 0.0f : 1.0f - c->now.a;
+    for (ulong left = cells; left; left &= left - 1)
+        c->ink[0][lowest(left)] *= through;
+    if (through == 0.0f)
+        c->filled |= cells;
 }
 
 /* ---- Between slices ---- */
@@ -266,15 +270,42 @@ static inline camber_u32 take_cells(private canvas *c, global const float *kept,
     return now & KEPT_INK;
 }
 
-/* The pixels of a cell, from its first one. */
+/* Where pixels of cells, and cells of four by four of them, lie in the picture: by the first one's column or row. */
+typedef struct places {
+    float16 x[CAMBER_TILE_CELLS], y[CAMBER_TILE_CELLS];
+    float16 middle_x[CAMBER_TILE_CELLS], middle_y[CAMBER_TILE_CELLS];
+} places;
+
 constant float ACROSS[16] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
 constant float DOWN[16] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
 
-/* The cells, of rows first to last, that a segment may meet, a bit each: those of its box, and where that is large, of
- * its band. */
-static inline ulong box_of(global const float *shape, float left, float top, int first, int last) {
-    const float ax = shape[CAMBER_SHAPE_AX], ay = shape[CAMBER_SHAPE_AY], bx = shape[CAMBER_SHAPE_BX],
-                by = shape[CAMBER_SHAPE_BY], reach = shape[CAMBER_SHAPE_REACH];
+static inline void begin_places(private places *at, float left, float top) {
+    const float16 across = vload16(0, ACROSS), down = vload16(0, DOWN);
+    for (int i = 0; i < CAMBER_TILE_CELLS; i++) {
+        const float from = (float)(CAMBER_CELL_PX * i), middle = 0.5f * CAMBER_CELL_PX;
+        at->x[i] = left + from + 0.5f + across;
+        at->y[i] = top + from + 0.5f + down;
+        at->middle_x[i] = left + from + middle + CAMBER_CELL_PX * across;
+        at->middle_y[i] = top + from + middle + CAMBER_CELL_PX * down;
+    }
+}
+
+typedef struct cell_box {
+    int from_x, from_y, to_x, to_y;
+} cell_box;
+
+/* A tile, or some rows of its cells, in the picture. */
+typedef struct place {
+    float left, top;
+    int first, last;
+} place;
+
+/* The cells in the box of a segment, a bit each. */
+static inline ulong box_of(global const float *shape, place where, private cell_box *box) {
+    const float left = where.left, top = where.top;
+    const int first = where.first, last = where.last;
+    const float ax = shape[CAMBER_SHAPE_AX], ay = shape[CAMBER_SHAPE_AY];
+    const float bx = shape[CAMBER_SHAPE_BX], by = shape[CAMBER_SHAPE_BY], reach = shape[CAMBER_SHAPE_REACH];
     const float a_cell = 1.0f / CAMBER_CELL_PX, side = (float)(CAMBER_TILE_CELLS - 1);
     const float x0 = ((ax < bx ? ax : bx) - reach - left + 0.5f) * a_cell;
     const float x1 = ((ax < bx ? bx : ax) + reach - left - 0.5f) * a_cell;
@@ -286,54 +317,162 @@ static inline ulong box_of(global const float *shape, float left, float top, int
     const int from_y = y0 > (float)first ? (int)y0 : first, to_y = y1 < (float)last ? (int)y1 : last;
     if (to_x < from_x || to_y < from_y)
         return 0;
-    if (to_x - from_x > 1 && to_y - from_y > 1) {
-        ulong cells = 0;
-        for (int j = from_y; j <= to_y; j++) {
-            const float middle = top + CAMBER_CELL_PX * ((float)j + 0.5f);
-            const camber_u32 span =
-                camber_row_span(shape, middle, left, (camber_u32)from_x, (camber_u32)to_x, CAMBER_CELL_PX);
-            const camber_u32 begin = span & 255u, end = span >> 8;
-            if (begin <= end)
-                cells |= ((255ul >> (CAMBER_TILE_CELLS - 1u - end + begin)) << begin) << (CAMBER_TILE_CELLS * j);
-        }
-        return cells;
-    }
+    *box = (cell_box){from_x, from_y, to_x, to_y};
     const ulong row = (255ul >> (CAMBER_TILE_CELLS - 1 - to_x + from_x)) << from_x;
     return (row * (0x0101010101010101ul >> (CAMBER_TILE_CELLS * (CAMBER_TILE_CELLS - 1 - to_y + from_y))))
            << (CAMBER_TILE_CELLS * from_y);
 }
 
-static inline void draw_segment(private canvas *c, global const float *shape, float left, float top, int first,
-                                int last) {
-    ulong cells = box_of(shape, left, top, first, last) & ~(c->done | c->filled), inked = 0;
+/* Of four by four cells, the bits as a tile has them. */
+static inline uint bits_of(int16 cells) {
+    const uint16 each = (uint16)(0x1, 0x2, 0x4, 0x8, 0x100, 0x200, 0x400, 0x800, 0x10000, 0x20000, 0x40000, 0x80000,
+                                 0x1000000, 0x2000000, 0x4000000, 0x8000000);
+    const uint16 bits = as_uint16(cells) & each;
+    const uint8 b = bits.lo | bits.hi;
+    const uint4 d = b.lo | b.hi;
+    const uint2 e = d.lo | d.hi;
+    return e.x | e.y;
+}
+
+/* Of a box's cells, those that the segment meets, those near its ends, and those all inside the stroke. */
+typedef struct cell_sets {
+    ulong meets, nears, inside;
+} cell_sets;
+
+static inline void sort_cells(private const camber_pen *p, private const places *at, cell_box box, ulong cells,
+                              private cell_sets *sets) {
+    const int may_be_inside = p->half_width > 2.0f;
+    sets->meets = sets->nears = sets->inside = 0;
+    for (int j = box.from_y; j <= box.to_y; j += 4)
+        for (int i = box.from_x; i <= box.to_x; i += 4) {
+            camber_meeting m;
+            const int first = CAMBER_TILE_CELLS * j + i;
+            if (!(cells >> first & 0x0f0f0f0ful))
+                continue;
+            camber_cells_meet(p, at->middle_x[i], at->middle_y[j], &m);
+            sets->meets |= (ulong)bits_of(m.meets) << first;
+            sets->nears |= (ulong)bits_of(m.nears) << first;
+            if (may_be_inside)
+                sets->inside |= (ulong)bits_of(m.inside) << first;
+        }
+    sets->meets &= cells;
+    sets->nears &= sets->meets;
+    sets->inside &= sets->meets & ~sets->nears;
+}
+
+/* Pixels as a segment has them: x along it, y across, and past the bisectors at its ends. */
+typedef struct pixel_set {
+    float16 x, y, fa, fb;
+} pixel_set;
+
+static inline void find_pixels(private const camber_pen *p, private const places *at, int i, private pixel_set *set) {
+    const float16 px = at->x[i % CAMBER_TILE_CELLS], py = at->y[i / CAMBER_TILE_CELLS];
+    const float16 qx = px - p->ax, qy = py - p->ay;
+    set->x = qx * p->ux + qy * p->uy;
+    set->y = qy * p->ux - qx * p->uy;
+    set->fa = qx * p->nax + qy * p->nay;
+    set->fb = (px - p->bx) * p->nbx + (py - p->by) * p->nby;
+}
+
+static __attribute__((noinline)) float16 odd_area(private const camber_pen *p, private const pixel_set *set) {
+    return camber_pen_area(p, set->x, set->y, set->fa, set->fb);
+}
+
+/* A segment at once: of unions. */
+static inline void draw_segment(private canvas *c, private const places *at, global const float *shape, place where) {
+    cell_box box;
+    cell_sets sets;
+    camber_pen p;
+    pixel_set set;
+    const ulong cells = box_of(shape, where, &box) & ~(c->done | c->filled);
     if (!cells)
         return;
-    camber_pen p;
     camber_pen_of(shape, as_uint(shape[CAMBER_SHAPE_FLAGS]), &p);
-    const float16 across = vload16(0, ACROSS), down = vload16(0, DOWN);
-    const float16 lane_x = across * p.ux + down * p.uy, lane_y = down * p.ux - across * p.uy;
-    const float16 lane_a = across * p.nax + down * p.nay, lane_b = across * p.nbx + down * p.nby;
-    for (; cells; cells &= cells - 1) {
-        const int i = lowest(cells);
-        const float px = left + 0.5f + (float)(CAMBER_CELL_PX * (i % CAMBER_TILE_CELLS)), qx = px - p.ax;
-        const float py = top + 0.5f + (float)(CAMBER_CELL_PX * (i / CAMBER_TILE_CELLS)), qy = py - p.ay;
-        const float x = qx * p.ux + qy * p.uy, y = qy * p.ux - qx * p.uy;
-        const float fa = qx * p.nax + qy * p.nay, fb = (px - p.bx) * p.nbx + (py - p.by) * p.nby;
-        const camber_u32 meets = camber_cell_meets(&p, x + 1.5f * (p.ux + p.uy), y + 1.5f * (p.ux - p.uy),
-                                                   fa + 1.5f * (p.nax + p.nay), fb + 1.5f * (p.nbx + p.nby));
-        if (meets == CAMBER_CELL_OUTSIDE)
+    sort_cells(&p, at, box, cells, &sets);
+    for (ulong left = sets.meets & ~sets.inside; left; left &= left - 1) {
+        const int i = lowest(left);
+        find_pixels(&p, at, i, &set);
+        put_area(c, &p, i, sets.nears >> i & 1ul ? odd_area(&p, &set) : camber_pen_side(&p, set.y), set.x, set.y);
+    }
+    if (sets.inside)
+        put_whole(c, sets.inside);
+    c->inked |= sets.meets;
+}
+
+/* ---- Segments of one ink, some at a time ---- */
+
+/* What is found out of each segment in turn waits for nothing, and neither does what is then put into cells: a
+ * processor that guesses which way branches go guesses few of them wrong. */
+#define BATCH 16
+#define ITEM_NEAR 64u
+#define ITEM_INSIDE 128u
+#define ITEM_PEN 8
+
+typedef struct batch {
+    camber_pen pens[BATCH];
+    uint items[BATCH * CELLS + 4]; /* cells in turn, and how they lie; pen << ITEM_PEN */
+    uint pen_count, item_count;
+} batch;
+
+static inline void note_cells(private batch *b, ulong cells, uint word) {
+  private
+    uint *to = b->items + b->item_count;
+    b->item_count += (uint)popcount(cells);
+#pragma unroll
+    for (int i = 0; i < 4; i++, cells &= cells - 1)
+        *to++ = word | (uint)lowest(cells);
+    for (; cells; cells &= cells - 1)
+        *to++ = word | (uint)lowest(cells);
+}
+
+/* Gives how many there are. shut: the cells that are full. */
+static inline uint note_segment(private batch *b, private const places *at, global const float *shape, place where,
+                                ulong shut) {
+  private
+    camber_pen *p = b->pens + b->pen_count;
+    const uint word = b->pen_count << ITEM_PEN;
+    cell_box box;
+    cell_sets sets;
+    const ulong cells = box_of(shape, where, &box) & ~shut;
+    if (!cells)
+        return b->pen_count;
+    camber_pen_of(shape, as_uint(shape[CAMBER_SHAPE_FLAGS]), p);
+    sort_cells(p, at, box, cells, &sets);
+    const ulong sides = sets.meets & ~(sets.nears | sets.inside);
+    note_cells(b, sets.nears, word | ITEM_NEAR);
+    if (sides)
+        note_cells(b, sides, word);
+    if (sets.inside)
+        note_cells(b, sets.inside, word | ITEM_INSIDE);
+    return ++b->pen_count;
+}
+
+static __attribute__((noinline)) void draw_batch(private canvas *c, private const places *at, private batch *b) {
+    const float opacity = c->now.a;
+    pixel_set set;
+    for (uint n = 0; n < b->item_count; n++) {
+        const uint item = b->items[n];
+        const int i = (int)(item % CELLS);
+      private
+        const camber_pen *p = b->pens + (item >> ITEM_PEN);
+        if ((c->done | c->filled) >> i & 1ul)
             continue;
-        inked |= 1ul << i;
-        if (meets == CAMBER_CELL_INSIDE) {
-            put_whole(c, i);
+        c->inked |= 1ul << i;
+        if (item & ITEM_INSIDE) {
+            put_whole(c, 1ul << i);
             continue;
         }
-        const float16 xs = x + lane_x, ys = y + lane_y;
-        const float16 area = meets == CAMBER_CELL_ASIDE ? camber_pen_side(&p, ys)
-                                                        : camber_pen_area(&p, xs, ys, fa + lane_a, fb + lane_b);
-        put_area(c, &p, i, area, xs, ys);
+        find_pixels(p, at, i, &set);
+        float16 area;
+        if (!(item & ITEM_NEAR))
+            area = camber_pen_side(p, set.y);
+        else if (p->odd)
+            area = odd_area(p, &set);
+        else
+            area = camber_round_area(p, set.x, set.y, set.fa, set.fb);
+        put_over(c, i, area, opacity);
     }
-    c->inked |= inked;
+    b->pen_count = b->item_count = 0;
 }
 
 #if CAMBER_COVER_PITCHED
@@ -348,34 +487,45 @@ static inline void put_tilted(private canvas *c, private const camber_pitch_pen 
     c->ink[3][i] += thick ? ny * edge : none;
 }
 
-/* Rows of cells of a tile, which lies in the picture. */
-typedef struct tilted_tile {
-    float left, top;
-    int first, last;
-    camber_eye eye;
-} tilted_tile;
+/* Of a box's cells those that lie in the band of its shape. */
+static inline ulong band_of(global const float *shape, place where, cell_box box) {
+    ulong cells = 0;
+    if (box.to_x - box.from_x < 2 || box.to_y - box.from_y < 2)
+        return ~0ul;
+    for (int j = box.from_y; j <= box.to_y; j++) {
+        const float middle = where.top + CAMBER_CELL_PX * ((float)j + 0.5f);
+        const camber_u32 span =
+            camber_row_span(shape, middle, where.left, (camber_u32)box.from_x, (camber_u32)box.to_x, CAMBER_CELL_PX);
+        const camber_u32 begin = span & 255u, end = span >> 8;
+        if (begin <= end)
+            cells |= ((255ul >> (CAMBER_TILE_CELLS - 1u - end + begin)) << begin) << (CAMBER_TILE_CELLS * j);
+    }
+    return cells;
+}
 
-static inline void draw_tilted(private canvas *c, global const float *shape, global const float *plane,
-                               tilted_tile to) {
-    ulong cells = box_of(shape, to.left, to.top, to.first, to.last) & ~(c->done | c->filled), inked = 0;
+static inline void draw_tilted(private canvas *c, global const float *shape, global const float *plane, place to,
+                               camber_eye eye) {
+    cell_box box;
+    ulong cells = box_of(shape, to, &box) & ~(c->done | c->filled), inked = 0;
+    cells = cells ? cells & band_of(shape, to, box) : 0;
     const int is_union = c->now.mode == CAMBER_INK_UNION;
     if (!cells)
         return;
     camber_pitch_pen p;
-    camber_pitch_pen_of(to.eye, shape, plane, as_uint(shape[CAMBER_SHAPE_FLAGS]), &p);
+    camber_pitch_pen_of(eye, shape, plane, as_uint(shape[CAMBER_SHAPE_FLAGS]), &p);
     const float16 across = vload16(0, ACROSS), down = vload16(0, DOWN);
     for (; cells; cells &= cells - 1) {
         const int i = lowest(cells);
-        const float x = to.left + 0.5f + (float)(CAMBER_CELL_PX * (i % CAMBER_TILE_CELLS)) - to.eye.x;
-        const float y = to.top + 0.5f + (float)(CAMBER_CELL_PX * (i / CAMBER_TILE_CELLS)) - to.eye.y;
+        const float x = to.left + 0.5f + (float)(CAMBER_CELL_PX * (i % CAMBER_TILE_CELLS)) - eye.x;
+        const float y = to.top + 0.5f + (float)(CAMBER_CELL_PX * (i / CAMBER_TILE_CELLS)) - eye.y;
         const camber_u32 meets = camber_pitch_cell_meets(&p, x + 1.5f, y + 1.5f);
         if (meets == CAMBER_CELL_OUTSIDE)
             continue;
         inked |= 1ul << i;
         if (meets == CAMBER_CELL_INSIDE) {
-            put_whole(c, i);
+            put_whole(c, 1ul << i);
         } else if (meets == CAMBER_CELL_ASIDE && !is_union) {
-            put_over(c, i, camber_pitch_side(&p, x, y, across, down));
+            put_over(c, i, camber_pitch_side(&p, x, y, across, down), c->now.a);
         } else {
             camber_pitch_pixel at;
             camber_pitch_look(&p, x, y, across, down, &at);
@@ -383,7 +533,7 @@ static inline void draw_tilted(private canvas *c, global const float *shape, glo
             if (is_union)
                 put_tilted(c, &p, i, area, &at);
             else
-                put_over(c, i, area);
+                put_over(c, i, area, c->now.a);
         }
     }
     c->inked |= inked;
@@ -451,14 +601,19 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void cover(
     global const camber_u32 *restrict items, global camber_u32 *restrict pixels, const camber_sheet s,
     global float *restrict kept, const camber_slice slice MORE) {
     canvas c;
+    places at;
+    batch b;
     const size_t tile = items[2 * get_global_id(0)];
     const camber_u32 cells = items[2 * get_global_id(0) + 1], column = (camber_u32)tile % s.columns,
                      row = (camber_u32)tile / s.columns;
     const int first = (int)(cells & 255u), last = (int)(cells >> 8);
     const float left = s.left + (float)(column * CAMBER_TILE_PX), top = s.top + (float)(row * CAMBER_TILE_PX);
     const ulong own = (~0ul >> (64 - CAMBER_TILE_CELLS * (last - first + 1))) << (CAMBER_TILE_CELLS * first);
+    const place where = {left, top, first, last};
     camber_u32 current = ~0u;
+    b.pen_count = b.item_count = 0;
     begin_canvas(&c, own);
+    begin_places(&at, left, top);
 #if CAMBER_COVER_PITCHED
     for (int j = first; j <= last; j++) /* what shows nothing needs no looking at */
         if (top + (float)(CAMBER_CELL_PX * (j + 1)) <= s.horizon)
@@ -480,6 +635,7 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void cover(
         ASK_FOR(shapes + (size_t)CAMBER_SHAPE_WORDS * lists[k > AHEAD ? k - AHEAD : 0]);
         const camber_u32 ink = as_uint(shape[CAMBER_SHAPE_INK]);
         if (ink != current) {
+            draw_batch(&c, &at, &b);
             change_ink(&c, inks[ink]);
 #if CAMBER_COVER_RICH
             c.more = more[ink];
@@ -487,14 +643,19 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void cover(
             current = ink;
         }
 #if CAMBER_COVER_PITCHED
-        draw_tilted(&c, shape, planes + (size_t)CAMBER_PLANE_WORDS * lists[k],
-                    (tilted_tile){left, top, first, last, s.eye});
+        draw_tilted(&c, shape, planes + (size_t)CAMBER_PLANE_WORDS * lists[k], where, s.eye);
 #else
-        draw_segment(&c, shape, left, top, first, last);
+        if (c.now.mode == CAMBER_INK_UNION)
+            draw_segment(&c, &at, shape, where);
+        else if (note_segment(&b, &at, shape, where, c.done | c.filled) < BATCH)
+            continue;
+        else
+            draw_batch(&c, &at, &b);
 #endif
         if (is_full(&c))
             break;
     }
+    draw_batch(&c, &at, &b);
     const int full = is_full(&c);
     if (!slice.is_last && !full) {
         const camber_u32 open = (camber_u32)c.is_open[1] << 30 | (camber_u32)c.is_open[2] << 31;

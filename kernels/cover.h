@@ -39,7 +39,8 @@ typedef int camber_mask;
 #define CAMBER_NOTHING_PX (1.0f / 512.0f) /* of what lies below, less than this is not seen */
 #define CAMBER_NEVER_PX 1e6f
 #define CAMBER_ALWAYS_PX (-1e30f)
-#define CAMBER_FILL_PX 1e6f /* a fill is a line along y = 0, so long to either side and half so wide */
+#define CAMBER_TIPS_PX 1.85f /* half as wide, the ends of round caps are judged by themselves */
+#define CAMBER_FILL_PX 1e6f  /* a fill is a line along y = 0, so long to either side and half so wide */
 
 /* What is kept of a tile between slices of segments, at most: sixteen planes of its pixels, and a few words. */
 #define CAMBER_KEPT_BYTES (16 * 4096 + 192)
@@ -64,6 +65,7 @@ typedef struct camber_ink {
 
 /* ---- Shapes: a segment as tiles and pixels read it ---- */
 
+#define CAMBER_SECOND_ENDS 0xd8u /* ends that a second line cuts: miters and bevels, a bit each */
 #define CAMBER_CLASS_CAP 0u
 #define CAMBER_CLASS_CUT 1u
 #define CAMBER_CLASS_TIGHT 2u
@@ -73,6 +75,13 @@ typedef struct camber_ink {
  * 12. The end at A, then that at B, then: coverage is a ramp. */
 #define CAMBER_SHAPE_END_BITS 13
 #define CAMBER_SHAPE_LINEAR (1u << 26)
+/* Past a split end the segment has what is wide on its inner side too: camber_own_side. */
+#define CAMBER_SHAPE_OWN_A (1u << 27)
+#define CAMBER_SHAPE_OWN_B (1u << 28)
+/* Of its ends: one is cut at a corner or tight, flat, a round cap. */
+#define CAMBER_SHAPE_SHARP (1u << 29)
+#define CAMBER_SHAPE_FLAT (1u << 30)
+#define CAMBER_SHAPE_ROUNDED (1u << 31)
 
 /* Where the words of a shape are. */
 #define CAMBER_SHAPE_AX 0u
@@ -109,6 +118,32 @@ CAMBER_FN camber_words camber_shape_end(camber_words join) {
     const camber_words class = kind < CAMBER_KIND_CUT ? (camber_words)(0u) : kind - 2u;
     const camber_words limit = kind == CAMBER_KIND_TIGHT ? join >> CAMBER_JOIN_LIMIT_SHIFT & 127u : (camber_words)(0u);
     return kept | class << 3 | limit << 5;
+}
+
+/* Whether a segment has more of a split end than its own side of the bisector: of what is wide, as stroke.vert has it.
+ * c and s: of half the turn. */
+CAMBER_FN camber_mask camber_own_side(camber_words end, camber_real c, camber_real s, camber_real half_width) {
+    const camber_real bound = ((end >> 12 & 1u) != 0u ? CAMBER_REAL(0.35f) : CAMBER_REAL(0.6f)) * c;
+    return ((end >> 3 & 3u) > CAMBER_CLASS_CUT) & (half_width * CAMBER_FABS(s) > bound);
+}
+
+CAMBER_FN camber_words camber_end_flags(camber_words end) {
+    const camber_words none = (camber_words)(0u), kind = end & 7u, class = end >> 3 & 3u;
+    const camber_mask sharp = (kind == 3u) | (kind == 4u) | (kind > 5u) | (class == CAMBER_CLASS_TIGHT);
+    const camber_mask flat = (kind == 1u) | (kind == 2u), rounded = (kind == 0u) & (class == CAMBER_CLASS_CAP);
+    return (sharp ? (camber_words)(CAMBER_SHAPE_SHARP) : none) | (flat ? (camber_words)(CAMBER_SHAPE_FLAT) : none) |
+           (rounded ? (camber_words)(CAMBER_SHAPE_ROUNDED) : none);
+}
+
+/* What is known of the ends before any pixel is. */
+CAMBER_FN void camber_shape_judge(camber_shape *s) {
+    const camber_words none = (camber_words)(0u), end_a = s->flags & 0x1fffu,
+                       end_b = s->flags >> CAMBER_SHAPE_END_BITS & 0x1fffu;
+    const camber_real ca = s->nax * s->ux + s->nay * s->uy, sa = s->nax * s->uy - s->nay * s->ux;
+    const camber_real cb = s->nbx * s->ux + s->nby * s->uy, sb = s->nby * s->ux - s->nbx * s->uy;
+    s->flags |= camber_own_side(end_a, ca, sa, s->half_width) ? (camber_words)(CAMBER_SHAPE_OWN_A) : none;
+    s->flags |= camber_own_side(end_b, cb, sb, s->half_width) ? (camber_words)(CAMBER_SHAPE_OWN_B) : none;
+    s->flags |= camber_end_flags(end_a) | camber_end_flags(end_b);
 }
 
 /* How far an end reaches out of the box of A and B, in units of half the width and the pad. */
@@ -158,6 +193,7 @@ CAMBER_FN camber_shape camber_shape_of(camber_real px, camber_real py, camber_re
     s.curve = linear ? none : curve;
     s.flags = end_a | soon_a >> 14 | (end_b | soon_b >> 15) << CAMBER_SHAPE_END_BITS;
     s.flags |= linear ? CAMBER_SHAPE_LINEAR : 0u;
+    camber_shape_judge(&s);
     return s;
 }
 
@@ -263,16 +299,13 @@ typedef struct camber_pen {
     float own_a, own_b;                 /* past the bisector, what lies farther than this past the end is the other's */
     float slope_a, slope_b, from_a, from_b; /* of the lines that bound a tight join's inner side */
     camber_u32 end_a, end_b;
-    camber_u32 thin, tips, flat, bends, tight, sharp;
+    camber_u32 thin, tips, flat, tight, sharp;
+    camber_u32 odd; /* area is more than what a width and round ends make it */
 } camber_pen;
 
-/* Past a split end a segment has its own side of the bisector only, but what is wide on its inner side: stroke.vert. */
-CAMBER_FN float camber_own_side(camber_u32 end, float c, float s, camber_u32 soon, float half_width) {
-    const camber_u32 class = end >> 3 & 3u;
-    const float bound = (soon ? 0.35f : 0.6f) * c;
-    if (class == CAMBER_CLASS_CAP)
-        return CAMBER_NEVER_PX;
-    return class != CAMBER_CLASS_CUT && half_width * CAMBER_FABS(s) > bound ? 0.0f : CAMBER_ALWAYS_PX;
+CAMBER_FN float camber_own_from(camber_u32 end, camber_u32 own) {
+    const float own_from = own ? 0.0f : CAMBER_ALWAYS_PX;
+    return end & 3u << 3 ? own_from : CAMBER_NEVER_PX;
 }
 
 CAMBER_FN float camber_cap_tip(camber_u32 end, float half_width) {
@@ -280,8 +313,21 @@ CAMBER_FN float camber_cap_tip(camber_u32 end, float half_width) {
     return (end & 31u) == 0u ? 0.5f + 0.785398f * half_width + past : CAMBER_NEVER_PX;
 }
 
-/* Through a pointer: oclgrind does not know what compilers make of large results where a call is inlined. */
-CAMBER_FN void camber_pen_of(CAMBER_GLOBAL const float *shape, camber_u32 flags, camber_pen *p) {
+/* The line that bounds a tight join's inner side, from the inner vertex, limit px before the end, to the outer one on
+ * the bisector. Of other ends it lies nowhere. */
+CAMBER_FN void camber_tight_line(camber_u32 end, float c, float s, float half_width, float *slope, float *from) {
+    const camber_u32 tight = (end >> 3 & 3u) == CAMBER_CLASS_TIGHT;
+    const float reach = half_width + CAMBER_PAD_PX, limit = (float)(end >> 5 & 127u) * (CAMBER_PAD_PX / 127.0f);
+    const float scale = 0.5f / (tight ? reach * c : 1.0f), outer = CAMBER_FABS(s) * reach;
+    const float more = (outer + limit * c) * scale, less = (outer - limit * c) * scale;
+    *slope = tight ? (s > 0.0f ? more : -more) : 0.0f;
+    *from = tight ? less * reach : CAMBER_NEVER_PX;
+}
+
+/* Through a pointer: oclgrind does not know what compilers make of large results where a call is inlined. Inlined, it
+ * makes what its caller needs. */
+CAMBER_FN __attribute__((always_inline)) void camber_pen_of(CAMBER_GLOBAL const float *shape, camber_u32 flags,
+                                                            camber_pen *p) {
     p->ax = shape[CAMBER_SHAPE_AX];
     p->ay = shape[CAMBER_SHAPE_AY];
     p->bx = shape[CAMBER_SHAPE_BX];
@@ -313,30 +359,18 @@ CAMBER_FN void camber_pen_of(CAMBER_GLOBAL const float *shape, camber_u32 flags,
     p->round_b = p->end_b == 0u || p->end_b == 5u ? 0.0f : CAMBER_NEVER_PX;
     p->tip_a = camber_cap_tip(end_a, h);
     p->tip_b = camber_cap_tip(end_b, h);
-    p->own_a = camber_own_side(end_a, p->ca, p->sa, end_a >> 12, h);
-    p->own_b = camber_own_side(end_b, p->cb, p->sb, end_b >> 12, h);
+    p->own_a = camber_own_from(end_a, flags & CAMBER_SHAPE_OWN_A);
+    p->own_b = camber_own_from(end_b, flags & CAMBER_SHAPE_OWN_B);
     p->thin = h < p->extent;
-    p->tips = h < 1.85f && ((end_a & 31u) == 0u || (end_b & 31u) == 0u);
-    p->flat = p->flat_a < CAMBER_NEVER_PX || p->flat_b < CAMBER_NEVER_PX;
-    p->bends = CAMBER_FABS(p->sa) + CAMBER_FABS(p->sb) > 1e-3f;
-    p->sharp = p->end_a == 3u || p->end_a == 4u || p->end_a > 5u || p->end_b == 3u || p->end_b == 4u || p->end_b > 5u;
+    p->tips = h < CAMBER_TIPS_PX && flags & CAMBER_SHAPE_ROUNDED;
+    p->flat = flags & CAMBER_SHAPE_FLAT;
+    p->sharp = flags & CAMBER_SHAPE_SHARP;
+    p->odd = p->thin | p->tips | p->flat | ((1u << p->end_a | 1u << p->end_b) & CAMBER_SECOND_ENDS);
     const camber_u32 tight_a = (end_a >> 3 & 3u) == CAMBER_CLASS_TIGHT,
                      tight_b = (end_b >> 3 & 3u) == CAMBER_CLASS_TIGHT;
     p->tight = tight_a | tight_b;
-    p->slope_a = p->slope_b = 0.0f;
-    p->from_a = p->from_b = CAMBER_NEVER_PX;
-    /* From the inner vertex, limit px before the end, to the outer one on the bisector. */
-    const float reach = h + CAMBER_PAD_PX, side_a = p->sa > 0.0f ? 1.0f : -1.0f, side_b = p->sb > 0.0f ? 1.0f : -1.0f;
-    if (tight_a) {
-        const float outer = side_a * p->sa / p->ca, limit = (float)(end_a >> 5 & 127u) * (CAMBER_PAD_PX / 127.0f);
-        p->slope_a = side_a * (outer * reach + limit) / (2.0f * reach);
-        p->from_a = 0.5f * (outer * reach - limit);
-    }
-    if (tight_b) {
-        const float outer = side_b * p->sb / p->cb, limit = (float)(end_b >> 5 & 127u) * (CAMBER_PAD_PX / 127.0f);
-        p->slope_b = side_b * (outer * reach + limit) / (2.0f * reach);
-        p->from_b = 0.5f * (outer * reach - limit);
-    }
+    camber_tight_line(end_a, p->ca, p->sa, h, &p->slope_a, &p->from_a);
+    camber_tight_line(end_b, p->cb, p->sb, h, &p->slope_b, &p->from_b);
 }
 
 /* The area of a pixel whose centre lies s px inside an edge. */
@@ -412,15 +446,11 @@ CAMBER_FN camber_real camber_pen_off(const camber_pen *p, camber_real x, camber_
                                      camber_real *bent) {
     const camber_real none = CAMBER_REAL(0.0f), arc_a = -x - p->round_a, arc_b = x - p->length - p->round_b;
     const camber_real farther = CAMBER_MORE(arc_a, arc_b), arc = farther > 0.0f ? farther : none;
-    *bent = y;
-    if (p->bends) {
-        const camber_real near_a = 0.5f - fa, near_b = 0.5f + fb;
-        const camber_real share_a = ((fa < 0.0f) | (near_a < 0.0f)) ? none : near_a;
-        const camber_real share_b = ((fb > 0.0f) | (near_b < 0.0f)) ? none : near_b;
-        const camber_real straight = 1.0f - arc;
-        const camber_real bend = p->sa * share_a * share_a + p->sb * share_b * share_b;
-        *bent = y - bend * (straight > 0.0f ? straight : none);
-    }
+    const camber_real near_a = 0.5f - fa, near_b = 0.5f + fb, straight = 1.0f - arc;
+    const camber_real share_a = ((fa < 0.0f) | (near_a < 0.0f)) ? none : near_a;
+    const camber_real share_b = ((fb > 0.0f) | (near_b < 0.0f)) ? none : near_b;
+    const camber_real bend = p->sa * share_a * share_a + p->sb * share_b * share_b;
+    *bent = y - bend * (straight > 0.0f ? straight : none);
     return arc;
 }
 
@@ -472,6 +502,17 @@ CAMBER_FN camber_real camber_pen_area(const camber_pen *p, camber_real x, camber
     return camber_pen_own(p, area, x, y, fa, fb);
 }
 
+/* The same where the pen is not odd. */
+CAMBER_FN camber_real camber_round_area(const camber_pen *p, camber_real x, camber_real y, camber_real fa,
+                                        camber_real fb) {
+    camber_real bent;
+    const camber_real arc = camber_pen_off(p, x, y, fa, fb, &bent), past_a = -x, past_b = x - p->length;
+    const camber_real area = camber_inside_edge(p, p->half_width - CAMBER_SQRT(arc * arc + bent * bent));
+    const camber_mask foreign = ((fa < 0.0f) & (past_a > p->own_a)) | ((fb >= 0.0f) & (past_b > p->own_b)) |
+                                (past_a + p->slope_a * y > p->from_a) | (past_b + p->slope_b * y > p->from_b);
+    return foreign ? CAMBER_REAL(0.0f) : area;
+}
+
 /* The same where the ends are too far away to matter. */
 CAMBER_FN camber_real camber_pen_side(const camber_pen *p, camber_real y) {
     return camber_pen_band(p, p->half_width, CAMBER_FABS(y));
@@ -495,24 +536,26 @@ CAMBER_FN void camber_pen_normal(const camber_pen *p, camber_real x, camber_real
     *ny = in_x * p->uy + in_y * p->ux;
 }
 
-/* Whether a cell has nothing of a segment, lies all inside the stroke, on its sides far from the ends, or else: by its
- * middle along and across the segment and past the bisectors, and how far it reaches about it, px. */
-#define CAMBER_CELL_OUTSIDE 0u
-#define CAMBER_CELL_PARTLY 1u
-#define CAMBER_CELL_ASIDE 2u
-#define CAMBER_CELL_INSIDE 3u
-CAMBER_FN camber_u32 camber_cell_meets(const camber_pen *p, float x, float y, float fa, float fb) {
-    const float reach = 1.5f * (CAMBER_FABS(p->ux) + CAMBER_FABS(p->uy)), aside = CAMBER_FABS(y);
+/* Of cells, by their middles: which a segment may meet; which of them lie near its ends, so that these matter; which
+ * lie all inside the stroke. */
+typedef struct camber_meeting {
+    camber_mask meets, nears, inside;
+} camber_meeting;
+
+CAMBER_FN void camber_cells_meet(const camber_pen *p, camber_real mx, camber_real my, camber_meeting *cells) {
+    const float reach = 1.5f * (CAMBER_FABS(p->ux) + CAMBER_FABS(p->uy));
     const float reach_a = 1.5f * (CAMBER_FABS(p->nax) + CAMBER_FABS(p->nay));
     const float reach_b = 1.5f * (CAMBER_FABS(p->nbx) + CAMBER_FABS(p->nby));
-    if (aside - reach >= p->half_width + p->extent)
-        return CAMBER_CELL_OUTSIDE;
-    if ((p->own_a == CAMBER_ALWAYS_PX && fa + reach_a < 0.0f) || (p->own_b == CAMBER_ALWAYS_PX && fb - reach_b >= 0.0f))
-        return CAMBER_CELL_OUTSIDE;
-    const float from = x - reach, to = p->length - x - reach;
-    if (p->sharp || p->tight || from < 0.75f || to < 0.75f || fa - reach_a < 0.5f || fb + reach_b > -0.5f)
-        return CAMBER_CELL_PARTLY;
-    return aside + reach <= p->half_width - p->extent ? CAMBER_CELL_INSIDE : CAMBER_CELL_ASIDE;
+    const float far_a = p->own_a == CAMBER_ALWAYS_PX ? -reach_a : CAMBER_ALWAYS_PX;
+    const float far_b = p->own_b == CAMBER_ALWAYS_PX ? reach_b : -CAMBER_ALWAYS_PX;
+    /* What corners and tight joins cut off may lie far from them. */
+    const float near = p->sharp ? CAMBER_NEVER_PX : reach + 0.75f;
+    const camber_real qx = mx - p->ax, qy = my - p->ay, rx = mx - p->bx, ry = my - p->by;
+    const camber_real x = qx * p->ux + qy * p->uy, aside = CAMBER_FABS(qy * p->ux - qx * p->uy);
+    const camber_real fa = qx * p->nax + qy * p->nay, fb = rx * p->nbx + ry * p->nby;
+    cells->meets = (aside < p->half_width + p->extent + reach) & (fa >= far_a) & (fb < far_b);
+    cells->nears = (x < near) | (x > p->length - near) | (fa < reach_a + 0.5f) | (fb > -0.5f - reach_b);
+    cells->inside = aside <= p->half_width - p->extent - reach;
 }
 
 /* ---- Layers ---- */

@@ -135,6 +135,12 @@ CAMBER_FN camber_u32 camber_cut_is_far(const float *cut, float x, float y) {
     return cut[3] >= 1.0f || cut[2] - (x * cut[0] + y * cut[1]) - camber_cell_reach(cut[0], cut[1]) > 0.75f;
 }
 
+/* Whether a cell has nothing of a segment, lies all inside the stroke, on its sides far from the ends, or else. */
+#define CAMBER_CELL_OUTSIDE 0u
+#define CAMBER_CELL_PARTLY 1u
+#define CAMBER_CELL_ASIDE 2u
+#define CAMBER_CELL_INSIDE 3u
+
 /* camber_cell_meets, by a cell's middle in the picture. */
 CAMBER_FN camber_u32 camber_pitch_cell_meets(const camber_pitch_pen *p, float x, float y) {
     const float in_left = camber_seen_inside(&p->left, x, y), left = camber_cell_reach(p->left.x, p->left.y);

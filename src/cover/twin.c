@@ -276,10 +276,12 @@ static void change_ink(canvas *c, camber_ink next) {
     c->now = next;
 }
 
-/* A segment's part of a pixel. */
-static void put_pixel(const canvas *c, const camber_pen *pen, pixel *p, const float place[4], bool aside) {
-    const float x = place[0], y = place[1];
-    const float area = aside ? camber_pen_side(pen, y) : camber_pen_area(pen, x, y, place[2], place[3]);
+/* A segment's part of a pixel: near its ends, or on its sides. */
+static void put_pixel(const canvas *c, const camber_pen *pen, pixel *p, float px, float py, bool nears) {
+    const float qx = px - pen->ax, qy = py - pen->ay;
+    const float x = qx * pen->ux + qy * pen->uy, y = qy * pen->ux - qx * pen->uy;
+    const float fa = qx * pen->nax + qy * pen->nay, fb = (px - pen->bx) * pen->nbx + (py - pen->by) * pen->nby;
+    const float area = nears ? camber_pen_area(pen, x, y, fa, fb) : camber_pen_side(pen, y);
     if (c->now.mode != CAMBER_INK_UNION) {
         p->ink *= 1.0f - area * c->now.a;
         return;
@@ -322,25 +324,21 @@ typedef struct pens {
     camber_eye eye;
 } pens;
 
+/* px and py: of the first pixel. */
 static void draw_cell(canvas *c, const camber_pen *p, cell *one, float px, float py) {
-    const float qx = px - p->ax, qy = py - p->ay;
-    const float x = qx * p->ux + qy * p->uy, y = qy * p->ux - qx * p->uy;
-    const float fa = qx * p->nax + qy * p->nay, fb = (px - p->bx) * p->nbx + (py - p->by) * p->nby;
-    const camber_u32 meets = camber_cell_meets(p, x + 1.5f * (p->ux + p->uy), y + 1.5f * (p->ux - p->uy),
-                                               fa + 1.5f * (p->nax + p->nay), fb + 1.5f * (p->nbx + p->nby));
-    if (one->done || one->filled || meets == CAMBER_CELL_OUTSIDE)
+    const float to_middle = 0.5f * (CAMBER_CELL_PX - 1);
+    camber_meeting meeting;
+    camber_cells_meet(p, px + to_middle, py + to_middle, &meeting);
+    if (one->done || one->filled || !meeting.meets)
         return;
     one->inked = true;
-    if (meets == CAMBER_CELL_INSIDE) {
+    if (p->half_width > 2.0f && meeting.inside && !meeting.nears) {
         fill_cell(c, one);
         return;
     }
-    for (int i = 0; i < CELL_PIXELS; i++) {
-        const float across = (float)(i % CAMBER_CELL_PX), down = (float)(i / CAMBER_CELL_PX);
-        const float place[4] = {x + (across * p->ux + down * p->uy), y + (down * p->ux - across * p->uy),
-                                fa + (across * p->nax + down * p->nay), fb + (across * p->nbx + down * p->nby)};
-        put_pixel(c, p, one->pixels + i, place, meets == CAMBER_CELL_ASIDE);
-    }
+    for (int i = 0; i < CELL_PIXELS; i++)
+        put_pixel(c, p, one->pixels + i, px + (float)(i % CAMBER_CELL_PX), py + (float)(i / CAMBER_CELL_PX),
+                  meeting.nears);
     count_put(c, one);
 }
 

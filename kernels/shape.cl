@@ -136,21 +136,25 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void shape(global const ca
                         vload16(0, join_a), vload16(0, join_b), vload16(0, half_width), r.linear);
     int16 is_drawn = vload16(0, drawn);
     const size_t at = r.base / 16 + group;
-#if CAMBER_COVER_RICH
-    put_measures(records, first, r, &s, measures + 64 * at);
-#endif
 #if CAMBER_COVER_PITCHED
-    camber_shape band;
+    const camber_shape flat = s;
     camber_plane plane;
-    is_drawn &= camber_pitch_shape_of(r.eye, r.horizon, &s, &band, &plane);
-    put_planes(&s, &plane, planes + 16 * CAMBER_PLANE_WORDS * at);
-    s = band;
+    is_drawn &= camber_pitch_shape_of(r.eye, r.horizon, &flat, &s, &plane);
 #endif
     const uint16 box = camber_shape_box(&s, is_drawn, r.left, r.top, r.columns, r.rows);
+    vstore16(box, at, boxes);
+    /* Of a picture in several areas most segments lie in others. */
+    if (all(box == CAMBER_NO_BOX))
+        return;
+#if CAMBER_COVER_PITCHED
+    put_planes(&flat, &plane, planes + 16 * CAMBER_PLANE_WORDS * at);
+    put_measures(records, first, r, &flat, measures + 64 * at);
+#elif CAMBER_COVER_RICH
+    put_measures(records, first, r, &s, measures + 64 * at);
+#endif
     float16 words[16] = {s.ax,           s.ay,    s.bx,    s.by,    s.ux,
                          s.uy,           s.nax,   s.nay,   s.nbx,   s.nby,
                          s.half_width,   s.reach, s.slope, s.curve, as_float16(s.flags),
                          vload16(0, ink)};
     put_shapes(words, shapes + 16 * CAMBER_SHAPE_WORDS * at, CAMBER_SHAPE_WORDS);
-    vstore16(box, at, boxes);
 }

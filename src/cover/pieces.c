@@ -17,11 +17,11 @@ static camber_status first_record(const camber_mesh *mesh, const camber_mesh_par
     *record = 0;
     if (polyline == part->first_polyline)
         return CAMBER_OK;
+    *record = part->record_count;
+    if (polyline == part->first_polyline + part->polyline_count) /* of a part that is not there, too */
+        return CAMBER_OK;
     if (!mesh->mesh_info.strips)
         return camber_part_slot(mesh, part, polyline, record);
-    *record = part->record_count;
-    if (polyline == part->first_polyline + part->polyline_count)
-        return CAMBER_OK;
     const camber_status status = camber_part_first_index(mesh, part, polyline, &index);
     *record = (size_t)index / 2;
     return status;

@@ -374,10 +374,6 @@ static inline void find_pixels(private const camber_pen *p, private const places
     set->fb = (px - p->bx) * p->nbx + (py - p->by) * p->nby;
 }
 
-static __attribute__((noinline)) float16 odd_area(private const camber_pen *p, private const pixel_set *set) {
-    return camber_pen_area(p, set->x, set->y, set->fa, set->fb);
-}
-
 /* A segment at once: of unions. */
 static inline void draw_segment(private canvas *c, private const places *at, global const float *shape, place where) {
     cell_box box;
@@ -392,88 +388,26 @@ static inline void draw_segment(private canvas *c, private const places *at, glo
     for (ulong left = sets.meets & ~sets.inside; left; left &= left - 1) {
         const int i = lowest(left);
         find_pixels(&p, at, i, &set);
-        put_area(c, &p, i, sets.nears >> i & 1ul ? odd_area(&p, &set) : camber_pen_side(&p, set.y), set.x, set.y);
+        put_area(c, &p, i,
+                 sets.nears >> i & 1ul ? camber_pen_area(&p, set.x, set.y, set.fa, set.fb) : camber_pen_side(&p, set.y),
+                 set.x, set.y);
     }
     if (sets.inside)
         put_whole(c, sets.inside);
     c->inked |= sets.meets;
 }
 
-/* ---- Segments of one ink, some at a time ---- */
-
-/* What is found out of each segment in turn waits for nothing, and neither does what is then put into cells: a
- * processor that guesses which way branches go guesses few of them wrong. */
-#define BATCH 16
-#define ITEM_NEAR 64u
-#define ITEM_INSIDE 128u
-#define ITEM_PEN 8
+/* Segments of an ink that is no union wait until there are so many. */
+#define CAMBER_BATCH 16
 
 typedef struct batch {
-    camber_pen pens[BATCH];
-    uint items[BATCH * CELLS + 4]; /* cells in turn, and how they lie; pen << ITEM_PEN */
-    uint pen_count, item_count;
+    uint which[CAMBER_BATCH];
+    uint count;
 } batch;
 
-static inline void note_cells(private batch *b, ulong cells, uint word) {
-  private
-    uint *to = b->items + b->item_count;
-    b->item_count += (uint)popcount(cells);
-#pragma unroll
-    for (int i = 0; i < 4; i++, cells &= cells - 1)
-        *to++ = word | (uint)lowest(cells);
-    for (; cells; cells &= cells - 1)
-        *to++ = word | (uint)lowest(cells);
-}
-
-/* Gives how many there are. shut: the cells that are full. */
-static inline uint note_segment(private batch *b, private const places *at, global const float *shape, place where,
-                                ulong shut) {
-  private
-    camber_pen *p = b->pens + b->pen_count;
-    const uint word = b->pen_count << ITEM_PEN;
-    cell_box box;
-    cell_sets sets;
-    const ulong cells = box_of(shape, where, &box) & ~shut;
-    if (!cells)
-        return b->pen_count;
-    camber_pen_of(shape, as_uint(shape[CAMBER_SHAPE_FLAGS]), p);
-    sort_cells(p, at, box, cells, &sets);
-    const ulong sides = sets.meets & ~(sets.nears | sets.inside);
-    note_cells(b, sets.nears, word | ITEM_NEAR);
-    if (sides)
-        note_cells(b, sides, word);
-    if (sets.inside)
-        note_cells(b, sets.inside, word | ITEM_INSIDE);
-    return ++b->pen_count;
-}
-
-static __attribute__((noinline)) void draw_batch(private canvas *c, private const places *at, private batch *b) {
-    const float opacity = c->now.a;
-    pixel_set set;
-    for (uint n = 0; n < b->item_count; n++) {
-        const uint item = b->items[n];
-        const int i = (int)(item % CELLS);
-      private
-        const camber_pen *p = b->pens + (item >> ITEM_PEN);
-        if ((c->done | c->filled) >> i & 1ul)
-            continue;
-        c->inked |= 1ul << i;
-        if (item & ITEM_INSIDE) {
-            put_whole(c, 1ul << i);
-            continue;
-        }
-        find_pixels(p, at, i, &set);
-        float16 area;
-        if (!(item & ITEM_NEAR))
-            area = camber_pen_side(p, set.y);
-        else if (p->odd)
-            area = odd_area(p, &set);
-        else
-            area = camber_round_area(p, set.x, set.y, set.fa, set.fb);
-        put_over(c, i, area, opacity);
-    }
-    b->pen_count = b->item_count = 0;
-}
+/* cover_batch.cl */
+static void draw_batch(private canvas *c, private const places *at, global const float *shapes, place where,
+                       private batch *b);
 
 #if CAMBER_COVER_PITCHED
 static inline void put_tilted(private canvas *c, private const camber_pitch_pen *p, int i, float16 area,
@@ -611,7 +545,7 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void cover(
     const ulong own = (~0ul >> (64 - CAMBER_TILE_CELLS * (last - first + 1))) << (CAMBER_TILE_CELLS * first);
     const place where = {left, top, first, last};
     camber_u32 current = ~0u;
-    b.pen_count = b.item_count = 0;
+    b.count = 0;
     begin_canvas(&c, own);
     begin_places(&at, left, top);
 #if CAMBER_COVER_PITCHED
@@ -635,7 +569,7 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void cover(
         ASK_FOR(shapes + (size_t)CAMBER_SHAPE_WORDS * lists[k > AHEAD ? k - AHEAD : 0]);
         const camber_u32 ink = as_uint(shape[CAMBER_SHAPE_INK]);
         if (ink != current) {
-            draw_batch(&c, &at, &b);
+            draw_batch(&c, &at, shapes, where, &b);
             change_ink(&c, inks[ink]);
 #if CAMBER_COVER_RICH
             c.more = more[ink];
@@ -645,17 +579,19 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void cover(
 #if CAMBER_COVER_PITCHED
         draw_tilted(&c, shape, planes + (size_t)CAMBER_PLANE_WORDS * lists[k], where, s.eye);
 #else
-        if (c.now.mode == CAMBER_INK_UNION)
+        if (c.now.mode == CAMBER_INK_UNION) {
             draw_segment(&c, &at, shape, where);
-        else if (note_segment(&b, &at, shape, where, c.done | c.filled) < BATCH)
-            continue;
-        else
-            draw_batch(&c, &at, &b);
+        } else {
+            b.which[b.count++] = lists[k];
+            if (b.count < CAMBER_BATCH)
+                continue;
+            draw_batch(&c, &at, shapes, where, &b);
+        }
 #endif
         if (is_full(&c))
             break;
     }
-    draw_batch(&c, &at, &b);
+    draw_batch(&c, &at, shapes, where, &b);
     const int full = is_full(&c);
     if (!slice.is_last && !full) {
         const camber_u32 open = (camber_u32)c.is_open[1] << 30 | (camber_u32)c.is_open[2] << 31;

@@ -300,7 +300,6 @@ typedef struct camber_pen {
     float slope_a, slope_b, from_a, from_b; /* of the lines that bound a tight join's inner side */
     camber_u32 end_a, end_b;
     camber_u32 thin, tips, flat, tight, sharp;
-    camber_u32 odd; /* area is more than what a width and round ends make it */
 } camber_pen;
 
 CAMBER_FN float camber_own_from(camber_u32 end, camber_u32 own) {
@@ -365,7 +364,6 @@ CAMBER_FN __attribute__((always_inline)) void camber_pen_of(CAMBER_GLOBAL const 
     p->tips = h < CAMBER_TIPS_PX && flags & CAMBER_SHAPE_ROUNDED;
     p->flat = flags & CAMBER_SHAPE_FLAT;
     p->sharp = flags & CAMBER_SHAPE_SHARP;
-    p->odd = p->thin | p->tips | p->flat | ((1u << p->end_a | 1u << p->end_b) & CAMBER_SECOND_ENDS);
     const camber_u32 tight_a = (end_a >> 3 & 3u) == CAMBER_CLASS_TIGHT,
                      tight_b = (end_b >> 3 & 3u) == CAMBER_CLASS_TIGHT;
     p->tight = tight_a | tight_b;
@@ -500,17 +498,6 @@ CAMBER_FN camber_real camber_pen_area(const camber_pen *p, camber_real x, camber
     if (p->flat)
         area *= camber_pen_caps(p, x);
     return camber_pen_own(p, area, x, y, fa, fb);
-}
-
-/* The same where the pen is not odd. */
-CAMBER_FN camber_real camber_round_area(const camber_pen *p, camber_real x, camber_real y, camber_real fa,
-                                        camber_real fb) {
-    camber_real bent;
-    const camber_real arc = camber_pen_off(p, x, y, fa, fb, &bent), past_a = -x, past_b = x - p->length;
-    const camber_real area = camber_inside_edge(p, p->half_width - CAMBER_SQRT(arc * arc + bent * bent));
-    const camber_mask foreign = ((fa < 0.0f) & (past_a > p->own_a)) | ((fb >= 0.0f) & (past_b > p->own_b)) |
-                                (past_a + p->slope_a * y > p->from_a) | (past_b + p->slope_b * y > p->from_b);
-    return foreign ? CAMBER_REAL(0.0f) : area;
 }
 
 /* The same where the ends are too far away to matter. */

@@ -31,6 +31,7 @@ static inline float16 put_together(float16 high, float16 low, int upper) {
 
 /* Sixteen words of sixteen segments: four perfect shuffles turn the square over. */
 static inline void turn_over(private float16 *words) {
+#pragma unroll
     for (int turn = 0; turn < 4; turn++) {
         float16 next[16];
 #pragma unroll

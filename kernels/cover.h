@@ -469,9 +469,12 @@ CAMBER_FN camber_real camber_pen_tips(const camber_pen *p, camber_real x) {
 }
 
 CAMBER_FN camber_real camber_pen_caps(const camber_pen *p, camber_real x) {
+    const camber_u32 at_a = p->flat_a < CAMBER_NEVER_PX, both = at_a && p->flat_b < CAMBER_NEVER_PX;
     const camber_real past_a = -x, past_b = x - p->length;
-    const camber_real caps =
-        camber_inside_edge(p, p->flat_a - past_a) + camber_inside_edge(p, p->flat_b - past_b) - 1.0f;
+    const camber_real one = camber_inside_edge(p, at_a ? p->flat_a - past_a : p->flat_b - past_b);
+    if (!both)
+        return one;
+    const camber_real caps = one + camber_inside_edge(p, p->flat_b - past_b) - 1.0f;
     return caps > 0.0f ? caps : CAMBER_REAL(0.0f);
 }
 

@@ -4,7 +4,6 @@
 #define ITEM_NEAR 64u
 #define ITEM_INSIDE 128u
 #define ITEM_LANE 8
-#define BLOCKS 4 /* four by four cells each, of a box */
 
 typedef struct pens {
     float16 words[CAMBER_SHAPE_WORDS];
@@ -139,11 +138,9 @@ static inline uint16 spread(uint16 bits) {
     return (bits & 0xfu) | (bits & 0xf0u) << 4 | (bits & 0xf00u) << 8 | (bits & 0xf000u) << 12;
 }
 
-/* Of each segment its cells in turn: from the first of its box, as a tile has them. */
+/* Of each segment its cells, a bit each. */
 typedef struct meetings {
-    uint16 meets[BLOCKS], nears[BLOCKS], inside[BLOCKS];
-    int16 first;
-    int from[BLOCKS], count; /* blocks: where they begin */
+    ulong16 meets, nears, inside;
 } meetings;
 
 /* As camber_cells_meet. */
@@ -160,8 +157,7 @@ static inline void find_meetings(private const pens *p, private const boxes *b, 
     const float16 left = (float)CAMBER_CELL_PX * convert_float16(b->x) + (where.left + 0.5f * CAMBER_CELL_PX);
     const float16 top = (float)CAMBER_CELL_PX * convert_float16(b->y) + (where.top + 0.5f * CAMBER_CELL_PX);
     const uint16 none = (uint16)(0u);
-    m->first = CAMBER_TILE_CELLS * b->y + b->x;
-    m->count = 0;
+    m->meets = m->nears = m->inside = (ulong16)(0ul);
     for (int down = 0; down < b->most_rows; down += 4)
         for (int across = 0; across < b->most_columns; across += 4) {
             uint16 meets = none, nears = none, inside = none;
@@ -180,10 +176,10 @@ static inline void find_meetings(private const pens *p, private const boxes *b, 
                     inside |= aside <= full ? bit : none;
                 }
             }
-            m->meets[m->count] = spread(meets);
-            m->nears[m->count] = spread(nears & meets);
-            m->inside[m->count] = spread(inside & meets & ~nears);
-            m->from[m->count++] = CAMBER_TILE_CELLS * down + across;
+            const ulong16 first = convert_ulong16(CAMBER_TILE_CELLS * (b->y + down) + b->x + across);
+            m->meets |= convert_ulong16(spread(meets)) << first;
+            m->nears |= convert_ulong16(spread(nears & meets)) << first;
+            m->inside |= convert_ulong16(spread(inside & meets & ~nears)) << first;
         }
 }
 
@@ -202,24 +198,19 @@ static inline void list_cells(private cell_list *list, ulong cells, uint word) {
         list->items[at++] = word | (uint)lowest(cells);
 }
 
-static inline ulong cells_of(private const meetings *m, private const uint16 *sets, uint k) {
-    const int first = ((private const int *)&m->first)[k];
-    ulong cells = 0;
-    for (int i = 0; i < m->count; i++)
-        cells |= (ulong)((private const uint *)(sets + i))[k] << (first + m->from[i]);
-    return cells;
-}
-
+/* shut: the cells that are full. */
 static inline void list_all(private const meetings *m, uint count, ulong shut, private cell_list *list) {
+    ulong nears[CAMBER_BATCH], sides[CAMBER_BATCH], inside[CAMBER_BATCH];
+    vstore16(m->nears & ~shut, 0, nears);
+    vstore16(m->meets & ~(m->nears | m->inside | shut), 0, sides);
+    vstore16(m->inside & ~shut, 0, inside);
     list->count = 0;
     for (uint k = 0; k < count; k++) {
-        const ulong cells = cells_of(m, m->meets, k) & ~shut, nears = cells_of(m, m->nears, k) & cells;
-        const ulong inside = cells_of(m, m->inside, k) & cells, sides = cells & ~(nears | inside);
-        list_cells(list, nears, k << ITEM_LANE | ITEM_NEAR);
-        if (sides)
-            list_cells(list, sides, k << ITEM_LANE);
-        if (inside)
-            list_cells(list, inside, k << ITEM_LANE | ITEM_INSIDE);
+        list_cells(list, nears[k], k << ITEM_LANE | ITEM_NEAR);
+        if (sides[k])
+            list_cells(list, sides[k], k << ITEM_LANE);
+        if (inside[k])
+            list_cells(list, inside[k], k << ITEM_LANE | ITEM_INSIDE);
     }
 }
 

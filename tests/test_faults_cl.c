@@ -509,11 +509,134 @@ static void test_drawing(void **state) {
         skip();
 }
 
+/* ---- Drawing with kernels ---- */
+
+/* A device of its own where kernels are to be built, and everything else in any case. */
+static camber_status draw_covered(const stage_set *s, camber_device *device, uint8_t *rgba) {
+    const camber_renderer_desc desc = {.draw = CAMBER_DRAW_CL};
+    camber_pass passes[2] = {{.paints = paints, .paint_count = SCENE_ROWS}};
+    camber_renderer *renderer = NULL;
+    camber_mesh *mesh = NULL;
+    camber_status status = camber_renderer_create(device, NULL, &desc, &renderer);
+    if (status == CAMBER_OK)
+        status = camber_mesh_create(device, renderer, &mesh);
+    if (status == CAMBER_OK)
+        status = camber_tessellate(mesh, s->polylines, &s->desc);
+    passes[0].mesh = mesh;
+    passes[1] = passes[0];
+    passes[1].overlap = CAMBER_OVERLAP_UNITE;
+    passes[1].opacity = 0.5f;
+    const camber_frame frame = {.width = SIDE_PX, .height = SIDE_PX, .passes = passes, .pass_count = 2};
+    if (status == CAMBER_OK)
+        status = camber_render(renderer, &frame, take_rows, rgba, NULL);
+    camber_mesh_destroy(mesh);
+    camber_renderer_destroy(renderer);
+    return status;
+}
+
+typedef struct sheet {
+    camber_device *device; /* NULL: one is made */
+    uint8_t wanted[4 * SIDE_PX * SIDE_PX];
+} sheet;
+
+static camber_status try_covered(stage_set *s, void *user) {
+    const sheet *of = user;
+    uint8_t rgba[4 * SIDE_PX * SIDE_PX];
+    camber_device *made = NULL;
+    camber_status status = of->device ? CAMBER_OK : camber_device_create(s->context, NULL, NULL, &made);
+    if (status == CAMBER_OK)
+        status = draw_covered(s, of->device ? of->device : made, rgba);
+    if (status == CAMBER_OK)
+        assert_memory_equal(rgba, of->wanted, sizeof rgba);
+    camber_device_destroy(made);
+    return status;
+}
+
+/* The same calls come again in each slice, and kernels are built for each: of all calls every few. */
+static void refuse_some(stage_set *s, sheet *of, bool forever) {
+    size_t n = 1;
+    for (bool reached = true; reached; n += 1 + n / 6) {
+        const cl_objects live = cl_fault.live;
+        const size_t blocks = s->h.live_blocks;
+        cl_fault_arm(n, forever ? SIZE_MAX : n, FAULTS[0].code);
+        const camber_status status = try_covered(s, of);
+        cl_fault_disarm();
+        reached = cl_fault.refusals > 0;
+        assert_live(&live);
+        assert_int_equal(s->h.live_blocks, blocks);
+        if (status == CAMBER_OK ? reached && !is_optional(cl_fault.refused) : !reached)
+            fail_msg("%s (call %zu) was refused: %s", cl_fault.refused, n, camber_status_name(status));
+        if (status != CAMBER_OK)
+            assert_story(&s->h, forever ? ": OpenCL " : cl_fault.refused);
+    }
+    assert_true(n > 150);
+}
+
+/* As a whole, in slices and areas of what small buffers hold, and with the kernels built. */
+static void test_covered(void **state) {
+    (void)state;
+    const camber_device_desc small = {.largest_buffer_bytes = 66000};
+    stage_set s;
+    sheet whole;
+    open_set(&s, false, CAMBER_METHOD_STRIP);
+    for (int i = 0; i < SCENE_ROWS; i++)
+        paints[i] = (camber_paint){.width_px = fminf(s.strokes[i].width_px, 2),
+                                   .color = {1, 0.5f, (float)i / SCENE_ROWS, i % 2 ? 1 : 0.5f}};
+    whole.device = s.device;
+    assert_int_equal(draw_covered(&s, s.device, whole.wanted), CAMBER_OK);
+    assert_true(refuse(&s, try_covered, &whole, NULL, 0, false) > 100);
+    sheet sliced = whole;
+    assert_int_equal(camber_device_create(s.context, &small, NULL, &sliced.device), CAMBER_OK);
+    assert_int_equal(try_covered(&s, &sliced), CAMBER_OK);
+    refuse_some(&s, &sliced, false);
+    camber_device_destroy(sliced.device);
+    whole.device = NULL;
+    refuse_some(&s, &whole, true);
+    close_set(&s);
+}
+
+/* One renderer through all failures: what it draws after each of them is right. */
+static void test_covered_again(void **state) {
+    (void)state;
+    stage_set s;
+    easel e = {.renderer = NULL};
+    uint8_t wanted[4 * SIDE_PX * SIDE_PX], rgba[sizeof wanted];
+    open_set(&s, false, CAMBER_METHOD_STRIP);
+    assert_int_equal(camber_renderer_create(s.device, NULL, NULL, &e.renderer), CAMBER_OK);
+    assert_int_equal(camber_mesh_create(s.device, e.renderer, &e.mesh), CAMBER_OK);
+    assert_int_equal(camber_tessellate(e.mesh, s.polylines, &s.desc), CAMBER_OK);
+    for (size_t n = 1;; n++) {
+        const camber_pass pass = {.mesh = e.mesh, .paints = paints, .paint_count = SCENE_ROWS};
+        const camber_frame frame = {.width = SIDE_PX, .height = SIDE_PX, .passes = &pass, .pass_count = 1};
+        camber_renderer *other = NULL;
+        if (n == 1)
+            assert_int_equal(camber_render(e.renderer, &frame, take_rows, wanted, NULL), CAMBER_OK);
+        assert_int_equal(camber_renderer_create(s.device, NULL, NULL, &other), CAMBER_OK);
+        cl_fault_arm(n, n, CL_OUT_OF_RESOURCES);
+        const camber_status status = camber_render(other, &frame, take_rows, rgba, NULL);
+        cl_fault_disarm();
+        assert_int_equal(status == CAMBER_OK, cl_fault.refusals == 0 || is_optional(cl_fault.refused));
+        if (status != CAMBER_OK)
+            assert_story(&s.h, cl_fault.refused);
+        memset(rgba, 0, sizeof rgba);
+        assert_int_equal(camber_render(other, &frame, take_rows, rgba, NULL), CAMBER_OK);
+        assert_memory_equal(rgba, wanted, sizeof wanted);
+        camber_renderer_destroy(other);
+        if (cl_fault.refusals == 0)
+            break;
+        assert_true(n < CALLS_MAX);
+    }
+    camber_mesh_destroy(e.mesh);
+    camber_renderer_destroy(e.renderer);
+    close_set(&s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_device),         cmocka_unit_test(test_mesh),         cmocka_unit_test(test_program),
-        cmocka_unit_test(test_mesh_again),     cmocka_unit_test(test_read_again),   cmocka_unit_test(test_build_log),
-        cmocka_unit_test(test_cached_program), cmocka_unit_test(test_small_device), cmocka_unit_test(test_drawing),
+        cmocka_unit_test(test_device),         cmocka_unit_test(test_mesh),          cmocka_unit_test(test_program),
+        cmocka_unit_test(test_mesh_again),     cmocka_unit_test(test_read_again),    cmocka_unit_test(test_build_log),
+        cmocka_unit_test(test_cached_program), cmocka_unit_test(test_small_device),  cmocka_unit_test(test_drawing),
+        cmocka_unit_test(test_covered),        cmocka_unit_test(test_covered_again),
     };
     char pocl_cache[64];
     pocl_cache_apart(pocl_cache);

@@ -16,8 +16,8 @@ typedef struct desk {
     camber_overdraw overdraw;
     byte_list file; /* a polyline file */
     byte_list png;
-    int backend;
-    bool known; /* rgba and overdraw are there */
+    int backend; /* BACKENDS: kernels draw */
+    bool known;  /* rgba and overdraw are there */
 } desk;
 
 static const camber_stroke STROKES[ROWS] = {{9, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0},
@@ -182,6 +182,8 @@ static camber_status draw(camber_renderer *renderer, camber_mesh *mesh, desk *d)
     if (status != CAMBER_OK)
         return status;
     assert_int_equal(t.rows, HEIGHT);
+    if (camber_renderer_get_draw(renderer) == CAMBER_DRAW_CL)
+        return CAMBER_OK;
     camber_overdraw overdraw = {0};
     status = camber_overdraw_count(
         renderer,
@@ -200,10 +202,13 @@ static camber_status try_drawing(camber_context *context, void *user) {
     camber_surface *surface = NULL;
     camber_renderer *renderer = NULL;
     camber_mesh *mesh = NULL;
-    camber_status status = camber_surface_create(context, &(camber_surface_desc){BACKEND[d->backend]}, &surface);
+    const bool in_cl = d->backend == BACKENDS;
+    const camber_renderer_desc desc = {.draw = in_cl ? CAMBER_DRAW_CL : CAMBER_DRAW_GL};
+    camber_status status = CAMBER_OK;
+    if (!in_cl)
+        status = camber_surface_create(context, &(camber_surface_desc){BACKEND[d->backend]}, &surface);
     if (status == CAMBER_OK)
-        status =
-            camber_renderer_create(d->s.device, surface, &(camber_renderer_desc){.draw = CAMBER_DRAW_GL}, &renderer);
+        status = camber_renderer_create(d->s.device, surface, &desc, &renderer);
     if (status == CAMBER_OK)
         status = camber_mesh_create(d->s.device, renderer, &mesh);
     if (status == CAMBER_OK)
@@ -365,8 +370,8 @@ static void test_with_cache(void **state) {
 static void test_drawing(void **state) {
     desk *d = *state;
     each_fails(d, try_any_surface);
-    for (d->backend = 0; d->backend < BACKENDS; d->backend++) {
-        if (!d->s.renderer[d->backend])
+    for (d->backend = 0; d->backend <= BACKENDS; d->backend++) {
+        if (d->backend < BACKENDS && !d->s.renderer[d->backend])
             continue;
         d->known = false;
         assert_int_equal(try_drawing(d->s.context, d), CAMBER_OK);
@@ -380,12 +385,13 @@ static void test_same_objects(void **state) {
     desk *d = *state;
     host *h = &d->s.h;
     d->known = false;
-    for (int i = 0; i < BACKENDS; i++) {
+    for (int i = 0; i <= BACKENDS; i++) {
+        const bool in_cl = i == BACKENDS;
+        const camber_renderer_desc desc = {.draw = in_cl ? CAMBER_DRAW_CL : CAMBER_DRAW_GL};
         camber_renderer *renderer = NULL;
-        if (!d->s.renderer[i])
+        if (!in_cl && !d->s.renderer[i])
             continue;
-        assert_int_equal(camber_renderer_create(d->s.device, d->s.surface[i],
-                                                &(camber_renderer_desc){.draw = CAMBER_DRAW_GL}, &renderer),
+        assert_int_equal(camber_renderer_create(d->s.device, in_cl ? NULL : d->s.surface[i], &desc, &renderer),
                          CAMBER_OK);
         size_t n = 1;
         for (bool reached = true; reached; n++) {

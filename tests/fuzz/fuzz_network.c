@@ -1,6 +1,6 @@
 /* Any network under any camera: world coordinates, importance, entries and cameras of any bits. The slots do not depend
  * on how chunks are cut, which is what the device does, and lie in the window; a device, where replay.c's main has one,
- * makes the twin's bytes.
+ * makes the twin's bytes, and draws its pixels.
  *
  *     u8 method | open << 2 | coordinates' form << 3 | bare << 5 | wild offsets << 6 | wild camera << 7
  *     u8 strokes, u8 polylines, u8 entries (bare: each polyline once)
@@ -10,7 +10,7 @@
  *     polylines: u16 points (wild: the offset); entries: u8 polyline, u8 row, coordinate shift
  *     points: two coordinates (f64; i8; i16 / 16; f32), u8 importance (bare: none)
  */
-#include "fuzz.h"
+#include "fuzz_drawing.h"
 
 #include "tess/network.h"
 
@@ -221,26 +221,26 @@ static void check_lines(fuzz_run *run, const camber_network *network, const inpu
 
 /* ---- On a device ---- */
 
-static camber_context *device_context;
-static camber_mesh *device_mesh;
+static fuzz_easel easel;
 
 static void check_device(const input *from) {
     camber_network *network = NULL;
     camber_polylines *twin = NULL;
     camber_mesh_data got = {0}, expected = {0};
-    REQUIRE(camber_network_create(device_context, &from->network, &network) == CAMBER_OK);
-    const camber_status status = camber_tessellate_network(device_mesh, network, &from->camera, &from->tessellation);
+    REQUIRE(camber_network_create(easel.context, &from->network, &network) == CAMBER_OK);
+    const camber_status status = camber_tessellate_network(easel.mesh, network, &from->camera, &from->tessellation);
     REQUIRE(status == camber_network_project(network, &from->camera, &from->tessellation, &twin));
     if (status == CAMBER_OK) {
-        REQUIRE(camber_mesh_read(device_mesh, &got) == CAMBER_OK);
-        REQUIRE(camber_tessellate_on_host(device_context, twin, &from->tessellation, &expected) == CAMBER_OK);
+        REQUIRE(camber_mesh_read(easel.mesh, &got) == CAMBER_OK);
+        REQUIRE(camber_tessellate_on_host(easel.context, twin, &from->tessellation, &expected) == CAMBER_OK);
         REQUIRE(got.info.record_count == expected.info.record_count &&
                 got.info.index_count == expected.info.index_count);
         REQUIRE(got.info.record_count == 0 ||
                 memcmp(got.records, expected.records, got.info.record_count * sizeof *got.records) == 0);
+        fuzz_easel_draw(&easel, from->tessellation.strokes, from->tessellation.stroke_count);
     }
-    camber_mesh_data_free(device_context, &got);
-    camber_mesh_data_free(device_context, &expected);
+    camber_mesh_data_free(easel.context, &got);
+    camber_mesh_data_free(easel.context, &expected);
     camber_polylines_destroy(twin);
     camber_network_destroy(network);
 }
@@ -261,7 +261,7 @@ static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
             check_lines(run, network, &from);
             fuzz_tessellate(run, slots, &from.tessellation, NULL);
         }
-        if (device_mesh && !run->refuse_at)
+        if (easel.mesh && !run->refuse_at)
             check_device(&from);
     }
     camber_polylines_destroy(slots);
@@ -270,19 +270,10 @@ static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
     free(from.importance);
 }
 
-/* A device has threads and a compiler, and takes longer than all the rest: it replays, and fuzzes where
- * CAMBER_FUZZ_DEVICE is set. */
 int LLVMFuzzerInitialize(int *argument_count, char ***arguments) {
     (void)argument_count;
     (void)arguments;
-    camber_device *device = NULL;
-#ifdef CAMBER_FUZZ_ALONE
-    if (!getenv("CAMBER_FUZZ_DEVICE"))
-        return 0;
-#endif
-    if (camber_context_create(NULL, &device_context) == CAMBER_OK &&
-        camber_device_create(device_context, &(camber_device_desc){0}, NULL, &device) == CAMBER_OK)
-        REQUIRE(camber_mesh_create(device, NULL, &device_mesh) == CAMBER_OK);
+    fuzz_easel_open(&easel);
     return 0;
 }
 

@@ -1,5 +1,5 @@
 /* Any polylines, strokes and methods on the CPU twin: floats of any bits, rows and offsets that may be wrong; then GLB
- * of what came of it.
+ * of what came of it. A device, where replay.c's main has one, makes the twin's records, and draws its pixels.
  *
  *     u8 method | open << 2 | points' form << 3 | wild offsets << 5 | wild rows << 6
  *     u8 strokes, u8 polylines, f32 fan tolerance
@@ -7,7 +7,7 @@
  *     polylines: u16 points (wild: the offset), u8 row (wild: any)
  *     points: two f32; two i8; two i16 / 16
  */
-#include "fuzz.h"
+#include "fuzz_drawing.h"
 
 #ifdef CAMBER_FUZZ_MAP
 #include "camber_map.h"
@@ -105,6 +105,22 @@ static void check_again(fuzz_run *run, const camber_polylines *polylines, const 
     camber_mesh_data_free(run->context, &again);
 }
 
+static fuzz_easel easel;
+
+static void check_device(const input *from, const camber_mesh_data *expected) {
+    camber_polylines *polylines = NULL;
+    camber_mesh_data got = {0};
+    REQUIRE(camber_polylines_create(easel.context, &from->polylines, &polylines) == CAMBER_OK);
+    REQUIRE(camber_tessellate(easel.mesh, polylines, &from->tessellation) == CAMBER_OK);
+    REQUIRE(camber_mesh_read(easel.mesh, &got) == CAMBER_OK);
+    REQUIRE(got.info.record_count == expected->info.record_count);
+    REQUIRE(got.info.record_count == 0 ||
+            memcmp(got.records, expected->records, got.info.record_count * sizeof *got.records) == 0);
+    fuzz_easel_draw(&easel, from->strokes, from->stroke_count);
+    camber_mesh_data_free(easel.context, &got);
+    camber_polylines_destroy(polylines);
+}
+
 /* Every point is kept or was counted as dropped. */
 static bool adds_up(const camber_polylines *polylines) {
     const camber_polylines_stats stats = camber_polylines_get_stats(polylines);
@@ -122,10 +138,19 @@ static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
         fuzz_tessellate(run, polylines, &made.tessellation, &mesh)) {
         check_again(run, polylines, &made, &mesh);
         write_glb(run, &mesh, &made);
+        if (easel.mesh && !run->refuse_at)
+            check_device(&made, &mesh);
         camber_mesh_data_free(run->context, &mesh);
     }
     camber_polylines_destroy(polylines);
     free(made.points);
+}
+
+int LLVMFuzzerInitialize(int *argument_count, char ***arguments) {
+    (void)argument_count;
+    (void)arguments;
+    fuzz_easel_open(&easel);
+    return 0;
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {

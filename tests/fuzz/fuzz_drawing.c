@@ -1,0 +1,67 @@
+#include "fuzz_drawing.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { WIDTH_PX = 200, HEIGHT_PX = 120, PASSES = 3, ROWS_MAX = 16 };
+
+void fuzz_easel_open(fuzz_easel *easel) {
+    const camber_renderer_desc desc = {.draw = CAMBER_DRAW_CL};
+    camber_device *device = NULL;
+    *easel = (fuzz_easel){0};
+#ifdef CAMBER_FUZZ_ALONE
+    if (!getenv("CAMBER_FUZZ_DEVICE"))
+        return;
+#endif
+    if (camber_context_create(NULL, &easel->context) != CAMBER_OK ||
+        camber_device_create(easel->context, &(camber_device_desc){0}, NULL, &device) != CAMBER_OK)
+        return;
+    REQUIRE(camber_renderer_create(device, NULL, &desc, &easel->renderer) == CAMBER_OK);
+    REQUIRE(camber_mesh_create(device, easel->renderer, &easel->mesh) == CAMBER_OK);
+}
+
+static bool is_drawn(uint32_t box) {
+    return (box & 255u) <= (box >> 16 & 255u);
+}
+
+static void compare(const camber_drawing_stages *got, const camber_drawing_stages *expected) {
+    const size_t words = expected->shape_words, tiles = (size_t)expected->columns * expected->rows;
+    REQUIRE(got->shape_count == expected->shape_count);
+    for (size_t i = 0; i < expected->shape_count; i++) {
+        REQUIRE(got->boxes[i] == expected->boxes[i]);
+        REQUIRE(!is_drawn(got->boxes[i]) ||
+                memcmp(got->shapes + words * i, expected->shapes + words * i, 4 * words) == 0);
+    }
+    REQUIRE(memcmp(got->starts, expected->starts, 4 * (tiles + 1)) == 0);
+    REQUIRE(expected->starts[tiles] == 0 ||
+            memcmp(got->lists, expected->lists, 4 * (size_t)expected->starts[tiles]) == 0);
+    REQUIRE(memcmp(got->rgba, expected->rgba, 4 * (size_t)WIDTH_PX * HEIGHT_PX) == 0);
+}
+
+void fuzz_easel_draw(const fuzz_easel *easel, const camber_stroke *strokes, size_t stroke_count) {
+    static const float widths[PASSES] = {1.0f, 0.6f, 0.3f}, alphas[PASSES] = {1.0f, 0.5f, 0.7f};
+    camber_paint paints[PASSES][ROWS_MAX] = {{{0}}};
+    camber_pass passes[PASSES];
+    camber_drawing_stages got = {0}, expected = {0};
+    REQUIRE(stroke_count <= ROWS_MAX);
+    for (int k = 0; k < PASSES; k++) {
+        passes[k] = (camber_pass){.mesh = easel->mesh, .paints = paints[k], .paint_count = stroke_count};
+        for (size_t i = 0; i < stroke_count; i++)
+            paints[k][i] = (camber_paint){.width_px = widths[k] * strokes[i].width_px,
+                                          .color = {0.5f * (float)k, k == 1 ? 1.0f : 0.1f * (float)i, 0.5f, alphas[k]},
+                                          .translate_x_px = 0.7f * (float)k};
+    }
+    passes[1].overlap = CAMBER_OVERLAP_UNITE;
+    passes[2].overlap = CAMBER_OVERLAP_ACCUMULATE;
+    passes[2].opacity = 0.6f;
+    const camber_frame frame = {.width = WIDTH_PX,
+                                .height = HEIGHT_PX,
+                                .background = {0.2f, 0.3f, 0.4f, 0.5f},
+                                .passes = passes,
+                                .pass_count = PASSES};
+    REQUIRE(camber_drawing_read_stages(easel->renderer, &frame, &got) == CAMBER_OK);
+    REQUIRE(camber_drawing_stages_on_host(easel->renderer, &frame, &expected) == CAMBER_OK);
+    compare(&got, &expected);
+    camber_drawing_stages_free(easel->context, &got);
+    camber_drawing_stages_free(easel->context, &expected);
+}

@@ -51,8 +51,43 @@ typedef struct canvas {
     camber_ink now;
 #if CAMBER_COVER_RICH
     camber_ink_more more; /* of it */
+    float veil;           /* of masked colours, which cover as if they were opaque: their alpha; else 1 */
+    float16 mask[CELLS];  /* of a masked layer: its alphas, where what it lets through is what it does not cover */
 #endif
 } canvas;
+
+#if CAMBER_COVER_RICH
+/* Of the area that is covered, what is seen of it. */
+#define VEILED(c, i, seen) veiled(c, i, seen)
+static inline float16 veiled(private canvas *c, int i, float16 seen) {
+    const float16 shown = seen * c->veil;
+    if (c->now.mode == CAMBER_INK_MASKED)
+        c->mask[i] += shown;
+    return shown;
+}
+
+/* Takes what a layer covers with it, if it is masked. */
+#define LAYER_AREA(c, i, level) layer_area(c, i, level)
+static inline float16 layer_area(private canvas *c, int i, int level) {
+    const float16 alpha = c->mask[i];
+    if (level != 2 || c->now.mode != CAMBER_INK_MASKED)
+        return 1.0f - c->level[level][3][i];
+    c->mask[i] = (float16)(0.0f);
+    return alpha;
+}
+
+static inline void use_more(private canvas *c, camber_ink_more more) {
+    c->more = more;
+    c->veil = 1.0f;
+    if (c->now.mode == CAMBER_INK_MASKED) {
+        c->veil = c->now.a;
+        c->now.a = 1.0f;
+    }
+}
+#else
+#define VEILED(c, i, seen) (seen)
+#define LAYER_AREA(c, i, level) (1.0f - (c)->level[level][3][i])
+#endif
 
 static inline float most_of(float16 v) {
     const float8 a = v.lo > v.hi ? v.lo : v.hi;
@@ -73,6 +108,11 @@ static inline void clear_level(private canvas *c, int level) {
 }
 
 static inline void begin_canvas(private canvas *c, ulong cells) {
+#if CAMBER_COVER_RICH
+    for (int i = 0; i < CELLS; i++)
+        c->mask[i] = (float16)(0.0f);
+    c->veil = 1.0f;
+#endif
     for (int i = 0; i < CELLS; i++)
         c->ink[0][i] = (float16)(1.0f);
     clear_level(c, 0);
@@ -101,7 +141,7 @@ static inline void close_ink(private canvas *c) {
             area = camber_united(area, c->ink[1][i], c->ink[2][i], c->ink[3][i]) * c->now.a;
             c->ink[1][i] = c->ink[2][i] = c->ink[3][i] = (float16)(0.0f);
         }
-        const float16 through = c->level[level][3][i], seen = through * area;
+        const float16 through = c->level[level][3][i], seen = VEILED(c, i, through * area);
         c->level[level][0][i] += seen * c->now.r;
         c->level[level][1][i] += seen * c->now.g;
         c->level[level][2][i] += seen * c->now.b;
@@ -123,7 +163,7 @@ static inline void close_level(private canvas *c, int level, float opacity) {
             c->level[below][k][i] += seen * c->level[level][k][i];
             c->level[level][k][i] = (float16)(0.0f);
         }
-        c->level[below][3][i] = through * (1.0f - (1.0f - c->level[level][3][i]) * opacity);
+        c->level[below][3][i] = through * (1.0f - LAYER_AREA(c, i, level) * opacity);
         c->level[level][3][i] = (float16)(1.0f);
         look_at_cell(c, i, below);
     }
@@ -229,6 +269,10 @@ static inline void keep_cells(private const canvas *c, global float *kept, cambe
         keep_planes(planes, c->ink + 1, s.sums, 3, c->inked);
     keep_planes(planes, c->level[1], s.group, 4, c->touched[1]);
     keep_planes(planes, c->level[2], s.layer, 4, c->touched[2]);
+#if CAMBER_COVER_RICH
+    if (c->now.mode == CAMBER_INK_MASKED)
+        keep_planes(planes, &c->mask, s.layer + 4, 1, c->touched[2]);
+#endif
 }
 
 /* Gives the ink that was drawn last, or KEPT_FULL. Rows of cells that are not full have seen the same list, so that all
@@ -267,6 +311,10 @@ static inline camber_u32 take_cells(private canvas *c, global const float *kept,
         clear_sums(c);
         take_planes(planes, c->ink + 1, s.sums, 3, c->inked);
     }
+#if CAMBER_COVER_RICH
+    if (c->now.mode == CAMBER_INK_MASKED)
+        take_planes(planes, &c->mask, s.layer + 4, 1, c->touched[2]);
+#endif
     return now & KEPT_INK;
 }
 
@@ -524,7 +572,11 @@ static inline void write_cells(private const canvas *c, global camber_u32 *pixel
 #endif
 #define MORE                                                                                                           \
     , global const float *restrict measures, global const camber_ink_more *restrict more,                              \
-        global const float4 *restrict tail PLANES_TOO
+        global const float *restrict tail PLANES_TOO
+
+/* cover_rich.cl */
+static void draw_rich(private canvas *c, private const places *at, global const float *shape, place where,
+                      global const float *measure, global const float *tail);
 #else
 #define MORE
 #endif
@@ -561,7 +613,7 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void cover(
         current = take_cells(&c, own_kept, inks, slice, first, last);
 #if CAMBER_COVER_RICH
         if (current != ~0u && current != KEPT_FULL)
-            c.more = more[current];
+            use_more(&c, more[current]);
 #endif
     }
     for (camber_u32 k = starts[tile + 1]; k-- > starts[tile];) {
@@ -572,14 +624,19 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void cover(
             draw_batch(&c, &at, shapes, where, &b);
             change_ink(&c, inks[ink]);
 #if CAMBER_COVER_RICH
-            c.more = more[ink];
+            use_more(&c, more[ink]);
 #endif
             current = ink;
         }
 #if CAMBER_COVER_PITCHED
         draw_tilted(&c, shape, planes + (size_t)CAMBER_PLANE_WORDS * lists[k], where, s.eye);
 #else
-        if (c.now.mode == CAMBER_INK_UNION) {
+#if CAMBER_COVER_RICH
+        if (c.more.features) {
+            draw_rich(&c, &at, shape, where, measures + CAMBER_SHAPE_MEASURES * (size_t)lists[k], tail);
+        } else
+#endif
+            if (c.now.mode == CAMBER_INK_UNION) {
             draw_segment(&c, &at, shape, where);
         } else {
             b.which[b.count++] = lists[k];

@@ -42,8 +42,8 @@ typedef int camber_mask;
 #define CAMBER_TIPS_PX 1.85f /* half as wide, the ends of round caps are judged by themselves */
 #define CAMBER_FILL_PX 1e6f  /* a fill is a line along y = 0, so long to either side and half so wide */
 
-/* What is kept of a tile between slices of segments, at most: sixteen planes of its pixels, and a few words. */
-#define CAMBER_KEPT_BYTES (16 * 4096 + 192)
+/* What is kept of a tile between slices of segments, at most: seventeen planes of its pixels, and a few words. */
+#define CAMBER_KEPT_BYTES (17 * 4096 + 192)
 
 /* Of a segment that is not drawn: its first tile lies behind the last one. */
 #define CAMBER_NO_BOX 0xffu
@@ -54,6 +54,8 @@ typedef int camber_mask;
 /* How what is drawn lies over what is below. */
 #define CAMBER_INK_OVER 0u  /* segments lie over each other */
 #define CAMBER_INK_UNION 1u /* their areas are united first */
+#define CAMBER_INK_MASKED                                                                                              \
+    2u /* of a layer in which what is translucent replaces what lies below it. CAMBER_COVER_RICH */
 
 /* A colour that segments are drawn in. Layers and groups are put onto what lies below as a whole: 0 is none. A layer
  * lies within its group. */

@@ -293,8 +293,7 @@ typedef enum camber_sharing {
 typedef enum camber_draw {
     CAMBER_DRAW_AUTO = 0, /* GL where there is a surface, else OpenCL */
     CAMBER_DRAW_GL,       /* GLES shaders */
-    CAMBER_DRAW_CL, /* OpenCL kernels, which need no surface; not yet dashes, gaps, blur, trims, gradients, patterns,
-                       pitch */
+    CAMBER_DRAW_CL,       /* OpenCL kernels, which need no surface; not yet patterns, pitch */
 } camber_draw;
 
 typedef struct camber_renderer_desc {

@@ -1,17 +1,11 @@
 /* Drawing in OpenCL: the device against the twin to the last bit, stage by stage; GL's pictures; the same bytes again
  * and in areas of any size; loads that lie in one tile or in one polyline. */
-#include "picture.h"
+#include "covering.h"
 
 #include "base/perspective.h"
-#include "cover/cover.h"
 #include "draw/renderer.h"
 
 enum { SIDE_PX = 600 };
-
-typedef struct easel {
-    studio s;
-    camber_renderer *cl;
-} easel;
 
 /* ---- Scenes ---- */
 
@@ -61,50 +55,12 @@ static void fill_scene(scene *lines, int which) {
 
 enum { SCENES = 5 };
 
-static camber_mesh *make_mesh(const easel *e, camber_renderer *renderer, const drawing *d, camber_method method) {
+static camber_mesh *make_mesh(const covering *e, camber_renderer *renderer, const drawing *d, camber_method method) {
     const camber_tessellation_desc desc = {d->strokes, SCENE_ROWS, method, 0, d->measured};
     return studio_mesh(&e->s, renderer, &d->lines, &desc);
 }
 
 /* ---- Device and twin ---- */
-
-static void compare_stages(const camber_cover_stages *device, const camber_cover_stages *twin) {
-    assert_int_equal(device->shape_count, twin->shape_count);
-    assert_int_equal(device->tile_count, twin->tile_count);
-    assert_memory_equal(device->boxes, twin->boxes, 4 * twin->shape_count);
-    for (size_t i = 0; i < twin->shape_count; i++) {
-        if ((twin->boxes[i] & 255u) > (twin->boxes[i] >> 16 & 255u))
-            continue;
-        assert_memory_equal(device->shapes + CAMBER_SHAPE_WORDS * i, twin->shapes + CAMBER_SHAPE_WORDS * i,
-                            4 * CAMBER_SHAPE_WORDS);
-        if (twin->planes)
-            assert_memory_equal(device->planes + CAMBER_PLANE_WORDS * i, twin->planes + CAMBER_PLANE_WORDS * i,
-                                4 * CAMBER_PLANE_WORDS);
-        if (twin->measures)
-            assert_memory_equal(device->measures + CAMBER_SHAPE_MEASURES * i,
-                                twin->measures + CAMBER_SHAPE_MEASURES * i, 4 * CAMBER_SHAPE_MEASURES);
-    }
-    assert_memory_equal(device->starts, twin->starts, 4 * (twin->tile_count + 1));
-    assert_memory_equal(device->lists, twin->lists, 4 * (size_t)twin->starts[twin->tile_count]);
-}
-
-/* Draws on the device and on the host, which must do the same; gives the picture, which is freed with camber_free. */
-static uint8_t *draw_twice(const easel *e, const camber_cover_scene *drawn, camber_cover_area area) {
-    camber_cover *cover = NULL;
-    camber_cover_stages device, twin;
-    assert_int_equal(camber_cover_create(e->s.device, &cover), CAMBER_OK);
-    assert_int_equal(camber_cover_draw(cover, drawn, &area), CAMBER_OK);
-    assert_int_equal(camber_cover_read_stages(cover, &device), CAMBER_OK);
-    assert_int_equal(camber_cover_on_host(e->s.context, drawn, &area, &twin), CAMBER_OK);
-    compare_stages(&device, &twin);
-    assert_memory_equal(device.rgba, twin.rgba, 4 * (size_t)area.width * area.height);
-    uint8_t *rgba = device.rgba;
-    device.rgba = NULL;
-    camber_cover_stages_free(e->s.context, &device);
-    camber_cover_stages_free(e->s.context, &twin);
-    camber_cover_destroy(cover);
-    return rgba;
-}
 
 static const double PITCHES[] = {1, 30, 60, 85};
 
@@ -118,7 +74,7 @@ static void tilt(camber_cover_scene *drawn, double pitch_deg) {
 
 /* A scene of the stages alone: one table, an ink a row, with layers and a group among them, and a fill. The rich
  * variant makes the same of what is plain. */
-static void compare_with_twin(const easel *e, const drawing *d, camber_mesh *mesh, bool linear,
+static void compare_with_twin(const covering *e, const drawing *d, camber_mesh *mesh, bool linear,
                               camber_cover_area area) {
     static const camber_ink_more nothing[2 * SCENE_ROWS + 1];
     const uint32_t fill = 2 * SCENE_ROWS;
@@ -143,20 +99,20 @@ static void compare_with_twin(const easel *e, const drawing *d, camber_mesh *mes
     const size_t count = mesh->polyline_count;
     const camber_cover_run runs[] = {{mesh, 0, count, 0}, {NULL, 0, 0, fill}, {mesh, count / 3, count, SCENE_ROWS}};
     camber_cover_scene drawn = {rows[0], fill + 1, inks, fill + 1, runs, 3, {0.2f, 0.3f, 0.4f, 1}, linear};
-    uint8_t *plain = draw_twice(e, &drawn, area);
+    uint8_t *plain = covering_draw_twice(e, &drawn, area);
     drawn.more = nothing;
-    uint8_t *rich = draw_twice(e, &drawn, area);
+    uint8_t *rich = covering_draw_twice(e, &drawn, area);
     assert_memory_equal(plain, rich, 4 * (size_t)area.width * area.height);
     camber_free(e->s.context, rich);
     camber_free(e->s.context, plain);
     for (size_t i = 0; i < sizeof PITCHES / sizeof *PITCHES; i++) {
         tilt(&drawn, PITCHES[i]);
-        camber_free(e->s.context, draw_twice(e, &drawn, area));
+        camber_free(e->s.context, covering_draw_twice(e, &drawn, area));
     }
 }
 
 static void test_twin(void **state) {
-    const easel *e = *state;
+    const covering *e = *state;
     static const camber_method methods[] = {CAMBER_METHOD_STRIP, CAMBER_METHOD_KITE, CAMBER_METHOD_FAN};
     for (int which = 0; which < SCENES; which++)
         for (int m = 0; m < 3; m++) {
@@ -172,7 +128,7 @@ static void test_twin(void **state) {
 
 /* ---- GL ---- */
 
-static picture draw_with(const easel *e, camber_renderer *renderer, drawing *d, size_t pass_count,
+static picture draw_with(const covering *e, camber_renderer *renderer, drawing *d, size_t pass_count,
                          camber_method method) {
     camber_mesh *mesh = make_mesh(e, renderer, d, method);
     picture p = picture_draw(renderer, end_drawing(d, mesh, pass_count));
@@ -184,7 +140,7 @@ static picture draw_with(const easel *e, camber_renderer *renderer, drawing *d, 
  * kernels by the bisector itself: on it single pixels belong to another, which shows where joins are sharp and lines
  * wide. */
 enum { MOST = 200, PIXELS_PAST_8 = 1000 };
-static void compare_with_gl(const easel *e, drawing *d, size_t pass_count, const char *what) {
+static void compare_with_gl(const covering *e, drawing *d, size_t pass_count, const char *what) {
     const double bound = d->passes[1].opacity > 0 ? 0.3 : 0.2; /* a group is rounded twice more */
     camber_renderer *gl = studio_any(&e->s);
     picture a = draw_with(e, gl, d, pass_count, CAMBER_METHOD_STRIP),
@@ -201,7 +157,7 @@ static void compare_with_gl(const easel *e, drawing *d, size_t pass_count, const
 }
 
 static void test_gl(void **state) {
-    const easel *e = *state;
+    const covering *e = *state;
     static const char *const names[SCENES] = {"walks", "blocks", "rings", "turns", "degenerate"};
     if (!studio_any(&e->s))
         skip();
@@ -226,7 +182,7 @@ static void test_gl(void **state) {
 
 /* GL's segments do not agree to the last bit where a join parts them: single pixels of wide lines stay empty. */
 static void test_gl_tilted(void **state) {
-    const easel *e = *state;
+    const covering *e = *state;
     static const char *const names[SCENES] = {"walks", "blocks", "rings", "turns", "degenerate"};
     if (!studio_any(&e->s))
         skip();
@@ -250,7 +206,7 @@ static void test_gl_tilted(void **state) {
 
 /* ---- The same bytes ---- */
 
-static void compare_areas(const easel *e, double pitch_deg) {
+static void compare_areas(const covering *e, double pitch_deg) {
     static const uint32_t sides[] = {0, 33, 64, 320, 599};
     for (int which = 0; which < SCENES; which++) {
         drawing d = begin_drawing();
@@ -271,9 +227,9 @@ static void compare_areas(const easel *e, double pitch_deg) {
 }
 
 /* The same picture on another device; gives the slices of its last area. */
-static uint32_t compare_on(const easel *e, const camber_device_desc *desc, drawing *d, size_t pass_count,
+static uint32_t compare_on(const covering *e, const camber_device_desc *desc, drawing *d, size_t pass_count,
                            const picture *whole) {
-    easel small = {.s = {.context = e->s.context}};
+    covering small = {.s = {.context = e->s.context}};
     assert_int_equal(camber_device_create(e->s.context, desc, NULL, &small.s.device), CAMBER_OK);
     assert_int_equal(camber_renderer_create(small.s.device, NULL, NULL, &small.cl), CAMBER_OK);
     picture p = draw_with(&small, small.cl, d, pass_count, CAMBER_METHOD_STRIP);
@@ -293,7 +249,7 @@ static void test_areas(void **state) {
 
 /* Where lists and pixels may take little, rows of tiles are drawn by halves. */
 static void test_little_memory(void **state) {
-    const easel *e = *state;
+    const covering *e = *state;
     drawing d = begin_drawing();
     uint64_t seed = 8;
     for (int i = 0; i < 60; i++) {
@@ -313,7 +269,7 @@ static void test_little_memory(void **state) {
 /* Shapes that no buffer has room for are drawn in slices: with layers, unions and groups open between them, in tiles
  * that are heavy in some slices only, and where nothing of a slice is. */
 static void test_slices(void **state) {
-    const easel *e = *state;
+    const covering *e = *state;
     static const uint64_t largest[] = {1024 * 1024, 300 * 1024, 140 * 1024};
     for (int which = 0; which < 4; which++) {
         drawing d = begin_drawing();
@@ -347,10 +303,10 @@ static void test_slices(void **state) {
 
 /* What drawing holds counts: a quarter of what is allowed, and meshes have the rest. */
 static void test_bound(void **state) {
-    const easel *e = *state;
+    const covering *e = *state;
     const uint64_t allowed = 24 * 1024 * 1024;
     const camber_device_desc desc = {.memory_bytes = allowed};
-    easel bound = {.s = {.context = e->s.context}};
+    covering bound = {.s = {.context = e->s.context}};
     drawing d = begin_drawing();
     uint64_t seed = 4;
     for (int i = 0; i < 3000; i++) {
@@ -378,7 +334,7 @@ static void test_bound(void **state) {
 }
 
 static void test_steps(void **state) {
-    const easel *e = *state;
+    const covering *e = *state;
     drawing d = begin_drawing();
     scene_rings(&d.lines, &(uint64_t){5});
     for (int i = 0; i < 2; i++) {
@@ -405,7 +361,7 @@ static void test_steps(void **state) {
 
 /* All in one tile, and one polyline over all: both take many work-items. */
 static void test_loads(void **state) {
-    const easel *e = *state;
+    const covering *e = *state;
     drawing d = begin_drawing();
     uint64_t seed = 3;
     for (int i = 0; i < 20000; i++) {
@@ -432,23 +388,17 @@ static void test_loads(void **state) {
 /* ---- What is refused ---- */
 
 static void test_refused(void **state) {
-    easel *e = *state;
+    covering *e = *state;
     drawing d = begin_drawing();
     scene_point(&d.lines, 10, 10);
     scene_point(&d.lines, 90, 10);
     scene_end(&d.lines, 5);
     camber_mesh *mesh = make_mesh(e, e->cl, &d, CAMBER_METHOD_STRIP);
-    const camber_paint plain = d.paints[0][5];
-    camber_paint refused[] = {plain, plain};
-    refused[0].blur_px = 2;
-    refused[1].gap_px = 2;
-    for (int i = 0; i < 2; i++) {
-        d.paints[0][5] = refused[i];
-        e->s.h.errors = 0;
-        assert_int_equal(camber_render(e->cl, end_drawing(&d, mesh, 1), NULL, NULL, NULL), CAMBER_ERROR_ARGUMENT);
-        assert_story(&e->s.h, "draw with GL");
-    }
-    d.paints[0][5] = plain;
+    d.frame.pitch_deg = 30;
+    d.paints[0][5].blur_px = 2;
+    assert_int_equal(camber_render(e->cl, end_drawing(&d, mesh, 1), NULL, NULL, NULL), CAMBER_ERROR_ARGUMENT);
+    assert_story(&e->s.h, "draw with GL");
+    d.frame.pitch_deg = 0;
     assert_int_equal(camber_render(e->cl, end_drawing(&d, mesh, 1), NULL, NULL, NULL), CAMBER_OK);
     assert_int_equal(camber_renderer_get_draw(e->cl), CAMBER_DRAW_CL);
     assert_int_equal(camber_renderer_get_sharing(e->cl), CAMBER_SHARING_AUTO);
@@ -456,36 +406,12 @@ static void test_refused(void **state) {
     scene_free(&d.lines);
 }
 
-static int set_up(void **state) {
-    static easel e;
-    *state = &e;
-    studio_open(&e.s); /* without GL there is still something to draw with */
-    return e.s.device && camber_renderer_create(e.s.device, NULL, NULL, &e.cl) == CAMBER_OK ? 0 : -1;
-}
-
-static int tear_down(void **state) {
-    easel *e = *state;
-    camber_renderer_destroy(e->cl);
-    studio_close(&e->s);
-    assert_int_equal(e->s.h.live_blocks, 0);
-    return 0;
-}
-
 int main(void) {
-    char cache[64];
-    pocl_cache_apart(cache);
-    if (!device_is_there()) {
-        puts("skipped: no OpenCL device");
-        folder_remove(cache);
-        return 77;
-    }
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_twin),    cmocka_unit_test(test_gl),     cmocka_unit_test(test_gl_tilted),
         cmocka_unit_test(test_areas),   cmocka_unit_test(test_steps),  cmocka_unit_test(test_little_memory),
         cmocka_unit_test(test_loads),   cmocka_unit_test(test_slices), cmocka_unit_test(test_bound),
         cmocka_unit_test(test_refused),
     };
-    const int failed = cmocka_run_group_tests(tests, set_up, tear_down);
-    folder_remove(cache);
-    return failed;
+    return COVERING_RUN(tests);
 }

@@ -210,18 +210,19 @@ static camber_status list_items(camber_cover *cover, size_t *heavy_count, size_t
     return camber_cover_put(cover, BUFFER_ITEMS, cover->items, 2 * count * sizeof *cover->items);
 }
 
-/* Where planes lie that a scene needs: an ink's and the picture's five, three of unions, four a level. */
+/* Where planes lie that a scene needs: an ink's and the picture's five, three of unions, four a level, one of masks. */
 static kept plan_kept(const camber_cover_scene *scene) {
-    bool unions = false, groups = false, layers = false;
+    bool unions = false, groups = false, layers = false, masks = false;
     for (size_t i = 0; i < scene->ink_count; i++) {
         unions = unions || scene->inks[i].mode == CAMBER_INK_UNION;
         groups = groups || scene->inks[i].group;
         layers = layers || scene->inks[i].layer;
+        masks = masks || scene->inks[i].mode == CAMBER_INK_MASKED;
     }
     kept k = {.sums = 5};
     k.group = k.sums + (unions ? 3 : 0);
     k.layer = k.group + (groups ? 4 : 0);
-    k.tile_words = KEPT_WORDS + (k.layer + (layers ? 4 : 0)) * PLANE_WORDS;
+    k.tile_words = KEPT_WORDS + (k.layer + (layers ? 4 : 0) + (masks ? 1 : 0)) * PLANE_WORDS;
     return k;
 }
 

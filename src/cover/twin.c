@@ -198,6 +198,7 @@ typedef struct level {
 
 typedef struct pixel {
     float ink, sum, normal[2]; /* let through; of unions the areas and the normals */
+    float mask;                /* of a masked layer its alpha */
     level levels[LEVELS];
 } pixel;
 
@@ -212,7 +213,18 @@ typedef struct canvas {
     cell cells[CELLS];
     bool is_open[LEVELS];
     camber_ink now;
+    camber_ink_more more;
+    float veil; /* of masked colours, which cover as if they were opaque: their alpha; else 1 */
 } canvas;
+
+/* What is drawn of a segment. */
+typedef struct tool {
+    camber_pen pen;
+    camber_extras extras; /* of no features: not there */
+    bool tilted;          /* or else */
+    camber_pitch_pen tilted_pen;
+    camber_eye eye;
+} tool;
 
 static void look_at_cell(cell *c, int at) {
     float most = 0.0f;
@@ -231,7 +243,8 @@ static void close_ink(canvas *c) {
             float area = 1.0f - p->ink;
             if (ink->mode == CAMBER_INK_UNION)
                 area = camber_united(area, p->sum, p->normal[0], p->normal[1]) * ink->a;
-            const float through = l->through, seen = through * area;
+            const float through = l->through, seen = through * area * c->veil;
+            p->mask += ink->mode == CAMBER_INK_MASKED ? seen : 0.0f;
             l->color[0] += seen * ink->r;
             l->color[1] += seen * ink->g;
             l->color[2] += seen * ink->b;
@@ -248,13 +261,16 @@ static void close_ink(canvas *c) {
 
 static void close_level(canvas *c, int at, float opacity) {
     const int below = at == 2 && c->is_open[1] ? 1 : 0;
+    const bool masked = at == 2 && c->now.mode == CAMBER_INK_MASKED;
     for (cell *one = c->cells; one < c->cells + CELLS; one++) {
         for (int i = 0; i < CELL_PIXELS && one->touched[at]; i++) {
             level *from = one->pixels[i].levels + at, *to = one->pixels[i].levels + below;
             const float through = to->through, seen = through * opacity;
+            const float alpha = masked ? one->pixels[i].mask : 1.0f - from->through;
             for (int k = 0; k < 3; k++)
                 to->color[k] += seen * from->color[k];
-            to->through = through * (1.0f - (1.0f - from->through) * opacity);
+            to->through = through * (1.0f - alpha * opacity);
+            one->pixels[i].mask = masked ? 0.0f : one->pixels[i].mask;
             *from = (level){{0.0f, 0.0f, 0.0f}, 1.0f};
         }
         if (one->touched[at])
@@ -265,7 +281,7 @@ static void close_level(canvas *c, int at, float opacity) {
     c->is_open[at] = false;
 }
 
-static void change_ink(canvas *c, camber_ink next) {
+static void change_ink(canvas *c, camber_ink next, const camber_ink_more *more) {
     close_ink(c);
     if (c->is_open[2] && next.layer != c->now.layer)
         close_level(c, 2, c->now.layer_opacity);
@@ -274,14 +290,36 @@ static void change_ink(canvas *c, camber_ink next) {
     c->is_open[1] = c->is_open[1] || next.group;
     c->is_open[2] = c->is_open[2] || next.layer;
     c->now = next;
+    c->more = more ? *more : (camber_ink_more){0};
+    c->veil = 1.0f;
+    if (next.mode == CAMBER_INK_MASKED) {
+        c->veil = next.a;
+        c->now.a = 1.0f;
+    }
 }
 
-/* A segment's part of a pixel: near its ends, or on its sides. */
-static void put_pixel(const canvas *c, const camber_pen *pen, pixel *p, float px, float py, bool nears) {
-    const float qx = px - pen->ax, qy = py - pen->ay;
-    const float x = qx * pen->ux + qy * pen->uy, y = qy * pen->ux - qx * pen->uy;
-    const float fa = qx * pen->nax + qy * pen->nay, fb = (px - pen->bx) * pen->nbx + (py - pen->by) * pen->nby;
-    const float area = nears ? camber_pen_area(pen, x, y, fa, fb) : camber_pen_side(pen, y);
+/* Where a pixel lies: along and across the segment, and past its bisectors. */
+typedef struct place {
+    float x, y, fa, fb;
+} place;
+
+static place place_at(const camber_pen *p, float px, float py) {
+    const float qx = px - p->ax, qy = py - p->ay;
+    return (place){qx * p->ux + qy * p->uy, qy * p->ux - qx * p->uy, qx * p->nax + qy * p->nay,
+                   (px - p->bx) * p->nbx + (py - p->by) * p->nby};
+}
+
+static float area_of(const tool *t, place at, camber_u32 meets) {
+    const bool aside = meets == CAMBER_CELL_ASIDE;
+    if (meets == CAMBER_CELL_INSIDE)
+        return 1.0f;
+    if (t->extras.features)
+        return camber_extras_area(&t->pen, &t->extras, aside, at.x, at.y, at.fa, at.fb);
+    return aside ? camber_pen_side(&t->pen, at.y) : camber_pen_area(&t->pen, at.x, at.y, at.fa, at.fb);
+}
+
+/* A segment's part of a pixel. */
+static void put_pixel(const canvas *c, const camber_pen *pen, pixel *p, place at, float area) {
     if (c->now.mode != CAMBER_INK_UNION) {
         p->ink *= 1.0f - area * c->now.a;
         return;
@@ -290,7 +328,7 @@ static void put_pixel(const canvas *c, const camber_pen *pen, pixel *p, float px
     if (pen->half_width > 0.4f) {
         const float edge = area * (1.0f - area);
         float nx, ny;
-        camber_pen_normal(pen, x, y, &nx, &ny);
+        camber_pen_normal(pen, at.x, at.y, &nx, &ny);
         p->sum += area;
         p->normal[0] += nx * edge;
         p->normal[1] += ny * edge;
@@ -317,28 +355,63 @@ static void count_put(const canvas *c, cell *one) {
         one->filled = most_ink(one) < CAMBER_NOTHING_PX;
 }
 
-/* One of them is NULL. */
-typedef struct pens {
-    const camber_pen *flat;
-    const camber_pitch_pen *tilted;
-    camber_eye eye;
-} pens;
+/* Colours that change from pixel to pixel go straight under what the level has. */
+static void put_ramp(canvas *c, const tool *t, cell *one, const place places[CELL_PIXELS], float middle,
+                     camber_u32 meets) {
+    const int at = c->is_open[2] ? 2 : c->is_open[1] ? 1 : 0;
+    const bool masked = c->now.mode == CAMBER_INK_MASKED;
+    float low, high, most = 0.0f;
+    camber_extras_range(&t->pen, &t->extras, middle, &low, &high);
+    for (int i = 0; i < CELL_PIXELS; i++) {
+        pixel *p = one->pixels + i;
+        level *l = p->levels + at;
+        float color[4];
+        camber_ramp_over(&t->pen, &t->extras, camber_extras_along(&t->pen, &t->extras, places[i].x), low, high, color);
+        const float area = area_of(t, places[i], meets), through = l->through, seen = through * area * c->now.a;
+        l->color[0] += seen * c->veil * color[0] * c->now.r;
+        l->color[1] += seen * c->veil * color[1] * c->now.g;
+        l->color[2] += seen * c->veil * color[2] * c->now.b;
+        p->mask += masked ? seen * c->veil * color[3] : 0.0f;
+        l->through = through * (1.0f - (masked ? area : area * c->now.a * color[3]));
+        most = CAMBER_MORE(l->through, most);
+    }
+    one->touched[at] = true;
+    if ((++one->puts % CAMBER_LOOK_EVERY == 0 || meets == CAMBER_CELL_INSIDE) && most < CAMBER_NOTHING_PX)
+        *(at == 0 ? &one->done : &one->filled) = true;
+}
+
+/* What a cell has of a segment. */
+static camber_u32 meets_cell(const tool *t, float middle_x, float middle_y) {
+    const camber_pen *p = &t->pen;
+    camber_meeting m;
+    camber_cells_meet(p, middle_x, middle_y, &m);
+    const bool inside = p->half_width > 2.0f && m.inside;
+    const camber_u32 far = inside ? CAMBER_CELL_INSIDE : CAMBER_CELL_ASIDE;
+    const camber_u32 meets = !m.meets ? CAMBER_CELL_OUTSIDE : m.nears ? CAMBER_CELL_PARTLY : far;
+    const place middle = place_at(p, middle_x, middle_y);
+    return t->extras.features ? camber_extras_meet(p, &t->extras, meets, middle.x, middle.y) : meets;
+}
 
 /* px and py: of the first pixel. */
-static void draw_cell(canvas *c, const camber_pen *p, cell *one, float px, float py) {
+static void draw_cell(canvas *c, const tool *t, cell *one, float px, float py) {
     const float to_middle = 0.5f * (CAMBER_CELL_PX - 1);
-    camber_meeting meeting;
-    camber_cells_meet(p, px + to_middle, py + to_middle, &meeting);
-    if (one->done || one->filled || !meeting.meets)
+    const camber_u32 meets = meets_cell(t, px + to_middle, py + to_middle);
+    place places[CELL_PIXELS];
+    if (one->done || one->filled || meets == CAMBER_CELL_OUTSIDE)
         return;
+    for (int i = 0; i < CELL_PIXELS; i++)
+        places[i] = place_at(&t->pen, px + (float)(i % CAMBER_CELL_PX), py + (float)(i / CAMBER_CELL_PX));
+    if (t->extras.features & CAMBER_FEATURE_RAMP) {
+        put_ramp(c, t, one, places, place_at(&t->pen, px + to_middle, py + to_middle).x, meets);
+        return;
+    }
     one->inked = true;
-    if (p->half_width > 2.0f && meeting.inside && !meeting.nears) {
+    if (meets == CAMBER_CELL_INSIDE) {
         fill_cell(c, one);
         return;
     }
     for (int i = 0; i < CELL_PIXELS; i++)
-        put_pixel(c, p, one->pixels + i, px + (float)(i % CAMBER_CELL_PX), py + (float)(i / CAMBER_CELL_PX),
-                  meeting.nears);
+        put_pixel(c, &t->pen, one->pixels + i, places[i], area_of(t, places[i], meets));
     count_put(c, one);
 }
 
@@ -382,7 +455,7 @@ static void draw_tilted_cell(canvas *c, const camber_pitch_pen *p, cell *one, fl
 }
 
 /* The cells of a tile that a segment may meet. */
-static void draw_cells(canvas *c, const float *shape, const pens *p, float left, float top) {
+static void draw_cells(canvas *c, const float *shape, const tool *t, float left, float top) {
     const float reach = shape[CAMBER_SHAPE_REACH], a_cell = 1.0f / CAMBER_CELL_PX,
                 side = (float)(CAMBER_TILE_CELLS - 1);
     const float ax = shape[CAMBER_SHAPE_AX], ay = shape[CAMBER_SHAPE_AY], bx = shape[CAMBER_SHAPE_BX],
@@ -399,28 +472,29 @@ static void draw_cells(canvas *c, const float *shape, const pens *p, float left,
         for (int k = from_x; k <= to_x; k++) {
             cell *one = c->cells + CAMBER_TILE_CELLS * j + k;
             const float x = left + 0.5f + (float)(CAMBER_CELL_PX * k), y = top + 0.5f + (float)(CAMBER_CELL_PX * j);
-            if (p->tilted)
-                draw_tilted_cell(c, p->tilted, one, x - p->eye.x, y - p->eye.y);
+            if (t->tilted)
+                draw_tilted_cell(c, &t->tilted_pen, one, x - t->eye.x, y - t->eye.y);
             else
-                draw_cell(c, p->flat, one, x, y);
+                draw_cell(c, t, one, x, y);
         }
 }
 
 static void draw_segment(canvas *c, const twin *t, uint32_t which, float left, float top) {
-    const float *shape = t->stages->shapes + (size_t)CAMBER_SHAPE_WORDS * which;
+    const camber_cover_stages *stages = t->stages;
+    const float *shape = stages->shapes + (size_t)CAMBER_SHAPE_WORDS * which;
     const uint32_t flags = as_word(shape[CAMBER_SHAPE_FLAGS]);
-    camber_pen flat;
-    camber_pitch_pen tilted;
-    pens p = {.eye = t->scene->eye};
-    if (t->stages->planes) {
-        const float *plane = t->stages->planes + (size_t)CAMBER_PLANE_WORDS * which;
-        camber_pitch_pen_of(p.eye, shape, plane, flags, &tilted);
-        p.tilted = &tilted;
-    } else {
-        camber_pen_of(shape, flags, &flat);
-        p.flat = &flat;
-    }
-    draw_cells(c, shape, &p, left, top);
+    tool by;
+    by.eye = t->scene->eye;
+    by.tilted = stages->planes;
+    by.extras.features = 0;
+    if (by.tilted)
+        camber_pitch_pen_of(by.eye, shape, stages->planes + (size_t)CAMBER_PLANE_WORDS * which, flags, &by.tilted_pen);
+    else
+        camber_pen_of(shape, flags, &by.pen);
+    if (c->more.features)
+        camber_extras_of(&c->more, &by.pen, stages->measures + CAMBER_SHAPE_MEASURES * (size_t)which, t->scene->tail,
+                         &by.extras);
+    draw_cells(c, shape, &by, left, top);
 }
 
 static uint8_t level_of(float value) {
@@ -464,11 +538,12 @@ static void draw_tile(const twin *t, canvas *c, uint32_t column, uint32_t row) {
             p->levels[k].through = 1.0f;
     }
     c->now = t->scene->inks[0];
+    c->veil = 1.0f;
     for (uint32_t k = stages->starts[tile + 1]; k-- > stages->starts[tile];) {
         const float *shape = stages->shapes + (size_t)CAMBER_SHAPE_WORDS * stages->lists[k];
         const uint32_t ink = as_word(shape[CAMBER_SHAPE_INK]);
         if (ink != current)
-            change_ink(c, t->scene->inks[ink]);
+            change_ink(c, t->scene->inks[ink], t->scene->more ? t->scene->more + ink : NULL);
         current = ink;
         draw_segment(c, t, stages->lists[k], left, top);
     }

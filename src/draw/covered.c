@@ -13,6 +13,7 @@ enum { INKS_BACK = 16 };
 
 typedef struct tables {
     camber_context *context;
+    camber_renderer *renderer; /* has the tail */
     float *rows;
     camber_ink *inks;
     camber_ink_more *more; /* as many */
@@ -24,6 +25,11 @@ typedef struct tables {
     /* The last table of what is not layered: the runs of a pass share it. */
     const camber_pass *pass;
     size_t first_row;
+    /* The last dash in the tail: rows that follow each other mostly have the same. */
+    const camber_dash *dash;
+    float dash_unit_px, dash_texel[4];
+    bool dash_round;
+    bool pitched;
 } tables;
 
 static void free_tables(tables *t) {
@@ -45,17 +51,72 @@ static camber_status use_ink(tables *t, size_t first, const camber_ink *ink, con
         !camber_grow(t->context, &t->more, &t->more_capacity, t->ink_count + 1, sizeof *t->more))
         return CAMBER_ERROR_MEMORY;
     *number = (uint32_t)t->ink_count;
-    t->is_rich = t->is_rich || more->features;
+    t->is_rich = t->is_rich || more->features || ink->mode == CAMBER_INK_MASKED;
     t->more[t->ink_count] = *more;
     t->inks[t->ink_count++] = *ink;
     return CAMBER_OK;
+}
+
+static camber_status put_dash(tables *t, const camber_pass *pass, uint32_t row, camber_ink_more *more) {
+    const camber_paint *paint = pass->paints + row;
+    const camber_dash *dash = pass->dashes + paint->dash - 1;
+    const bool is_round = pass->mesh->host_rows[row].cap == CAMBER_CAP_ROUND;
+    if (t->dash != dash || t->dash_round != is_round || memcmp(&t->dash_unit_px, &paint->dash_unit_px, sizeof(float))) {
+        const camber_status status = camber_tail_put_dash(t->renderer, pass, row, t->dash_texel);
+        if (status != CAMBER_OK)
+            return status;
+        t->dash = dash;
+        t->dash_round = is_round;
+        t->dash_unit_px = paint->dash_unit_px;
+    }
+    more->features |= CAMBER_FEATURE_DASH;
+    more->first_dash = (uint32_t)t->dash_texel[0];
+    more->dash_count = (uint32_t)t->dash_texel[1] / 2;
+    more->round_dashes = is_round;
+    more->period = t->dash_texel[2];
+    return CAMBER_OK;
+}
+
+/* What a row has beside its ink. */
+static camber_status fill_more(tables *t, const camber_pass *pass, uint32_t row, camber_ink_more *more) {
+    const camber_paint *paint = pass->paints + row;
+    camber_status status = CAMBER_OK;
+    *more = (camber_ink_more){0};
+    if (paint->gap_px > 0.0f) {
+        more->features |= CAMBER_FEATURE_GAP;
+        more->half_gap = 0.5f * paint->gap_px;
+    }
+    if (paint->blur_px > 0.0f) {
+        more->features |= CAMBER_FEATURE_BLUR;
+        more->blur = paint->blur_px;
+    }
+    if (paint->trim_end > paint->trim_start) {
+        float trim[2];
+        camber_rows_put_trim(paint, trim);
+        more->features |= CAMBER_FEATURE_TRIM;
+        more->trim_from = trim[0];
+        more->trim_to = trim[1];
+    }
+    if (paint->dash)
+        status = put_dash(t, pass, row, more);
+    if (paint->ramp && status == CAMBER_OK) {
+        float texel[2];
+        status = camber_tail_put_ramp(t->renderer, pass->ramps + paint->ramp - 1, texel);
+        if (status != CAMBER_OK)
+            return status;
+        more->features |= CAMBER_FEATURE_RAMP;
+        more->first_stop = (uint32_t)texel[0];
+        more->stop_count = (uint32_t)texel[1];
+    }
+    return status;
 }
 
 /* The table of a run: rows of other alphas are left out, and a layer's rows are drawn opaque. ink has its group. */
 static camber_status fill_table(tables *t, const camber_run *run, camber_ink ink) {
     const camber_pass *pass = run->pass;
     const size_t count = pass->mesh->row_count, first_ink = t->ink_count;
-    const bool united = run->layered && run->one_color;
+    /* The union is of strokes with one edge on each side. */
+    const bool united = run->layered && run->one_color && !run->bands;
     if (!camber_grow(t->context, &t->rows, &t->row_capacity, t->row_count + count,
                      CAMBER_COVER_ROW_WORDS * sizeof *t->rows))
         return CAMBER_ERROR_MEMORY;
@@ -76,10 +137,12 @@ static camber_status fill_table(tables *t, const camber_run *run, camber_ink ink
         ink.r = color.r;
         ink.g = color.g;
         ink.b = color.b;
-        ink.a = united ? run->alpha * run->opacity : run->layered ? 1.0f : color.a;
-        ink.mode = united ? CAMBER_INK_UNION : CAMBER_INK_OVER;
-        const camber_ink_more more = {0};
-        const camber_status status = use_ink(t, first_ink, &ink, &more, &number);
+        ink.a = united ? run->alpha * run->opacity : run->layered && run->one_alpha ? 1.0f : color.a;
+        ink.mode = united ? CAMBER_INK_UNION : run->masked ? CAMBER_INK_MASKED : CAMBER_INK_OVER;
+        camber_ink_more more;
+        camber_status status = fill_more(t, pass, (uint32_t)i, &more);
+        if (status == CAMBER_OK)
+            status = use_ink(t, first_ink, &ink, &more, &number);
         if (status != CAMBER_OK)
             return status;
         row[0] = camber_paint_half_width(paint);
@@ -92,14 +155,14 @@ static camber_status fill_table(tables *t, const camber_run *run, camber_ink ink
 
 static camber_status refuse(camber_context *context) {
     return camber_fail(context, CAMBER_ERROR_ARGUMENT,
-                       "dashes, gaps, blur, trims, gradients and patterns are not drawn in OpenCL yet; draw "
-                       "with GL (--draw gl)");
+                       "patterns, and dashes, gaps, blur, trims and gradients seen at an angle are not drawn in OpenCL "
+                       "yet; draw with GL (--draw gl)");
 }
 
 static camber_status add_run(tables *t, const camber_run *run, camber_ink ink) {
     if (run->alpha <= 0.0f)
         return CAMBER_OK;
-    if (run->bands)
+    if (run->bands & CAMBER_VARIANT_PATTERN || (run->bands && t->pitched))
         return refuse(t->context);
     const bool shares = !run->layered && t->pass && t->pass == run->pass && ink.group == 0;
     camber_status status = CAMBER_OK;
@@ -163,13 +226,14 @@ static camber_status add_pass(tables *t, const camber_pass *pass) {
     camber_status status = CAMBER_OK;
     if (mesh->empty)
         return CAMBER_OK;
-    camber_runs runs = camber_runs_begin(pass, end, false);
+    camber_runs runs = camber_runs_begin(pass, end);
     camber_run run;
     while (status == CAMBER_OK && camber_runs_next(&runs, &run)) {
         const bool alone = !runs.by_alpha && run.first == pass->first_polyline && run.end == end;
         if (fades && alone && pass->overlap != CAMBER_OVERLAP_ACCUMULATE) {
             run.opacity = pass->opacity;
-            run.layered = run.one_alpha = true;
+            run.one_alpha = run.one_alpha || !run.layered;
+            run.layered = true;
         } else if (fades && ink.group == 0) {
             ink.group = ++t->layers;
             ink.group_opacity = pass->opacity;
@@ -306,9 +370,12 @@ static void pitch_scene(const camber_frame *frame, camber_cover_scene *scene) {
 static camber_status render_to(camber_renderer *renderer, const camber_frame *frame, target *to,
                                camber_frame_stats *stats) {
     const camber_color back = frame->background;
-    tables t = {.context = renderer->share.device->context,
+    tables t = {.renderer = renderer,
+                .pitched = frame->pitch_deg > 0.0,
+                .context = renderer->share.device->context,
                 .background = {back.r * back.a, back.g * back.a, back.b * back.a, back.a}};
     camber_frame_stats made = {0};
+    camber_tail_forget(renderer);
     camber_status status = make_tables(&t, frame);
     camber_cover_scene scene = {
         .rows = t.rows,
@@ -320,6 +387,8 @@ static camber_status render_to(camber_renderer *renderer, const camber_frame *fr
         .background = {t.background[0], t.background[1], t.background[2], t.background[3]},
         .linear = frame->coverage == CAMBER_COVERAGE_LINEAR,
         .more = t.is_rich || frame->pitch_deg > 0.0 ? t.more : NULL,
+        .tail = renderer->tail_texels,
+        .tail_count = renderer->tail_count,
     };
     pitch_scene(frame, &scene);
     if (status == CAMBER_OK)

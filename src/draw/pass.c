@@ -224,7 +224,7 @@ static camber_run choose(const camber_pass *pass, size_t end, const float *alpha
     return end_run(&made);
 }
 
-camber_runs camber_runs_begin(const camber_pass *pass, size_t end, bool masks) {
+camber_runs camber_runs_begin(const camber_pass *pass, size_t end) {
     camber_runs runs = {.pass = pass, .next = pass->first_polyline, .end = end};
     if (pass->first_polyline >= end)
         return runs;
@@ -235,7 +235,7 @@ camber_runs camber_runs_begin(const camber_pass *pass, size_t end, bool masks) {
     for (size_t i = pass->first_polyline; i < end && !runs.alphas.more; i++)
         if (camber_pass_draws(pass, rows[i]))
             add_alpha(&runs.alphas, pass->paints[rows[i]].color.a);
-    runs.masked = runs.alphas.more && masks;
+    runs.masked = runs.alphas.more;
     runs.by_alpha = !runs.alphas.more;
     return runs;
 }
@@ -265,7 +265,7 @@ static camber_status draw_run(camber_renderer *renderer, const camber_run *run, 
 
 static camber_status draw_runs(camber_renderer *renderer, const camber_pass *pass, size_t end,
                                const camber_piece *piece) {
-    camber_runs runs = camber_runs_begin(pass, end, true);
+    camber_runs runs = camber_runs_begin(pass, end);
     camber_run run;
     camber_status status = CAMBER_OK;
     while (status == CAMBER_OK && camber_runs_next(&runs, &run))

@@ -171,7 +171,7 @@ struct camber_renderer {
     GLsizei row_height; /* texels */
     float *row_texels;  /* 4 floats a texel */
     size_t row_capacity;
-    float *tail_texels; /* behind the rows' tables, 4 floats a texel: dashes, and the stops of ramps */
+    float *tail_texels; /* behind the rows' tables, 4 floats a texel: dashes, and the stops of ramps. Of kernels too */
     size_t tail_count, tail_capacity;
     camber_ramp_place *ramps; /* that are in the tail */
     size_t ramp_count, ramp_capacity;
@@ -283,8 +283,7 @@ typedef struct camber_runs {
     size_t alpha; /* the next one */
 } camber_runs;
 
-/* masks: whether one run can have lines of different alphas; else such a pass has its runs in the order of lines. */
-camber_runs camber_runs_begin(const camber_pass *pass, size_t end, bool masks);
+camber_runs camber_runs_begin(const camber_pass *pass, size_t end);
 /* false: there is none any more. */
 bool camber_runs_next(camber_runs *runs, camber_run *run);
 
@@ -307,6 +306,8 @@ bool camber_renderer_holds_rows(const camber_renderer *renderer, size_t row_coun
 camber_status camber_renderer_reserve_rows(camber_renderer *renderer, size_t row_count);
 /* A run's table: rows of other alphas are left out, and a layer's rows are drawn opaque. */
 camber_status camber_renderer_fill_rows(camber_renderer *renderer, const camber_run *run, size_t table);
+/* From where to where a paint is not drawn, shares of the line: what is trimmed at its end takes its cap as well. */
+void camber_rows_put_trim(const camber_paint *paint, float texel[2]);
 camber_status camber_renderer_upload_rows(camber_renderer *renderer, size_t row_count);
 /* tail.c: what rows name, in the texels behind the tables, the first of which lies here. */
 GLint camber_renderer_tail(size_t row_count);

@@ -15,8 +15,7 @@ bool camber_renderer_holds_rows(const camber_renderer *renderer, size_t row_coun
     return tail_texels <= texels && row_count <= (texels - tail_texels) / TEXELS_A_ROW;
 }
 
-/* What is trimmed at an end of the line takes its cap as well. */
-static void put_trim(const camber_paint *paint, float texel[4]) {
+void camber_rows_put_trim(const camber_paint *paint, float texel[2]) {
     const bool trims = paint->trim_end > paint->trim_start;
     texel[0] = !trims ? FAR_BEYOND : paint->trim_start <= 0.0f ? -FAR_BEYOND : paint->trim_start;
     texel[1] = !trims || paint->trim_end >= 1.0f ? FAR_BEYOND : paint->trim_end;
@@ -44,7 +43,7 @@ camber_status camber_renderer_fill_rows(camber_renderer *renderer, const camber_
         texel[9] = fmaxf(paint->blur_px, 0.0f);
         for (int c = 0; c < 4; c++)
             texel[4 + c] = run->layered && run->one_color ? 1.0f : color[c];
-        put_trim(paint, texel + 16);
+        camber_rows_put_trim(paint, texel + 16);
         if (paint->dash && camber_tail_put_dash(renderer, pass, (uint32_t)i, texel + 12) != CAMBER_OK)
             return CAMBER_ERROR_MEMORY;
         if (paint->ramp && camber_tail_put_ramp(renderer, pass->ramps + paint->ramp - 1, texel + 18) != CAMBER_OK)

@@ -1,0 +1,68 @@
+/* What cover.cl draws of inks with features, of which kernels/cover_bands.h says what they are. */
+#if CAMBER_COVER_RICH && !CAMBER_COVER_PITCHED
+
+/* Colours that change from pixel to pixel go straight under what the level has. */
+static inline void put_colors(private canvas *c, int i, float16 area, private const float16 *color, int whole) {
+    const int level = c->is_open[2] ? 2 : c->is_open[1] ? 1 : 0;
+    const float16 through = c->level[level][3][i], seen = through * area * c->now.a;
+    c->level[level][0][i] += seen * c->veil * color[0] * c->now.r;
+    c->level[level][1][i] += seen * c->veil * color[1] * c->now.g;
+    c->level[level][2][i] += seen * c->veil * color[2] * c->now.b;
+    if (c->now.mode == CAMBER_INK_MASKED) {
+        c->mask[i] += seen * c->veil * color[3];
+        c->level[level][3][i] = through * (1.0f - area);
+    } else {
+        c->level[level][3][i] = through * (1.0f - area * c->now.a * color[3]);
+    }
+    c->touched[level] |= 1ul << i;
+    if (++c->puts[i] % CAMBER_LOOK_EVERY && !whole)
+        return;
+    if (most_of(c->level[level][3][i]) < CAMBER_NOTHING_PX)
+        *(level == 0 ? &c->done : &c->filled) |= 1ul << i;
+}
+
+/* As draw_segment. */
+static __attribute__((noinline)) void draw_rich(private canvas *c, private const places *at, global const float *shape,
+                                                place where, global const float *measure, global const float *tail) {
+    cell_box box;
+    cell_sets sets;
+    camber_pen p;
+    camber_extras e;
+    pixel_set set;
+    const ulong cells = box_of(shape, where, &box) & ~(c->done | c->filled);
+    if (!cells)
+        return;
+    camber_pen_of(shape, as_uint(shape[CAMBER_SHAPE_FLAGS]), &p);
+    camber_extras_of(&c->more, &p, measure, tail, &e);
+    sort_cells(&p, at, box, cells, &sets);
+    for (ulong left = sets.meets; left; left &= left - 1) {
+        const int i = lowest(left);
+        const float qx = where.left + (float)(CAMBER_CELL_PX * (i % CAMBER_TILE_CELLS)) + 0.5f * CAMBER_CELL_PX - p.ax;
+        const float qy = where.top + (float)(CAMBER_CELL_PX * (i / CAMBER_TILE_CELLS)) + 0.5f * CAMBER_CELL_PX - p.ay;
+        const float middle = qx * p.ux + qy * p.uy, aside = qy * p.ux - qx * p.uy;
+        const camber_u32 far = sets.inside >> i & 1ul ? CAMBER_CELL_INSIDE : CAMBER_CELL_ASIDE;
+        const camber_u32 meets =
+            camber_extras_meet(&p, &e, sets.nears >> i & 1ul ? CAMBER_CELL_PARTLY : far, middle, aside);
+        float16 area = (float16)(1.0f);
+        if (meets == CAMBER_CELL_OUTSIDE)
+            continue;
+        find_pixels(&p, at, i, &set);
+        if (meets != CAMBER_CELL_INSIDE)
+            area = camber_extras_area(&p, &e, meets == CAMBER_CELL_ASIDE, set.x, set.y, set.fa, set.fb);
+        if (e.features & CAMBER_FEATURE_RAMP) {
+            float low, high;
+            float16 color[4];
+            camber_extras_range(&p, &e, middle, &low, &high);
+            camber_ramp_over(&p, &e, camber_extras_along(&p, &e, set.x), low, high, color);
+            put_colors(c, i, area, color, meets == CAMBER_CELL_INSIDE);
+            continue;
+        }
+        c->inked |= 1ul << i;
+        if (meets == CAMBER_CELL_INSIDE)
+            put_whole(c, 1ul << i);
+        else
+            put_area(c, &p, i, area, set.x, set.y);
+    }
+}
+
+#endif

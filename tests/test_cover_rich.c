@@ -184,7 +184,8 @@ static void test_twin(void **state) {
 
 /* ---- GL ---- */
 
-/* A group's layer is rounded to 8 bits twice more. On bisectors single pixels belong to another segment than GL's triangles say, whose dash, band or colour is another.
+/* A group's layer is rounded to 8 bits twice more. On bisectors single pixels belong to another segment than GL's
+ * triangles say, whose dash, band or colour is another.
  */
 enum { PIXELS_PAST_8 = 20 };
 static void compare_with_gl(const covering *e, drawing *d, const char *what, size_t way) {

@@ -22,6 +22,60 @@ static inline uint4 record_at(global const camber_u32 *records, int i, camber_sh
     return vload4((size_t)at * r.stride, records);
 }
 
+/* Sixteen records from one on, or the nearest there are. */
+typedef struct sixteen {
+    uint16 x, y, join, info;
+} sixteen;
+
+static inline void take_records(global const camber_u32 *records, int first, camber_shape_range r,
+                                private sixteen *taken) {
+    uint16 v[4];
+    if (r.stride == 1 && first >= 0 && first + 16 <= (int)r.record_count) {
+        for (size_t i = 0; i < 4; i++)
+            v[i] = vload16(i, records + CAMBER_RECORD_WORDS * (size_t)first);
+    } else {
+        uint words[64];
+        for (int k = 0; k < 16; k++)
+            vstore4(record_at(records, first + k, r), (size_t)k, words);
+        for (size_t i = 0; i < 4; i++)
+            v[i] = vload16(i, words);
+    }
+    taken->x = (uint16)(v[0].s048c, v[1].s048c, v[2].s048c, v[3].s048c);
+    taken->y = (uint16)(v[0].s159d, v[1].s159d, v[2].s159d, v[3].s159d);
+    taken->join = (uint16)(v[0].s26ae, v[1].s26ae, v[2].s26ae, v[3].s26ae);
+    taken->info = (uint16)(v[0].s37bf, v[1].s37bf, v[2].s37bf, v[3].s37bf);
+}
+
+/* The rows that segments are drawn by: one, mostly. */
+static inline void take_rows(global const float *rows, camber_u32 first, uint16 numbers, int16 drawn,
+                             private float16 *row) {
+    const uint16 known = drawn ? numbers : (uint16)(0u);
+    const uint8 a = max(known.lo, known.hi);
+    const uint4 b = max(a.lo, a.hi);
+    const uint2 c = max(b.lo, b.hi);
+    const uint most = max(c.x, c.y);
+    if (all((known == most) | (drawn == 0))) {
+        const float4 one = vload4(first + most, rows);
+        row[0] = (float16)(one.s0);
+        row[1] = (float16)(one.s1);
+        row[2] = (float16)(one.s2);
+        row[3] = (float16)(one.s3);
+        return;
+    }
+    float words[CAMBER_COVER_ROW_WORDS][16];
+    uint number[16];
+    vstore16(known, 0, number);
+    for (int k = 0; k < 16; k++) {
+        const float4 one = vload4(first + number[k], rows);
+        words[0][k] = one.s0;
+        words[1][k] = one.s1;
+        words[2][k] = one.s2;
+        words[3][k] = one.s3;
+    }
+    for (int k = 0; k < CAMBER_COVER_ROW_WORDS; k++)
+        row[k] = vload16(0, words[k]);
+}
+
 static inline float16 put_together(float16 high, float16 low, int upper) {
     return upper ? (float16)(high.s8, low.s8, high.s9, low.s9, high.sa, low.sa, high.sb, low.sb, high.sc, low.sc,
                              high.sd, low.sd, high.se, low.se, high.sf, low.sf)
@@ -99,43 +153,34 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void shape(global const ca
                                                                  global float *restrict shapes,
                                                                  global camber_u32 *restrict boxes,
                                                                  const camber_shape_range r MEASURES PLANES) {
-    float px[16], py[16], ax[16], ay[16], bx[16], by[16], half_width[16], ink[16];
-    uint join_a[16], join_b[16];
-    int drawn[16];
     const size_t group = get_global_id(0);
     const int first = (int)(r.first + 16 * (uint)group);
-    for (int k = 0; k < 16; k++) {
-        const int i = first + k;
-        const uint4 b = record_at(records, i, r), before = record_at(records, i - 1, r);
-        const uint kind = b.s2 >> CAMBER_JOIN_KIND_SHIFT;
-        const int is_dot = kind == CAMBER_KIND_DOT, again = (before.s3 & CAMBER_RECORD_START) != 0u;
-        const int is_real = (b.s3 & CAMBER_POINT_REAL) != 0u && kind != CAMBER_KIND_GHOST && i < (int)r.end;
-        const int ends = r.strips ? (b.s3 & STARTS) == 0u : (b.s3 & CAMBER_POINT_FIRST) == 0u || is_dot;
-        const uint4 a = is_dot ? b : before;
-        const int from = again && before.s2 >> CAMBER_JOIN_KIND_SHIFT == CAMBER_KIND_TIGHT ? i - 3 : i - 2;
-        const uint4 p = record_at(records, from, r);
-        const float4 row = vload4(r.first_row + (is_real && ends ? b.s3 >> CAMBER_POINT_ROW_SHIFT : 0u), rows);
-        drawn[k] = is_real && ends && row.s0 >= 0.0f ? -1 : 0;
-        half_width[k] = row.s0;
-        ink[k] = row.s3;
+    const int16 lanes = (int16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    sixteen b, before, second, third;
+    float16 row[CAMBER_COVER_ROW_WORDS];
+    take_records(records, first, r, &b);
+    take_records(records, first - 1, r, &before);
+    take_records(records, first - 2, r, &second);
+    take_records(records, first - 3, r, &third);
+    const uint16 kind = b.join >> CAMBER_JOIN_KIND_SHIFT;
+    const int16 is_dot = kind == CAMBER_KIND_DOT, again = (before.info & CAMBER_RECORD_START) != 0u;
+    const int16 is_real =
+        ((b.info & CAMBER_POINT_REAL) != 0u) & (kind != CAMBER_KIND_GHOST) & (lanes < (int16)((int)r.end - first));
+    const int16 ends = (b.info & (r.strips ? STARTS : CAMBER_POINT_FIRST)) == 0u,
+                is_end = r.strips ? ends : ends | is_dot;
+    const int16 from_third = again & (before.join >> CAMBER_JOIN_KIND_SHIFT == CAMBER_KIND_TIGHT);
+    take_rows(rows, r.first_row, b.info >> CAMBER_POINT_ROW_SHIFT, is_real & is_end, row);
 #if CAMBER_COVER_PITCHED
-        const float x = row.s1 - r.eye.x, y = row.s2 - r.eye.y;
+    const float16 x = row[1] - r.eye.x, y = row[2] - r.eye.y;
 #else
-        const float x = row.s1, y = row.s2;
+    const float16 x = row[1], y = row[2];
 #endif
-        px[k] = as_float(p.s0) + x;
-        py[k] = as_float(p.s1) + y;
-        ax[k] = as_float(a.s0) + x;
-        ay[k] = as_float(a.s1) + y;
-        bx[k] = as_float(b.s0) + x;
-        by[k] = as_float(b.s1) + y;
-        join_a[k] = a.s2;
-        join_b[k] = b.s2;
-    }
-    camber_shape s =
-        camber_shape_of(vload16(0, px), vload16(0, py), vload16(0, ax), vload16(0, ay), vload16(0, bx), vload16(0, by),
-                        vload16(0, join_a), vload16(0, join_b), vload16(0, half_width), r.linear);
-    int16 is_drawn = vload16(0, drawn);
+    const float16 px = as_float16(from_third ? third.x : second.x) + x;
+    const float16 py = as_float16(from_third ? third.y : second.y) + y;
+    const float16 ax = as_float16(is_dot ? b.x : before.x) + x, ay = as_float16(is_dot ? b.y : before.y) + y;
+    camber_shape s = camber_shape_of(px, py, ax, ay, as_float16(b.x) + x, as_float16(b.y) + y,
+                                     is_dot ? b.join : before.join, b.join, row[0], r.linear);
+    int16 is_drawn = is_real & is_end & (row[0] >= 0.0f);
     const size_t at = r.base / 16 + group;
 #if CAMBER_COVER_PITCHED
     const camber_shape flat = s;
@@ -153,9 +198,9 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void shape(global const ca
 #elif CAMBER_COVER_RICH
     put_measures(records, first, r, &s, measures + 64 * at);
 #endif
-    float16 words[16] = {s.ax,           s.ay,    s.bx,    s.by,    s.ux,
-                         s.uy,           s.nax,   s.nay,   s.nbx,   s.nby,
-                         s.half_width,   s.reach, s.slope, s.curve, as_float16(s.flags),
-                         vload16(0, ink)};
+    float16 words[16] = {s.ax,         s.ay,    s.bx,    s.by,    s.ux,
+                         s.uy,         s.nax,   s.nay,   s.nbx,   s.nby,
+                         s.half_width, s.reach, s.slope, s.curve, as_float16(s.flags),
+                         row[3]};
     put_shapes(words, shapes + 16 * CAMBER_SHAPE_WORDS * at, CAMBER_SHAPE_WORDS);
 }

@@ -91,9 +91,13 @@ camber_status camber_cover_reserve(camber_cover *cover, int which, size_t size_b
 }
 
 camber_status camber_cover_put(camber_cover *cover, int which, const void *bytes, size_t size_bytes) {
+    const camber_device *device = cover->device;
     const camber_status status = camber_cover_reserve(cover, which, size_bytes);
-    return status == CAMBER_OK ? camber_write_buffer(cover->device, cover->buffers[which], 0, size_bytes, bytes)
-                               : status;
+    if (status != CAMBER_OK)
+        return status;
+    const cl_int code =
+        clEnqueueWriteBuffer(device->queue, cover->buffers[which], CL_FALSE, 0, size_bytes, bytes, 0, NULL, NULL);
+    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(device->context, "clEnqueueWriteBuffer", code);
 }
 
 /* ---- Pixels ---- */

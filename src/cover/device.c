@@ -50,6 +50,20 @@ typedef struct argument {
 #define VALUE(value)                                                                                                   \
     { sizeof(value), &(value) }
 
+/* Waits for what runs: once, as every waking up costs time. */
+static camber_status settle(camber_cover *cover) {
+    camber_status status = CAMBER_OK;
+    for (size_t i = cover->pending_count; i-- > 0;) {
+        const camber_cover_pending *one = cover->pending + i;
+        const cl_int code = clWaitForEvents(1, &one->event);
+        camber_add_ms(one->event, cover->ms + one->stage);
+        if (code != CL_SUCCESS)
+            status = camber_fail_stage(cover->device, "clWaitForEvents", stage_names[one->stage], code);
+    }
+    cover->pending_count = 0;
+    return status;
+}
+
 /* count work-items from the first one on, each a work-group. */
 static camber_status run(camber_cover *cover, int stage, const argument *arguments, cl_uint argument_count,
                          const size_t from_count[2]) {
@@ -69,9 +83,8 @@ static camber_status run(camber_cover *cover, int stage, const argument *argumen
         clEnqueueNDRangeKernel(device->queue, kernels[stage], 1, from_count, from_count + 1, &one, 0, NULL, &event);
     if (code != CL_SUCCESS)
         return camber_fail_stage(device, "clEnqueueNDRangeKernel", stage_names[stage], code);
-    code = clWaitForEvents(1, &event);
-    camber_add_ms(event, cover->ms + stage);
-    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_stage(device, "clWaitForEvents", stage_names[stage], code);
+    cover->pending[cover->pending_count++] = (camber_cover_pending){event, stage};
+    return cover->pending_count == CAMBER_COVER_PENDING ? settle(cover) : CAMBER_OK;
 }
 
 static bool is_pitched(const camber_cover *cover) {
@@ -226,7 +239,8 @@ static kept plan_kept(const camber_cover_scene *scene) {
     return k;
 }
 
-static camber_status cover_tiles(camber_cover *cover, const camber_cover_scene *scene, kept k) {
+static camber_status cover_tiles(camber_cover *cover, const camber_cover_scene *scene, kept k, size_t heavy,
+                                 size_t items) {
     const camber_cover_area *band = &cover->band;
     sheet s = {.left = (float)band->x,
                .top = (float)band->y,
@@ -235,13 +249,10 @@ static camber_status cover_tiles(camber_cover *cover, const camber_cover_scene *
                .above = band->y - cover->area.y,
                .horizon = (float)scene->horizon,
                .eye = scene->eye};
-    size_t heavy = 0, items = 0;
     memcpy(s.background, scene->background, sizeof s.background);
     memcpy(s.sky, scene->sky, sizeof s.sky);
-    camber_status status = list_items(cover, &heavy, &items);
-    if (status == CAMBER_OK)
-        status = camber_cover_reserve(cover, BUFFER_KEPT,
-                                      k.is_first && k.is_last ? 4 : 4 * cover->tile_count * k.tile_words);
+    camber_status status =
+        camber_cover_reserve(cover, BUFFER_KEPT, k.is_first && k.is_last ? 4 : 4 * cover->tile_count * k.tile_words);
     const argument arguments[] = {BUFFER(BUFFER_SHAPES),
                                   BUFFER(BUFFER_STARTS),
                                   BUFFER(BUFFER_LISTS),
@@ -315,9 +326,12 @@ static camber_status draw_slice(camber_cover *cover, const picture *p, kept k, b
         status = start_lists(cover, fits);
     if (status != CAMBER_OK || !*fits)
         return status;
+    size_t heavy, items;
     cover->slice_count++;
-    status = fill_lists(cover, c, chunk_count);
-    return status == CAMBER_OK ? cover_tiles(cover, p->scene, k) : status;
+    status = list_items(cover, &heavy, &items);
+    if (status == CAMBER_OK)
+        status = fill_lists(cover, c, chunk_count);
+    return status == CAMBER_OK ? cover_tiles(cover, p->scene, k, heavy, items) : status;
 }
 
 /* Slice after slice, from the last one to the first, unless the band can be halved where the lists of one do not fit.
@@ -394,6 +408,10 @@ camber_status camber_cover_draw_into(camber_cover *cover, const camber_cover_sce
         status = prepare(cover, scene);
     if (status == CAMBER_OK)
         status = draw_bands(cover, &p);
+    const camber_status settled = settle(cover);
+    if (status != CAMBER_OK)
+        clFinish(cover->device->queue); /* what is put goes with the scene */
+    status = status == CAMBER_OK ? settled : status;
     if (status == CAMBER_OK && p.shape_count > 0)
         camber_program_save(cover->device, cover->program);
     camber_free(context, pieces);

@@ -26,6 +26,13 @@ enum {
 
 enum { STAGE_SHAPE, STAGE_COUNT, STAGE_TOTAL, STAGE_FILL, STAGE_COVER, STAGES };
 
+/* A kernel that was started, and of which stage. */
+typedef struct camber_cover_pending {
+    cl_event event;
+    int stage;
+} camber_cover_pending;
+enum { CAMBER_COVER_PENDING = 32 };
+
 struct camber_cover {
     camber_device *device;
     camber_program *program; /* of the variant */
@@ -42,6 +49,8 @@ struct camber_cover {
     size_t tile_count;
     uint32_t slice_count;
     camber_drawing_memory memory;
+    camber_cover_pending pending[CAMBER_COVER_PENDING];
+    size_t pending_count;
     double ms[STAGES];
 };
 
@@ -49,6 +58,7 @@ struct camber_cover {
 uint64_t camber_cover_most_bytes(const camber_cover *cover);
 /* A buffer of that size at least; what it had is lost where it grows. */
 camber_status camber_cover_reserve(camber_cover *cover, int which, size_t size_bytes);
+/* What is put must stay until what is drawn is waited for. */
 camber_status camber_cover_put(camber_cover *cover, int which, const void *bytes, size_t size_bytes);
 
 #endif

@@ -21,6 +21,8 @@
 #define CAMBER_FEATURE_DASH 4u
 #define CAMBER_FEATURE_TRIM 8u
 #define CAMBER_FEATURE_RAMP 16u
+#define CAMBER_FEATURE_IMAGE 32u
+#define CAMBER_FEATURES_COLORS (CAMBER_FEATURE_RAMP | CAMBER_FEATURE_IMAGE) /* from pixel to pixel */
 #define CAMBER_FEATURES_ALONG (CAMBER_FEATURE_DASH | CAMBER_FEATURE_TRIM | CAMBER_FEATURE_RAMP)
 
 /* Stops of a ramp that a cell looks at; where it sees more, several are taken for one. */
@@ -32,7 +34,7 @@
 typedef struct camber_ink_more {
     camber_u32 features;
     float half_gap, blur, period; /* px */
-    camber_u32 first_dash, dash_count, round_dashes, spare;
+    camber_u32 first_dash, dash_count, round_dashes, image;
     camber_u32 first_stop, stop_count;
     float trim_from, trim_to; /* shares of the line's length */
 } camber_ink_more;

@@ -21,6 +21,38 @@ static inline void put_colors(private canvas *c, int i, float16 area, private co
         *(level == 0 ? &c->done : &c->filled) |= 1ul << i;
 }
 
+/* Multiplies the colours of a line's pixels by its image. */
+static inline void image_line(global const float *tail, private const camber_pen *p, private const camber_image_pen *m,
+                              float16 x, float16 y, private float16 *color) {
+    const float16 none = (float16)(0.0f), past_a = -x - p->round_a, past_b = x - p->length - p->round_b;
+    const float16 arc_a = past_a > 0.0f ? past_a : none, arc_b = past_b > 0.0f ? past_b : none;
+    camber_image_spot at;
+    float16 rgba[4];
+    at.x = x;
+    at.y = y;
+    at.distance = sqrt(arc_a * arc_a + arc_b * arc_b + y * y);
+    at.reach_x = at.reach_y = none;
+    camber_line_image(tail, m, &at, rgba);
+    for (int channel = 0; channel < 4; channel++)
+        color[channel] *= rgba[channel];
+}
+
+/* All cells that are not full. */
+static inline void fill_with_images(private canvas *c, private const places *at, global const float *tail) {
+    camber_image_pen m;
+    camber_image_pen_of(tail, 4u * c->more.image, &m);
+    for (ulong cells = ~c->done; cells; cells &= cells - 1) {
+        const int i = lowest(cells);
+        camber_image_spot spot;
+        float16 rgba[4];
+        spot.x = at->x[i % CAMBER_TILE_CELLS];
+        spot.y = at->y[i / CAMBER_TILE_CELLS];
+        spot.distance = spot.reach_x = spot.reach_y = (float16)(0.0f);
+        camber_fill_image(tail, &m, &spot, rgba);
+        put_colors(c, i, (float16)(1.0f), rgba, 1);
+    }
+}
+
 /* As draw_segment. */
 static __attribute__((noinline)) void draw_rich(private canvas *c, private const places *at, global const float *shape,
                                                 place where, global const float *measure, global const float *tail) {
@@ -28,11 +60,18 @@ static __attribute__((noinline)) void draw_rich(private canvas *c, private const
     cell_sets sets;
     camber_pen p;
     camber_extras e;
+    camber_image_pen image;
     pixel_set set;
     const ulong cells = box_of(shape, where, &box) & ~(c->done | c->filled);
     if (!cells)
         return;
+    if (c->more.features & CAMBER_FEATURE_IMAGE && shape[CAMBER_SHAPE_HALF_WIDTH] >= CAMBER_FILL_PX) {
+        fill_with_images(c, at, tail);
+        return;
+    }
     camber_pen_of(shape, as_uint(shape[CAMBER_SHAPE_FLAGS]), &p);
+    if (c->more.features & CAMBER_FEATURE_IMAGE)
+        camber_image_line_of(tail, 4u * c->more.image, measure, &p, &image);
     camber_extras_of(&c->more, &p, measure, tail, &e);
     sort_cells(&p, at, box, cells, &sets);
     for (ulong left = sets.meets; left; left &= left - 1) {
@@ -49,11 +88,15 @@ static __attribute__((noinline)) void draw_rich(private canvas *c, private const
         find_pixels(&p, at, i, &set);
         if (meets != CAMBER_CELL_INSIDE)
             area = camber_extras_area(&p, &e, meets == CAMBER_CELL_ASIDE, set.x, set.y, set.fa, set.fb);
-        if (e.features & CAMBER_FEATURE_RAMP) {
+        if (e.features & CAMBER_FEATURES_COLORS) {
             float low, high;
-            float16 color[4];
-            camber_extras_range(&p, &e, middle, &low, &high);
-            camber_ramp_over(&p, &e, camber_extras_along(&p, &e, set.x), low, high, color);
+            float16 color[4] = {(float16)(1.0f), (float16)(1.0f), (float16)(1.0f), (float16)(1.0f)};
+            if (e.features & CAMBER_FEATURE_RAMP) {
+                camber_extras_range(&p, &e, middle, &low, &high);
+                camber_ramp_over(&p, &e, camber_extras_along(&p, &e, set.x), low, high, color);
+            }
+            if (e.features & CAMBER_FEATURE_IMAGE)
+                image_line(tail, &p, &image, set.x, set.y, color);
             put_colors(c, i, area, color, meets == CAMBER_CELL_INSIDE);
             continue;
         }

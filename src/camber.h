@@ -293,7 +293,8 @@ typedef enum camber_sharing {
 typedef enum camber_draw {
     CAMBER_DRAW_AUTO = 0, /* GL where there is a surface, else OpenCL */
     CAMBER_DRAW_GL,       /* GLES shaders */
-    CAMBER_DRAW_CL,       /* OpenCL kernels, which need no surface; not yet patterns, pitch */
+    CAMBER_DRAW_CL, /* OpenCL kernels, which need no surface; not yet patterns and what else lines have beside widths
+                     and colours, seen at an angle */
 } camber_draw;
 
 typedef struct camber_renderer_desc {

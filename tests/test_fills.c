@@ -158,6 +158,8 @@ static void test_gl(void **state) {
         for (size_t i = 0; i < PASSES_MAX && only < PASSES_MAX; i++)
             d.passes[i].fill.color.a *= i == only;
         compare_with_gl(s, cl, &d, only < PASSES_MAX ? 0.2 : 0.4);
+        d.frame.pitch_deg = 70; /* a colour is in the sky, too */
+        compare_with_gl(s, cl, &d, only < PASSES_MAX ? 0.2 : 0.4);
         scene_free(&d.lines);
     }
     camber_renderer_destroy(cl);

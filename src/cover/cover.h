@@ -14,7 +14,7 @@
 #include "tess/tess.h"
 
 #include "camber_proof.h"
-#include "kernels/cover_bands.h"
+#include "kernels/cover_images.h"
 #include "kernels/cover_pitch.h"
 
 /* Polylines [first, end) of a mesh, drawn by a table of rows. */

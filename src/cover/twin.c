@@ -224,6 +224,9 @@ typedef struct tool {
     bool tilted;          /* or else */
     camber_pitch_pen tilted_pen;
     camber_eye eye;
+    camber_image_pen image;
+    const float *tail;
+    bool is_fill;
 } tool;
 
 static void look_at_cell(cell *c, int at) {
@@ -301,12 +304,17 @@ static void change_ink(canvas *c, camber_ink next, const camber_ink_more *more) 
 /* Where a pixel lies: along and across the segment, and past its bisectors. */
 typedef struct place {
     float x, y, fa, fb;
+    float px, py; /* in the picture */
 } place;
 
 static place place_at(const camber_pen *p, float px, float py) {
     const float qx = px - p->ax, qy = py - p->ay;
-    return (place){qx * p->ux + qy * p->uy, qy * p->ux - qx * p->uy, qx * p->nax + qy * p->nay,
-                   (px - p->bx) * p->nbx + (py - p->by) * p->nby};
+    return (place){qx * p->ux + qy * p->uy,
+                   qy * p->ux - qx * p->uy,
+                   qx * p->nax + qy * p->nay,
+                   (px - p->bx) * p->nbx + (py - p->by) * p->nby,
+                   px,
+                   py};
 }
 
 static float area_of(const tool *t, place at, camber_u32 meets) {
@@ -355,9 +363,25 @@ static void count_put(const canvas *c, cell *one) {
         one->filled = most_ink(one) < CAMBER_NOTHING_PX;
 }
 
+/* Multiplies a pixel's colour by the image that it shows. */
+static void take_image(const tool *t, place at, float color[4]) {
+    const camber_pen *p = &t->pen;
+    const float past_a = -at.x - p->round_a, past_b = at.x - p->length - p->round_b;
+    const float arc_a = past_a > 0.0f ? past_a : 0.0f, arc_b = past_b > 0.0f ? past_b : 0.0f;
+    const camber_image_spot of_line = {at.x, at.y, sqrtf(arc_a * arc_a + arc_b * arc_b + at.y * at.y), 0.0f, 0.0f};
+    const camber_image_spot of_plane = {at.px, at.py, 0.0f, 0.0f, 0.0f};
+    float rgba[4];
+    if (t->is_fill)
+        camber_fill_image(t->tail, &t->image, &of_plane, rgba);
+    else
+        camber_line_image(t->tail, &t->image, &of_line, rgba);
+    for (int k = 0; k < 4; k++)
+        color[k] *= rgba[k];
+}
+
 /* Colours that change from pixel to pixel go straight under what the level has. */
-static void put_ramp(canvas *c, const tool *t, cell *one, const place places[CELL_PIXELS], float middle,
-                     camber_u32 meets) {
+static void put_colors(canvas *c, const tool *t, cell *one, const place places[CELL_PIXELS], float middle,
+                       camber_u32 meets) {
     const int at = c->is_open[2] ? 2 : c->is_open[1] ? 1 : 0;
     const bool masked = c->now.mode == CAMBER_INK_MASKED;
     float low, high, most = 0.0f;
@@ -365,9 +389,14 @@ static void put_ramp(canvas *c, const tool *t, cell *one, const place places[CEL
     for (int i = 0; i < CELL_PIXELS; i++) {
         pixel *p = one->pixels + i;
         level *l = p->levels + at;
-        float color[4];
-        camber_ramp_over(&t->pen, &t->extras, camber_extras_along(&t->pen, &t->extras, places[i].x), low, high, color);
-        const float area = area_of(t, places[i], meets), through = l->through, seen = through * area * c->now.a;
+        float color[4] = {1.0f, 1.0f, 1.0f, 1.0f};
+        const float area = area_of(t, places[i], meets);
+        if (t->extras.features & CAMBER_FEATURE_RAMP)
+            camber_ramp_over(&t->pen, &t->extras, camber_extras_along(&t->pen, &t->extras, places[i].x), low, high,
+                             color);
+        if (t->extras.features & CAMBER_FEATURE_IMAGE)
+            take_image(t, places[i], color);
+        const float through = l->through, seen = through * area * c->now.a;
         l->color[0] += seen * c->veil * color[0] * c->now.r;
         l->color[1] += seen * c->veil * color[1] * c->now.g;
         l->color[2] += seen * c->veil * color[2] * c->now.b;
@@ -401,8 +430,8 @@ static void draw_cell(canvas *c, const tool *t, cell *one, float px, float py) {
         return;
     for (int i = 0; i < CELL_PIXELS; i++)
         places[i] = place_at(&t->pen, px + (float)(i % CAMBER_CELL_PX), py + (float)(i / CAMBER_CELL_PX));
-    if (t->extras.features & CAMBER_FEATURE_RAMP) {
-        put_ramp(c, t, one, places, place_at(&t->pen, px + to_middle, py + to_middle).x, meets);
+    if (t->extras.features & CAMBER_FEATURES_COLORS) {
+        put_colors(c, t, one, places, place_at(&t->pen, px + to_middle, py + to_middle).x, meets);
         return;
     }
     one->inked = true;
@@ -491,9 +520,13 @@ static void draw_segment(canvas *c, const twin *t, uint32_t which, float left, f
         camber_pitch_pen_of(by.eye, shape, stages->planes + (size_t)CAMBER_PLANE_WORDS * which, flags, &by.tilted_pen);
     else
         camber_pen_of(shape, flags, &by.pen);
+    const float *measure = stages->measures + CAMBER_SHAPE_MEASURES * (size_t)which;
+    by.tail = t->scene->tail;
+    by.is_fill = shape[CAMBER_SHAPE_HALF_WIDTH] >= CAMBER_FILL_PX;
     if (c->more.features)
-        camber_extras_of(&c->more, &by.pen, stages->measures + CAMBER_SHAPE_MEASURES * (size_t)which, t->scene->tail,
-                         &by.extras);
+        camber_extras_of(&c->more, &by.pen, measure, by.tail, &by.extras);
+    if (c->more.features & CAMBER_FEATURE_IMAGE)
+        camber_image_line_of(by.tail, 4u * c->more.image, measure, &by.pen, &by.image);
     draw_cells(c, shape, &by, left, top);
 }
 

@@ -19,9 +19,11 @@ typedef struct tables {
     camber_ink_more *more; /* as many */
     camber_cover_run *runs;
     size_t row_count, row_capacity, ink_count, ink_capacity, more_capacity, run_count, run_capacity;
-    bool is_rich;        /* one of these has features */
+    bool is_rich; /* one of these has features */
+    camber_covered_images images;
     uint32_t layers;     /* so far */
     float background[4]; /* premultiplied: what lies below the first run */
+    float sky[4];        /* as well: what is seen where nothing but colours is drawn */
     /* The last table of what is not layered: the runs of a pass share it. */
     const camber_pass *pass;
     size_t first_row;
@@ -33,6 +35,7 @@ typedef struct tables {
 } tables;
 
 static void free_tables(tables *t) {
+    camber_free(t->context, t->images.held);
     camber_free(t->context, t->runs);
     camber_free(t->context, t->more);
     camber_free(t->context, t->inks);
@@ -108,6 +111,10 @@ static camber_status fill_more(tables *t, const camber_pass *pass, uint32_t row,
         more->first_stop = (uint32_t)texel[0];
         more->stop_count = (uint32_t)texel[1];
     }
+    if (paint->pattern && status == CAMBER_OK) {
+        more->features |= CAMBER_FEATURE_IMAGE;
+        status = camber_covered_put_line(t->renderer, &t->images, pass, paint, &more->image);
+    }
     return status;
 }
 
@@ -133,11 +140,12 @@ static camber_status fill_table(tables *t, const camber_run *run, camber_ink ink
         row[0] = -1.0f;
         if (!camber_pass_draws(pass, (uint32_t)i) || (run->one_alpha && paint->color.a != run->alpha))
             continue;
-        const camber_color color = united ? run->color : paint->color;
+        static const camber_color image_alone = {1, 1, 1, 1};
+        const camber_color color = paint->pattern ? image_alone : united ? run->color : paint->color;
         ink.r = color.r;
         ink.g = color.g;
         ink.b = color.b;
-        ink.a = united ? run->alpha * run->opacity : run->layered && run->one_alpha ? 1.0f : color.a;
+        ink.a = united ? run->alpha * run->opacity : run->layered && run->one_alpha ? 1.0f : paint->color.a;
         ink.mode = united ? CAMBER_INK_UNION : run->masked ? CAMBER_INK_MASKED : CAMBER_INK_OVER;
         camber_ink_more more;
         camber_status status = fill_more(t, pass, (uint32_t)i, &more);
@@ -154,15 +162,16 @@ static camber_status fill_table(tables *t, const camber_run *run, camber_ink ink
 }
 
 static camber_status refuse(camber_context *context) {
-    return camber_fail(context, CAMBER_ERROR_ARGUMENT,
-                       "patterns, and dashes, gaps, blur, trims and gradients seen at an angle are not drawn in OpenCL "
-                       "yet; draw with GL (--draw gl)");
+    return camber_fail(
+        context, CAMBER_ERROR_ARGUMENT,
+        "dashes, gaps, blur, trims, gradients and patterns seen at an angle are not drawn in OpenCL yet; "
+        "draw with GL (--draw gl)");
 }
 
 static camber_status add_run(tables *t, const camber_run *run, camber_ink ink) {
     if (run->alpha <= 0.0f)
         return CAMBER_OK;
-    if (run->bands & CAMBER_VARIANT_PATTERN || (run->bands && t->pitched))
+    if (t->pitched && run->bands)
         return refuse(t->context);
     const bool shares = !run->layered && t->pass && t->pass == run->pass && ink.group == 0;
     camber_status status = CAMBER_OK;
@@ -176,14 +185,13 @@ static camber_status add_run(tables *t, const camber_run *run, camber_ink ink) {
 }
 
 /* A row by itself, of a fill. */
-static camber_status add_fill_row(tables *t, const camber_ink *ink) {
+static camber_status add_fill_row(tables *t, const camber_ink *ink, const camber_ink_more *more) {
     uint32_t number = 0;
     if (!camber_grow(t->context, &t->rows, &t->row_capacity, t->row_count + 1,
                      CAMBER_COVER_ROW_WORDS * sizeof *t->rows) ||
         !camber_grow(t->context, &t->runs, &t->run_capacity, t->run_count + 1, sizeof *t->runs))
         return CAMBER_ERROR_MEMORY;
-    const camber_ink_more more = {0};
-    const camber_status status = use_ink(t, 0, ink, &more, &number);
+    const camber_status status = use_ink(t, 0, ink, more, &number);
     if (status != CAMBER_OK)
         return status;
     float *row = t->rows + CAMBER_COVER_ROW_WORDS * t->row_count;
@@ -194,24 +202,48 @@ static camber_status add_fill_row(tables *t, const camber_ink *ink) {
     return CAMBER_OK;
 }
 
+/* What lies below is not seen. */
+static void hide_runs(tables *t) {
+    t->run_count = 0;
+    t->is_rich = false;
+}
+
+static camber_status add_images(tables *t, const camber_pass *pass, float alpha) {
+    const camber_ink ink = {.r = 1, .g = 1, .b = 1, .a = alpha};
+    camber_ink_more more = {.features = CAMBER_FEATURE_IMAGE};
+    bool is_opaque = false;
+    const camber_status status = camber_covered_put_fill(t->renderer, &t->images, pass, &more.image, &is_opaque);
+    if (status != CAMBER_OK)
+        return status;
+    if (is_opaque && alpha >= 1.0f)
+        hide_runs(t);
+    return add_fill_row(t, &ink, &more);
+}
+
+static void put_over(const float color[4], float below[4]) {
+    for (int i = 0; i < 4; i++)
+        below[i] = color[i] + (1.0f - color[3]) * below[i];
+}
+
 /* What an opaque colour hides is not drawn; below all lines a fill is part of the background. */
 static camber_status add_fill(tables *t, const camber_pass *pass) {
+    static const camber_ink_more no_more = {0};
     const camber_color c = pass->fill.color;
     const float a = c.a * (pass->opacity > 0.0f ? pass->opacity : 1.0f);
     const float color[4] = {c.r * a, c.g * a, c.b * a, a};
     const camber_ink ink = {.r = c.r, .g = c.g, .b = c.b, .a = a};
-    if (pass->fill.pattern)
-        return refuse(t->context);
     if (!(a > 0.0f))
         return CAMBER_OK;
-    if (a >= 1.0f) {
-        t->run_count = 0;
-        t->is_rich = false;
-    }
+    if (pass->fill.pattern && t->pitched)
+        return refuse(t->context);
+    if (pass->fill.pattern)
+        return add_images(t, pass, a);
+    put_over(color, t->sky);
+    if (a >= 1.0f)
+        hide_runs(t);
     if (t->run_count > 0)
-        return add_fill_row(t, &ink);
-    for (int i = 0; i < 4; i++)
-        t->background[i] = color[i] + (1.0f - a) * t->background[i];
+        return add_fill_row(t, &ink, &no_more);
+    put_over(color, t->background);
     return CAMBER_OK;
 }
 
@@ -355,16 +387,14 @@ static camber_status draw_areas(camber_renderer *renderer, const camber_frame *f
     return status;
 }
 
-static void pitch_scene(const camber_frame *frame, camber_cover_scene *scene) {
+static void pitch_scene(const camber_frame *frame, const float sky[4], camber_cover_scene *scene) {
     if (!(frame->pitch_deg > 0.0))
         return;
     const camber_perspective p = camber_perspective_of(frame->pitch_deg, frame->height);
-    const camber_color back = frame->background;
     scene->pitched = true;
     scene->eye = (camber_eye){0.5f * (float)frame->width, 0.5f * (float)frame->height, (float)p.cosine, (float)p.fall};
     scene->horizon = camber_perspective_horizon(&p, frame->height);
-    const float sky[4] = {back.r * back.a, back.g * back.a, back.b * back.a, back.a};
-    memcpy(scene->sky, sky, sizeof sky);
+    memcpy(scene->sky, sky, sizeof scene->sky);
 }
 
 static camber_status render_to(camber_renderer *renderer, const camber_frame *frame, target *to,
@@ -373,8 +403,10 @@ static camber_status render_to(camber_renderer *renderer, const camber_frame *fr
     tables t = {.renderer = renderer,
                 .pitched = frame->pitch_deg > 0.0,
                 .context = renderer->share.device->context,
+                .images = {.nearest = 1.0},
                 .background = {back.r * back.a, back.g * back.a, back.b * back.a, back.a}};
     camber_frame_stats made = {0};
+    memcpy(t.sky, t.background, sizeof t.sky);
     camber_tail_forget(renderer);
     camber_status status = make_tables(&t, frame);
     camber_cover_scene scene = {
@@ -390,7 +422,7 @@ static camber_status render_to(camber_renderer *renderer, const camber_frame *fr
         .tail = renderer->tail_texels,
         .tail_count = renderer->tail_count,
     };
-    pitch_scene(frame, &scene);
+    pitch_scene(frame, t.sky, &scene);
     if (status == CAMBER_OK)
         status = draw_areas(renderer, frame, &scene, to, &made);
     if (status == CAMBER_OK)

@@ -301,6 +301,32 @@ typedef camber_status camber_area_fn(camber_renderer *renderer, const struct cam
 camber_status camber_covered_each(camber_renderer *renderer, const camber_frame *frame, camber_area_fn *draw,
                                   void *user);
 
+/* covered_images.c: images in the tail. */
+typedef struct camber_covered_image {
+    const uint8_t *rgba; /* of the caller */
+    size_t stride_bytes;
+    uint32_t px[2];
+    camber_texels size;
+    size_t first; /* texel of the tail, each of which holds four of the image */
+    bool is_opaque;
+} camber_covered_image;
+
+typedef struct camber_covered_images {
+    camber_covered_image *held;
+    size_t count, capacity;
+    size_t last_place; /* texel of the tail. 0: none yet */
+    double nearest;    /* px of the picture a px of the plane, at most */
+} camber_covered_images;
+
+enum { CAMBER_COVERED_TAIL_MAX = 1 << 24 }; /* texels: floats number them */
+
+/* The image of a row, of a fill: place is the texel that an ink names. Return CAMBER_ERROR_LIMIT where the tail is
+ * full, CAMBER_ERROR_MEMORY. */
+camber_status camber_covered_put_line(camber_renderer *renderer, camber_covered_images *images, const camber_pass *pass,
+                                      const camber_paint *paint, uint32_t *place);
+camber_status camber_covered_put_fill(camber_renderer *renderer, camber_covered_images *images, const camber_pass *pass,
+                                      uint32_t *place, bool *is_opaque);
+
 /* rows.c: the row texture. */
 bool camber_renderer_holds_rows(const camber_renderer *renderer, size_t row_count, size_t tail_texels);
 camber_status camber_renderer_reserve_rows(camber_renderer *renderer, size_t row_count);
@@ -312,6 +338,8 @@ camber_status camber_renderer_upload_rows(camber_renderer *renderer, size_t row_
 /* tail.c: what rows name, in the texels behind the tables, the first of which lies here. */
 GLint camber_renderer_tail(size_t row_count);
 void camber_tail_forget(camber_renderer *renderer);
+/* So many texels more, all 0, until the next call. NULL: no memory. */
+float *camber_tail_add(camber_renderer *renderer, size_t texels);
 /* Puts a paint's dash or ramp into the tail, and into a texel of its row where that is. */
 /* Texels that the pass's dashes and ramps may take. */
 size_t camber_tail_need(const camber_pass *pass);

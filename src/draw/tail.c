@@ -3,6 +3,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 GLint camber_renderer_tail(size_t row_count) {
     return (GLint)(CAMBER_TEXELS_A_ROW * row_count);
@@ -15,6 +16,15 @@ void camber_tail_forget(camber_renderer *renderer) {
 static bool make_room(camber_renderer *renderer, size_t texels) {
     return camber_grow(renderer->share.device->context, &renderer->tail_texels, &renderer->tail_capacity,
                        renderer->tail_count + texels, 4 * sizeof *renderer->tail_texels);
+}
+
+float *camber_tail_add(camber_renderer *renderer, size_t texels) {
+    if (!make_room(renderer, texels))
+        return NULL;
+    float *added = renderer->tail_texels + 4 * renderer->tail_count;
+    memset(added, 0, 4 * texels * sizeof *added);
+    renderer->tail_count += texels;
+    return added;
 }
 
 /* ---- Dashes: a texel each, from where to where it goes ---- */

@@ -545,7 +545,9 @@ CAMBER_FN void camber_cells_meet(const camber_pen *p, camber_real mx, camber_rea
     const camber_real qx = mx - p->ax, qy = my - p->ay, rx = mx - p->bx, ry = my - p->by;
     const camber_real x = qx * p->ux + qy * p->uy, aside = CAMBER_FABS(qy * p->ux - qx * p->uy);
     const camber_real fa = qx * p->nax + qy * p->nay, fb = rx * p->nbx + ry * p->nby;
-    cells->meets = (aside < p->half_width + p->extent + reach) & (fa >= far_a) & (fb < far_b);
+    /* A join bends the edge outwards by so much: camber_pen_off. */
+    const float bend_a = CAMBER_FABS(p->sa), bend_b = CAMBER_FABS(p->sb), bend = 0.25f * CAMBER_MORE(bend_a, bend_b);
+    cells->meets = (aside < p->half_width + p->extent + reach + bend) & (fa >= far_a) & (fb < far_b);
     cells->nears = (x < near) | (x > p->length - near) | (fa < reach_a + 0.5f) | (fb > -0.5f - reach_b);
     cells->inside = aside <= p->half_width - p->extent - reach;
 }

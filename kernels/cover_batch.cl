@@ -153,7 +153,8 @@ static inline void find_meetings(private const pens *p, private const boxes *b, 
     const int16 sharp = (as_uint16(WORD(p, FLAGS)) & CAMBER_SHAPE_SHARP) != 0u;
     const float16 near = sharp ? (float16)(CAMBER_NEVER_PX) : reach + 0.75f;
     const float16 near_b = p->length - near, near_fa = reach_a + 0.5f, near_fb = -0.5f - reach_b;
-    const float16 wide = h + p->extent + reach, full = h - p->extent - reach;
+    const float16 bend_a = fabs(p->sa), bend_b = fabs(p->sb), bend = 0.25f * (bend_a > bend_b ? bend_a : bend_b);
+    const float16 wide = h + p->extent + reach + bend, full = h - p->extent - reach;
     const float16 left = (float)CAMBER_CELL_PX * convert_float16(b->x) + (where.left + 0.5f * CAMBER_CELL_PX);
     const float16 top = (float)CAMBER_CELL_PX * convert_float16(b->y) + (where.top + 0.5f * CAMBER_CELL_PX);
     const uint16 none = (uint16)(0u);

@@ -11,6 +11,7 @@ typedef struct camber_chunks {
 #define LAST_X(box) ((box) >> 16 & 255u)
 #define LAST_Y(box) ((box) >> 24)
 
+#if CAMBER_LANES == 16
 kernel __attribute__((reqd_work_group_size(1, 1, 1))) void count(global const float *restrict shapes,
                                                                  global const camber_u32 *restrict boxes,
                                                                  global camber_u32 *restrict counts,
@@ -32,3 +33,4 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void count(global const fl
         }
     }
 }
+#endif

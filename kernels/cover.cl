@@ -40,6 +40,7 @@ typedef struct camber_slice {
 #define KEPT_INK 0x3fffffffu
 #define KEPT_FULL 0x3ffffffeu /* a row of cells that nothing shows through */
 
+#if CAMBER_LANES == 16
 typedef struct canvas {
     float16 ink[4][CELLS];           /* let through; of unions the sums of areas and of normals besides */
     float16 level[LEVELS][4][CELLS]; /* red, green, blue; let through */
@@ -668,3 +669,4 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void cover(
     write_cells(&c, pixels + ((size_t)row * CAMBER_TILE_PX + s.above) * s.stride + (size_t)column * CAMBER_TILE_PX, s,
                 top, first, last);
 }
+#endif

@@ -15,16 +15,21 @@
 #define CAMBER_COVER_PITCHED 0
 #endif
 
-#ifdef __OPENCL_VERSION__
+/* Of the work-items of a device: 16 where one takes the pixels of a cell, 1 where it takes a pixel, as in the twin. */
+#ifndef CAMBER_LANES
+#define CAMBER_LANES 16
+#endif
+
+#if defined(__OPENCL_VERSION__) && CAMBER_LANES == 16
 typedef float16 camber_real;
 typedef uint16 camber_words;
 typedef int16 camber_mask;
 #define CAMBER_TURNS(joins) convert_float16(as_int16((joins) << 16) >> 16)
 #else
 typedef float camber_real;
-typedef uint32_t camber_words;
+typedef camber_u32 camber_words;
 typedef int camber_mask;
-#define CAMBER_TURNS(joins) ((float)(int16_t)(uint16_t)((joins)&0xffffu))
+#define CAMBER_TURNS(joins) ((float)((camber_i32)((joins) << 16) >> 16))
 #endif
 #define CAMBER_REAL(x) ((camber_real)(x))
 #define CAMBER_MORE(a, b) ((a) > (b) ? (a) : (b))
@@ -215,12 +220,12 @@ CAMBER_FN camber_words camber_shape_box(const camber_shape *s, camber_mask drawn
     const camber_mask meets = drawn & (x0 < right + 1.0f) & (y0 < bottom + 1.0f) & (x1 >= 0.0f) & (y1 >= 0.0f);
     const camber_real fx = CAMBER_MORE(x0, none), fy = CAMBER_MORE(y0, none);
     const camber_real lx = x1 < right ? x1 : CAMBER_REAL(right), ly = y1 < bottom ? y1 : CAMBER_REAL(bottom);
-#ifdef __OPENCL_VERSION__
+#if defined(__OPENCL_VERSION__) && CAMBER_LANES == 16
     const camber_words box = convert_uint16(meets ? fx : none) | convert_uint16(meets ? fy : none) << 8 |
                              convert_uint16(meets ? lx : none) << 16 | convert_uint16(meets ? ly : none) << 24;
 #else
-    const camber_words box = (uint32_t)(meets ? fx : none) | (uint32_t)(meets ? fy : none) << 8 |
-                             (uint32_t)(meets ? lx : none) << 16 | (uint32_t)(meets ? ly : none) << 24;
+    const camber_words box = (camber_u32)(meets ? fx : none) | (camber_u32)(meets ? fy : none) << 8 |
+                             (camber_u32)(meets ? lx : none) << 16 | (camber_u32)(meets ? ly : none) << 24;
 #endif
     return meets ? box : (camber_words)(CAMBER_NO_BOX);
 }

@@ -5,10 +5,10 @@
 
 #include "cover.h"
 
-#ifdef __OPENCL_VERSION__
+#if defined(__OPENCL_VERSION__) && CAMBER_LANES == 16
 #define CAMBER_TRUNCATE(x) convert_float16(convert_int16(x))
 #else
-#define CAMBER_TRUNCATE(x) ((float)(int32_t)(x))
+#define CAMBER_TRUNCATE(x) ((float)(camber_i32)(x))
 #endif
 
 /* Words of a segment's measure: how far along its line A lies, px; how much farther a px along it; the line's length.

@@ -1,6 +1,7 @@
 /* What cover.cl draws of segments of one ink that is no union: sixteen at a time. What is to be known of them is worked
  * out side by side, as camber_pen_of and camber_cells_meet say it of one, to the same bits. Then their cells follow
  * each other in one list: a processor that guesses which way branches go guesses few of them wrong. */
+#if CAMBER_LANES == 16
 #define ITEM_NEAR 64u
 #define ITEM_INSIDE 128u
 #define ITEM_LANE 8
@@ -284,3 +285,4 @@ static __attribute__((noinline)) void draw_batch(private canvas *c, private cons
     draw_list(c, at, &p, &list, shapes, b->which);
     b->count = 0;
 }
+#endif

@@ -5,6 +5,8 @@
 
 #include "cover_bands.h"
 
+#if CAMBER_LANES == 16 /* as rich frames are drawn */
+
 /* Where an ink names an image, the tail has
  *     the first word of its texels in the tail, texels a row and rows (the bits of unsigned integers); px along a line
  *     of a fill: where the corner of one image lies, px of the picture; images a px to the right, along their x and y
@@ -203,5 +205,7 @@ CAMBER_FN void camber_fill_image(CAMBER_GLOBAL const float *tail, const camber_i
     for (int k = 0; k < 4; k++)
         rgba[k] += (m->mean[k] * (1.0f / 255.0f) - rgba[k]) * share;
 }
+
+#endif
 
 #endif

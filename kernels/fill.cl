@@ -2,6 +2,7 @@
  * say, so that the order is the same however many there are.
  * Reads shapes, boxes[shape_count], starts[tiles]; counts[chunks * tiles] go on to the chunk's end; writes
  * lists[pairs]. */
+#if CAMBER_LANES == 16
 kernel __attribute__((reqd_work_group_size(1, 1, 1))) void fill(global const float *restrict shapes,
                                                                 global const camber_u32 *restrict boxes,
                                                                 global const camber_u32 *restrict starts,
@@ -25,3 +26,4 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void fill(global const flo
         }
     }
 }
+#endif

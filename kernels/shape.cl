@@ -22,6 +22,7 @@ static inline uint4 record_at(global const camber_u32 *records, int i, camber_sh
     return vload4((size_t)at * r.stride, records);
 }
 
+#if CAMBER_LANES == 16
 /* Sixteen records from one on, or the nearest there are. */
 typedef struct sixteen {
     uint16 x, y, join, info;
@@ -204,3 +205,4 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void shape(global const ca
                          row[3]};
     put_shapes(words, shapes + 16 * CAMBER_SHAPE_WORDS * at, CAMBER_SHAPE_WORDS);
 }
+#endif

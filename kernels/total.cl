@@ -1,5 +1,6 @@
 /* total: of each tile the segments in the chunks before, and in all; sixteen tiles a work-item.
  * Turns counts[chunks * tiles] into sums before each chunk; writes totals[tiles]. */
+#if CAMBER_LANES == 16
 kernel __attribute__((reqd_work_group_size(1, 1, 1))) void total(global camber_u32 *restrict counts,
                                                                  global camber_u32 *restrict totals,
                                                                  const camber_u32 tiles, const camber_u32 chunks) {
@@ -13,3 +14,4 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void total(global camber_u
     }
     vstore16(sum, at, totals);
 }
+#endif

@@ -195,8 +195,8 @@ typedef struct camber_device_desc {
     /* Of the devices that match, in the order of camber_device_list, the one to open: 1 is the first. 0: the first
      * GPU, else the first CPU. */
     uint32_t number;
-    /* Points a work-group takes: 64, 128 or 256, eight a work-item. 0: 256, and on a CPU one work-item takes them. What
-     * comes out is the same bytes. */
+    /* Points a work-group takes: 64, 128 or 256, eight a work-item, and what draws has a work-item a pixel. 0: 256, and
+     * on a CPU one work-item takes them, and sixteen pixels. What comes out is the same bytes. */
     uint32_t work_group_size;
     /* No buffer is made larger: a mesh that needs more is made in parts of whole polylines, and what is read or drawn
      * of it is the same. 4096 at least. 0, or more than that: the device's own limit, and below 2^31 for GL's sake. */

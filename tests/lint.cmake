@@ -46,6 +46,12 @@ foreach(variant 0,0 1,0 1,1)
     DEPENDS ${CMAKE_BINARY_DIR}/src/cover.cl)
 endforeach()
 
+lint_step(kernels_cover_lanes
+  COMMAND ${CLANG} -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only -Wall -Wextra -Werror
+          -Wno-unused-function -Wno-unused-parameter -Wno-ignored-pragmas -D__OPENCL_VERSION__=120 -DCAMBER_LANES=1
+          ${CMAKE_BINARY_DIR}/src/cover.cl
+  DEPENDS ${CMAKE_BINARY_DIR}/src/cover.cl)
+
 foreach(header camber.h camber_map.h)
   lint_step(c_${header} COMMAND ${CLANG} -std=c11 -pedantic -Wall -Wextra -Werror -fsyntax-only -x c ${PROJECT_SOURCE_DIR}/src/${header}
             DEPENDS ${PROJECT_SOURCE_DIR}/src/camber.h ${PROJECT_SOURCE_DIR}/src/camber_map.h)

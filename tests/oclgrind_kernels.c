@@ -2,6 +2,7 @@
  * parts, against the twin: small enough for a simulator that checks bounds and races. Run by test_oclgrind.sh; without
  * the simulator it is a quick test of whatever device there is. */
 #include "camber_proof.h"
+#include "tess/tess.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -239,8 +240,19 @@ static int check_offsets(camber_context *context, camber_mesh *mesh, const scene
     return failures;
 }
 
-/* A picture of the lines, opaque and in a united layer over a veil, by the kernels that draw. */
-static int check_drawing(camber_device *device, camber_context *context, const scene *s, const camber_stroke *strokes) {
+/* ---- What draws ---- */
+
+enum { PICTURE_WIDTH = 150, PICTURE_HEIGHT = 130 };
+typedef uint8_t picture[4 * PICTURE_WIDTH * PICTURE_HEIGHT];
+
+static bool take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
+    memcpy((uint8_t *)user + 4 * PICTURE_WIDTH * (size_t)first_row, rgba, 4 * PICTURE_WIDTH * (size_t)row_count);
+    return true;
+}
+
+/* Pictures of the lines, opaque and in a united layer over a veil, seen from above and at an angle. */
+static bool draw(camber_device *device, camber_context *context, const scene *s, const camber_stroke *strokes,
+                 picture pictures[2]) {
     const camber_polylines_desc desc = {.points = s->points,
                                         .point_count = s->point_count,
                                         .offsets = s->offsets,
@@ -262,17 +274,42 @@ static int check_drawing(camber_device *device, camber_context *context, const s
     const camber_pass passes[] = {{.mesh = mesh, .paints = paints[0], .paint_count = ROWS},
                                   {.fill = {.color = {0, 1, 0, 0.3f}}},
                                   {.mesh = mesh, .paints = paints[1], .paint_count = ROWS, .opacity = 0.5f}};
-    const camber_frame frame = {.width = 150, .height = 130, .passes = passes, .pass_count = 3};
-    camber_frame tilted = frame;
-    tilted.pitch_deg = 75;
-    good = good && camber_render(renderer, &frame, NULL, NULL, NULL) == CAMBER_OK &&
-           camber_render(renderer, &tilted, NULL, NULL, NULL) == CAMBER_OK;
-    if (!good)
-        puts("not ok - drawing");
+    camber_frame frame = {.width = PICTURE_WIDTH, .height = PICTURE_HEIGHT, .passes = passes, .pass_count = 3};
+    good = good && camber_render(renderer, &frame, take_rows, pictures[0], NULL) == CAMBER_OK;
+    frame.pitch_deg = 75;
+    good = good && camber_render(renderer, &frame, take_rows, pictures[1], NULL) == CAMBER_OK;
     camber_mesh_destroy(mesh);
     camber_renderer_destroy(renderer);
     camber_polylines_destroy(polylines);
-    return !good;
+    return good;
+}
+
+/* In the shape for a CPU and in that for a GPU, at once and in slices: the same bytes. */
+static int check_drawing(camber_context *context, scene *s) {
+    static const struct {
+        unsigned lanes;
+        uint64_t largest_bytes;
+    } ways[] = {{16, 0}, {1, 0}, {1, 96 * 1024}};
+    static picture first[2], seen[2];
+    camber_stroke strokes[ROWS];
+    int failures = 0;
+    rotate(s, strokes, 0);
+    for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
+        const camber_device_desc desc = {.largest_buffer_bytes = ways[i].largest_bytes};
+        camber_device *device = NULL;
+        bool good = camber_device_create(context, &desc, NULL, &device) == CAMBER_OK;
+        if (good) {
+            device->lanes = ways[i].lanes;
+            good = draw(device, context, s, strokes, i ? seen : first);
+        }
+        good = good && (i == 0 || memcmp(first, seen, sizeof seen) == 0);
+        if (!good)
+            printf("not ok - drawing with %u lanes, buffers of up to %llu bytes\n", ways[i].lanes,
+                   (unsigned long long)ways[i].largest_bytes);
+        failures += !good;
+        camber_device_destroy(device);
+    }
+    return failures;
 }
 
 static int check_device(camber_context *context, scene *s, const camber_device_desc *desc, size_t rotations) {
@@ -292,8 +329,6 @@ static int check_device(camber_context *context, scene *s, const camber_device_d
             failures += check_methods(context, mesh, s, strokes, what);
             if (rotation == 0)
                 failures += check_networks(context, mesh, s, strokes) + check_offsets(context, mesh, s, strokes);
-            if (rotation == 0 && desc->largest_buffer_bytes == 0)
-                failures += check_drawing(device, context, s, strokes);
         }
     }
     camber_mesh_destroy(mesh);
@@ -324,6 +359,7 @@ int main(void) {
         failures += check_device(context, &s, &whole, ROWS);
         failures += check_device(context, &s, &parts, 1);
     }
+    failures += check_drawing(context, &s);
     camber_context_destroy(context);
     printf("%d failures\n", failures);
     return failures ? 1 : 0;

@@ -357,6 +357,41 @@ static void test_steps(void **state) {
     scene_free(&d.lines);
 }
 
+/* The shape that kernels have on a GPU, on whatever device there is: the twin's bytes, and the same picture, in slices
+ * too. */
+static void test_lanes(void **state) {
+    const covering *e = *state;
+    covering lanes = {.s = {.context = e->s.context}};
+    const camber_device_desc desc = {.work_group_size = 64},
+                             small = {.work_group_size = 64, .largest_buffer_bytes = 300 * 1024};
+    assert_int_equal(camber_device_create(e->s.context, &desc, NULL, &lanes.s.device), CAMBER_OK);
+    assert_int_equal(lanes.s.device->lanes, 1);
+    assert_int_equal(camber_renderer_create(lanes.s.device, NULL, NULL, &lanes.cl), CAMBER_OK);
+    for (int which = 0; which < SCENES; which++) {
+        drawing d = begin_drawing();
+        fill_scene(&d.lines, which);
+        camber_mesh *mesh = make_mesh(&lanes, lanes.cl, &d, (camber_method)(which % 3));
+        compare_with_twin(&lanes, &d, mesh, which % 2, (camber_cover_area){32 * (uint32_t)which, 64, 500, 333});
+        camber_mesh_destroy(mesh);
+        d.passes[0].overlap = which % 2 ? CAMBER_OVERLAP_ACCUMULATE : CAMBER_OVERLAP_UNITE;
+        d.passes[1].opacity = 0.5f;
+        d.passes[2].overlap = which < 2 ? CAMBER_OVERLAP_FLATTEN : CAMBER_OVERLAP_UNITE;
+        d.passes[2].opacity = 0.8f;
+        d.paints[1][3].color.a = 0.3f;
+        picture whole = draw_with(e, e->cl, &d, 3, CAMBER_METHOD_STRIP);
+        assert_int_equal(compare_on(e, &desc, &d, 3, &whole), 1);
+        assert_true(compare_on(e, &small, &d, 3, &whole) > 1);
+        d.frame.pitch_deg = 50; /* which falls back to the other shape */
+        picture tilted = draw_with(e, e->cl, &d, 3, CAMBER_METHOD_STRIP);
+        assert_int_equal(compare_on(e, &desc, &d, 3, &tilted), 1);
+        picture_free(&tilted);
+        picture_free(&whole);
+        scene_free(&d.lines);
+    }
+    camber_renderer_destroy(lanes.cl);
+    camber_device_destroy(lanes.s.device);
+}
+
 /* ---- Loads ---- */
 
 /* All in one tile, and one polyline over all: both take many work-items. */
@@ -408,10 +443,10 @@ static void test_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_twin),    cmocka_unit_test(test_gl),     cmocka_unit_test(test_gl_tilted),
-        cmocka_unit_test(test_areas),   cmocka_unit_test(test_steps),  cmocka_unit_test(test_little_memory),
-        cmocka_unit_test(test_loads),   cmocka_unit_test(test_slices), cmocka_unit_test(test_bound),
-        cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_twin),          cmocka_unit_test(test_lanes),   cmocka_unit_test(test_gl),
+        cmocka_unit_test(test_gl_tilted),     cmocka_unit_test(test_areas),   cmocka_unit_test(test_steps),
+        cmocka_unit_test(test_little_memory), cmocka_unit_test(test_loads),   cmocka_unit_test(test_slices),
+        cmocka_unit_test(test_bound),         cmocka_unit_test(test_refused),
     };
     return COVERING_RUN(tests);
 }

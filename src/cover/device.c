@@ -6,7 +6,11 @@
 /* Segments a chunk, at least; chunks, at most: each has a count of every tile. A tile with more segments than HEAVY is
  * drawn by as many work-items as it has rows of cells. */
 enum { CHUNK = 8192, CHUNKS_MAX = 64, HEAVY = 2048 };
+/* The same where a work-item takes a segment. */
+enum { CHUNK_OF_LANES = 512, CHUNKS_OF_LANES_MAX = 1024 };
 static const char *const stage_names[STAGES] = {"shape", "count", "total", "fill", "cover"};
+/* Work-items a work-group, and how many of those that one takes else: kernels/cover_lanes.cl. */
+static const struct { size_t lanes, items; } lanes_of[STAGES] = {{64, 4}, {32, 1}, {64, 4}, {32, 1}, {128, 1}};
 
 /* As count and fill read them. */
 typedef struct chunks {
@@ -64,23 +68,29 @@ static camber_status settle(camber_cover *cover) {
     return status;
 }
 
-/* count work-items from the first one on, each a work-group. */
+/* Whether the variant has kernels with a work-item a pixel, and the device wants them. */
+static bool has_lanes(const camber_cover *cover) {
+    return cover->variant == 0 && cover->device->lanes == 1;
+}
+
+/* count work-items from the first one on, each a work-group, or what does their work. */
 static camber_status run(camber_cover *cover, int stage, const argument *arguments, cl_uint argument_count,
                          const size_t from_count[2]) {
     const camber_device *device = cover->device;
     const cl_kernel kernels[STAGES] = {cover->program->shape, cover->program->count, cover->program->total,
                                        cover->program->fill, cover->program->cover};
-    const size_t one = 1;
+    const bool by_lanes = has_lanes(cover);
+    const size_t lanes = by_lanes ? lanes_of[stage].lanes : 1, items = by_lanes ? lanes_of[stage].items : 1;
+    const size_t first = from_count[0] * lanes, count = (from_count[1] + items - 1) / items * lanes;
     cl_event event = NULL;
-    if (from_count[1] == 0)
+    if (count == 0)
         return CAMBER_OK;
     for (cl_uint i = 0; i < argument_count; i++) {
         const cl_int code = clSetKernelArg(kernels[stage], i, arguments[i].size_bytes, arguments[i].value);
         if (code != CL_SUCCESS)
             return camber_fail_stage(device, "clSetKernelArg", stage_names[stage], code);
     }
-    cl_int code =
-        clEnqueueNDRangeKernel(device->queue, kernels[stage], 1, from_count, from_count + 1, &one, 0, NULL, &event);
+    cl_int code = clEnqueueNDRangeKernel(device->queue, kernels[stage], 1, &first, &count, &lanes, 0, NULL, &event);
     if (code != CL_SUCCESS)
         return camber_fail_stage(device, "clEnqueueNDRangeKernel", stage_names[stage], code);
     cover->pending[cover->pending_count++] = (camber_cover_pending){event, stage};
@@ -130,11 +140,18 @@ static camber_status make_shapes(camber_cover *cover, const camber_cover_scene *
     return status;
 }
 
+/* Of a tile in a chunk: its count, and a mark where it takes one. */
+static size_t count_words(const camber_cover *cover) {
+    return has_lanes(cover) ? 2 : 1;
+}
+
 static chunks cut_chunks(const camber_cover *cover, uint32_t *chunk_count) {
     const camber_cover_area *area = &cover->band;
+    const bool by_lanes = has_lanes(cover);
+    const size_t least = by_lanes ? CHUNK_OF_LANES : CHUNK, chunks_max = by_lanes ? CHUNKS_OF_LANES_MAX : CHUNKS_MAX;
     const size_t tiles = (cover->tile_count + 15) / 16 * 16,
-                 most = cover->device->info.largest_buffer_bytes / (4 * tiles);
-    const size_t wanted = (cover->shape_count + CHUNK - 1) / CHUNK, bound = most < CHUNKS_MAX ? most : CHUNKS_MAX;
+                 most = cover->device->info.largest_buffer_bytes / (count_words(cover) * 4 * tiles);
+    const size_t wanted = (cover->shape_count + least - 1) / least, bound = most < chunks_max ? most : chunks_max;
     const size_t count = wanted < bound || bound == 0 ? wanted : bound;
     const size_t a_chunk = count ? (cover->shape_count + count - 1) / count : 0;
     *chunk_count = (uint32_t)count;
@@ -147,7 +164,7 @@ static chunks cut_chunks(const camber_cover *cover, uint32_t *chunk_count) {
 
 static camber_status count_tiles(camber_cover *cover, chunks c, uint32_t chunk_count) {
     camber_status status =
-        camber_cover_reserve(cover, BUFFER_COUNTS, 4 * (size_t)c.tiles * (chunk_count ? chunk_count : 1));
+        camber_cover_reserve(cover, BUFFER_COUNTS, count_words(cover) * 4 * c.tiles * (chunk_count ? chunk_count : 1));
     if (status == CAMBER_OK)
         status = camber_cover_reserve(cover, BUFFER_TOTALS, 4 * (size_t)c.tiles);
     const argument count[] = {BUFFER(BUFFER_SHAPES), BUFFER(BUFFER_BOXES), BUFFER(BUFFER_COUNTS), VALUE(c)};
@@ -197,23 +214,27 @@ static camber_status fill_lists(camber_cover *cover, chunks c, uint32_t chunk_co
     return run(cover, STAGE_FILL, fill, 6, (size_t[]){0, chunk_count});
 }
 
-/* What work-items draw: heavy tiles by rows of cells, before all others. */
+static bool is_heavy(const camber_cover *cover, size_t tile) {
+    return has_lanes(cover) || cover->starts[tile + 1] - cover->starts[tile] > HEAVY;
+}
+
+/* What work-items draw: heavy tiles by rows of cells, before all others; where they have a pixel each, all tiles. */
 static camber_status list_items(camber_cover *cover, size_t *heavy_count, size_t *item_count) {
     const size_t tiles = cover->tile_count;
     size_t heavy = 0;
     for (size_t i = 0; i < tiles; i++)
-        heavy += cover->starts[i + 1] - cover->starts[i] > HEAVY;
+        heavy += is_heavy(cover, i);
     const size_t count = tiles + heavy * (CAMBER_TILE_CELLS - 1);
     if (!camber_grow(cover->device->context, &cover->items, &cover->item_capacity, count, 2 * sizeof *cover->items))
         return CAMBER_ERROR_MEMORY;
     size_t by_rows = 0, whole = heavy * CAMBER_TILE_CELLS;
     for (size_t i = 0; i < tiles; i++) {
-        const bool is_heavy = cover->starts[i + 1] - cover->starts[i] > HEAVY;
-        for (uint32_t row = 0; is_heavy && row < CAMBER_TILE_CELLS; row++) {
+        const bool by_row = is_heavy(cover, i);
+        for (uint32_t row = 0; by_row && row < CAMBER_TILE_CELLS; row++) {
             cover->items[2 * by_rows] = (uint32_t)i;
             cover->items[2 * by_rows++ + 1] = row | row << 8;
         }
-        if (!is_heavy) {
+        if (!by_row) {
             cover->items[2 * whole] = (uint32_t)i;
             cover->items[2 * whole++ + 1] = (CAMBER_TILE_CELLS - 1u) << 8;
         }

@@ -227,6 +227,7 @@ static camber_status bound(camber_device *device, const camber_device_desc *desc
                            (unsigned long long)desc->memory_bytes, LEAST_MEMORY_BYTES);
     device->block = size ? size : CAMBER_BLOCK;
     device->item = size == 0 && device->info.type == CAMBER_DEVICE_TYPE_CPU ? device->block : CAMBER_ITEM;
+    device->lanes = device->item == device->block ? 16 : 1;
     uint64_t *largest = &device->info.largest_buffer_bytes;
     if (*largest > LARGEST_BUFFER_BYTES)
         *largest = LARGEST_BUFFER_BYTES;

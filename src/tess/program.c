@@ -192,7 +192,8 @@ camber_status camber_device_cover_program(camber_device *device, unsigned varian
     recipe from = {PROGRAM_COVER, "drawing", camber_cover_kernels_source, camber_cover_kernels_source_size, ""};
     set_options(device, -1, false, &from);
     const size_t used = strlen(from.options);
-    snprintf(from.options + used, sizeof from.options - used, "%s%s",
+    snprintf(from.options + used, sizeof from.options - used, "%s%s%s",
+             variant == 0 && device->lanes == 1 ? " -DCAMBER_LANES=1" : "",
              variant & CAMBER_COVER_RICH ? " -DCAMBER_COVER_RICH=1" : "",
              variant & CAMBER_COVER_PITCHED ? " -DCAMBER_COVER_PITCHED=1" : "");
     return use_program(device, &from, &device->cover[variant], program);

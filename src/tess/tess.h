@@ -22,6 +22,7 @@ struct camber_device {
     bool gl_context;       /* cl was made for a GL context: GL buffers can be shared */
     size_t block;          /* points a work-group: CAMBER_BLOCK as its kernels see it */
     size_t item;           /* points a work-item: CAMBER_ITEM */
+    unsigned lanes;        /* pixels a work-item of what draws: CAMBER_LANES */
     /* Built when first used; the second of two for what is measured. */
     struct camber_program *programs[2][2][3];      /* without and with round limits, by camber_method */
     struct camber_program *network_programs[2][2]; /* the second ones of a camera with a pitch */
@@ -65,7 +66,8 @@ typedef struct camber_program_desc {
     bool round_limits; /* a row has one; without them classify is a fifth faster on PoCL */
 } camber_program_desc;
 
-/* What kernels that draw are built for, as bits: the compiler has each that is set as a macro that is 1. */
+/* What kernels that draw are built for, as bits: the compiler has each that is set as a macro that is 1. All but the
+ * plain ones are built for 16 lanes on every device. */
 #define CAMBER_COVER_RICH 1
 #define CAMBER_COVER_PITCHED 2 /* with RICH */
 

@@ -1,9 +1,10 @@
-/* Tessellation: every stage against what memcpy moves in the same run, and how large the mesh is by method. */
+/* Tessellation: every stage against what memcpy moves in the same run, and how large the mesh is by method. And the
+ * kernels that draw strips, each by itself. */
 #include "bench.h"
 
 #include <string.h>
 
-enum { STAGES = 3, METHODS = 3, WIDTHS = 2 };
+enum { STAGES = 3, METHODS = 3, WIDTHS = 2, DRAWN = 5 };
 
 static const float widths_px[WIDTHS] = {2, 8};
 static const float OFFSET_PX = 6;
@@ -19,6 +20,8 @@ static const struct {
     {"emit", 16, 0},     /* x, y, info, joins; the mesh */
 };
 
+static const char *const drawn_names[DRAWN] = {"shape", "count", "total", "fill", "cover"};
+
 typedef struct trial {
     bench *b;
     const bench_scene *scene;
@@ -29,6 +32,7 @@ typedef struct trial {
     double copied_gb_s; /* by memcpy */
     bench_series series[STAGES], all;
     bench_series offset; /* of lines beside these, before the stages */
+    bench_series drawn[DRAWN];
 } trial;
 
 static camber_status measure_offset(trial *t) {
@@ -62,6 +66,48 @@ static camber_status tessellate(trial *t) {
     return status;
 }
 
+/* The lines in one pass, in the square. */
+static camber_status measure_drawing(trial *t) {
+    bench *b = t->b;
+    const camber_stroke stroke = {.width_px = t->width_px};
+    const camber_tessellation_desc desc = {.strokes = &stroke, .stroke_count = 1};
+    const camber_paint paint = {.width_px = t->width_px, .color = {0, 0, 0, 1}};
+    const camber_pass pass = {.mesh = b->covered, .paints = &paint, .paint_count = 1};
+    const camber_frame frame = {
+        .width = BENCH_SIDE_PX, .height = BENCH_SIDE_PX, .background = {1, 1, 1, 1}, .passes = &pass, .pass_count = 1};
+    camber_status status = camber_tessellate(b->covered, t->polylines, &desc);
+    for (size_t run = 0; run < b->warm_ups + b->runs && status == CAMBER_OK; run++) {
+        camber_frame_stats stats;
+        status = camber_render(b->covering, &frame, NULL, NULL, &stats);
+        if (status != CAMBER_OK || run < b->warm_ups)
+            continue;
+        const double ms[DRAWN] = {stats.shape_ms, stats.count_ms, stats.total_ms, stats.fill_ms, stats.cover_ms};
+        for (int i = 0; i < DRAWN; i++)
+            bench_series_add(t->drawn + i, ms[i]);
+    }
+    return status;
+}
+
+/* Each kernel's share of them all, and figures: how many times what tessellates fits into the lists, and into cover. */
+static void report_drawing(const trial *t, json_t *row, json_t *result) {
+    double ms[DRAWN], sum = 0;
+    char what[64];
+    for (int i = 0; i < DRAWN; i++)
+        sum += ms[i] = bench_series_median(t->drawn + i);
+    if (sum <= 0)
+        return;
+    for (int i = 0; i < DRAWN; i++)
+        json_object_set_new(row, drawn_names[i],
+                            json_pack("{s:o, s:f, s:f}", "ms", bench_ms(ms[i]), "m_segments_s",
+                                      ms[i] > 0 ? (double)t->scene->segments / ms[i] / 1e3 : 0, "share", ms[i] / sum));
+    const double tessellated_ms = bench_series_median(&t->all);
+    snprintf(what, sizeof what, "lists of tiles, %g px", (double)t->width_px);
+    bench_result_add_figure(result,
+                            &(bench_figure){t->scene->key, what, "kernels", tessellated_ms / (sum - ms[4]), false});
+    snprintf(what, sizeof what, "cover, %g px", (double)t->width_px);
+    bench_result_add_figure(result, &(bench_figure){t->scene->key, what, "kernels", tessellated_ms / ms[4], false});
+}
+
 static void add_stage(json_t *row, const char *name, double ms, double points, double bytes, double copied_gb_s) {
     const double gb_s = ms > 0 ? bytes / ms / 1e6 : 0;
     json_object_set_new(row, name,
@@ -93,6 +139,7 @@ static void report(trial *t, json_t *result) {
         bench_result_add_figure(result, &(bench_figure){t->scene->key, "offset of 6 px, 2 px wide", "kernels",
                                                         offset_ms > 0 ? ms / offset_ms : 0, false});
     }
+    report_drawing(t, row, result);
     char what[64];
     snprintf(what, sizeof what, "bytes a segment, %s, %g px", method, (double)t->width_px);
     bench_result_add_figure(result, &(bench_figure){t->scene->key, what, NULL, mesh / segments, true});
@@ -120,6 +167,10 @@ static camber_status measure_scene(bench *b, const bench_scene *scene, void *cop
         t.offset.count = 0;
         if (status == CAMBER_OK && i == 0)
             status = measure_offset(&t);
+        for (int k = 0; k < DRAWN; k++)
+            t.drawn[k].count = 0;
+        if (status == CAMBER_OK && t.method == CAMBER_METHOD_STRIP)
+            status = measure_drawing(&t);
         if (status == CAMBER_OK)
             report(&t, result);
     }
@@ -130,6 +181,25 @@ static camber_status measure_scene(bench *b, const bench_scene *scene, void *cop
 static json_t *measure(bench *b, const char *only) {
     double copied_gb_s = bench_copy_gb_s(b);
     return bench_measure_scenes(b, only, measure_scene, &copied_gb_s);
+}
+
+static void print_drawing(const json_t *result, FILE *to) {
+    size_t i;
+    const json_t *row;
+    fprintf(to, "\nKernels that draw, strips in one pass: ms, M segments a second, their share of all five.\n%-12s %3s",
+            "scene", "px");
+    for (int k = 0; k < DRAWN; k++)
+        fprintf(to, " | %-6s ms   M/s share", drawn_names[k]);
+    fprintf(to, "\n");
+    json_array_foreach(bench_result_rows(result), i, row) if (json_object_get(row, drawn_names[0])) {
+        fprintf(to, "%-12s %3g", bench_text(row, "scene"), bench_number(row, "width_px"));
+        for (int k = 0; k < DRAWN; k++) {
+            const json_t *stage = json_object_get(row, drawn_names[k]);
+            fprintf(to, " | %8.2f %6.1f %4.0f%%", bench_number(stage, "ms"), bench_number(stage, "m_segments_s"),
+                    100 * bench_number(stage, "share"));
+        }
+        fprintf(to, "\n");
+    }
 }
 
 static void print(const json_t *result, FILE *to) {
@@ -155,6 +225,7 @@ static void print(const json_t *result, FILE *to) {
         }
         fprintf(to, "\n");
     }
+    print_drawing(result, to);
     fprintf(to, "\nOffset of 6 px, M points a second:\n");
     json_array_foreach(bench_result_rows(result), i, row) if (json_object_get(row, "offset_m_points_s"))
         fprintf(to, "%-12s %6.1f\n", bench_text(row, "scene"), bench_number(row, "offset_m_points_s"));

@@ -25,8 +25,11 @@ build() {
 
 # Runs validate; its report is in $tmp/tap. One back end and half of the windows tell as much.
 backend=auto
+drawer=()
 validate() {
-    "$tmp/build/src/camber" validate --windows 12 --backend $backend "$@" >"$tmp/tap" 2>"$tmp/stderr"
+    local drawn=(--backend "$backend")
+    [ ${#drawer[@]} = 0 ] || drawn=("${drawer[@]}")
+    "$tmp/build/src/camber" validate --windows 12 "${drawn[@]}" "$@" >"$tmp/tap" 2>"$tmp/stderr"
 }
 
 # What a failure leaves: a picture that the report names, JUnit's failures, and JSON with what differs.
@@ -228,6 +231,44 @@ mutant strip shaders/stroke.frag "translucent ramps that are opaque" 'o_alpha = 
 mutant strip shaders/flatten.frag "alphas that are left beside" 'vec4(layer.rgb, texelFetch' 'vec4(layer.rgb, layer.a) + 0.0 * vec4(texelFetch'
 mutant strip kernels/measure.cl "lengths that are not summed" 'FIRST ? 0 : sum + ' 'FIRST ? 0 : '
 mutant strip kernels/emit.cl "measures of the neighbour" 'as_uint(measures[2 * i])' 'as_uint(measures[2 * i + 2])'
+
+# ---- Kernels that draw: the twin tells ----
+
+drawer=(--draw cl)
+mutant strip kernels/shape.cl "a segment from its end to its end" 'first - 1, r, &before)' 'first, r, &before)'
+mutant strip kernels/shape.cl "a direction that is not that of the segment before" 'first - 2, r, &second)' \
+    'first - 1, r, &second)'
+mutant strip kernels/shape.cl "the table of another pass" 'take_rows(rows, r.first_row,' 'take_rows(rows, 0u * r.first_row,'
+mutant kite kernels/shape.cl "lines that go on to the next" 'r.strips ? STARTS : CAMBER_POINT_FIRST' \
+    'r.strips ? STARTS : 0u'
+mutant strip kernels/count.cl "a tile too few in a span" 'x <= span >> 8' 'x < span >> 8'
+mutant strip kernels/total.cl "sums with what comes behind" 'vstore16(sum, at, of_chunk)' 'vstore16(sum + here, at, of_chunk)'
+mutant strip kernels/fill.cl "lists that are turned over" 'lists[starts[tile] + own[tile]++]' \
+    'lists[starts[tile + 1] - 1u - own[tile]++]'
+mutant strip kernels/cover.cl "cells that are done too early" 'most_of(c->level[0][3][i]) < CAMBER_NOTHING_PX' \
+    'most_of(c->level[0][3][i]) < 0.3f'
+mutant strip kernels/cover.cl "cells that are full too early" 'most_of(through) < CAMBER_NOTHING_PX' 'most_of(through) < 0.5f'
+mutant strip kernels/cover.cl "what lies below shines through" 'c->level[level][3][i] = through * (1.0f - area)' \
+    'c->level[level][3][i] = through'
+mutant strip kernels/cover.cl "groups that are opaque" 'seen = through * opacity' 'seen = through'
+mutant strip kernels/cover.cl "united lines: areas that are not summed" 'c->ink[1][i] += ' 'c->ink[1][i] = '
+mutant strip kernels/cover_batch.cl "cells that are whole too soon" 'full = h - p->extent - reach' 'full = h - p->extent'
+mutant strip kernels/cover.cl "lists that end too soon" 'k-- > starts[tile];' 'k-- > starts[tile] + 1u;'
+
+# ---- Coverage, which these kernels and their twin share: pixels tell ----
+
+mutant strip kernels/cover.h "the slope of an edge" 's.slope = linear ? one : one / p' 's.slope = linear ? one : 0.8f / p'
+mutant strip kernels/cover.h "the corner of a pixel" 'bend * bend * curve' 'bend * curve'
+mutant strip kernels/cover.h "half the width" 'camber_inside_edge(p, half_width - d)' 'camber_inside_edge(p, 0.9f * half_width - d)'
+mutant strip kernels/cover.h "a bend to the wrong side" '*bent = y - bend' '*bent = y + bend'
+mutant strip kernels/cover.h "a cut on the wrong side" '((fb >= 0.0f) & (past_b > p->own_b))' '((fb < 0.0f) & (past_b > p->own_b))'
+mutant strip kernels/cover.h "tight joins: the inner side on the outer one" '*slope = tight ? (s > 0.0f ? more : -more)' \
+    '*slope = tight ? (s > 0.0f ? -more : more)'
+mutant strip kernels/cover.h "caps of thin lines" '0.5f + 0.785398f * half_width + past' '0.5f + past'
+mutant strip kernels/cover.h "united lines: edges that face alike are added up" 'cosine < 0.0f ? apart : more' \
+    'cosine > 0.0f ? apart : more'
+mutant strip kernels/cover.h "boxes without joins" 'CAMBER_MORE(reach_a, reach_b)' '0.5f * CAMBER_LESS(reach_a, reach_b)'
+drawer=()
 
 echo "$caught caught, $failures failures"
 [ "$failures" = 0 ]

@@ -459,68 +459,14 @@ static void draw_batch(private canvas *c, private const places *at, global const
                        private batch *b);
 
 #if CAMBER_COVER_PITCHED
-static inline void put_tilted(private canvas *c, private const camber_pitch_pen *p, int i, float16 area,
-                              private const camber_pitch_pixel *at) {
-    c->ink[0][i] *= 1.0f - area;
-    float16 nx, ny;
-    const int16 thick = camber_pitch_inward(p, at, &nx, &ny);
-    const float16 none = (float16)(0.0f), edge = area * (1.0f - area);
-    c->ink[1][i] += thick ? area : none;
-    c->ink[2][i] += thick ? nx * edge : none;
-    c->ink[3][i] += thick ? ny * edge : none;
-}
+/* A segment that is seen at an angle. */
+typedef struct tilted {
+    global const float *shape, *plane, *measure, *tail;
+    camber_eye eye;
+} tilted;
 
-/* Of a box's cells those that lie in the band of its shape. */
-static inline ulong band_of(global const float *shape, place where, cell_box box) {
-    ulong cells = 0;
-    if (box.to_x - box.from_x < 2 || box.to_y - box.from_y < 2)
-        return ~0ul;
-    for (int j = box.from_y; j <= box.to_y; j++) {
-        const float middle = where.top + CAMBER_CELL_PX * ((float)j + 0.5f);
-        const camber_u32 span =
-            camber_row_span(shape, middle, where.left, (camber_u32)box.from_x, (camber_u32)box.to_x, CAMBER_CELL_PX);
-        const camber_u32 begin = span & 255u, end = span >> 8;
-        if (begin <= end)
-            cells |= ((255ul >> (CAMBER_TILE_CELLS - 1u - end + begin)) << begin) << (CAMBER_TILE_CELLS * j);
-    }
-    return cells;
-}
-
-static inline void draw_tilted(private canvas *c, global const float *shape, global const float *plane, place to,
-                               camber_eye eye) {
-    cell_box box;
-    ulong cells = box_of(shape, to, &box) & ~(c->done | c->filled), inked = 0;
-    cells = cells ? cells & band_of(shape, to, box) : 0;
-    const int is_union = c->now.mode == CAMBER_INK_UNION;
-    if (!cells)
-        return;
-    camber_pitch_pen p;
-    camber_pitch_pen_of(eye, shape, plane, as_uint(shape[CAMBER_SHAPE_FLAGS]), &p);
-    const float16 across = vload16(0, ACROSS), down = vload16(0, DOWN);
-    for (; cells; cells &= cells - 1) {
-        const int i = lowest(cells);
-        const float x = to.left + 0.5f + (float)(CAMBER_CELL_PX * (i % CAMBER_TILE_CELLS)) - eye.x;
-        const float y = to.top + 0.5f + (float)(CAMBER_CELL_PX * (i / CAMBER_TILE_CELLS)) - eye.y;
-        const camber_u32 meets = camber_pitch_cell_meets(&p, x + 1.5f, y + 1.5f);
-        if (meets == CAMBER_CELL_OUTSIDE)
-            continue;
-        inked |= 1ul << i;
-        if (meets == CAMBER_CELL_INSIDE) {
-            put_whole(c, 1ul << i);
-        } else if (meets == CAMBER_CELL_ASIDE && !is_union) {
-            put_over(c, i, camber_pitch_side(&p, x, y, across, down), c->now.a);
-        } else {
-            camber_pitch_pixel at;
-            camber_pitch_look(&p, x, y, across, down, &at);
-            const float16 area = camber_pitch_area(&p, &at);
-            if (is_union)
-                put_tilted(c, &p, i, area, &at);
-            else
-                put_over(c, i, area, c->now.a);
-        }
-    }
-    c->inked |= inked;
-}
+/* cover_pitch.cl */
+static inline void draw_tilted(private canvas *c, private const places *at, place where, tilted from);
 #endif
 
 /* Whether nothing that is still to come shows. What is filled by an ink of a layer shows as much as the layer does. */
@@ -630,7 +576,9 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void cover(
             current = ink;
         }
 #if CAMBER_COVER_PITCHED
-        draw_tilted(&c, shape, planes + (size_t)CAMBER_PLANE_WORDS * lists[k], where, s.eye);
+        draw_tilted(&c, &at, where,
+                    (tilted){shape, planes + (size_t)CAMBER_PLANE_WORDS * lists[k],
+                             measures + CAMBER_SHAPE_MEASURES * (size_t)lists[k], tail, s.eye});
 #else
 #if CAMBER_COVER_RICH
         if (c.more.features) {

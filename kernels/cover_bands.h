@@ -71,6 +71,7 @@ CAMBER_FN float camber_dashes_drawn(CAMBER_GLOBAL const float *dashes, camber_u3
     return drawn / period;
 }
 
+/* p: NULL where the plane is seen at an angle. */
 CAMBER_FN void camber_extras_of(const camber_ink_more *more, const camber_pen *p, CAMBER_GLOBAL const float *measure,
                                 CAMBER_GLOBAL const float *tail, camber_extras *e) {
     e->features = more->features;
@@ -87,12 +88,12 @@ CAMBER_FN void camber_extras_of(const camber_ink_more *more, const camber_pen *p
     e->round_dashes = more->round_dashes;
     e->dashes = tail + 4 * more->first_dash;
     e->drawn = 1.0f;
-    if ((e->features & CAMBER_FEATURE_DASH) && e->period < 2.0f)
+    if ((e->features & CAMBER_FEATURE_DASH) && (!p || e->period < 2.0f))
         e->drawn = camber_dashes_drawn(e->dashes, e->dash_count, e->period);
     e->from = 0.5f * e->total < 0.75f ? 0.5f * e->total : 0.75f;
     e->stops = tail + 4 * more->first_stop;
     e->stop_count = more->stop_count;
-    if ((e->features & CAMBER_FEATURE_GAP) && p->sharp) {
+    if ((e->features & CAMBER_FEATURE_GAP) && p && p->sharp) {
         e->hole = *p;
         e->hole.half_width = e->half_gap;
     }

@@ -28,8 +28,8 @@ typedef struct camber_pitch_pen {
     float along_a, across_a; /* where A lies along the segment, and the line across it */
     float ca, sa, cb, sb;
     camber_form x, y, past_b, fa, fb;
-    camber_seen_edge left, right;
-    float own_a, own_b, cut_a[4], cut_b[4];
+    camber_seen_edge left, right, cut_a, cut_b;
+    float own_a, own_b, wide_a, wide_b; /* wide: of camber_pitch_cut */
     float flat_a, flat_b, round_a, round_b;
     float margin;
     float axis_x, axis_y, axis_at, aside_at, from, to, wide; /* the band */
@@ -44,16 +44,16 @@ CAMBER_FN camber_form camber_form_of(camber_eye e, float nx, float ny, float at)
     return f;
 }
 
-CAMBER_FN float camber_form_at(const camber_form *f, float x, float y) {
+CAMBER_FN camber_real camber_form_at(const camber_form *f, camber_real x, camber_real y) {
     return x * f->x + y * f->y - f->at;
 }
 
-CAMBER_FN void camber_seen_edge_of(CAMBER_GLOBAL const float *words, camber_u32 linear, camber_seen_edge *edge) {
-    const float nx = CAMBER_FABS(words[1]), ny = CAMBER_FABS(words[2]);
+CAMBER_FN void camber_seen_edge_of(float at, float x, float y, camber_u32 linear, camber_seen_edge *edge) {
+    const float nx = CAMBER_FABS(x), ny = CAMBER_FABS(y);
     const float q = nx < ny ? nx : ny, more = nx < ny ? ny : nx, p = more > 0.5f ? more : 0.5f;
-    edge->at = words[0];
-    edge->x = words[1];
-    edge->y = words[2];
+    edge->at = at;
+    edge->x = x;
+    edge->y = y;
     edge->extent = linear ? 0.5f : 0.5f * (nx + ny);
     edge->corner = linear ? 0.0f : q;
     edge->slope = linear ? 1.0f : 1.0f / p;
@@ -86,14 +86,16 @@ CAMBER_FN void camber_pitch_pen_of(camber_eye e, CAMBER_GLOBAL const float *shap
     p->fa = camber_form_of(e, nax, nay, ax * nax + ay * nay);
     p->fb = camber_form_of(e, nbx, nby, bx * nbx + by * nby);
     p->linear = flags & CAMBER_SHAPE_LINEAR;
-    camber_seen_edge_of(plane + CAMBER_PLANE_LEFT, p->linear, &p->left);
-    camber_seen_edge_of(plane + CAMBER_PLANE_RIGHT, p->linear, &p->right);
+    CAMBER_GLOBAL const float *left = plane + CAMBER_PLANE_LEFT, *right = plane + CAMBER_PLANE_RIGHT;
+    CAMBER_GLOBAL const float *cut_a = plane + CAMBER_PLANE_CUT_A, *cut_b = plane + CAMBER_PLANE_CUT_B;
+    camber_seen_edge_of(left[0], left[1], left[2], p->linear, &p->left);
+    camber_seen_edge_of(right[0], right[1], right[2], p->linear, &p->right);
+    camber_seen_edge_of(cut_a[2], cut_a[0], cut_a[1], p->linear, &p->cut_a);
+    camber_seen_edge_of(cut_b[2], cut_b[0], cut_b[1], p->linear, &p->cut_b);
+    p->wide_a = cut_a[3];
+    p->wide_b = cut_b[3];
     p->own_a = plane[CAMBER_PLANE_OWN_A];
     p->own_b = plane[CAMBER_PLANE_OWN_B];
-    for (int i = 0; i < 4; i++) {
-        p->cut_a[i] = plane[CAMBER_PLANE_CUT_A + i];
-        p->cut_b[i] = plane[CAMBER_PLANE_CUT_B + i];
-    }
     p->end_a = end_a & 7u;
     p->end_b = end_b & 7u;
     p->flat_a = p->end_a == 1u ? 0.0f : p->end_a == 2u ? h : CAMBER_NEVER_PX;
@@ -105,7 +107,7 @@ CAMBER_FN void camber_pitch_pen_of(camber_eye e, CAMBER_GLOBAL const float *shap
     p->flat = p->flat_a < CAMBER_NEVER_PX || p->flat_b < CAMBER_NEVER_PX;
     p->bends = CAMBER_FABS(p->sa) + CAMBER_FABS(p->sb) > 1e-3f;
     p->sharp = p->end_a == 3u || p->end_a == 4u || p->end_a > 5u || p->end_b == 3u || p->end_b == 4u || p->end_b > 5u;
-    p->narrow = p->cut_a[3] < 1.0f || p->cut_b[3] < 1.0f;
+    p->narrow = p->wide_a < 1.0f || p->wide_b < 1.0f;
     p->margin = plane[CAMBER_PLANE_MARGIN];
     const float sx = shape[CAMBER_SHAPE_AX] - e.x, sy = shape[CAMBER_SHAPE_AY] - e.y;
     const float dx = shape[CAMBER_SHAPE_BX] - shape[CAMBER_SHAPE_AX],
@@ -121,51 +123,44 @@ CAMBER_FN void camber_pitch_pen_of(camber_eye e, CAMBER_GLOBAL const float *shap
 
 /* ---- Cells ---- */
 
-/* px inside an edge, at a place of the picture. */
-CAMBER_FN float camber_seen_inside(const camber_seen_edge *edge, float x, float y) {
-    return edge->at - (x * edge->x + y * edge->y);
-}
-
 CAMBER_FN float camber_cell_reach(float nx, float ny) {
     return 1.5f * (CAMBER_FABS(nx) + CAMBER_FABS(ny));
 }
 
-/* Whether a join's cut lies as far from a cell as pixels see. */
-CAMBER_FN camber_u32 camber_cut_is_far(const float *cut, float x, float y) {
-    return cut[3] >= 1.0f || cut[2] - (x * cut[0] + y * cut[1]) - camber_cell_reach(cut[0], cut[1]) > 0.75f;
+/* px inside an edge, of places of the picture. */
+CAMBER_FN camber_real camber_seen_inside(const camber_seen_edge *edge, camber_real x, camber_real y) {
+    return edge->at - (x * edge->x + y * edge->y);
 }
 
-/* Whether a cell has nothing of a segment, lies all inside the stroke, on its sides far from the ends, or else. */
-#define CAMBER_CELL_OUTSIDE 0u
-#define CAMBER_CELL_PARTLY 1u
-#define CAMBER_CELL_ASIDE 2u
-#define CAMBER_CELL_INSIDE 3u
+/* Whether a join's cut lies nearer to a cell than pixels see. */
+CAMBER_FN camber_mask camber_cut_is_near(const camber_seen_edge *cut, float wide, camber_real x, camber_real y) {
+    return camber_seen_inside(cut, x, y) <=
+           (wide < 1.0f ? camber_cell_reach(cut->x, cut->y) + 0.75f : CAMBER_ALWAYS_PX);
+}
 
-/* camber_cell_meets, by a cell's middle in the picture. */
-CAMBER_FN camber_u32 camber_pitch_cell_meets(const camber_pitch_pen *p, float x, float y) {
-    const float in_left = camber_seen_inside(&p->left, x, y), left = camber_cell_reach(p->left.x, p->left.y);
-    const float in_right = camber_seen_inside(&p->right, x, y), right = camber_cell_reach(p->right.x, p->right.y);
-    const float along = x * p->axis_x + y * p->axis_y - p->axis_at, axis = camber_cell_reach(p->axis_x, p->axis_y);
-    const float aside = y * p->axis_x - x * p->axis_y - p->aside_at;
+/* camber_cells_meet, by the cells' middles in the picture. */
+CAMBER_FN void camber_pitch_cells_meet(const camber_pitch_pen *p, camber_real x, camber_real y, camber_meeting *cells) {
+    const float reach_a = camber_cell_reach(p->fa.x, p->fa.y), reach_b = camber_cell_reach(p->fb.x, p->fb.y);
+    const float left = camber_cell_reach(p->left.x, p->left.y), right = camber_cell_reach(p->right.x, p->right.y);
+    const float axis = camber_cell_reach(p->axis_x, p->axis_y);
     /* Bends take the line that far to the side. */
     const float past_left = p->bends ? CAMBER_PAD_PX : p->left.extent;
     const float past_right = p->bends ? CAMBER_PAD_PX : p->right.extent;
-    if (in_left + left <= -past_left || in_right + right <= -past_right || along + axis <= p->from ||
-        along - axis >= p->to || CAMBER_FABS(aside) - axis >= p->wide)
-        return CAMBER_CELL_OUTSIDE;
-    const float fa = camber_form_at(&p->fa, x, y), reach_a = camber_cell_reach(p->fa.x, p->fa.y);
-    const float fb = camber_form_at(&p->fb, x, y), reach_b = camber_cell_reach(p->fb.x, p->fb.y);
-    if (!p->narrow && ((p->own_a == CAMBER_ALWAYS_PX && fa + reach_a < 0.0f) ||
-                       (p->own_b == CAMBER_ALWAYS_PX && fb - reach_b >= 0.0f)))
-        return CAMBER_CELL_OUTSIDE;
-    const float from = camber_form_at(&p->x, x, y) - camber_cell_reach(p->x.x, p->x.y);
-    const float to = 0.0f - camber_form_at(&p->past_b, x, y) - camber_cell_reach(p->past_b.x, p->past_b.y);
-    const float close = 0.5f * p->margin;
-    if (p->sharp || from < p->margin || to < p->margin || fa - reach_a < close || fb + reach_b > -close ||
-        !camber_cut_is_far(p->cut_a, x, y) || !camber_cut_is_far(p->cut_b, x, y))
-        return CAMBER_CELL_PARTLY;
-    return in_left - left >= p->left.extent && in_right - right >= p->right.extent ? CAMBER_CELL_INSIDE
-                                                                                   : CAMBER_CELL_ASIDE;
+    const float far_a = !p->narrow && p->own_a == CAMBER_ALWAYS_PX ? -reach_a : CAMBER_ALWAYS_PX;
+    const float far_b = !p->narrow && p->own_b == CAMBER_ALWAYS_PX ? reach_b : -CAMBER_ALWAYS_PX;
+    const camber_real in_left = camber_seen_inside(&p->left, x, y), in_right = camber_seen_inside(&p->right, x, y);
+    const camber_real along = x * p->axis_x + y * p->axis_y - p->axis_at;
+    const camber_real aside = CAMBER_FABS(y * p->axis_x - x * p->axis_y - p->aside_at);
+    const camber_real fa = camber_form_at(&p->fa, x, y), fb = camber_form_at(&p->fb, x, y);
+    cells->meets = (in_left > -past_left - left) & (in_right > -past_right - right) & (along > p->from - axis) &
+                   (along < p->to + axis) & (aside < p->wide + axis) & (fa >= far_a) & (fb < far_b);
+    const float ends = p->sharp ? -CAMBER_ALWAYS_PX : p->margin, close = 0.5f * p->margin;
+    const camber_real from = camber_form_at(&p->x, x, y), to = camber_form_at(&p->past_b, x, y);
+    cells->nears = (from < ends + camber_cell_reach(p->x.x, p->x.y)) |
+                   (to > -ends - camber_cell_reach(p->past_b.x, p->past_b.y)) | (fa < close + reach_a) |
+                   (fb > -close - reach_b) | camber_cut_is_near(&p->cut_a, p->wide_a, x, y) |
+                   camber_cut_is_near(&p->cut_b, p->wide_b, x, y);
+    cells->inside = (in_left >= p->left.extent + left) & (in_right >= p->right.extent + right);
 }
 
 /* ---- Pixels ---- */
@@ -180,11 +175,6 @@ typedef struct camber_pitch_pixel {
     camber_real off;                          /* along the line from the nearest place of it */
     camber_real d, side_x, side_y;            /* from there, px of the plane, and the direction */
 } camber_pitch_pixel;
-
-CAMBER_FN camber_real camber_form_of_pixels(const camber_form *f, float x, float y, camber_real across,
-                                            camber_real down) {
-    return camber_form_at(f, x, y) + (across * f->x + down * f->y);
-}
 
 /* The area of a pixel whose centre lies s px inside an edge of the picture, by its normal. */
 CAMBER_FN camber_real camber_seen_covered(camber_real s, camber_real nx, camber_real ny, camber_u32 linear) {
@@ -225,23 +215,22 @@ CAMBER_FN camber_real camber_pitch_bend(camber_real beyond, float sine) {
     return ((beyond > 0.0f) | (share < 0.0f)) ? none : sine * share * share;
 }
 
-/* x, y: of the first pixel of a cell in the picture; across and down: px from it. */
-CAMBER_FN void camber_pitch_look(const camber_pitch_pen *p, float x, float y, camber_real across, camber_real down,
-                                 camber_pitch_pixel *at) {
+/* x, y: of the pixel in the picture. */
+CAMBER_FN void camber_pitch_look(const camber_pitch_pen *p, camber_real x, camber_real y, camber_pitch_pixel *at) {
     const camber_real least = CAMBER_REAL(CAMBER_PITCH_LEAST), one = CAMBER_REAL(1.0f);
-    at->seen_x = x + across;
-    at->seen_y = y + down;
-    const camber_real by_depth = 1.0f + at->seen_y * (p->fall * p->by_cosine);
+    at->seen_x = x;
+    at->seen_y = y;
+    const camber_real by_depth = 1.0f + y * (p->fall * p->by_cosine);
     at->by_depth = CAMBER_MORE(by_depth, least);
     const camber_real depth = one / at->by_depth;
-    at->ground_x = at->seen_x * depth;
-    at->ground_y = at->seen_y * p->by_cosine * depth;
-    at->x = camber_form_of_pixels(&p->x, x, y, across, down) * depth;
-    at->y = camber_form_of_pixels(&p->y, x, y, across, down) * depth;
+    at->ground_x = x * depth;
+    at->ground_y = y * p->by_cosine * depth;
+    at->x = camber_form_at(&p->x, x, y) * depth;
+    at->y = camber_form_at(&p->y, x, y) * depth;
     at->past_a = 0.0f - at->x;
-    at->past_b = camber_form_of_pixels(&p->past_b, x, y, across, down) * depth;
-    at->fa = camber_form_of_pixels(&p->fa, x, y, across, down) * depth;
-    at->fb = camber_form_of_pixels(&p->fb, x, y, across, down) * depth;
+    at->past_b = camber_form_at(&p->past_b, x, y) * depth;
+    at->fa = camber_form_at(&p->fa, x, y) * depth;
+    at->fb = camber_form_at(&p->fb, x, y) * depth;
 }
 
 /* Which place of the line is nearest. */
@@ -263,7 +252,7 @@ CAMBER_FN void camber_pitch_measure(const camber_pitch_pen *p, camber_pitch_pixe
         const camber_real knows = camber_clamp_to_one(p->length * at->scale - 1.0f);
         bent = at->y - bend / at->scale * (left > 0.0f ? left : none) * knows;
     }
-    at->off = at->arc_b * p->cut_b[3] - at->arc_a * p->cut_a[3];
+    at->off = at->arc_b * p->wide_b - at->arc_a * p->wide_a;
     at->d = bent;
 }
 
@@ -358,14 +347,14 @@ CAMBER_FN camber_real camber_pitch_caps(const camber_pitch_pen *p, const camber_
 
 /* How much of a pixel belongs to a segment at an end. Where the line is wide, all where its centre lies before the
  * join. Where it is not, many segments may meet in one pixel, and each takes the share that lies between its ends. */
-CAMBER_FN camber_real camber_pitch_own(const camber_pitch_pen *p, const camber_pitch_pixel *at, const float *cut,
+CAMBER_FN camber_real camber_pitch_own(const camber_pitch_pixel *at, const camber_seen_edge *cut, float wide,
                                        camber_mask foreign) {
     const camber_real none = CAMBER_REAL(0.0f), one = CAMBER_REAL(1.0f), whole = foreign ? none : one;
-    if (cut[3] >= 1.0f)
+    if (wide >= 1.0f)
         return whole;
-    const camber_real inside = cut[2] - (at->seen_x * cut[0] + at->seen_y * cut[1]);
-    const camber_real share = camber_seen_covered(inside, CAMBER_REAL(cut[0]), CAMBER_REAL(cut[1]), p->linear);
-    return share * (1.0f - cut[3]) + whole * cut[3];
+    const camber_real inside = camber_seen_inside(cut, at->seen_x, at->seen_y);
+    const camber_real share = camber_covered(inside, cut->extent, cut->corner, cut->slope, cut->curve);
+    return share * (1.0f - wide) + whole * wide;
 }
 
 /* What of a pixel is the segment's at all. */
@@ -373,8 +362,8 @@ CAMBER_FN camber_real camber_pitch_share(const camber_pitch_pen *p, const camber
     const camber_real none = CAMBER_REAL(0.0f);
     const camber_mask foreign_a = (at->fa < 0.0f) & (at->past_a > p->own_a);
     const camber_mask foreign_b = (at->fb >= 0.0f) & (at->past_b > p->own_b);
-    const camber_real share =
-        camber_pitch_own(p, at, p->cut_a, foreign_a) + camber_pitch_own(p, at, p->cut_b, foreign_b) - 1.0f;
+    const camber_real share = camber_pitch_own(at, &p->cut_a, p->wide_a, foreign_a) +
+                              camber_pitch_own(at, &p->cut_b, p->wide_b, foreign_b) - 1.0f;
     const camber_real along = at->seen_x * p->axis_x + at->seen_y * p->axis_y - p->axis_at;
     const camber_real aside = at->seen_y * p->axis_x - at->seen_x * p->axis_y - p->aside_at;
     const camber_mask out = (along <= p->from) | (along >= p->to) | (CAMBER_FABS(aside) >= p->wide);
@@ -397,11 +386,9 @@ CAMBER_FN camber_real camber_pitch_area(const camber_pitch_pen *p, camber_pitch_
 }
 
 /* The area between the two sides, where the ends are too far away to matter. */
-CAMBER_FN camber_real camber_pitch_side(const camber_pitch_pen *p, float x, float y, camber_real across,
-                                        camber_real down) {
+CAMBER_FN camber_real camber_pitch_side(const camber_pitch_pen *p, camber_real x, camber_real y) {
     const camber_seen_edge *l = &p->left, *r = &p->right;
-    const camber_real in_left = camber_seen_inside(l, x, y) - (across * l->x + down * l->y);
-    const camber_real in_right = camber_seen_inside(r, x, y) - (across * r->x + down * r->y);
+    const camber_real in_left = camber_seen_inside(l, x, y), in_right = camber_seen_inside(r, x, y);
     const camber_real both = camber_covered(in_left, l->extent, l->corner, l->slope, l->curve) +
                              camber_covered(in_right, r->extent, r->corner, r->slope, r->curve) - 1.0f;
     return both > 0.0f ? both : CAMBER_REAL(0.0f);

@@ -1,5 +1,5 @@
 /* What cover.cl draws of inks with features, of which kernels/cover_bands.h says what they are. */
-#if CAMBER_COVER_RICH && !CAMBER_COVER_PITCHED
+#if CAMBER_COVER_RICH
 
 /* Colours that change from pixel to pixel go straight under what the level has. */
 static inline void put_colors(private canvas *c, int i, float16 area, private const float16 *color, int whole) {
@@ -21,6 +21,7 @@ static inline void put_colors(private canvas *c, int i, float16 area, private co
         *(level == 0 ? &c->done : &c->filled) |= 1ul << i;
 }
 
+#if !CAMBER_COVER_PITCHED
 /* Multiplies the colours of a line's pixels by its image. */
 static inline void image_line(global const float *tail, private const camber_pen *p, private const camber_image_pen *m,
                               float16 x, float16 y, private float16 *color) {
@@ -108,4 +109,5 @@ static __attribute__((noinline)) void draw_rich(private canvas *c, private const
     }
 }
 
+#endif
 #endif

@@ -4,6 +4,7 @@
 
 #include "picture.h"
 
+#include "base/perspective.h"
 #include "cover/cover.h"
 
 typedef struct covering {
@@ -29,6 +30,14 @@ static inline void covering_compare(const camber_cover_stages *device, const cam
     }
     assert_memory_equal(device->starts, twin->starts, 4 * (twin->tile_count + 1));
     assert_memory_equal(device->lists, twin->lists, 4 * (size_t)twin->starts[twin->tile_count]);
+}
+
+/* As camber_render does of a frame. */
+static inline void covering_tilt(camber_cover_scene *drawn, double pitch_deg, uint32_t width, uint32_t height) {
+    const camber_perspective p = camber_perspective_of(pitch_deg, height);
+    drawn->pitched = true;
+    drawn->eye = (camber_eye){0.5f * (float)width, 0.5f * (float)height, (float)p.cosine, (float)p.fall};
+    drawn->horizon = camber_perspective_horizon(&p, height);
 }
 
 /* Draws on the device and on the host, which must do the same; gives the picture, which is freed with camber_free. */

@@ -153,19 +153,23 @@ static void compare_with_twin(const covering *e, const drawing *d, camber_mesh *
     const size_t count = mesh->polyline_count;
     const camber_cover_run runs[] = {
         {mesh, 0, count, 0}, {mesh, count / 3, count, SCENE_ROWS}, {mesh, 0, count / 2, 2 * SCENE_ROWS}};
-    const camber_cover_scene drawn = {.rows = rows[0],
-                                      .row_count = 3 * SCENE_ROWS,
-                                      .inks = inks,
-                                      .ink_count = 3 * SCENE_ROWS,
-                                      .runs = runs,
-                                      .run_count = 3,
-                                      .background = {0.2f, 0.3f, 0.4f, 1},
-                                      .linear = linear,
-                                      .more = more,
-                                      .tail = tail,
-                                      .tail_count = tail_count};
-    uint8_t *rgba = covering_draw_twice(e, &drawn, (camber_cover_area){32, 64, 400, 333});
-    camber_free(e->s.context, rgba);
+    camber_cover_scene drawn = {.rows = rows[0],
+                                .row_count = 3 * SCENE_ROWS,
+                                .inks = inks,
+                                .ink_count = 3 * SCENE_ROWS,
+                                .runs = runs,
+                                .run_count = 3,
+                                .background = {0.2f, 0.3f, 0.4f, 1},
+                                .linear = linear,
+                                .more = more,
+                                .tail = tail,
+                                .tail_count = tail_count};
+    const double pitches[] = {0, 20, 60, 80};
+    for (size_t i = 0; i < sizeof pitches / sizeof *pitches; i++) {
+        if (i > 0)
+            covering_tilt(&drawn, pitches[i], SIDE_PX, SIDE_PX);
+        camber_free(e->s.context, covering_draw_twice(e, &drawn, (camber_cover_area){32, 64, 400, 333}));
+    }
 }
 
 static void test_twin(void **state) {
@@ -226,6 +230,26 @@ static void test_gl(void **state) {
     }
 }
 
+static void test_gl_tilted(void **state) {
+    const covering *e = *state;
+    static const double pitches[] = {30, 60, 80};
+    if (!studio_any(&e->s))
+        skip();
+    for (size_t way = 0; way < WAYS; way++) {
+        drawing d = begin_drawing((int)way % SCENES, way);
+        char what[64];
+        d.frame.pitch_deg = pitches[way % 3];
+        snprintf(what, sizeof what, "at %g degrees", d.frame.pitch_deg);
+        compare_with_gl(e, &d, what, way);
+        d.passes[0].overlap = CAMBER_OVERLAP_UNITE;
+        d.passes[1].opacity = 0.6f;
+        for (size_t i = 0; i < SCENE_ROWS; i++)
+            d.paints[0][i].color.a = 0.5f;
+        compare_with_gl(e, &d, "  translucent", way);
+        scene_free(&d.lines);
+    }
+}
+
 /* Lines of more alphas than layers: one layer, in which a line hides those below it. */
 static void test_many_alphas(void **state) {
     const covering *e = *state;
@@ -280,6 +304,7 @@ static void test_areas(void **state) {
         for (size_t k = 0; k < SCENE_ROWS; k++)
             d.paints[0][k] = paint_of(8 + k % 8, d.strokes[k].width_px);
         d.frame.largest_piece_px = 0;
+        d.frame.pitch_deg = 65;
     }
     scene_free(&d.lines);
 }
@@ -287,10 +312,8 @@ static void test_areas(void **state) {
 int main(void) {
     fill_stripes();
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_twin),
-        cmocka_unit_test(test_gl),
-        cmocka_unit_test(test_many_alphas),
-        cmocka_unit_test(test_areas),
+        cmocka_unit_test(test_twin),        cmocka_unit_test(test_gl),    cmocka_unit_test(test_gl_tilted),
+        cmocka_unit_test(test_many_alphas), cmocka_unit_test(test_areas),
     };
     return COVERING_RUN(tests);
 }

@@ -15,7 +15,7 @@
 
 #include "camber_proof.h"
 #include "kernels/cover_images.h"
-#include "kernels/cover_pitch.h"
+#include "kernels/cover_pitch_bands.h"
 
 /* Polylines [first, end) of a mesh, drawn by a table of rows. */
 typedef struct camber_cover_run {

@@ -6,6 +6,7 @@
 #include "camber_proof.h"
 #include "kernels/join.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { CELL_PIXELS = CAMBER_CELL_PX * CAMBER_CELL_PX, CELLS = CAMBER_TILE_CELLS * CAMBER_TILE_CELLS, LEVELS = 3 };
@@ -379,34 +380,46 @@ static void take_image(const tool *t, place at, float color[4]) {
         color[k] *= rgba[k];
 }
 
-/* Colours that change from pixel to pixel go straight under what the level has. */
-static void put_colors(canvas *c, const tool *t, cell *one, const place places[CELL_PIXELS], float middle,
-                       camber_u32 meets) {
-    const int at = c->is_open[2] ? 2 : c->is_open[1] ? 1 : 0;
+static int level_now(const canvas *c) {
+    return c->is_open[2] ? 2 : c->is_open[1] ? 1 : 0;
+}
+
+/* Colours that change from pixel to pixel go straight under what the level has. Gives what is still let through. */
+static float put_color(const canvas *c, pixel *p, float area, const float color[4]) {
     const bool masked = c->now.mode == CAMBER_INK_MASKED;
+    level *l = p->levels + level_now(c);
+    const float through = l->through, seen = through * area * c->now.a;
+    l->color[0] += seen * c->veil * color[0] * c->now.r;
+    l->color[1] += seen * c->veil * color[1] * c->now.g;
+    l->color[2] += seen * c->veil * color[2] * c->now.b;
+    p->mask += masked ? seen * c->veil * color[3] : 0.0f;
+    l->through = through * (1.0f - (masked ? area : area * c->now.a * color[3]));
+    return l->through;
+}
+
+/* most: that any of its pixels lets through. */
+static void count_colors(const canvas *c, cell *one, float most, bool inside) {
+    const int at = level_now(c);
+    one->touched[at] = true;
+    if ((++one->puts % CAMBER_LOOK_EVERY == 0 || inside) && most < CAMBER_NOTHING_PX)
+        *(at == 0 ? &one->done : &one->filled) = true;
+}
+
+static void put_colors(const canvas *c, const tool *t, cell *one, const place places[CELL_PIXELS], float middle,
+                       camber_u32 meets) {
     float low, high, most = 0.0f;
     camber_extras_range(&t->pen, &t->extras, middle, &low, &high);
     for (int i = 0; i < CELL_PIXELS; i++) {
-        pixel *p = one->pixels + i;
-        level *l = p->levels + at;
         float color[4] = {1.0f, 1.0f, 1.0f, 1.0f};
-        const float area = area_of(t, places[i], meets);
         if (t->extras.features & CAMBER_FEATURE_RAMP)
             camber_ramp_over(&t->pen, &t->extras, camber_extras_along(&t->pen, &t->extras, places[i].x), low, high,
                              color);
         if (t->extras.features & CAMBER_FEATURE_IMAGE)
             take_image(t, places[i], color);
-        const float through = l->through, seen = through * area * c->now.a;
-        l->color[0] += seen * c->veil * color[0] * c->now.r;
-        l->color[1] += seen * c->veil * color[1] * c->now.g;
-        l->color[2] += seen * c->veil * color[2] * c->now.b;
-        p->mask += masked ? seen * c->veil * color[3] : 0.0f;
-        l->through = through * (1.0f - (masked ? area : area * c->now.a * color[3]));
-        most = CAMBER_MORE(l->through, most);
+        const float through = put_color(c, one->pixels + i, area_of(t, places[i], meets), color);
+        most = CAMBER_MORE(through, most);
     }
-    one->touched[at] = true;
-    if ((++one->puts % CAMBER_LOOK_EVERY == 0 || meets == CAMBER_CELL_INSIDE) && most < CAMBER_NOTHING_PX)
-        *(at == 0 ? &one->done : &one->filled) = true;
+    count_colors(c, one, most, meets == CAMBER_CELL_INSIDE);
 }
 
 /* What a cell has of a segment. */
@@ -444,8 +457,8 @@ static void draw_cell(canvas *c, const tool *t, cell *one, float px, float py) {
     count_put(c, one);
 }
 
-static void put_tilted(const canvas *c, const camber_pitch_pen *pen, pixel *p, camber_pitch_pixel *at) {
-    const float area = camber_pitch_area(pen, at);
+static void put_tilted(const canvas *c, const camber_pitch_pen *pen, pixel *p, float area,
+                       const camber_pitch_pixel *at) {
     if (c->now.mode != CAMBER_INK_UNION) {
         p->ink *= 1.0f - area * c->now.a;
         return;
@@ -460,24 +473,62 @@ static void put_tilted(const canvas *c, const camber_pitch_pen *pen, pixel *p, c
     }
 }
 
-static void draw_tilted_cell(canvas *c, const camber_pitch_pen *p, cell *one, float x, float y) {
-    const camber_u32 meets = camber_pitch_cell_meets(p, x + 1.5f, y + 1.5f);
+/* x, y: of the first pixel, as those below. */
+static void draw_rich_tilted(const canvas *c, const tool *t, cell *one, float x, float y) {
+    const camber_pitch_pen *p = &t->tilted_pen;
+    const camber_extras *e = &t->extras;
+    const bool is_ramp = e->features & CAMBER_FEATURE_RAMP;
+    camber_pitch_pixel at[CELL_PIXELS];
+    float area[CELL_PIXELS], along[CELL_PIXELS], range[2] = {INFINITY, -INFINITY}, most = 0.0f;
+    for (int i = 0; i < CELL_PIXELS; i++) {
+        camber_pitch_look(p, x + (float)(i % CAMBER_CELL_PX), y + (float)(i / CAMBER_CELL_PX), at + i);
+        area[i] = camber_pitch_extras_area(p, e, at + i, along + i);
+        const float reach = camber_pitch_extent(p, at + i);
+        range[0] = CAMBER_LESS(range[0], along[i] - reach);
+        range[1] = CAMBER_MORE(range[1], along[i] + reach);
+    }
+    for (int i = 0; i < CELL_PIXELS; i++) {
+        float color[4];
+        if (!is_ramp) {
+            put_tilted(c, p, one->pixels + i, area[i], at + i);
+            continue;
+        }
+        camber_pitch_ramp(p, e, at + i, along[i], range, color);
+        const float through = put_color(c, one->pixels + i, area[i], color);
+        most = CAMBER_MORE(through, most);
+    }
+    if (is_ramp) {
+        count_colors(c, one, most, false);
+    } else {
+        one->inked = true;
+        count_put(c, one);
+    }
+}
+
+static void draw_tilted_cell(canvas *c, const tool *t, cell *one, float x, float y) {
+    const camber_pitch_pen *p = &t->tilted_pen;
     const bool is_union = c->now.mode == CAMBER_INK_UNION;
-    if (one->done || one->filled || meets == CAMBER_CELL_OUTSIDE)
+    camber_meeting m;
+    camber_pitch_cells_meet(p, x + 1.5f, y + 1.5f, &m);
+    if (one->done || one->filled || !m.meets)
         return;
+    if (t->extras.features) {
+        draw_rich_tilted(c, t, one, x, y);
+        return;
+    }
     one->inked = true;
-    if (meets == CAMBER_CELL_INSIDE) {
+    if (m.inside && !m.nears) {
         fill_cell(c, one);
         return;
     }
     for (int i = 0; i < CELL_PIXELS; i++) {
-        const float across = (float)(i % CAMBER_CELL_PX), down = (float)(i / CAMBER_CELL_PX);
+        const float px = x + (float)(i % CAMBER_CELL_PX), py = y + (float)(i / CAMBER_CELL_PX);
         camber_pitch_pixel at;
-        if (meets == CAMBER_CELL_ASIDE && !is_union) {
-            one->pixels[i].ink *= 1.0f - camber_pitch_side(p, x, y, across, down) * c->now.a;
+        if (!m.nears && !is_union) {
+            one->pixels[i].ink *= 1.0f - camber_pitch_side(p, px, py) * c->now.a;
         } else {
-            camber_pitch_look(p, x, y, across, down, &at);
-            put_tilted(c, p, one->pixels + i, &at);
+            camber_pitch_look(p, px, py, &at);
+            put_tilted(c, p, one->pixels + i, camber_pitch_area(p, &at), &at);
         }
     }
     count_put(c, one);
@@ -502,7 +553,7 @@ static void draw_cells(canvas *c, const float *shape, const tool *t, float left,
             cell *one = c->cells + CAMBER_TILE_CELLS * j + k;
             const float x = left + 0.5f + (float)(CAMBER_CELL_PX * k), y = top + 0.5f + (float)(CAMBER_CELL_PX * j);
             if (t->tilted)
-                draw_tilted_cell(c, &t->tilted_pen, one, x - t->eye.x, y - t->eye.y);
+                draw_tilted_cell(c, t, one, x - t->eye.x, y - t->eye.y);
             else
                 draw_cell(c, t, one, x, y);
         }
@@ -524,7 +575,7 @@ static void draw_segment(canvas *c, const twin *t, uint32_t which, float left, f
     by.tail = t->scene->tail;
     by.is_fill = shape[CAMBER_SHAPE_HALF_WIDTH] >= CAMBER_FILL_PX;
     if (c->more.features)
-        camber_extras_of(&c->more, &by.pen, measure, by.tail, &by.extras);
+        camber_extras_of(&c->more, by.tilted ? NULL : &by.pen, measure, by.tail, &by.extras);
     if (c->more.features & CAMBER_FEATURE_IMAGE)
         camber_image_line_of(by.tail, 4u * c->more.image, measure, &by.pen, &by.image);
     draw_cells(c, shape, &by, left, top);

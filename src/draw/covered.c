@@ -171,7 +171,7 @@ static camber_status refuse(camber_context *context) {
 static camber_status add_run(tables *t, const camber_run *run, camber_ink ink) {
     if (run->alpha <= 0.0f)
         return CAMBER_OK;
-    if (t->pitched && run->bands)
+    if (t->pitched && run->bands & CAMBER_VARIANT_PATTERN)
         return refuse(t->context);
     const bool shares = !run->layered && t->pass && t->pass == run->pass && ink.group == 0;
     camber_status status = CAMBER_OK;

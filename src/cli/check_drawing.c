@@ -147,38 +147,67 @@ static camber_status compare(const camber_validation *v, const camber_subject *s
     return status;
 }
 
-static int check_method(camber_validation *v, const camber_subject *s, const camber_rig *rig, const camber_easel *easel,
+/* What draws: the rig's easel, or its device in the shape that a GPU's kernels have, as other work-groups do. */
+typedef struct drawer {
+    const char *easel, *how;
+    camber_path path;
+} drawer;
+
+static int check_method(camber_validation *v, const camber_subject *s, const camber_rig *rig, const drawer *on,
                         camber_method method) {
-    const camber_path *path = easel->paths;
     const camber_tessellation_desc desc = {s->strokes, s->stroke_count, method, 0, false};
-    camber_check check = camber_check_start(rig->name, easel->name, "%s: %s: drawn as by the CPU twin, on %s", s->name,
-                                            camber_method_name(method), rig->name);
+    camber_check check = camber_check_start(rig->name, on->easel, "%s: %s: drawn as by the CPU twin%s, on %s", s->name,
+                                            camber_method_name(method), on->how, rig->name);
     if (rig->broken[method]) {
         camber_verdicts_skip(&v->verdicts, check, "the mesh is not the CPU twin's");
         return CAMBER_EXIT_DONE;
     }
-    camber_status made = camber_subject_tessellate(s, path->mesh, &desc);
-    if (made == CAMBER_OK && camber_mesh_get_info(path->mesh).record_count > RECORDS_MAX) {
+    camber_status made = camber_subject_tessellate(s, on->path.mesh, &desc);
+    if (made == CAMBER_OK && camber_mesh_get_info(on->path.mesh).record_count > RECORDS_MAX) {
         camber_verdicts_skip(&v->verdicts, check, "there are more than a million points, which take the twin minutes");
         return CAMBER_EXIT_DONE;
     }
     if (made == CAMBER_OK)
-        made = compare(v, s, path, &check);
+        made = compare(v, s, &on->path, &check);
     const int status = camber_report_status(v->session->report, made);
     if (status == CAMBER_EXIT_DONE)
         camber_verdicts_add(&v->verdicts, &check);
     return status;
 }
 
+static int check_methods(camber_validation *v, const camber_subject *s, const camber_rig *rig, const drawer *on) {
+    int status = CAMBER_EXIT_DONE;
+    for (int m = CAMBER_METHOD_STRIP; m <= CAMBER_METHOD_FAN && status == CAMBER_EXIT_DONE; m++)
+        if (camber_subject_takes(s, v->session->options, (camber_method)m))
+            status = check_method(v, s, rig, on, (camber_method)m);
+    return status;
+}
+
+static int check_groups(camber_validation *v, const camber_subject *s, const camber_rig *rig, const char *easel) {
+    camber_device *device = rig->groups[0].device;
+    drawer on = {.easel = easel, .how = ", a pixel a work-item"};
+    camber_status made = camber_renderer_create(device, NULL, NULL, &on.path.renderer);
+    if (made == CAMBER_OK)
+        made = camber_mesh_create(device, on.path.renderer, &on.path.mesh);
+    int status = camber_report_status(v->session->report, made);
+    if (status == CAMBER_EXIT_DONE)
+        status = check_methods(v, s, rig, &on);
+    camber_mesh_destroy(on.path.mesh);
+    camber_renderer_destroy(on.path.renderer);
+    return status;
+}
+
 int camber_check_drawing(camber_validation *v, const camber_subject *s) {
     int status = CAMBER_EXIT_DONE;
     for (size_t r = 0; r < v->rigs.count; r++)
-        for (size_t e = 0; e < v->rigs.list[r].easel_count; e++) {
+        for (size_t e = 0; e < v->rigs.list[r].easel_count && status == CAMBER_EXIT_DONE; e++) {
             const camber_rig *rig = v->rigs.list + r;
-            const bool draws = rig->easels[e].draw == CAMBER_DRAW_CL;
-            for (int m = CAMBER_METHOD_STRIP; m <= CAMBER_METHOD_FAN && draws && status == CAMBER_EXIT_DONE; m++)
-                if (camber_subject_takes(s, v->session->options, (camber_method)m))
-                    status = check_method(v, s, rig, rig->easels + e, (camber_method)m);
+            const camber_easel *easel = rig->easels + e;
+            if (easel->draw != CAMBER_DRAW_CL)
+                continue;
+            status = check_methods(v, s, rig, &(drawer){easel->name, "", easel->paths[0]});
+            if (status == CAMBER_EXIT_DONE)
+                status = check_groups(v, s, rig, easel->name);
         }
     return status;
 }

@@ -229,6 +229,9 @@ mutant strip shaders/stroke.frag "steps at the pixel before" 'float from = along
 mutant strip shaders/stroke.frag "colours at the ends of pieces" 'mix(color, next_color, part)' 'color'
 mutant strip shaders/stroke.frag "translucent ramps that are opaque" 'o_alpha = vec4(o_color.a' 'o_alpha = vec4(area'
 mutant strip shaders/flatten.frag "alphas that are left beside" 'vec4(layer.rgb, texelFetch' 'vec4(layer.rgb, layer.a) + 0.0 * vec4(texelFetch'
+mutant strip kernels/cover_lanes.cl "places behind those of later lanes" 'popcount(*mark & before)' 'popcount(*mark & ~before) - 1'
+mutant strip kernels/cover_lanes.cl "cells that are full without a look" '& (next <= BATCH)' '& (next > BATCH)'
+mutant strip kernels/cover_lanes.cl "segments between two strips" 'r.strips ? (b.s3 & STARTS) == 0u' 'r.strips ? (b.s3 & STARTS) != 1u'
 mutant strip kernels/measure.cl "lengths that are not summed" 'FIRST ? 0 : sum + ' 'FIRST ? 0 : '
 mutant strip kernels/emit.cl "measures of the neighbour" 'as_uint(measures[2 * i])' 'as_uint(measures[2 * i + 2])'
 

@@ -11,6 +11,11 @@ typedef struct camber_chunks {
 #define LAST_X(box) ((box) >> 16 & 255u)
 #define LAST_Y(box) ((box) >> 24)
 
+/* Whether a box is one tile that camber_tile_span says nothing of. */
+static inline int is_one_tile(camber_u32 box, camber_u32 columns) {
+    return box >> 16 == (box & 0xffffu) && FIRST_X(box) - 1u < columns - 2u;
+}
+
 #if CAMBER_LANES == 16
 kernel __attribute__((reqd_work_group_size(1, 1, 1))) void count(global const float *restrict shapes,
                                                                  global const camber_u32 *restrict boxes,
@@ -26,6 +31,10 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void count(global const fl
         const camber_u32 box = boxes[i];
         if (FIRST_X(box) > LAST_X(box))
             continue;
+        if (is_one_tile(box, of.columns)) {
+            own[FIRST_Y(box) * of.columns + FIRST_X(box)]++;
+            continue;
+        }
         for (camber_u32 y = FIRST_Y(box); y <= LAST_Y(box); y++) {
             const camber_u32 span = camber_tile_span(shapes + CAMBER_SHAPE_WORDS * i, box, y, &of);
             for (camber_u32 x = span & 255u; x <= span >> 8; x++)

@@ -23,7 +23,8 @@ typedef struct camber_sheet {
     camber_u32 above; /* rows of pixels before these */
     float horizon;    /* of CAMBER_COVER_PITCHED: rows of pixels of the picture in which nothing is drawn */
     camber_eye eye;
-    float sky[4]; /* what they have, premultiplied */
+    float sky[4];          /* what they have, premultiplied */
+    camber_u32 first_item; /* an offset of work-items would be a build of its own with PoCL */
 } camber_sheet;
 
 /* Slices of the shapes are drawn one after the other, the last in drawing order first. Of a tile there is kept between
@@ -536,8 +537,8 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void cover(
     canvas c;
     places at;
     batch b;
-    const size_t tile = items[2 * get_global_id(0)];
-    const camber_u32 cells = items[2 * get_global_id(0) + 1], column = (camber_u32)tile % s.columns,
+    const size_t item = get_global_id(0) + s.first_item, tile = items[2 * item];
+    const camber_u32 cells = items[2 * item + 1], column = (camber_u32)tile % s.columns,
                      row = (camber_u32)tile / s.columns;
     const int first = (int)(cells & 255u), last = (int)(cells >> 8);
     const float left = s.left + (float)(column * CAMBER_TILE_PX), top = s.top + (float)(row * CAMBER_TILE_PX);

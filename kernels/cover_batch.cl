@@ -251,13 +251,15 @@ static inline void draw_list(private canvas *c, private const places *at, privat
             continue;
         }
         take_pen(all, lane, &p);
-        find_pixels(&p, at, i, &set);
-        if (!(item & ITEM_NEAR))
-            area = camber_pen_side(&p, set.y);
-        else if (((private const uint *)&all->odd)[lane])
-            area = odd_area(shapes + (size_t)CAMBER_SHAPE_WORDS * which[lane], set.x, set.y, set.fa, set.fb);
-        else
-            area = area_of(&p, set.x, set.y, set.fa, set.fb);
+        if (item & ITEM_NEAR) {
+            find_pixels(&p, at, i, &set);
+            area = ((private const uint *)&all->odd)[lane]
+                       ? odd_area(shapes + (size_t)CAMBER_SHAPE_WORDS * which[lane], set.x, set.y, set.fa, set.fb)
+                       : area_of(&p, set.x, set.y, set.fa, set.fb);
+        } else {
+            const float16 qx = at->x[i % CAMBER_TILE_CELLS] - p.ax, qy = at->y[i / CAMBER_TILE_CELLS] - p.ay;
+            area = camber_pen_side(&p, qy * p.ux - qx * p.uy);
+        }
         put_over(c, i, area, opacity);
         shut |= c->filled;
     }

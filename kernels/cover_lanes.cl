@@ -469,7 +469,7 @@ kernel __attribute__((reqd_work_group_size(COVER_LANES, 1, 1))) void cover(
     local batch b;
     local float values[COVER_LANES];
     canvas c;
-    const size_t item = get_global_id(0) / COVER_LANES;
+    const size_t item = get_global_id(0) / COVER_LANES + s.first_item;
     const camber_u32 tile = items[2 * item], column = tile % s.columns, row = tile / s.columns, from = starts[tile];
     const float2 corner = (float2)(s.left + (float)(column * CAMBER_TILE_PX), s.top + (float)(row * CAMBER_TILE_PX));
     global float *own_kept = kept + (size_t)tile * slice.tile_words;

@@ -17,6 +17,11 @@ kernel __attribute__((reqd_work_group_size(1, 1, 1))) void fill(global const flo
         const camber_u32 box = boxes[i];
         if (FIRST_X(box) > LAST_X(box))
             continue;
+        if (is_one_tile(box, of.columns)) {
+            const camber_u32 tile = FIRST_Y(box) * of.columns + FIRST_X(box);
+            lists[starts[tile] + own[tile]++] = (camber_u32)i;
+            continue;
+        }
         for (camber_u32 y = FIRST_Y(box); y <= LAST_Y(box); y++) {
             const camber_u32 span = camber_tile_span(shapes + CAMBER_SHAPE_WORDS * i, box, y, &of);
             for (camber_u32 x = span & 255u; x <= span >> 8; x++) {

@@ -27,6 +27,7 @@ typedef struct sheet {
     float horizon;
     camber_eye eye;
     float sky[4];
+    uint32_t first_item;
 } sheet;
 
 /* What tiles keep between slices, as cover reads it. */
@@ -290,8 +291,9 @@ static camber_status cover_tiles(camber_cover *cover, const camber_cover_scene *
     const cl_uint count = 9 + more_arguments(cover, 3);
     if (status == CAMBER_OK)
         status = run(cover, STAGE_COVER, arguments, count, (size_t[]){0, heavy});
+    s.first_item = (uint32_t)heavy;
     if (status == CAMBER_OK)
-        status = run(cover, STAGE_COVER, arguments, count, (size_t[]){heavy, items - heavy});
+        status = run(cover, STAGE_COVER, arguments, count, (size_t[]){0, items - heavy});
     return status;
 }
 

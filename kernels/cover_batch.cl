@@ -126,10 +126,10 @@ static inline void find_boxes(private const pens *p, place where, uint count, pr
     const int16 lanes = (int16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
     const int16 meets =
         (x1 >= 0.0f) & (y1 >= top) & (x0 < side + 1.0f) & (y0 < bottom + 1.0f) & (lanes < (int16)((int)count));
-    b->x = convert_int16(meets & (x0 > none) ? x0 : none);
-    b->y = convert_int16(meets & (y0 > top) ? y0 : top);
-    b->columns = meets ? convert_int16(meets & (x1 < side) ? x1 : side) + 1 - b->x : (int16)(0);
-    b->rows = meets ? convert_int16(meets & (y1 < bottom) ? y1 : bottom) + 1 - b->y : (int16)(0);
+    b->x = convert_int16((meets & (x0 > none)) ? x0 : none);
+    b->y = convert_int16((meets & (y0 > top)) ? y0 : top);
+    b->columns = meets ? convert_int16((meets & (x1 < side)) ? x1 : side) + 1 - b->x : (int16)(0);
+    b->rows = meets ? convert_int16((meets & (y1 < bottom)) ? y1 : bottom) + 1 - b->y : (int16)(0);
     b->most_columns = most_of_all(b->columns);
     b->most_rows = most_of_all(b->rows);
 }
@@ -174,7 +174,7 @@ static inline void find_meetings(private const pens *p, private const boxes *b, 
                     const int16 is_own =
                         (b->columns > i) & (b->rows > j) & (aside < wide) & (fa >= far_a) & (fb < far_b);
                     meets |= is_own ? bit : none;
-                    nears |= (x < near) | (x > near_b) | (fa < near_fa) | (fb > near_fb) ? bit : none;
+                    nears |= ((x < near) | (x > near_b) | (fa < near_fa) | (fb > near_fb)) ? bit : none;
                     inside |= aside <= full ? bit : none;
                 }
             }

@@ -48,7 +48,7 @@ endforeach()
 
 lint_step(kernels_cover_lanes
   COMMAND ${CLANG} -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only -Wall -Wextra -Werror
-          -Wno-unused-function -Wno-unused-parameter -Wno-ignored-pragmas -D__OPENCL_VERSION__=120 -DCAMBER_LANES=1
+          -Wno-unused-function -Wno-unused-parameter -Wno-ignored-pragmas -D__OPENCL_VERSION__=120 -Wno-bitwise-instead-of-logical -DCAMBER_LANES=1
           ${CMAKE_BINARY_DIR}/src/cover.cl
   DEPENDS ${CMAKE_BINARY_DIR}/src/cover.cl)
 

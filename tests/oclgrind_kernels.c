@@ -242,7 +242,7 @@ static int check_offsets(camber_context *context, camber_mesh *mesh, const scene
 
 /* ---- What draws ---- */
 
-enum { PICTURE_WIDTH = 150, PICTURE_HEIGHT = 130 };
+enum { PICTURE_WIDTH = 150, PICTURE_HEIGHT = 130, PICTURES = 3 };
 typedef uint8_t picture[4 * PICTURE_WIDTH * PICTURE_HEIGHT];
 
 static bool take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
@@ -250,22 +250,40 @@ static bool take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint3
     return true;
 }
 
-/* Pictures of the lines, opaque and in a united layer over a veil, seen from above and at an angle. */
+/* Ways to draw a row that plain frames do not have. */
+static camber_paint rich_paint(int row, float width_px) {
+    camber_paint paint = {.width_px = 0.4f * width_px, .color = {0.1f * (float)row, 0, 1, row % 2 ? 0.5f : 1}};
+    paint.gap_px = row % 3 == 0 ? 0.2f * width_px : 0;
+    paint.blur_px = row % 4 == 1 ? 2 : 0;
+    paint.dash = row % 3 == 1;
+    paint.trim_start = 0.2f;
+    paint.trim_end = row % 5 == 2 ? 0.6f : 0;
+    paint.ramp = row % 3 == 2;
+    return paint;
+}
+
+/* Pictures of the lines, opaque and in a united layer over a veil, seen from above and at an angle, and with all that
+ * paints have. */
 static bool draw(camber_device *device, camber_context *context, const scene *s, const camber_stroke *strokes,
-                 picture pictures[2]) {
+                 picture pictures[PICTURES]) {
     const camber_polylines_desc desc = {.points = s->points,
                                         .point_count = s->point_count,
                                         .offsets = s->offsets,
                                         .polyline_count = s->line_count,
                                         .rows = s->rows};
-    const camber_tessellation_desc strips = {.strokes = strokes, .stroke_count = ROWS};
-    camber_paint paints[2][ROWS];
+    const camber_tessellation_desc strips = {.strokes = strokes, .stroke_count = ROWS, .measured = true};
+    static const float lengths[] = {4, 3, 0, 2};
+    static const camber_ramp_stop stops[] = {{0.1f, {1, 0, 0, 1}}, {0.5f, {0, 1, 0, 0}}, {0.5f, {0, 1, 1, 1}}};
+    const camber_dash dash = {lengths, 4};
+    const camber_ramp ramp = {stops, 3};
+    camber_paint paints[3][ROWS];
     camber_polylines *polylines = NULL;
     camber_renderer *renderer = NULL;
     camber_mesh *mesh = NULL;
     for (int i = 0; i < ROWS; i++) {
         paints[0][i] = (camber_paint){.width_px = strokes[i].width_px, .color = {0, 0, 0.1f * (float)i, 1}};
         paints[1][i] = (camber_paint){.width_px = 0.1f * strokes[i].width_px, .color = {1, 1, 1, 0.5f}};
+        paints[2][i] = rich_paint(i, strokes[i].width_px);
     }
     bool good = camber_polylines_create(context, &desc, &polylines) == CAMBER_OK &&
                 camber_renderer_create(device, NULL, NULL, &renderer) == CAMBER_OK &&
@@ -274,10 +292,19 @@ static bool draw(camber_device *device, camber_context *context, const scene *s,
     const camber_pass passes[] = {{.mesh = mesh, .paints = paints[0], .paint_count = ROWS},
                                   {.fill = {.color = {0, 1, 0, 0.3f}}},
                                   {.mesh = mesh, .paints = paints[1], .paint_count = ROWS, .opacity = 0.5f}};
+    const camber_pass rich_pass = {.mesh = mesh,
+                                   .paints = paints[2],
+                                   .paint_count = ROWS,
+                                   .dashes = &dash,
+                                   .dash_count = 1,
+                                   .ramps = &ramp,
+                                   .ramp_count = 1};
     camber_frame frame = {.width = PICTURE_WIDTH, .height = PICTURE_HEIGHT, .passes = passes, .pass_count = 3};
     good = good && camber_render(renderer, &frame, take_rows, pictures[0], NULL) == CAMBER_OK;
     frame.pitch_deg = 75;
     good = good && camber_render(renderer, &frame, take_rows, pictures[1], NULL) == CAMBER_OK;
+    frame = (camber_frame){.width = PICTURE_WIDTH, .height = PICTURE_HEIGHT, .passes = &rich_pass, .pass_count = 1};
+    good = good && camber_render(renderer, &frame, take_rows, pictures[2], NULL) == CAMBER_OK;
     camber_mesh_destroy(mesh);
     camber_renderer_destroy(renderer);
     camber_polylines_destroy(polylines);
@@ -290,7 +317,7 @@ static int check_drawing(camber_context *context, scene *s) {
         unsigned lanes;
         uint64_t largest_bytes;
     } ways[] = {{16, 0}, {1, 0}, {1, 96 * 1024}};
-    static picture first[2], seen[2];
+    static picture first[PICTURES], seen[PICTURES];
     camber_stroke strokes[ROWS];
     int failures = 0;
     rotate(s, strokes, 0);

@@ -26,7 +26,7 @@
 #define CAMBER_FEATURES_ALONG (CAMBER_FEATURE_DASH | CAMBER_FEATURE_TRIM | CAMBER_FEATURE_RAMP)
 
 /* Stops of a ramp that a cell looks at; where it sees more, several are taken for one. */
-#define CAMBER_STOPS_SEEN 64u
+#define CAMBER_STOPS_SEEN 1024u
 
 /* Behind each ink. What it names in the tail is by float4s: dashes are one each, from where to where, with a period's
  * last one before it once more and its first one behind it; stops of ramps two, the place and the premultiplied colour.
@@ -149,6 +149,12 @@ CAMBER_FN camber_real camber_dash_distance(const camber_extras *e, camber_real t
 
 /* ---- Pixels ---- */
 
+/* Of the gap, both edges of which may lie in a pixel. */
+CAMBER_FN camber_real camber_gap_area(const camber_pen *p, float half_gap, camber_real d) {
+    const camber_real both = camber_inside_edge(p, half_gap - d) + camber_inside_edge(p, half_gap + d) - 1.0f;
+    return both > 0.0f ? both : CAMBER_REAL(0.0f);
+}
+
 /* How far inside the second line of a join, where there is one. */
 CAMBER_FN camber_real camber_rim_at(const camber_pen *p, camber_real rim, camber_u32 end, camber_real past,
                                     camber_real y, float c, float s) {
@@ -200,7 +206,7 @@ CAMBER_FN camber_real camber_extras_area(const camber_pen *p, const camber_extra
     if (p->sharp && !aside)
         area = camber_cut_joins(p, area, x, y);
     if (e->features & CAMBER_FEATURE_GAP) {
-        camber_real gap = camber_pen_band(p, e->half_gap, d);
+        camber_real gap = camber_gap_area(p, e->half_gap, d);
         if (p->sharp && !aside)
             gap = camber_cut_joins(&e->hole, gap, x, y);
         area = area > gap ? area - gap : CAMBER_REAL(0.0f);

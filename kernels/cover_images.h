@@ -85,9 +85,14 @@ CAMBER_FN float camber_image_tangent(float cosine, float sine) {
     return CAMBER_FABS(tangent) < 1e-6f ? 0.0f : tangent;
 }
 
+/* Of a segment: half its width, and cosine and sine of half its turns at A and B. */
+typedef struct camber_image_line {
+    float length, half_width, ca, sa, cb, sb;
+} camber_image_line;
+
 /* Of a line, too: measure is the segment's. */
 CAMBER_FN void camber_image_line_of(CAMBER_GLOBAL const float *tail, camber_u32 at, CAMBER_GLOBAL const float *measure,
-                                    const camber_pen *p, camber_image_pen *m) {
+                                    const camber_image_line *p, camber_image_pen *m) {
     const float one_px = tail[at + 3u], middle = 0.5f * p->length, widths = 4.0f * p->half_width;
     camber_image_pen_of(tail, at, m);
     m->phase = camber_fraction(measure[0] / one_px);
@@ -97,6 +102,18 @@ CAMBER_FN void camber_image_line_of(CAMBER_GLOBAL const float *tail, camber_u32 
     m->near = middle < widths ? middle : widths;
     m->tangent_a = camber_image_tangent(p->ca, p->sa);
     m->tangent_b = camber_image_tangent(p->cb, p->sb);
+}
+
+CAMBER_FN void camber_flat_image_of(CAMBER_GLOBAL const float *tail, camber_u32 at, CAMBER_GLOBAL const float *measure,
+                                    const camber_pen *p, camber_image_pen *m) {
+    camber_image_line line;
+    line.length = p->length;
+    line.half_width = p->half_width;
+    line.ca = p->ca;
+    line.sa = p->sa;
+    line.cb = p->cb;
+    line.sb = p->sb;
+    camber_image_line_of(tail, at, measure, &line, m);
 }
 
 /* ---- Pixels ---- */

@@ -36,7 +36,10 @@ static inline void sort_tilted(private const camber_pitch_pen *p, private const 
 static __attribute__((noinline)) void draw_rich_tilted(private canvas *c, private const places *at,
                                                        private const camber_pitch_pen *p, ulong meets, tilted from) {
     camber_extras e;
+    camber_image_pen image;
     camber_extras_of(&c->more, 0, from.measure, from.tail, &e);
+    if (e.features & CAMBER_FEATURE_IMAGE)
+        camber_pitch_image_of(from.tail, 4u * c->more.image, from.measure, p, &image);
     for (ulong left = meets; left; left &= left - 1) {
         const int i = lowest(left);
         camber_pitch_pixel pixels;
@@ -44,11 +47,20 @@ static __attribute__((noinline)) void draw_rich_tilted(private canvas *c, privat
         camber_pitch_look(p, at->x[i % CAMBER_TILE_CELLS] - from.eye.x, at->y[i / CAMBER_TILE_CELLS] - from.eye.y,
                           &pixels);
         const float16 area = camber_pitch_extras_area(p, &e, &pixels, &along);
-        if (e.features & CAMBER_FEATURE_RAMP) {
+        if (e.features & CAMBER_FEATURES_COLORS) {
             const float16 reach = camber_pitch_extent(p, &pixels);
             const float range[2] = {-most_of(reach - along), most_of(along + reach)};
-            float16 color[4];
-            camber_pitch_ramp(p, &e, &pixels, along, range, color);
+            float16 color[4] = {(float16)(1.0f), (float16)(1.0f), (float16)(1.0f), (float16)(1.0f)};
+            if (e.features & CAMBER_FEATURE_RAMP)
+                camber_pitch_ramp(p, &e, &pixels, along, range, color);
+            if (e.features & CAMBER_FEATURE_IMAGE) {
+                camber_image_spot spot;
+                float16 rgba[4];
+                camber_pitch_spot(p, &pixels, &spot);
+                camber_line_image(from.tail, &image, &spot, rgba);
+                for (int channel = 0; channel < 4; channel++)
+                    color[channel] *= rgba[channel];
+            }
             put_colors(c, i, area, color, 0);
             continue;
         }
@@ -69,6 +81,10 @@ static inline void draw_tilted(private canvas *c, private const places *at, plac
     const int is_union = c->now.mode == CAMBER_INK_UNION;
     if (!cells)
         return;
+    if (c->more.features & CAMBER_FEATURE_IMAGE && from.plane[CAMBER_PLANE_HALF_WIDTH] >= CAMBER_FILL_PX) {
+        fill_with_images(c, at, from.eye, from.tail);
+        return;
+    }
     camber_pitch_pen_of(from.eye, from.shape, from.plane, as_uint(from.shape[CAMBER_SHAPE_FLAGS]), &p);
     sort_tilted(&p, at, box, cells, from.eye, &sets);
     if (c->more.features) {

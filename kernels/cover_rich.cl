@@ -21,6 +21,27 @@ static inline void put_colors(private canvas *c, int i, float16 area, private co
         *(level == 0 ? &c->done : &c->filled) |= 1ul << i;
 }
 
+/* All cells that are not full. */
+static inline void fill_with_images(private canvas *c, private const places *at, camber_eye eye,
+                                    global const float *tail) {
+    camber_image_pen m;
+    camber_image_pen_of(tail, 4u * c->more.image, &m);
+    for (ulong cells = ~c->done; cells; cells &= cells - 1) {
+        const int i = lowest(cells);
+        camber_image_spot spot;
+        float16 rgba[4];
+#if CAMBER_COVER_PITCHED
+        camber_plane_spot(eye, at->x[i % CAMBER_TILE_CELLS] - eye.x, at->y[i / CAMBER_TILE_CELLS] - eye.y, &spot);
+#else
+        spot.x = at->x[i % CAMBER_TILE_CELLS];
+        spot.y = at->y[i / CAMBER_TILE_CELLS];
+        spot.distance = spot.reach_x = spot.reach_y = (float16)(0.0f);
+#endif
+        camber_fill_image(tail, &m, &spot, rgba);
+        put_colors(c, i, (float16)(1.0f), rgba, 1);
+    }
+}
+
 #if !CAMBER_COVER_PITCHED
 /* Multiplies the colours of a line's pixels by its image. */
 static inline void image_line(global const float *tail, private const camber_pen *p, private const camber_image_pen *m,
@@ -38,22 +59,7 @@ static inline void image_line(global const float *tail, private const camber_pen
         color[channel] *= rgba[channel];
 }
 
-/* All cells that are not full. */
-static inline void fill_with_images(private canvas *c, private const places *at, global const float *tail) {
-    camber_image_pen m;
-    camber_image_pen_of(tail, 4u * c->more.image, &m);
-    for (ulong cells = ~c->done; cells; cells &= cells - 1) {
-        const int i = lowest(cells);
-        camber_image_spot spot;
-        float16 rgba[4];
-        spot.x = at->x[i % CAMBER_TILE_CELLS];
-        spot.y = at->y[i / CAMBER_TILE_CELLS];
-        spot.distance = spot.reach_x = spot.reach_y = (float16)(0.0f);
-        camber_fill_image(tail, &m, &spot, rgba);
-        put_colors(c, i, (float16)(1.0f), rgba, 1);
-    }
-}
-
+/* As draw_segment. */
 /* As draw_segment. */
 static __attribute__((noinline)) void draw_rich(private canvas *c, private const places *at, global const float *shape,
                                                 place where, global const float *measure, global const float *tail) {
@@ -67,12 +73,12 @@ static __attribute__((noinline)) void draw_rich(private canvas *c, private const
     if (!cells)
         return;
     if (c->more.features & CAMBER_FEATURE_IMAGE && shape[CAMBER_SHAPE_HALF_WIDTH] >= CAMBER_FILL_PX) {
-        fill_with_images(c, at, tail);
+        fill_with_images(c, at, (camber_eye){0, 0, 0, 0}, tail);
         return;
     }
     camber_pen_of(shape, as_uint(shape[CAMBER_SHAPE_FLAGS]), &p);
     if (c->more.features & CAMBER_FEATURE_IMAGE)
-        camber_image_line_of(tail, 4u * c->more.image, measure, &p, &image);
+        camber_flat_image_of(tail, 4u * c->more.image, measure, &p, &image);
     camber_extras_of(&c->more, &p, measure, tail, &e);
     sort_cells(&p, at, box, cells, &sets);
     for (ulong left = sets.meets; left; left &= left - 1) {

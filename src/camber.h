@@ -293,8 +293,7 @@ typedef enum camber_sharing {
 typedef enum camber_draw {
     CAMBER_DRAW_AUTO = 0, /* GL where there is a surface, else OpenCL */
     CAMBER_DRAW_GL,       /* GLES shaders */
-    CAMBER_DRAW_CL, /* OpenCL kernels, which need no surface; not yet patterns and what else lines have beside widths
-                     and colours, seen at an angle */
+    CAMBER_DRAW_CL,       /* OpenCL kernels, which need no surface */
 } camber_draw;
 
 typedef struct camber_renderer_desc {
@@ -586,7 +585,7 @@ typedef bool camber_rows_fn(void *user, const uint8_t *rgba, uint32_t first_row,
 
 /* Draws a frame and hands its rows over. rows may be NULL: the frame is drawn and finished, not read back.
  * stats may be NULL. Returns CAMBER_ERROR_ARGUMENT (a size or a pitch out of range, a dash, a ramp or an image that is
- * none, dashes, ramps, trims or patterns of a mesh that is not measured, or what CAMBER_DRAW_CL does not draw),
+ * none, dashes, ramps, trims or patterns of a mesh that is not measured),
  * CAMBER_ERROR_LIMIT (more rows of strokes and paints, or images of one pass, than textures hold), CAMBER_ERROR_DEVICE
  * (a shader does not build, or the GL reported an error), CAMBER_ERROR_MEMORY, CAMBER_ERROR_IO (rows returned false).
  */

@@ -151,19 +151,23 @@ static void compare_with_twin(const covering *e, const drawing *d, camber_mesh *
     const size_t count = mesh->polyline_count;
     const camber_cover_run runs[] = {
         {NULL, 0, 0, ROWS}, {mesh, 0, count, 0}, {NULL, 0, 0, ROWS + 1}, {mesh, count / 3, count, SCENE_ROWS}};
-    const camber_cover_scene drawn = {.rows = rows[0],
-                                      .row_count = ALL,
-                                      .inks = inks,
-                                      .ink_count = ALL,
-                                      .runs = runs,
-                                      .run_count = 4,
-                                      .background = {0.2f, 0.3f, 0.4f, 1},
-                                      .linear = linear,
-                                      .more = more,
-                                      .tail = e->cl->tail_texels,
-                                      .tail_count = e->cl->tail_count};
-    uint8_t *rgba = covering_draw_twice(e, &drawn, (camber_cover_area){32, 64, 300, 233});
-    camber_free(e->s.context, rgba);
+    camber_cover_scene drawn = {.rows = rows[0],
+                                .row_count = ALL,
+                                .inks = inks,
+                                .ink_count = ALL,
+                                .runs = runs,
+                                .run_count = 4,
+                                .background = {0.2f, 0.3f, 0.4f, 1},
+                                .linear = linear,
+                                .more = more,
+                                .tail = e->cl->tail_texels,
+                                .tail_count = e->cl->tail_count};
+    for (int pitched = 0; pitched < 2; pitched++) {
+        if (pitched)
+            covering_tilt(&drawn, first_way % 2 ? 40 : 75, SIDE_PX, SIDE_PX);
+        uint8_t *rgba = covering_draw_twice(e, &drawn, (camber_cover_area){32, 64, 300, 233});
+        camber_free(e->s.context, rgba);
+    }
     camber_free(e->s.context, images.held);
 }
 
@@ -220,6 +224,8 @@ static void test_gl(void **state) {
         d->frame.coverage = CAMBER_COVERAGE_LINEAR;
         d->passes[3].overlap = CAMBER_OVERLAP_ACCUMULATE;
         compare_with_gl(e, d, "  linear", way, 0.4);
+        d->frame.pitch_deg = way % 2 ? 50 : 75;
+        compare_with_gl(e, d, "  at an angle", way, 0.4);
         end_drawing(d);
     }
 }
@@ -232,8 +238,14 @@ static void test_areas(void **state) {
     drawing *d = begin_drawing(0, 1);
     d->passes[1].opacity = 0.5f;
     picture whole = draw_with(e, e->cl, d);
-    for (size_t k = 0; k < sizeof sides / sizeof *sides; k++) {
-        d->frame.largest_piece_px = sides[k];
+    for (size_t k = 0; k < 2 * sizeof sides / sizeof *sides; k++) {
+        if (k == sizeof sides / sizeof *sides) {
+            picture_free(&whole);
+            d->frame.pitch_deg = 60;
+            d->frame.largest_piece_px = 0;
+            whole = draw_with(e, e->cl, d);
+        }
+        d->frame.largest_piece_px = sides[k % (sizeof sides / sizeof *sides)];
         picture p = draw_with(e, e->cl, d);
         picture_assert_same(&whole, &p);
         picture_free(&p);

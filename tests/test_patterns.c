@@ -453,8 +453,6 @@ static bool ground_of(double pitch_deg, uint32_t k, double ground[2], double *de
 static void test_pitched_line(void **state) {
     studio *s = *state;
     sheet made;
-    if (draws_in_cl())
-        skip();
     make_sheet(&made, 4, 4, SMOOTH);
     const drawing d = drawing_of(slanted, 2, 40, &made);
     camber_mesh *mesh = make_mesh(s, &d, true);
@@ -484,8 +482,6 @@ static void test_pitched_line(void **state) {
 static void test_pitched_fill(void **state) {
     studio *s = *state;
     sheet made;
-    if (draws_in_cl())
-        skip();
     for (int fine = 0; fine < 2; fine++) {
         const double pitch_deg = fine ? 75 : 60;
         make_sheet(&made, fine ? 64 : 4, fine ? 64 : 4, fine ? CHECKED : SMOOTH);

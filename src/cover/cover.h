@@ -14,8 +14,8 @@
 #include "tess/tess.h"
 
 #include "camber_proof.h"
-#include "kernels/cover_images.h"
 #include "kernels/cover_pitch_bands.h"
+#include "kernels/cover_pitch_images.h"
 
 /* Polylines [first, end) of a mesh, drawn by a table of rows. */
 typedef struct camber_cover_run {

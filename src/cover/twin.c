@@ -364,6 +364,16 @@ static void count_put(const canvas *c, cell *one) {
         one->filled = most_ink(one) < CAMBER_NOTHING_PX;
 }
 
+static void multiply_by_image(const tool *t, const camber_image_spot *spot, float color[4]) {
+    float rgba[4];
+    if (t->is_fill)
+        camber_fill_image(t->tail, &t->image, spot, rgba);
+    else
+        camber_line_image(t->tail, &t->image, spot, rgba);
+    for (int k = 0; k < 4; k++)
+        color[k] *= rgba[k];
+}
+
 /* Multiplies a pixel's colour by the image that it shows. */
 static void take_image(const tool *t, place at, float color[4]) {
     const camber_pen *p = &t->pen;
@@ -371,13 +381,7 @@ static void take_image(const tool *t, place at, float color[4]) {
     const float arc_a = past_a > 0.0f ? past_a : 0.0f, arc_b = past_b > 0.0f ? past_b : 0.0f;
     const camber_image_spot of_line = {at.x, at.y, sqrtf(arc_a * arc_a + arc_b * arc_b + at.y * at.y), 0.0f, 0.0f};
     const camber_image_spot of_plane = {at.px, at.py, 0.0f, 0.0f, 0.0f};
-    float rgba[4];
-    if (t->is_fill)
-        camber_fill_image(t->tail, &t->image, &of_plane, rgba);
-    else
-        camber_line_image(t->tail, &t->image, &of_line, rgba);
-    for (int k = 0; k < 4; k++)
-        color[k] *= rgba[k];
+    multiply_by_image(t, t->is_fill ? &of_plane : &of_line, color);
 }
 
 static int level_now(const canvas *c) {
@@ -477,7 +481,7 @@ static void put_tilted(const canvas *c, const camber_pitch_pen *pen, pixel *p, f
 static void draw_rich_tilted(const canvas *c, const tool *t, cell *one, float x, float y) {
     const camber_pitch_pen *p = &t->tilted_pen;
     const camber_extras *e = &t->extras;
-    const bool is_ramp = e->features & CAMBER_FEATURE_RAMP;
+    const bool has_colors = e->features & CAMBER_FEATURES_COLORS;
     camber_pitch_pixel at[CELL_PIXELS];
     float area[CELL_PIXELS], along[CELL_PIXELS], range[2] = {INFINITY, -INFINITY}, most = 0.0f;
     for (int i = 0; i < CELL_PIXELS; i++) {
@@ -488,21 +492,40 @@ static void draw_rich_tilted(const canvas *c, const tool *t, cell *one, float x,
         range[1] = CAMBER_MORE(range[1], along[i] + reach);
     }
     for (int i = 0; i < CELL_PIXELS; i++) {
-        float color[4];
-        if (!is_ramp) {
+        float color[4] = {1.0f, 1.0f, 1.0f, 1.0f};
+        if (!has_colors) {
             put_tilted(c, p, one->pixels + i, area[i], at + i);
             continue;
         }
-        camber_pitch_ramp(p, e, at + i, along[i], range, color);
+        if (e->features & CAMBER_FEATURE_RAMP)
+            camber_pitch_ramp(p, e, at + i, along[i], range, color);
+        if (e->features & CAMBER_FEATURE_IMAGE) {
+            camber_image_spot spot;
+            camber_pitch_spot(p, at + i, &spot);
+            multiply_by_image(t, &spot, color);
+        }
         const float through = put_color(c, one->pixels + i, area[i], color);
         most = CAMBER_MORE(through, most);
     }
-    if (is_ramp) {
+    if (has_colors) {
         count_colors(c, one, most, false);
     } else {
         one->inked = true;
         count_put(c, one);
     }
+}
+
+static void fill_tilted_cell(const canvas *c, const tool *t, cell *one, float x, float y) {
+    float most = 0.0f;
+    for (int i = 0; i < CELL_PIXELS; i++) {
+        float color[4] = {1.0f, 1.0f, 1.0f, 1.0f};
+        camber_image_spot spot;
+        camber_plane_spot(t->eye, x + (float)(i % CAMBER_CELL_PX), y + (float)(i / CAMBER_CELL_PX), &spot);
+        multiply_by_image(t, &spot, color);
+        const float through = put_color(c, one->pixels + i, 1.0f, color);
+        most = CAMBER_MORE(through, most);
+    }
+    count_colors(c, one, most, true);
 }
 
 static void draw_tilted_cell(canvas *c, const tool *t, cell *one, float x, float y) {
@@ -512,6 +535,10 @@ static void draw_tilted_cell(canvas *c, const tool *t, cell *one, float x, float
     camber_pitch_cells_meet(p, x + 1.5f, y + 1.5f, &m);
     if (one->done || one->filled || !m.meets)
         return;
+    if (t->extras.features & CAMBER_FEATURE_IMAGE && t->is_fill) {
+        fill_tilted_cell(c, t, one, x, y);
+        return;
+    }
     if (t->extras.features) {
         draw_rich_tilted(c, t, one, x, y);
         return;
@@ -559,6 +586,14 @@ static void draw_cells(canvas *c, const float *shape, const tool *t, float left,
         }
 }
 
+static void begin_image(const canvas *c, const float *measure, tool *by) {
+    const camber_u32 at = 4u * c->more.image;
+    if (by->tilted)
+        camber_pitch_image_of(by->tail, at, measure, &by->tilted_pen, &by->image);
+    else
+        camber_flat_image_of(by->tail, at, measure, &by->pen, &by->image);
+}
+
 static void draw_segment(canvas *c, const twin *t, uint32_t which, float left, float top) {
     const camber_cover_stages *stages = t->stages;
     const float *shape = stages->shapes + (size_t)CAMBER_SHAPE_WORDS * which;
@@ -573,11 +608,11 @@ static void draw_segment(canvas *c, const twin *t, uint32_t which, float left, f
         camber_pen_of(shape, flags, &by.pen);
     const float *measure = stages->measures + CAMBER_SHAPE_MEASURES * (size_t)which;
     by.tail = t->scene->tail;
-    by.is_fill = shape[CAMBER_SHAPE_HALF_WIDTH] >= CAMBER_FILL_PX;
+    by.is_fill = (by.tilted ? by.tilted_pen.half_width : by.pen.half_width) >= CAMBER_FILL_PX;
     if (c->more.features)
         camber_extras_of(&c->more, by.tilted ? NULL : &by.pen, measure, by.tail, &by.extras);
     if (c->more.features & CAMBER_FEATURE_IMAGE)
-        camber_image_line_of(by.tail, 4u * c->more.image, measure, &by.pen, &by.image);
+        begin_image(c, measure, &by);
     draw_cells(c, shape, &by, left, top);
 }
 

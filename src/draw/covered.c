@@ -161,18 +161,9 @@ static camber_status fill_table(tables *t, const camber_run *run, camber_ink ink
     return CAMBER_OK;
 }
 
-static camber_status refuse(camber_context *context) {
-    return camber_fail(
-        context, CAMBER_ERROR_ARGUMENT,
-        "dashes, gaps, blur, trims, gradients and patterns seen at an angle are not drawn in OpenCL yet; "
-        "draw with GL (--draw gl)");
-}
-
 static camber_status add_run(tables *t, const camber_run *run, camber_ink ink) {
     if (run->alpha <= 0.0f)
         return CAMBER_OK;
-    if (t->pitched && run->bands & CAMBER_VARIANT_PATTERN)
-        return refuse(t->context);
     const bool shares = !run->layered && t->pass && t->pass == run->pass && ink.group == 0;
     camber_status status = CAMBER_OK;
     if (!camber_grow(t->context, &t->runs, &t->run_capacity, t->run_count + 1, sizeof *t->runs))
@@ -234,8 +225,6 @@ static camber_status add_fill(tables *t, const camber_pass *pass) {
     const camber_ink ink = {.r = c.r, .g = c.g, .b = c.b, .a = a};
     if (!(a > 0.0f))
         return CAMBER_OK;
-    if (pass->fill.pattern && t->pitched)
-        return refuse(t->context);
     if (pass->fill.pattern)
         return add_images(t, pass, a);
     put_over(color, t->sky);
@@ -397,13 +386,21 @@ static void pitch_scene(const camber_frame *frame, const float sky[4], camber_co
     memcpy(scene->sky, sky, sizeof scene->sky);
 }
 
+/* px of the picture that a px of the plane takes, at most. */
+static double nearest_of(const camber_frame *frame) {
+    if (!(frame->pitch_deg > 0.0))
+        return 1.0;
+    const camber_perspective p = camber_perspective_of(frame->pitch_deg, frame->height);
+    return 1.0 / p.nearest;
+}
+
 static camber_status render_to(camber_renderer *renderer, const camber_frame *frame, target *to,
                                camber_frame_stats *stats) {
     const camber_color back = frame->background;
     tables t = {.renderer = renderer,
                 .pitched = frame->pitch_deg > 0.0,
                 .context = renderer->share.device->context,
-                .images = {.nearest = 1.0},
+                .images = {.nearest = nearest_of(frame)},
                 .background = {back.r * back.a, back.g * back.a, back.b * back.a, back.a}};
     camber_frame_stats made = {0};
     memcpy(t.sky, t.background, sizeof t.sky);

@@ -277,6 +277,9 @@ static void test_slices(void **state) {
         d.passes[2].opacity = 0.8f;
         d.paints[1][3].color.a = 0.3f;
         d.frame.pitch_deg = which == 2 ? 60 : 0;
+        d.paints[1][2].blur_px = which == 1 ? 2.0f : 0.0f;
+        d.paints[0][1].gap_px = which == 1 ? 1.5f : 0.0f;
+        d.frame.pitch_deg = which == 2 ? 30.0 : 0.0;
         picture whole = draw_with(e, e->cl, &d, 3, CAMBER_METHOD_STRIP);
         assert_int_equal(camber_cover_slices(e->cl->cover), 1);
         uint32_t most = 0;

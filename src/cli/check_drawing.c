@@ -8,6 +8,14 @@ enum { PASSES = 3, SIDE_PX = 2048, RECORDS_MAX = 1 << 20 };
 
 /* ---- What is drawn: lines over each other, united, and in a group ---- */
 
+/* Kernels are built in variants: without bands beside lines, with them, and for planes that are seen at an angle. */
+static const struct {
+    const char *name;
+    float gap_px, blur_px;
+    double pitch_deg;
+} variants[] = {{"", 0, 0, 0}, {", gaps and blurs", 1.5f, 0.8f, 0}, {", at 40 degrees", 0, 0, 40}};
+enum { VARIANTS = sizeof variants / sizeof *variants };
+
 typedef struct drawn {
     camber_paint *paints; /* of a pass, stroke_count each */
     camber_pass passes[PASSES];
@@ -20,7 +28,7 @@ static camber_color color_of(size_t row, size_t pass) {
     return (camber_color){0.2f * (float)(i % 6), 1.0f - 0.2f * (float)(i % 5), 0.25f * (float)(i % 4), alphas[pass]};
 }
 
-static bool make_frame(const camber_subject *s, camber_coverage coverage, camber_mesh *mesh, drawn *d) {
+static bool make_frame(const camber_subject *s, camber_coverage coverage, camber_mesh *mesh, int variant, drawn *d) {
     static const float widths[PASSES] = {1.0f, 0.6f, 0.3f};
     *d = (drawn){.paints = calloc(PASSES * s->stroke_count + 1, sizeof *d->paints)};
     if (!d->paints)
@@ -30,7 +38,9 @@ static bool make_frame(const camber_subject *s, camber_coverage coverage, camber
         for (size_t row = 0; row < s->stroke_count; row++)
             paints[row] = (camber_paint){.width_px = widths[pass] * s->strokes[row].width_px,
                                          .color = pass == 1 ? color_of(0, 1) : color_of(row, pass),
-                                         .translate_x_px = pass == 2 ? 1.5f : 0.0f};
+                                         .translate_x_px = pass == 2 ? 1.5f : 0.0f,
+                                         .gap_px = row % 2 ? variants[variant].gap_px : 0.0f,
+                                         .blur_px = pass == 2 ? variants[variant].blur_px : 0.0f};
         d->passes[pass] = (camber_pass){.mesh = mesh, .paints = paints, .paint_count = s->stroke_count};
     }
     d->passes[1].overlap = CAMBER_OVERLAP_UNITE;
@@ -41,7 +51,8 @@ static bool make_frame(const camber_subject *s, camber_coverage coverage, camber
                               .background = {0.2f, 0.3f, 0.4f, 0.5f},
                               .passes = d->passes,
                               .pass_count = PASSES,
-                              .coverage = coverage};
+                              .coverage = coverage,
+                              .pitch_deg = variants[variant].pitch_deg};
     return true;
 }
 
@@ -129,12 +140,12 @@ static bool stages_differ(const camber_drawing_stages *got, const camber_drawing
 
 /* ---- The check ---- */
 
-static camber_status compare(const camber_validation *v, const camber_subject *s, const camber_path *path,
+static camber_status compare(const camber_validation *v, const camber_subject *s, const camber_path *path, int variant,
                              camber_check *check) {
     camber_context *context = v->session->context;
     camber_drawing_stages got = {0}, expected = {0};
     drawn d;
-    if (!make_frame(s, (camber_coverage)v->session->options->coverage, path->mesh, &d))
+    if (!make_frame(s, (camber_coverage)v->session->options->coverage, path->mesh, variant, &d))
         return CAMBER_ERROR_MEMORY;
     camber_status status = camber_drawing_read_stages(path->renderer, &d.frame, &got);
     if (status == CAMBER_OK)
@@ -151,13 +162,15 @@ static camber_status compare(const camber_validation *v, const camber_subject *s
 typedef struct drawer {
     const char *easel, *how;
     camber_path path;
+    int variant;
 } drawer;
 
 static int check_method(camber_validation *v, const camber_subject *s, const camber_rig *rig, const drawer *on,
                         camber_method method) {
     const camber_tessellation_desc desc = {s->strokes, s->stroke_count, method, 0, false};
-    camber_check check = camber_check_start(rig->name, on->easel, "%s: %s: drawn as by the CPU twin%s, on %s", s->name,
-                                            camber_method_name(method), on->how, rig->name);
+    camber_check check =
+        camber_check_start(rig->name, on->easel, "%s: %s%s: drawn as by the CPU twin%s, on %s", s->name,
+                           camber_method_name(method), variants[on->variant].name, on->how, rig->name);
     if (rig->broken[method]) {
         camber_verdicts_skip(&v->verdicts, check, "the mesh is not the CPU twin's");
         return CAMBER_EXIT_DONE;
@@ -168,7 +181,7 @@ static int check_method(camber_validation *v, const camber_subject *s, const cam
         return CAMBER_EXIT_DONE;
     }
     if (made == CAMBER_OK)
-        made = compare(v, s, &on->path, &check);
+        made = compare(v, s, &on->path, on->variant, &check);
     const int status = camber_report_status(v->session->report, made);
     if (status == CAMBER_EXIT_DONE)
         camber_verdicts_add(&v->verdicts, &check);
@@ -205,7 +218,8 @@ int camber_check_drawing(camber_validation *v, const camber_subject *s) {
             const camber_easel *easel = rig->easels + e;
             if (easel->draw != CAMBER_DRAW_CL)
                 continue;
-            status = check_methods(v, s, rig, &(drawer){easel->name, "", easel->paths[0]});
+            for (int i = 0; i < VARIANTS && status == CAMBER_EXIT_DONE; i++)
+                status = check_methods(v, s, rig, &(drawer){easel->name, "", easel->paths[0], i});
             if (status == CAMBER_EXIT_DONE)
                 status = check_groups(v, s, rig, easel->name);
         }

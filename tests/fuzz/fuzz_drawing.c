@@ -38,7 +38,13 @@ static void compare(const camber_drawing_stages *got, const camber_drawing_stage
     REQUIRE(memcmp(got->rgba, expected->rgba, 4 * (size_t)WIDTH_PX * HEIGHT_PX) == 0);
 }
 
-void fuzz_easel_draw(const fuzz_easel *easel, const camber_stroke *strokes, size_t stroke_count) {
+/* Without bands beside lines, with them, and a plane that is seen at an angle: a variant of the kernels each. */
+static const struct {
+    float gap_px, blur_px;
+    double pitch_deg;
+} variants[] = {{0, 0, 0}, {1.5f, 0.8f, 0}, {0, 0, 50}};
+
+static void draw(const fuzz_easel *easel, const camber_stroke *strokes, size_t stroke_count, size_t variant) {
     static const float widths[PASSES] = {1.0f, 0.6f, 0.3f}, alphas[PASSES] = {1.0f, 0.5f, 0.7f};
     camber_paint paints[PASSES][ROWS_MAX] = {{{0}}};
     camber_pass passes[PASSES];
@@ -49,7 +55,9 @@ void fuzz_easel_draw(const fuzz_easel *easel, const camber_stroke *strokes, size
         for (size_t i = 0; i < stroke_count; i++)
             paints[k][i] = (camber_paint){.width_px = widths[k] * strokes[i].width_px,
                                           .color = {0.5f * (float)k, k == 1 ? 1.0f : 0.1f * (float)i, 0.5f, alphas[k]},
-                                          .translate_x_px = 0.7f * (float)k};
+                                          .translate_x_px = 0.7f * (float)k,
+                                          .gap_px = i % 2 ? variants[variant].gap_px : 0,
+                                          .blur_px = k == 2 ? variants[variant].blur_px : 0};
     }
     passes[1].overlap = CAMBER_OVERLAP_UNITE;
     passes[2].overlap = CAMBER_OVERLAP_ACCUMULATE;
@@ -58,10 +66,16 @@ void fuzz_easel_draw(const fuzz_easel *easel, const camber_stroke *strokes, size
                                 .height = HEIGHT_PX,
                                 .background = {0.2f, 0.3f, 0.4f, 0.5f},
                                 .passes = passes,
-                                .pass_count = PASSES};
+                                .pass_count = PASSES,
+                                .pitch_deg = variants[variant].pitch_deg};
     REQUIRE(camber_drawing_read_stages(easel->renderer, &frame, &got) == CAMBER_OK);
     REQUIRE(camber_drawing_stages_on_host(easel->renderer, &frame, &expected) == CAMBER_OK);
     compare(&got, &expected);
     camber_drawing_stages_free(easel->context, &got);
     camber_drawing_stages_free(easel->context, &expected);
+}
+
+void fuzz_easel_draw(const fuzz_easel *easel, const camber_stroke *strokes, size_t stroke_count) {
+    for (size_t i = 0; i < sizeof variants / sizeof *variants; i++)
+        draw(easel, strokes, stroke_count, i);
 }

@@ -64,7 +64,8 @@ static camber_status put_dash(tables *t, const camber_pass *pass, uint32_t row, 
     const camber_paint *paint = pass->paints + row;
     const camber_dash *dash = pass->dashes + paint->dash - 1;
     const bool is_round = pass->mesh->host_rows[row].cap == CAMBER_CAP_ROUND;
-    if (t->dash != dash || t->dash_round != is_round || memcmp(&t->dash_unit_px, &paint->dash_unit_px, sizeof(float))) {
+    if (t->dash != dash || t->dash_round != is_round ||
+        memcmp(&t->dash_unit_px, &paint->dash_unit_px, sizeof(float)) != 0) {
         const camber_status status = camber_tail_put_dash(t->renderer, pass, row, t->dash_texel);
         if (status != CAMBER_OK)
             return status;

@@ -3,6 +3,7 @@
 
 #include "kernels/cover_images.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -50,6 +51,7 @@ static camber_status hold(camber_renderer *renderer, camber_covered_images *imag
         status = CAMBER_ERROR_MEMORY;
     if (status != CAMBER_OK)
         return status;
+    assert(words);
     made.is_opaque = are_opaque((const uint8_t *)words, texels);
     images->held[images->count++] = *found = made;
     return CAMBER_OK;

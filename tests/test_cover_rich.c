@@ -194,8 +194,7 @@ static void test_twin(void **state) {
 /* ---- GL ---- */
 
 /* A group's layer is rounded to 8 bits twice more. On bisectors single pixels belong to another segment than GL's
- * triangles say, whose dash, band or colour is another.
- */
+ * triangles say, whose dash, band or colour is another: up to 255. */
 enum { PIXELS_PAST_8 = 1000 };
 static void compare_with_gl(const covering *e, drawing *d, const char *what, size_t way) {
     picture a = draw_with(e, studio_any(&e->s), d, CAMBER_METHOD_STRIP),

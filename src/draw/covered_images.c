@@ -3,7 +3,6 @@
 
 #include "kernels/cover_images.h"
 
-#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -49,9 +48,8 @@ static camber_status hold(camber_renderer *renderer, camber_covered_images *imag
     if (status == CAMBER_OK &&
         !camber_grow(context, &images->held, &images->capacity, images->count + 1, sizeof *images->held))
         status = CAMBER_ERROR_MEMORY;
-    if (status != CAMBER_OK)
+    if (status != CAMBER_OK || !words)
         return status;
-    assert(words);
     made.is_opaque = are_opaque((const uint8_t *)words, texels);
     images->held[images->count++] = *found = made;
     return CAMBER_OK;

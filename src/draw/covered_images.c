@@ -21,10 +21,12 @@ static bool are_opaque(const uint8_t *texels, size_t count) {
 
 /* Texels, or a place, in the tail. */
 static camber_status add_words(camber_renderer *renderer, size_t count, size_t *first, float **words) {
-    if (renderer->tail_count + count > CAMBER_COVERED_TAIL_MAX)
-        return camber_fail(renderer->share.device->context, CAMBER_ERROR_LIMIT,
-                           "the images of a frame take more than %d texels; draw fewer images in fewer sizes",
-                           4 * CAMBER_COVERED_TAIL_MAX);
+    if (renderer->tail_count + count > CAMBER_COVERED_TAIL_MAX) {
+        camber_fail(renderer->share.device->context, CAMBER_ERROR_LIMIT,
+                    "the images of a frame take more than %d texels; draw fewer images in fewer sizes",
+                    4 * CAMBER_COVERED_TAIL_MAX);
+        return CAMBER_ERROR_LIMIT;
+    }
     *first = renderer->tail_count;
     *words = camber_tail_add(renderer, count);
     return *words ? CAMBER_OK : CAMBER_ERROR_MEMORY;
@@ -48,7 +50,7 @@ static camber_status hold(camber_renderer *renderer, camber_covered_images *imag
     if (status == CAMBER_OK &&
         !camber_grow(context, &images->held, &images->capacity, images->count + 1, sizeof *images->held))
         status = CAMBER_ERROR_MEMORY;
-    if (status != CAMBER_OK || !words)
+    if (status != CAMBER_OK)
         return status;
     made.is_opaque = are_opaque((const uint8_t *)words, texels);
     images->held[images->count++] = *found = made;

@@ -259,6 +259,7 @@ static camber_paint rich_paint(int row, float width_px) {
     paint.trim_start = 0.2f;
     paint.trim_end = row % 5 == 2 ? 0.6f : 0;
     paint.ramp = row % 3 == 2;
+    paint.pattern = row % 4 == 3;
     return paint;
 }
 
@@ -292,18 +293,24 @@ static bool draw(camber_device *device, camber_context *context, const scene *s,
     const camber_pass passes[] = {{.mesh = mesh, .paints = paints[0], .paint_count = ROWS},
                                   {.fill = {.color = {0, 1, 0, 0.3f}}},
                                   {.mesh = mesh, .paints = paints[1], .paint_count = ROWS, .opacity = 0.5f}};
-    const camber_pass rich_pass = {.mesh = mesh,
-                                   .paints = paints[2],
-                                   .paint_count = ROWS,
-                                   .dashes = &dash,
-                                   .dash_count = 1,
-                                   .ramps = &ramp,
-                                   .ramp_count = 1};
+    static const uint8_t texels[4 * 5 * 3] = {9, 0, 0, 9, 40, 50, 60, 200};
+    const camber_image image = {texels, 5, 3, 0};
+    const camber_pass rich_passes[] = {
+        {.fill = {.color = {0, 0, 0, 1}, .pattern = 1, .bearing_deg = 30}, .images = &image, .image_count = 1},
+        {.mesh = mesh,
+         .paints = paints[2],
+         .paint_count = ROWS,
+         .dashes = &dash,
+         .dash_count = 1,
+         .ramps = &ramp,
+         .ramp_count = 1,
+         .images = &image,
+         .image_count = 1}};
     camber_frame frame = {.width = PICTURE_WIDTH, .height = PICTURE_HEIGHT, .passes = passes, .pass_count = 3};
     good = good && camber_render(renderer, &frame, take_rows, pictures[0], NULL) == CAMBER_OK;
     frame.pitch_deg = 75;
     good = good && camber_render(renderer, &frame, take_rows, pictures[1], NULL) == CAMBER_OK;
-    frame = (camber_frame){.width = PICTURE_WIDTH, .height = PICTURE_HEIGHT, .passes = &rich_pass, .pass_count = 1};
+    frame = (camber_frame){.width = PICTURE_WIDTH, .height = PICTURE_HEIGHT, .passes = rich_passes, .pass_count = 2};
     good = good && camber_render(renderer, &frame, take_rows, pictures[2], NULL) == CAMBER_OK;
     camber_mesh_destroy(mesh);
     camber_renderer_destroy(renderer);

@@ -248,19 +248,19 @@ mutant strip kernels/count.cl "a tile too few in a span" 'x <= span >> 8' 'x < s
 mutant strip kernels/total.cl "sums with what comes behind" 'vstore16(sum, at, of_chunk)' 'vstore16(sum + here, at, of_chunk)'
 mutant strip kernels/fill.cl "lists that are turned over" 'lists[starts[tile] + own[tile]++]' \
     'lists[starts[tile + 1] - 1u - own[tile]++]'
-mutant strip kernels/cover.cl "cells that are done too early" 'most_of(c->level[0][3][i]) < CAMBER_NOTHING_PX' \
+mutant strip kernels/cover_canvas.cl "cells that are done too early" 'most_of(c->level[0][3][i]) < CAMBER_NOTHING_PX' \
     'most_of(c->level[0][3][i]) < 0.3f'
-mutant strip kernels/cover.cl "cells that are full too early" 'most_of(through) < CAMBER_NOTHING_PX' 'most_of(through) < 0.5f'
-mutant strip kernels/cover.cl "what lies below shines through" 'c->level[level][3][i] = through * (1.0f - area)' \
+mutant strip kernels/cover_canvas.cl "cells that are full too early" 'most_of(through) < CAMBER_NOTHING_PX' 'most_of(through) < 0.5f'
+mutant strip kernels/cover_canvas.cl "what lies below shines through" 'c->level[level][3][i] = through * (1.0f - area)' \
     'c->level[level][3][i] = through'
-mutant strip kernels/cover.cl "groups that are opaque" 'seen = through * opacity' 'seen = through'
-mutant strip kernels/cover.cl "united lines: areas that are not summed" 'c->ink[1][i] += ' 'c->ink[1][i] = '
+mutant strip kernels/cover_canvas.cl "groups that are opaque" 'seen = through * opacity' 'seen = through'
+mutant strip kernels/cover_canvas.cl "united lines: areas that are not summed" 'c->ink[1][i] += ' 'c->ink[1][i] = '
 mutant strip kernels/cover_batch.cl "cells that are whole too soon" 'full = h - p->extent - reach' 'full = h - p->extent'
 mutant strip kernels/cover.cl "lists that end too soon" 'k-- > starts[tile];' 'k-- > starts[tile] + 1u;'
 
 # ---- Coverage, which these kernels and their twin share: pixels tell ----
 
-mutant strip kernels/cover.h "the slope of an edge" 's.slope = linear ? one : one / p' 's.slope = linear ? one : 0.8f / p'
+mutant strip kernels/cover_shapes.h "the slope of an edge" 's.slope = linear ? one : one / p' 's.slope = linear ? one : 0.8f / p'
 mutant strip kernels/cover.h "the corner of a pixel" 'bend * bend * curve' 'bend * curve'
 mutant strip kernels/cover.h "half the width" 'camber_inside_edge(p, half_width - d)' 'camber_inside_edge(p, 0.9f * half_width - d)'
 mutant strip kernels/cover.h "a bend to the wrong side" '*bent = y - bend' '*bent = y + bend'
@@ -270,7 +270,7 @@ mutant strip kernels/cover.h "tight joins: the inner side on the outer one" '*sl
 mutant strip kernels/cover.h "caps of thin lines" '0.5f + 0.785398f * half_width + past' '0.5f + past'
 mutant strip kernels/cover.h "united lines: edges that face alike are added up" 'cosine < 0.0f ? apart : more' \
     'cosine > 0.0f ? apart : more'
-mutant strip kernels/cover.h "boxes without joins" 'CAMBER_MORE(reach_a, reach_b)' '0.5f * CAMBER_LESS(reach_a, reach_b)'
+mutant strip kernels/cover_shapes.h "boxes without joins" 'CAMBER_MORE(reach_a, reach_b)' '0.5f * CAMBER_LESS(reach_a, reach_b)'
 drawer=()
 
 echo "$caught caught, $failures failures"

@@ -291,9 +291,12 @@ typedef enum camber_sharing {
 
 /* What draws. */
 typedef enum camber_draw {
-    CAMBER_DRAW_AUTO = 0, /* GL where there is a surface, else OpenCL */
-    CAMBER_DRAW_GL,       /* GLES shaders */
-    CAMBER_DRAW_CL,       /* OpenCL kernels, which need no surface */
+    /* OpenCL where there is no surface or its GL is a software rasteriser, which takes several times as long for the
+     * same picture; GL where it is hardware. A program that wants pictures in memory opens a surface only where
+     * camber_surface_may_be_hardware. */
+    CAMBER_DRAW_AUTO = 0,
+    CAMBER_DRAW_GL, /* GLES shaders */
+    CAMBER_DRAW_CL, /* OpenCL kernels, which need no surface */
 } camber_draw;
 
 typedef struct camber_renderer_desc {

@@ -165,6 +165,12 @@ expect 0 "info on an unknown device" info --device 'no such device' --json
 has "$tmp/stdout" '"unavailable"'
 expect 0 "info on what draws" info --draw cl
 has "$tmp/stdout" '^draw *cl: asked for'
+# Of its own accord: OpenCL where GL is a software rasteriser, also where that has to be looked at.
+expect 0 "info on what draws by itself" info --json
+if grep -q '"software": false' "$tmp/stdout"; then own=gl; else own=cl; fi
+has "$tmp/stdout" "\"draw\": \"$own\"" '"draw_reason": ".*GL'
+expect 0 "info on what a back end draws" info --backend osmesa
+has "$tmp/stdout" '^draw *gl: --backend asks for GL\|^sharing *none: '
 # A machine without GL: its libraries are no libraries.
 mkdir "$tmp/nogl"
 for library in libEGL.so.1 libOSMesa.so.8 libOSMesa.so.6 libOSMesa.so; do
@@ -190,8 +196,10 @@ cmp -s city.png "$tmp/in/city.png" || fail "the file has changed"
 expect 0 "render again" render "$osm" -o city.png --size 300x200 -f -q
 cmp -s city.png "$tmp/in/city.png" || fail "other bytes at the second run"
 [ -s "$tmp/stderr" ] && fail "says something with -q"
+expect 0 "with shared buffers" render "$osm" -o - --size 300x200 --draw gl
+cp "$tmp/stdout" "$tmp/in/gl.png"
 expect 0 "without shared buffers" render "$osm" -o - --size 300x200 --sharing copy
-cmp -s "$tmp/stdout" "$tmp/in/city.png" || fail "other bytes than with them"
+cmp -s "$tmp/stdout" "$tmp/in/gl.png" || fail "other bytes than with them"
 expect 0 "to standard output" render "$osm" -o - --size 300x200
 cmp -s "$tmp/stdout" "$tmp/in/city.png" || fail "other bytes than in a file"
 expect 0 "ratio" render "$osm" -o ratio.PNG --size 100x50 --ratio 2
@@ -211,9 +219,14 @@ lacks tiger.png OpenStreetMap
 expect 0 "drawn in OpenCL" render "$osm" -o cl.png --size 300x200 --draw cl --json
 has "$tmp/stdout" '"draw": "cl"' '"draw_reason": "asked for"' '"gl_renderer": null' '"sharing": "none"'
 is_png cl.png 300 200
-LD_DEBUG=files "$tool" render "$osm" -o cl.png -f --size 300x200 --draw cl 2>"$tmp/loaded" || fail "does not draw"
-grep -q 'libOpenCL' "$tmp/loaded" || fail "says nothing of what it loads"
-! grep -Eq 'lib(EGL|OSMesa|GL|GLESv2)\.so' "$tmp/loaded" || fail "GL is loaded for what OpenCL draws"
+for draw in cl auto; do
+    [ $draw = cl ] || [ $own = cl ] || continue
+    name="what is loaded for --draw $draw"
+    LD_DEBUG=files "$tool" render "$osm" -o cl.png -f --size 300x200 --draw $draw 2>"$tmp/loaded" || fail "does not draw"
+    grep -q 'libOpenCL' "$tmp/loaded" || fail "says nothing of what it loads"
+    [ -e /dev/dri ] && [ $draw = auto ] && continue # where GL may be hardware, it is looked at
+    ! grep -Eq 'lib(EGL|OSMesa|GL|GLESv2)\.so' "$tmp/loaded" || fail "GL is loaded for what OpenCL draws"
+done
 expect 0 "pitch in OpenCL" render "$osm" -o pitch.png --size 64x64 --draw cl --center=-122,37 --zoom 15 --pitch 40
 is_png pitch.png 64 64
 expect 0 "in one thread" render "$osm" -o one.png --size 300x200 --draw cl --threads 1
@@ -234,7 +247,7 @@ run "${without_gl[@]}" "$tool" render "$osm" -o bare.png --backend egl
 name="EGL where there is none"
 verify 69
 says 'EGL: .*; install libegl1'
-expect 0 "few draw calls" render "$osm" -o calls.png --size 512x512 --json
+expect 0 "few draw calls" render "$osm" -o calls.png --size 512x512 --json --draw gl
 has "$tmp/stdout" '"draw_calls": [1-4],'
 rm -f calls.png
 expect 0 "one thread, dark" render "$tiger" -o dark.png --size 64x64 --theme dark --threads 1
@@ -322,7 +335,7 @@ points=$(le32 lines.bin 8)
 [ "$(stat -c %s lines.bin)" = $((12 + 4 * (polylines + 1) + 8 * points)) ] || fail "the dump has a wrong size"
 expect 0 "bench of its dump" bench --polylines lines.bin --width-px 3 --json --runs 2 --size 128x128 -o lines.png \
     --dump again.bin
-has "$tmp/stdout" "${keys[@]}" "\"polylines\": $polylines," "\"points_in\": $points," '"runs": 2' '"draw": "gl"'
+has "$tmp/stdout" "${keys[@]}" "\"polylines\": $polylines," "\"points_in\": $points," '"runs": 2' "\"draw\": \"$own\""
 is_png lines.png 128 128
 cmp -s lines.bin again.bin || fail "the dump of the dump differs"
 expect 0 "bench as a table" bench --polylines lines.bin --runs 1 --size 64x64

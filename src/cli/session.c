@@ -29,16 +29,13 @@ static void say_draw(camber_session *session, camber_report *report, camber_draw
     camber_report_log(report, CAMBER_LOG_INFO, text);
 }
 
-/* While kernels refuse some of what styles have, GL draws where it is there. */
-static const bool KERNELS_DRAW_ALL = false;
-
 /* Without a wish, kernels draw where GL would be a software rasteriser, or is not there; of compare, whose figures are
  * GL's own for the most part, where it is not there. A surface stays open where GL draws. */
 static camber_status choose_draw(camber_session *session, camber_context *context, camber_report *report) {
     const camber_options *options = session->options;
     const camber_surface_desc desc = {.backend = (camber_backend)options->backend};
-    const bool counts = options->verb == CAMBER_VERB_COMPARE, prefers_gl = counts || !KERNELS_DRAW_ALL;
-    if (!prefers_gl && !camber_surface_may_be_hardware(&desc)) {
+    const bool counts = options->verb == CAMBER_VERB_COMPARE;
+    if (!counts && !camber_surface_may_be_hardware(&desc)) {
         say_draw(session, report, CAMBER_DRAW_CL, "no GPU is here that GL could draw on");
         return CAMBER_OK;
     }
@@ -51,7 +48,7 @@ static camber_status choose_draw(camber_session *session, camber_context *contex
         return CAMBER_OK;
     }
     const camber_surface_info info = camber_surface_get_info(session->surface);
-    if (info.software && !prefers_gl) {
+    if (info.software && !counts) {
         say_draw(session, report, CAMBER_DRAW_CL, "GL is a software rasteriser: %s", info.renderer);
         camber_surface_destroy(session->surface);
         session->surface = NULL;
@@ -59,8 +56,6 @@ static camber_status choose_draw(camber_session *session, camber_context *contex
     }
     if (counts)
         say_draw(session, report, CAMBER_DRAW_GL, "fragments and repeated pixels are counted in GL");
-    else if (info.software)
-        say_draw(session, report, CAMBER_DRAW_GL, "draws all that styles have");
     else
         say_draw(session, report, CAMBER_DRAW_GL, "GL is hardware: %s", info.renderer);
     return CAMBER_OK;

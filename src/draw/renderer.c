@@ -45,7 +45,8 @@ static camber_status open_gl(camber_renderer *made, camber_sharing sharing) {
 camber_status camber_renderer_create(camber_device *device, camber_surface *surface, const camber_renderer_desc *desc,
                                      camber_renderer **renderer) {
     const camber_renderer_desc full = desc ? *desc : (camber_renderer_desc){0};
-    const bool in_cl = full.draw == CAMBER_DRAW_CL || (full.draw == CAMBER_DRAW_AUTO && !surface);
+    const bool in_hardware = surface && !surface->info.software;
+    const bool in_cl = full.draw == CAMBER_DRAW_CL || (full.draw == CAMBER_DRAW_AUTO && !in_hardware);
     assert(surface || in_cl);
     camber_renderer *made = camber_alloc_zero(device->context, 1, sizeof *made);
     if (!made)

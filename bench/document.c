@@ -23,20 +23,24 @@ static json_t *describe_peers(void) {
     return peers;
 }
 
-static json_t *describe(const bench *b) {
-    static const char *const sizes[] = {"full", "quick", "tiny"};
-    const camber_device_info device = camber_device_get_info(b->device);
-    const camber_surface_info surface = camber_surface_get_info(b->surface);
+static json_t *date_now(void) {
     char date[32];
     const time_t now = time(NULL);
     struct tm parts;
     strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &parts));
+    return json_string(date);
+}
+
+static json_t *describe(const bench *b) {
+    static const char *const sizes[] = {"full", "quick", "tiny"};
+    const camber_device_info device = camber_device_get_info(b->device);
+    const camber_surface_info surface = camber_surface_get_info(b->surface);
     json_t *document =
-        json_pack("{s:s, s:s, s:s, s:I, s:{s:s, s:s, s:s, s:s, s:I}, s:{s:s, s:s, s:s, s:b}, s:s, s:o}", "date", date,
-                  "camber", camber_version(), "size", sizes[b->size], "runs", (json_int_t)b->runs, "device", "name",
-                  device.name, "platform", device.platform, "version", device.version, "driver", device.driver, "units",
-                  (json_int_t)device.compute_units, "gl", "backend", surface.backend, "renderer", surface.renderer,
-                  "version", surface.version, "software", surface.software, "sharing",
+        json_pack("{s:o, s:s, s:s, s:I, s:{s:s, s:s, s:s, s:s, s:I}, s:{s:s, s:s, s:s, s:b}, s:s, s:o}", "date",
+                  date_now(), "camber", camber_version(), "size", sizes[b->size], "runs", (json_int_t)b->runs, "device",
+                  "name", device.name, "platform", device.platform, "version", device.version, "driver", device.driver,
+                  "units", (json_int_t)device.compute_units, "gl", "backend", surface.backend, "renderer",
+                  surface.renderer, "version", surface.version, "software", surface.software, "sharing",
                   camber_sharing_name(camber_renderer_get_sharing(b->renderer)), "peers", describe_peers());
 #ifdef CAMBER_MAP
     json_object_set_new(document, "gdal", json_string(camber_gdal_version()));
@@ -92,6 +96,7 @@ json_t *bench_document_make(bench *b, const char *section) {
             return NULL;
         }
         json_object_set_new(sections, bench_sections[i]->name, result);
+        json_object_set_new(result, "date", date_now());
         json_object_set_new(result, "seconds", json_integer((json_int_t)((camber_now_ms() - start) / 1e3)));
         print_section(document, bench_sections[i], stdout);
     }

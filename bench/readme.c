@@ -51,7 +51,8 @@ static void put_head(const page *p, const json_t *document) {
     fprintf(
         p->to,
         "One run of `./dev bench` on %.10s: %s, %.0f units, %s %s; %s, %s; buffers: %s. %d x %d px, round joins, butt "
-        "caps, black on white, medians of %.0f runs in turn; peers run in one thread each.\n\n",
+        "caps, black on white, medians of %.0f runs in turn; peers run in one thread each, but where it says "
+        "threads.\n\n",
         bench_text(document, "date"), bench_text(device, "name"), bench_number(device, "units"),
         bench_text(device, "platform"), bench_text(device, "driver"), bench_text(gl, "renderer"),
         bench_text(gl, "version"), bench_text(document, "sharing"), BENCH_SIDE_PX, BENCH_SIDE_PX,
@@ -71,9 +72,10 @@ static void put_count(double count, FILE *to) {
 
 /* ---- Drawing ---- */
 
-static void put_drawing(const page *p) {
+static void put_drawing(const page *p, const char *date) {
     size_t i;
     const json_t *row;
+    const char *drawn = bench_text(json_object_get(p->sections, "frames"), "date");
     fputs("| scene | segments | camber, ms | at 0.1 px | through GL | at 0.1 px |", p->to);
     for (size_t k = 0; k < p->library_count; k++) {
         const json_t *peer = json_object_get(p->peers, p->libraries[k]);
@@ -105,6 +107,8 @@ static void put_drawing(const page *p) {
             "how many times camber's first figure fits into that. The picture of each peer is compared with "
             "camber's.\n\n",
             BENCH_SIMPLIFY_PX);
+    if (*drawn && strncmp(drawn, date, strlen("2026-01-01")) != 0)
+        fprintf(p->to, "This table is of one run of the section `frames`, on the same machine on %.10s.\n\n", drawn);
 }
 
 /* ---- Tessellation ---- */
@@ -195,7 +199,7 @@ static void put_page(page *p, const json_t *document) {
     json_object_foreach((json_t *)p->peers, key, peer) if (!strchr(key, '_') && p->library_count < LIBRARIES_MAX)
         p->libraries[p->library_count++] = key;
     put_head(p, document);
-    put_drawing(p);
+    put_drawing(p, bench_text(document, "date"));
     put_tessellation(p);
     put_fly(p);
     put_mosaic(p);

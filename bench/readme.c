@@ -59,6 +59,21 @@ static void put_head(const page *p, const json_t *document) {
         bench_number(document, "runs"));
 }
 
+/* Sections of another day's run, where a document was put together. */
+static void put_dates(const page *p, const char *date) {
+    const size_t day = strlen("2026-01-01");
+    const char *key, *before = "Measured on another day, on the same machine: ";
+    json_t *section;
+    json_object_foreach((json_t *)p->sections, key, section) {
+        const char *own = bench_text(section, "date");
+        if (!*own || strncmp(own, date, day) == 0)
+            continue;
+        fprintf(p->to, "%s`%s` (%.10s)", before, key, own);
+        before = ", ";
+    }
+    fputs(*before == ',' ? ".\n\n" : "", p->to);
+}
+
 /* "1,103,969 |" */
 static void put_count(double count, FILE *to) {
     const unsigned long whole = (unsigned long)count;
@@ -72,10 +87,9 @@ static void put_count(double count, FILE *to) {
 
 /* ---- Drawing ---- */
 
-static void put_drawing(const page *p, const char *date) {
+static void put_drawing(const page *p) {
     size_t i;
     const json_t *row;
-    const char *drawn = bench_text(json_object_get(p->sections, "frames"), "date");
     fputs("| scene | segments | camber, ms | at 0.1 px | through GL | at 0.1 px |", p->to);
     for (size_t k = 0; k < p->library_count; k++) {
         const json_t *peer = json_object_get(p->peers, p->libraries[k]);
@@ -107,8 +121,6 @@ static void put_drawing(const page *p, const char *date) {
             "how many times camber's first figure fits into that. The picture of each peer is compared with "
             "camber's.\n\n",
             BENCH_SIMPLIFY_PX);
-    if (*drawn && strncmp(drawn, date, strlen("2026-01-01")) != 0)
-        fprintf(p->to, "This table is of one run of the section `frames`, on the same machine on %.10s.\n\n", drawn);
 }
 
 /* ---- Tessellation ---- */
@@ -140,20 +152,25 @@ static void put_tessellation(const page *p) {
 /* ---- The rest ---- */
 
 static void put_fly(const page *p) {
-    const json_t *row = json_array_get(rows_of(p, "fly"), 0), *frame = json_object_get(row, "frame");
-    if (row)
+    size_t i;
+    const json_t *row;
+    json_array_foreach(rows_of(p, "fly"), i, row) {
+        const json_t *frame = json_object_get(row, "frame");
+        const bool in_cl = strcmp(bench_text(row, "by"), "cl") == 0;
         fprintf(
             p->to,
-            "Fly-through of %s, built-in style, %.0f frames of %.0f x %.0f px, pan and zoom: half of the frames within "
+            "Fly-through of %s drawn %s, built-in style, %.0f frames of %.0f x %.0f px, pan and zoom: half of the "
+            "frames within "
             "%.1f ms, 99 "
             "of 100 within %.1f ms (half within: scene %.1f, tessellation %.1f, drawing %.1f, reading back %.1f ms); "
             "%.1f draw calls a frame.\n\n",
-            bench_text(row, "city"), bench_number(row, "frames"), bench_number(row, "width"),
-            bench_number(row, "height"), bench_number(frame, "p50_ms"), bench_number(frame, "p99_ms"),
-            bench_number(json_object_get(row, "scene"), "p50_ms"),
+            bench_text(row, "city"), in_cl ? "by kernels" : "through GL", bench_number(row, "frames"),
+            bench_number(row, "width"), bench_number(row, "height"), bench_number(frame, "p50_ms"),
+            bench_number(frame, "p99_ms"), bench_number(json_object_get(row, "scene"), "p50_ms"),
             bench_number(json_object_get(row, "tessellate"), "p50_ms"),
             bench_number(json_object_get(row, "draw"), "p50_ms"), bench_number(json_object_get(row, "read"), "p50_ms"),
             bench_number(row, "draw_calls"));
+    }
 }
 
 static void put_mosaic(const page *p) {
@@ -199,7 +216,8 @@ static void put_page(page *p, const json_t *document) {
     json_object_foreach((json_t *)p->peers, key, peer) if (!strchr(key, '_') && p->library_count < LIBRARIES_MAX)
         p->libraries[p->library_count++] = key;
     put_head(p, document);
-    put_drawing(p, bench_text(document, "date"));
+    put_dates(p, bench_text(document, "date"));
+    put_drawing(p);
     put_tessellation(p);
     put_fly(p);
     put_mosaic(p);

@@ -22,6 +22,7 @@ static const char *const part_keys[PARTS] = {"scene", "tessellate", "draw", "rea
 
 typedef struct flight {
     bench *b;
+    bool in_cl; /* drawn by kernels, else by GL */
     camber_style *style;
     camber_features *features;
     camber_scene *scene;
@@ -31,6 +32,14 @@ typedef struct flight {
     double *times[PARTS]; /* frames each */
     double draw_calls, points;
 } flight;
+
+static camber_renderer *renderer_of(const flight *f) {
+    return f->in_cl ? f->b->covering : f->b->renderer;
+}
+
+static camber_mesh *mesh_of(const flight *f) {
+    return f->in_cl ? f->b->covered : f->b->mesh;
+}
 
 /* Where the flight is after a share of its way: it circles over the city and goes down to the streets and up again. */
 static camber_view_desc view_at(const flight *f, double share) {
@@ -50,7 +59,7 @@ static camber_status move_to(flight *f, const camber_view_desc *view) {
 }
 
 static camber_status tessellate(const flight *f) {
-    return camber_scene_tessellate(f->scene, f->b->mesh, CAMBER_METHOD_STRIP);
+    return camber_scene_tessellate(f->scene, mesh_of(f), CAMBER_METHOD_STRIP);
 }
 
 static bool take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
@@ -70,8 +79,8 @@ static camber_status fly_frame(flight *f, double share, double times[PARTS]) {
         status = tessellate(f);
     const double made = camber_now_ms();
     if (status == CAMBER_OK) {
-        const camber_frame frame = camber_scene_frame(f->scene, f->b->mesh);
-        status = camber_render(f->b->renderer, &frame, take_rows, f, &stats);
+        const camber_frame frame = camber_scene_frame(f->scene, mesh_of(f));
+        status = camber_render(renderer_of(f), &frame, take_rows, f, &stats);
     }
     times[PART_FRAME] = camber_now_ms() - begin;
     times[PART_SCENE] = moved - begin;
@@ -87,8 +96,8 @@ static camber_status fly_frame(flight *f, double share, double times[PARTS]) {
 
 /* The same frames with two in flight: a frame's time is from the end of the one before to its own. */
 static camber_status fly_overlapped(flight *f) {
-    camber_mesh *meshes[2] = {f->b->mesh, NULL};
-    camber_status status = camber_mesh_create(f->b->device, f->b->renderer, meshes + 1);
+    camber_mesh *meshes[2] = {mesh_of(f), NULL};
+    camber_status status = camber_mesh_create(f->b->device, renderer_of(f), meshes + 1);
     double last = camber_now_ms();
     for (size_t i = 0; i < WARM_UPS + f->frames && status == CAMBER_OK; i++) {
         const size_t n = i < WARM_UPS ? i : i - WARM_UPS;
@@ -98,17 +107,17 @@ static camber_status fly_overlapped(flight *f) {
             status = camber_scene_tessellate(f->scene, meshes[i % 2], CAMBER_METHOD_STRIP);
         if (status == CAMBER_OK) {
             const camber_frame frame = camber_scene_frame(f->scene, meshes[i % 2]);
-            status = camber_render_begin(f->b->renderer, &frame);
+            status = camber_render_begin(renderer_of(f), &frame);
         }
         if (status == CAMBER_OK && i > 0)
-            status = camber_render_end(f->b->renderer, take_rows, f, NULL);
+            status = camber_render_end(renderer_of(f), take_rows, f, NULL);
         const double now = camber_now_ms();
         if (i >= WARM_UPS)
             f->times[PART_OVERLAPPED][n] = now - last;
         last = now;
     }
     if (status == CAMBER_OK)
-        status = camber_render_end(f->b->renderer, take_rows, f, NULL);
+        status = camber_render_end(renderer_of(f), take_rows, f, NULL);
     camber_mesh_destroy(meshes[1]);
     return status;
 }
@@ -161,9 +170,9 @@ static void close_flight(flight *f) {
 }
 
 static void report(flight *f, const char *city, json_t *result) {
-    json_t *row = json_pack("{s:s, s:I, s:I, s:I, s:f, s:f}", "city", city, "width", (json_int_t)f->b->fly_width,
-                            "height", (json_int_t)f->b->fly_height, "frames", (json_int_t)f->frames, "draw_calls",
-                            f->draw_calls, "points_in_view", f->points);
+    json_t *row = json_pack("{s:s, s:s, s:I, s:I, s:I, s:f, s:f}", "city", city, "by", f->in_cl ? "cl" : "gl",
+                            "width", (json_int_t)f->b->fly_width, "height", (json_int_t)f->b->fly_height, "frames",
+                            (json_int_t)f->frames, "draw_calls", f->draw_calls, "points_in_view", f->points);
     for (int k = 0; k < PARTS; k++) {
         double *times = f->times[k];
         camber_statistics_sort(times, f->frames);
@@ -177,8 +186,10 @@ static void report(flight *f, const char *city, json_t *result) {
     static const char *const shares[] = {"p50_ms", "p99_ms"};
     for (int i = 0; i < 4; i++) {
         const double ms = bench_number(json_object_get(row, i < 2 ? "frame" : "overlapped"), shares[i % 2]);
-        static const char *const names[] = {"p50", "p99", "overlapped p50", "overlapped p99"};
-        const bench_figure figure = {"flight", names[i], stick.name, stick.ms / ms, false};
+        static const char *const names[2][4] = {
+            {"p50", "p99", "overlapped p50", "overlapped p99"},
+            {"in OpenCL p50", "in OpenCL p99", "in OpenCL overlapped p50", "in OpenCL overlapped p99"}};
+        const bench_figure figure = {"flight", names[f->in_cl][i], stick.name, stick.ms / ms, false};
         bench_result_add_figure(result, &figure);
     }
     bench_result_add_row(result, row);
@@ -196,9 +207,13 @@ static json_t *measure(bench *b, const char *only) {
         f = (flight){.b = b, .frames = frames[b->size]};
         i++;
     }
-    const bool done = cities[i] && fly(&f) == CAMBER_OK;
-    if (done)
-        report(&f, i == 0 ? "Porto" : "Santa Cruz", result);
+    bool done = cities[i];
+    for (int in_cl = 1; in_cl >= 0 && done; in_cl--) {
+        f.in_cl = in_cl;
+        done = fly(&f) == CAMBER_OK;
+        if (done)
+            report(&f, i == 0 ? "Porto" : "Santa Cruz", result);
+    }
     close_flight(&f);
     if (done)
         return result;
@@ -216,23 +231,29 @@ static json_t *measure(bench *b, const char *only) {
 
 #endif
 
-static void print(const json_t *result, FILE *to) {
-    const json_t *row = json_array_get(bench_result_rows(result), 0);
+static void print_flight(const json_t *row, FILE *to) {
     fprintf(to,
             "Fly-through of %s, built-in style, %.0f frames of %.0f x %.0f px, pan and zoom, at %g px: %.0f points in "
             "view and %.1f\n"
             "draw calls a frame on average. scene: style, project, cull, simplify; frame: from the view to pixels in "
-            "memory;\noverlapped: from frame to frame with two in flight.\n\n"
+            "memory;\noverlapped: from frame to frame with two in flight. Drawn by %s.\n\n"
             "%-10s %8s %8s %8s   ms\n",
             bench_text(row, "city"), bench_number(row, "frames"), bench_number(row, "width"),
             bench_number(row, "height"), BENCH_SIMPLIFY_PX, bench_number(row, "points_in_view"),
-            bench_number(row, "draw_calls"), "", "p50", "p99", "max");
+            bench_number(row, "draw_calls"), strcmp(bench_text(row, "by"), "cl") == 0 ? "kernels" : "GL", "", "p50",
+            "p99", "max");
     static const char *const keys[] = {"scene", "tessellate", "draw", "read", "frame", "overlapped"};
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
         const json_t *times = json_object_get(row, keys[i]);
         fprintf(to, "%-10s %8.2f %8.2f %8.2f\n", keys[i], bench_number(times, "p50_ms"), bench_number(times, "p99_ms"),
                 bench_number(times, "max_ms"));
     }
+}
+
+static void print(const json_t *result, FILE *to) {
+    size_t i;
+    const json_t *row;
+    json_array_foreach(bench_result_rows(result), i, row) print_flight(row, to);
 }
 
 const bench_section bench_section_fly = {"fly", measure, print};

@@ -170,8 +170,8 @@ static void close_flight(flight *f) {
 }
 
 static void report(flight *f, const char *city, json_t *result) {
-    json_t *row = json_pack("{s:s, s:s, s:I, s:I, s:I, s:f, s:f}", "city", city, "by", f->in_cl ? "cl" : "gl",
-                            "width", (json_int_t)f->b->fly_width, "height", (json_int_t)f->b->fly_height, "frames",
+    json_t *row = json_pack("{s:s, s:s, s:I, s:I, s:I, s:f, s:f}", "city", city, "by", f->in_cl ? "cl" : "gl", "width",
+                            (json_int_t)f->b->fly_width, "height", (json_int_t)f->b->fly_height, "frames",
                             (json_int_t)f->frames, "draw_calls", f->draw_calls, "points_in_view", f->points);
     for (int k = 0; k < PARTS; k++) {
         double *times = f->times[k];

@@ -88,6 +88,12 @@ static camber_status fail_build(camber_device *device, cl_program program) {
     return CAMBER_ERROR_DEVICE;
 }
 
+/* PoCL keeps what it builds by itself, and compiles each kernel once more where its binary is asked for: of those that
+ * draw two seconds at the first run, for 30 ms at each one after. */
+static bool is_worth_saving(const camber_device *device, program_kind kind) {
+    return kind != PROGRAM_COVER || strcmp(device->info.platform, "Portable Computing Language") != 0;
+}
+
 static camber_status build(camber_device *device, camber_program *program, const recipe *from) {
     cl_int code;
     program->cl = clCreateProgramWithSource(device->cl, 1, (const char *[]){from->source}, &from->source_size, &code);
@@ -98,7 +104,7 @@ static camber_status build(camber_device *device, camber_program *program, const
         return fail_build(device, program->cl);
     if (code != CL_SUCCESS)
         return camber_fail_cl(device->context, "clBuildProgram", code);
-    program->to_save = true;
+    program->to_save = is_worth_saving(device, from->kind);
     return CAMBER_OK;
 }
 

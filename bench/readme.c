@@ -196,8 +196,9 @@ static void put_start(const page *p) {
     const json_t *row;
     const char *before = "Wall time of the whole program, first with empty caches and then with warm ones: ";
     json_array_foreach(rows_of(p, "start"), i, row) {
-        if (*bench_text(row, "name"))
-            fprintf(p->to, "%s%s %.2f s, %.3f s", before, bench_text(row, "name"), bench_number(row, "cold_ms") / 1e3,
+        const char *name = bench_text(row, "name");
+        if (*name)
+            fprintf(p->to, "%s%s %.2f s, %.3f s", before, name + strspn(name, " "), bench_number(row, "cold_ms") / 1e3,
                     bench_number(row, "warm_ms") / 1e3);
         else
             fprintf(p->to, ". %s from file to %.0f points: %.3f s (OGR's own copy of the file's lines: %.3f s)",

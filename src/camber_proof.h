@@ -135,10 +135,13 @@ typedef struct camber_drawing_stages {
     /* shape: what each record of the passes, in drawing order, ends, rounded up to sixteens for each part of a mesh:
      * shape_words floats and bits that tiles and pixels are drawn from, of what is drawn, and the tiles of its box, a
      * byte each: the first one's column, its row, the last one's column, its row. Where the last column lies before the
-     * first, nothing is drawn. */
+     * first, nothing is drawn. What lies along lines is measured where passes have gaps, blurs, dashes, trims or ramps;
+     * a frame that is pitched has a shape's words of its plane too. */
     float *shapes;   /* shape_words * shape_count */
     uint32_t *boxes; /* shape_count */
-    size_t shape_count, shape_words;
+    float *measures; /* measure_words * shape_count. NULL: nothing lies along lines, or beside them */
+    float *planes;   /* plane_words * shape_count. NULL: not pitched */
+    size_t shape_count, shape_words, measure_words, plane_words;
     /* count and total: where the list of each tile begins, columns * rows + 1, row by row. */
     uint32_t *starts;
     uint32_t columns, rows;

@@ -88,7 +88,6 @@ WRAP(clGetPlatformInfo, (cl_platform_id id, cl_platform_info what, size_t room, 
 WRAP(clGetDeviceIDs, (cl_platform_id id, cl_device_type type, cl_uint room, cl_device_id *ids, cl_uint *count),
      (id, type, room, ids, count))
 WRAP(clSetKernelArg, (cl_kernel kernel, cl_uint index, size_t size, const void *value), (kernel, index, size, value))
-WRAP(clFinish, (cl_command_queue queue), (queue))
 WRAP(clGetProgramInfo, (cl_program program, cl_program_info what, size_t room, void *value, size_t *size),
      (program, what, room, value, size))
 WRAP(clGetEventProfilingInfo, (cl_event event, cl_profiling_info what, size_t room, void *value, size_t *size),
@@ -134,6 +133,13 @@ WRAP_RELEASE(cl_mem, mems, clReleaseMemObject)
 WRAP_RELEASE(cl_event, events, clReleaseEvent)
 
 /* ---- Those with a mind of their own ---- */
+
+/* A queue that is refused still comes to its end: as that of a lost device, it leaves the host's memory alone. */
+DECLARE(cl_int, clFinish, (cl_command_queue queue))
+cl_int __wrap_clFinish(cl_command_queue queue) {
+    const cl_int refusal = cl_fault_answer("clFinish"), code = __real_clFinish(queue);
+    return refusal ? refusal : code;
+}
 
 DECLARE(cl_mem, clCreateBuffer, (cl_context context, cl_mem_flags flags, size_t size, void *memory, cl_int *code))
 cl_mem __wrap_clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void *memory, cl_int *code) {

@@ -1,16 +1,19 @@
 #!/bin/bash
 # Breaks kernels, shaders and join maths on purpose, one line at a time, and runs `camber validate` on each build: it
-# must end with 1 and name a check that failed, or be ended by what the broken kernel did.
-# test_mutations.sh SOURCES [PART OF A ROW'S FILE OR WORDS]
+# must name a check that failed, or be ended by what the broken kernel did.
+# test_mutations.sh SOURCES [PART OF A ROW'S FILE OR WORDS] [K/N: every N-th row, from the K-th on]
 # kernels/join.h and kernels/network.h are compiled into kernels and CPU twin alike, so that pixels and the window tell.
 set -u
 sources=$1
 only=${2:-}
+share=${3:-1/1}
+row=0
 tmp=$(mktemp -d) || exit 1
 trap 'rm -rf "$tmp"' EXIT
 # Drivers keep their caches apart from those of other tests.
 export XDG_CACHE_HOME=$tmp/cache POCL_CACHE_DIR=$tmp/pocl
 mkdir "$POCL_CACHE_DIR" "$tmp/sources"
+mkfifo "$tmp/pipe"
 caught=0
 failures=0
 
@@ -32,6 +35,23 @@ validate() {
     "$tmp/build/src/camber" validate --windows 12 "${drawn[@]}" "$@" >"$tmp/tap" 2>"$tmp/stderr"
 }
 
+# As validate, but no further than the first check that fails: a row needs one. Ends with 0 where that was seen.
+validate_until_failure() {
+    local drawn=(--backend "$backend") process status
+    [ ${#drawer[@]} = 0 ] || drawn=("${drawer[@]}")
+    "$tmp/build/src/camber" validate --windows 12 "${drawn[@]}" "$@" >"$tmp/pipe" 2>"$tmp/stderr" &
+    process=$!
+    if awk '{ print } /^not ok/ { failed = 1 } failed && /^  [.][.][.]$/ { exit } END { exit !failed }' \
+        <"$tmp/pipe" >"$tmp/tap"; then
+        kill "$process"
+        wait "$process" 2>"$tmp/killed"
+        return 0
+    fi
+    wait "$process" 2>"$tmp/killed"
+    status=$?
+    return $((status == 0 ? 1 : status))
+}
+
 # What a failure leaves: a picture that the report names, JUnit's failures, and JSON with what differs.
 evidence=()
 look_at_evidence() { # FILE METHOD
@@ -51,6 +71,8 @@ look_at_evidence() { # FILE METHOD
 mutant() {
     local method=$1 file=$2 what=$3 old=$4 new=$5 text
     case "$file $what" in *"$only"*) ;; *) return ;; esac
+    row=$((row + 1))
+    [ $((row % ${share#*/})) = $((${share%/*} % ${share#*/})) ] || return
     text=$(cat "$sources/$file" && printf x) || { fail "$file: cannot be read"; return; }
     text=${text%x}
     if [ "${text/"$old"/}" = "$text" ]; then
@@ -60,17 +82,25 @@ mutant() {
     printf '%s' "${text/"$old"/"$new"}" >"$tmp/sources/$file"
     if build; then
         rm -rf "$tmp/pictures" "$tmp/junit.xml"
-        validate --method "$method" "${evidence[@]}"
-        local status=$? first
+        local status first
+        if [ ${#evidence[@]} = 0 ]; then
+            validate_until_failure --method "$method"
+            status=$?
+        else
+            validate --method "$method" "${evidence[@]}"
+            status=$?
+            [ "$status" = 1 ] || fail "$file: $what: exit status $status, expected 1"
+            status=0
+        fi
         first=$(grep -m 1 '^not ok' "$tmp/tap")
-        if [ "$status" -gt 128 ] && [ ${#evidence[@]} = 0 ]; then
+        if [ "$status" -gt 128 ]; then
             # What a broken kernel leaves unwritten is whatever lay there: the next one may go anywhere.
             caught=$((caught + 1))
             echo "caught: $file: $what: ended by signal $((status - 128))"
-        elif [ "$status" = 1 ] && [ -n "$first" ]; then
+        elif [ "$status" = 0 ] && [ -n "$first" ]; then
             caught=$((caught + 1))
             echo "caught: $file: $what"
-            echo "    $(grep -c '^not ok' "$tmp/tap") of $(sed -n 's/^1\.\.//p' "$tmp/tap") checks, the first: ${first#not ok }"
+            echo "    ${first#not ok }"
             grep -m 1 '^  message: ' "$tmp/tap" | sed 's/^ */    /'
             [ ${#evidence[@]} = 0 ] || look_at_evidence "$file" "$method"
         else
@@ -229,9 +259,6 @@ mutant strip shaders/stroke.frag "steps at the pixel before" 'float from = along
 mutant strip shaders/stroke.frag "colours at the ends of pieces" 'mix(color, next_color, part)' 'color'
 mutant strip shaders/stroke.frag "translucent ramps that are opaque" 'o_alpha = vec4(o_color.a' 'o_alpha = vec4(area'
 mutant strip shaders/flatten.frag "alphas that are left beside" 'vec4(layer.rgb, texelFetch' 'vec4(layer.rgb, layer.a) + 0.0 * vec4(texelFetch'
-mutant strip kernels/cover_lanes.cl "places behind those of later lanes" 'popcount(*mark & before)' 'popcount(*mark & ~before) - 1'
-mutant strip kernels/cover_lanes.cl "cells that are full without a look" '& (next <= BATCH)' '& (next > BATCH)'
-mutant strip kernels/cover_lanes.cl "segments between two strips" 'r.strips ? (b.s3 & STARTS) == 0u' 'r.strips ? (b.s3 & STARTS) != 1u'
 mutant strip kernels/measure.cl "lengths that are not summed" 'FIRST ? 0 : sum + ' 'FIRST ? 0 : '
 mutant strip kernels/emit.cl "measures of the neighbour" 'as_uint(measures[2 * i])' 'as_uint(measures[2 * i + 2])'
 
@@ -256,6 +283,9 @@ mutant strip kernels/cover_canvas.cl "what lies below shines through" 'c->level[
 mutant strip kernels/cover_canvas.cl "groups that are opaque" 'seen = through * opacity' 'seen = through'
 mutant strip kernels/cover_canvas.cl "united lines: areas that are not summed" 'c->ink[1][i] += ' 'c->ink[1][i] = '
 mutant strip kernels/cover_batch.cl "cells that are whole too soon" 'full = h - p->extent - reach' 'full = h - p->extent'
+mutant strip kernels/cover_lanes.cl "places behind those of later lanes" 'popcount(*mark & before)' 'popcount(*mark & ~before) - 1'
+mutant strip kernels/cover_lanes.cl "cells that are full without a look" '& (next <= BATCH)' '& (next > BATCH)'
+mutant strip kernels/cover_lanes.cl "segments between two strips" 'r.strips ? (b.s3 & STARTS) == 0u' 'r.strips ? (b.s3 & STARTS) != 1u'
 mutant strip kernels/cover.cl "lists that end too soon" 'k-- > starts[tile];' 'k-- > starts[tile] + 1u;'
 
 # ---- Coverage, which these kernels and their twin share: pixels tell ----

@@ -82,20 +82,28 @@ static bool boxes_differ(const camber_drawing_stages *got, const camber_drawing_
     return false;
 }
 
-/* Of what is drawn; the other shapes are whatever lay there. */
-static bool shapes_differ(const camber_drawing_stages *got, const camber_drawing_stages *expected,
-                          camber_finding *finding) {
-    const size_t words = expected->shape_words;
+/* What each segment has words of; of what is drawn: the others' are whatever lay there. */
+static bool words_differ(const char *field, const float *got, const float *expected, size_t words,
+                         const camber_drawing_stages *of, camber_finding *finding) {
     char where[96];
-    finding->field = "words";
-    for (size_t i = 0; i < words * expected->shape_count; i++) {
-        const uint32_t box = expected->boxes[i / words];
-        if ((box & 255u) > (box >> 16 & 255u) || memcmp(got->shapes + i, expected->shapes + i, sizeof(float)) == 0)
+    finding->field = field;
+    for (size_t i = 0; i < words * of->shape_count; i++) {
+        const uint32_t box = of->boxes[i / words];
+        if ((box & 255u) > (box >> 16 & 255u) || memcmp(got + i, expected + i, sizeof(float)) == 0)
             continue;
-        snprintf(where, sizeof where, "word %zu of segment %zu", i % words, i / words);
-        return tell(finding, "shape", where, (double)got->shapes[i], (double)expected->shapes[i]);
+        snprintf(where, sizeof where, "word %zu of segment %zu's %s", i % words, i / words, field);
+        return tell(finding, "shape", where, (double)got[i], (double)expected[i]);
     }
     return false;
+}
+
+static bool shapes_differ(const camber_drawing_stages *got, const camber_drawing_stages *expected,
+                          camber_finding *finding) {
+    return words_differ("words", got->shapes, expected->shapes, expected->shape_words, expected, finding) ||
+           (expected->measures &&
+            words_differ("measures", got->measures, expected->measures, expected->measure_words, expected, finding)) ||
+           (expected->planes &&
+            words_differ("plane", got->planes, expected->planes, expected->plane_words, expected, finding));
 }
 
 static bool lists_differ(const camber_drawing_stages *got, const camber_drawing_stages *expected,

@@ -114,6 +114,7 @@ static void print_tap(const camber_check *check, size_t number) {
         printf("# %zu pixels: mean %.3f (at most %.2f), past 16: %.3f %% (%.2f), past 64: %.4f %% (%.3f), max %d\n",
                check->error.pixels, is->mean, most->mean, 100 * is->past_16, 100 * most->past_16, 100 * is->past_64,
                100 * most->past_64, check->error.max);
+    fflush(stdout); /* for who waits for the first failure */
 }
 
 /* ---- Adding ---- */

@@ -44,7 +44,11 @@ static camber_status read_stages(camber_renderer *renderer, const camber_frame *
     *stages = (camber_drawing_stages){
         .shapes = r.stages.shapes,
         .shape_words = CAMBER_SHAPE_WORDS,
+        .measure_words = CAMBER_SHAPE_MEASURES,
+        .plane_words = CAMBER_PLANE_WORDS,
         .boxes = r.stages.boxes,
+        .measures = r.stages.measures,
+        .planes = r.stages.planes,
         .shape_count = r.stages.shape_count,
         .starts = r.stages.starts,
         .columns = camber_cover_tiles(r.area.width),
@@ -70,6 +74,8 @@ camber_status camber_drawing_stages_on_host(camber_renderer *renderer, const cam
 void camber_drawing_stages_free(camber_context *context, camber_drawing_stages *stages) {
     camber_free(context, stages->shapes);
     camber_free(context, stages->boxes);
+    camber_free(context, stages->measures);
+    camber_free(context, stages->planes);
     camber_free(context, stages->starts);
     camber_free(context, stages->lists);
     camber_free(context, stages->rgba);

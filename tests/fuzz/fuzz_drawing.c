@@ -24,13 +24,25 @@ static bool is_drawn(uint32_t box) {
     return (box & 255u) <= (box >> 16 & 255u);
 }
 
+static void require_equal_words(const float *got, const float *expected, size_t words) {
+    REQUIRE(memcmp(got, expected, sizeof(float) * words) == 0);
+}
+
 static void compare(const camber_drawing_stages *got, const camber_drawing_stages *expected) {
-    const size_t words = expected->shape_words, tiles = (size_t)expected->columns * expected->rows;
+    const size_t tiles = (size_t)expected->columns * expected->rows;
     REQUIRE(got->shape_count == expected->shape_count);
+    REQUIRE(!got->measures == !expected->measures && !got->planes == !expected->planes);
     for (size_t i = 0; i < expected->shape_count; i++) {
+        const size_t word = expected->shape_words * i, measure = expected->measure_words * i,
+                     plane = expected->plane_words * i;
         REQUIRE(got->boxes[i] == expected->boxes[i]);
-        REQUIRE(!is_drawn(got->boxes[i]) ||
-                memcmp(got->shapes + words * i, expected->shapes + words * i, 4 * words) == 0);
+        if (!is_drawn(got->boxes[i]))
+            continue;
+        require_equal_words(got->shapes + word, expected->shapes + word, expected->shape_words);
+        if (expected->measures)
+            require_equal_words(got->measures + measure, expected->measures + measure, expected->measure_words);
+        if (expected->planes)
+            require_equal_words(got->planes + plane, expected->planes + plane, expected->plane_words);
     }
     REQUIRE(memcmp(got->starts, expected->starts, 4 * (tiles + 1)) == 0);
     REQUIRE(expected->starts[tiles] == 0 ||

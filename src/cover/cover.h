@@ -1,11 +1,13 @@
 /* Drawing in OpenCL: shape -> count -> total -> fill -> cover, of the records of meshes, and the CPU twin.
  *
- * The kernels are built in variants, so that a plain frame pays for nothing that it has not. camber_cover_variant says
+ * The kernels are built in variants, so that a plain frame pays for nothing that it has not; camber_cover_variant says
  * which one a scene takes:
- *     0                                          inks alone
- *     CAMBER_COVER_RICH                          scene.more is there: for each ink what kernels/cover_bands.h lists,
- * and the tail, float4s that it names. shape writes a measure a segment; an ink with no features is drawn to the same
- * bytes as by the plain variant CAMBER_COVER_RICH | CAMBER_COVER_PITCHED   the plane of the lines is seen at an angle
+ *
+ * - 0: inks alone.
+ * - CAMBER_COVER_RICH: scene.more says for each ink what kernels/cover_bands.h lists, and the tail has the float4s that
+ *   it names. shape writes measures besides; an ink without features gets the same bytes as from the plain variant.
+ * - CAMBER_COVER_RICH | CAMBER_COVER_PITCHED: the plane of the lines is seen at an angle.
+ *
  * In kernels a variant is what #if CAMBER_COVER_RICH and #if CAMBER_COVER_PITCHED leave; the twin has all of them and
  * goes by the scene. */
 #ifndef CAMBER_COVER_H

@@ -33,9 +33,10 @@ CAMBER_FN float camber_cap_tip(camber_u32 end, float half_width) {
 /* The line that bounds a tight join's inner side, from the inner vertex, limit px before the end, to the outer one on
  * the bisector. Of other ends it lies nowhere. */
 CAMBER_FN void camber_tight_line(camber_u32 end, float c, float s, float half_width, float *slope, float *from) {
-    const camber_u32 tight = (end >> 3 & 3u) == CAMBER_CLASS_TIGHT;
     const float reach = half_width + CAMBER_PAD_PX, limit = (float)(end >> 5 & 127u) * (CAMBER_PAD_PX / 127.0f);
-    const float scale = 0.5f / (tight ? reach * c : 1.0f), outer = CAMBER_FABS(s) * reach;
+    const float outer = CAMBER_FABS(s) * reach;
+    const camber_u32 tight = ((end >> 3 & 3u) == CAMBER_CLASS_TIGHT) & (limit * c < outer);
+    const float scale = 0.5f / (tight ? reach * c : 1.0f);
     const float more = (outer + limit * c) * scale, less = (outer - limit * c) * scale;
     *slope = tight ? (s > 0.0f ? more : -more) : 0.0f;
     *from = tight ? less * reach : CAMBER_NEVER_PX;

@@ -17,9 +17,10 @@ typedef struct pens {
 
 static inline void find_tight_lines(uint16 end, float16 c, float16 s, float16 h, private float16 *slope,
                                     private float16 *from) {
-    const int16 tight = (end >> 3 & 3u) == CAMBER_CLASS_TIGHT;
     const float16 reach = h + CAMBER_PAD_PX, limit = convert_float16(end >> 5 & 127u) * (CAMBER_PAD_PX / 127.0f);
-    const float16 scale = 0.5f / (tight ? reach * c : (float16)(1.0f)), outer = fabs(s) * reach;
+    const float16 outer = fabs(s) * reach;
+    const int16 tight = ((end >> 3 & 3u) == CAMBER_CLASS_TIGHT) & (limit * c < outer);
+    const float16 scale = 0.5f / (tight ? reach * c : (float16)(1.0f));
     const float16 more = (outer + limit * c) * scale, less = (outer - limit * c) * scale;
     *slope = tight ? (s > 0.0f ? more : -more) : (float16)(0.0f);
     *from = tight ? less * reach : (float16)(CAMBER_NEVER_PX);

@@ -3,6 +3,8 @@
 
 #include "draw/renderer.h"
 
+enum { BENDS_PX = 512 };
+
 static camber_mesh *make_mesh(studio *s, const scene *lines, const camber_stroke *strokes, size_t stroke_count,
                               camber_method method) {
     return studio_mesh(s, studio_any(s), lines, &(camber_tessellation_desc){strokes, stroke_count, method, 0, false});
@@ -464,6 +466,45 @@ static void test_casing_and_fill(void **state) {
     }
 }
 
+static picture draw_fill_of(studio *s, const scene *lines, float mesh_px, float fill_px) {
+    const camber_stroke stroke = {mesh_px, CAMBER_JOIN_ROUND, CAMBER_CAP_ROUND, 0};
+    const camber_paint paint = {.width_px = fill_px, .color = {1, 1, 1, 1}};
+    camber_mesh *mesh = make_mesh(s, lines, &stroke, 1, CAMBER_METHOD_STRIP);
+    const camber_pass pass = {.mesh = mesh, .paints = &paint, .paint_count = 1};
+    picture p = picture_draw(studio_any(s),
+                             &(camber_frame){.width = BENDS_PX, .height = BENDS_PX, .passes = &pass, .pass_count = 1});
+    camber_mesh_destroy(mesh);
+    return p;
+}
+
+/* The same of lines whose bends are closer together than they are wide: what makes room for the widest stroke leaves no
+ * holes in a narrower one, but for a pixel that lies on the line where a join parts two segments. */
+static void test_fill_of_bends(void **state) {
+    studio *s = *state;
+    static const float fills_px[] = {1, 1.8f, 3, 6}, ratios[] = {1.2f, 1.33f, 2, 4};
+    for (size_t k = 0; k < 16; k++) {
+        const float fill_px = fills_px[k / 4], mesh_px = ratios[k % 4] * fill_px;
+        uint64_t seed = 11 + k;
+        scene lines = {0};
+        for (int i = 0; i < 150; i++) {
+            scene_walk(&lines, &seed, 8, (const double[]){0.3, 3}, 1.2);
+            scene_end(&lines, 0);
+        }
+        for (size_t i = 0; i < 2 * lines.point_count; i++)
+            lines.points[i] *= BENDS_PX / 1000.0f;
+        picture from_both = draw_fill_of(s, &lines, mesh_px, fill_px),
+                from_fill = draw_fill_of(s, &lines, fill_px, fill_px);
+        const difference d = picture_compare(&from_both, &from_fill);
+        if (d.past_8 > 1)
+            fail_msg("%g px within %g px: %zu pixels differ by up to %d", (double)fill_px, (double)mesh_px, d.past_8,
+                     d.most);
+        assert_true(d.drawn > 500);
+        picture_free(&from_fill);
+        picture_free(&from_both);
+        scene_free(&lines);
+    }
+}
+
 /* ---- Parts of a mesh ---- */
 
 static void test_polyline_range(void **state) {
@@ -585,15 +626,15 @@ static void test_passes_of_one_mesh(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rectangles),         cmocka_unit_test(test_coverages),
-        cmocka_unit_test(test_united_edges),       cmocka_unit_test(test_without_half_floats),
-        cmocka_unit_test(test_flatten_is_even),    cmocka_unit_test(test_colors_of_one_run),
-        cmocka_unit_test(test_alphas_keep_order),  cmocka_unit_test(test_alphas_in_turn),
-        cmocka_unit_test(test_many_alphas),        cmocka_unit_test(test_paints_that_draw_nothing),
-        cmocka_unit_test(test_some_rows),          cmocka_unit_test(test_thousands_of_rows),
-        cmocka_unit_test(test_casing_and_fill),    cmocka_unit_test(test_polyline_range),
-        cmocka_unit_test(test_mesh_changes),       cmocka_unit_test(test_row_past_the_paints),
-        cmocka_unit_test(test_passes_of_one_mesh),
+        cmocka_unit_test(test_rectangles),          cmocka_unit_test(test_coverages),
+        cmocka_unit_test(test_united_edges),        cmocka_unit_test(test_without_half_floats),
+        cmocka_unit_test(test_flatten_is_even),     cmocka_unit_test(test_colors_of_one_run),
+        cmocka_unit_test(test_alphas_keep_order),   cmocka_unit_test(test_alphas_in_turn),
+        cmocka_unit_test(test_many_alphas),         cmocka_unit_test(test_paints_that_draw_nothing),
+        cmocka_unit_test(test_some_rows),           cmocka_unit_test(test_thousands_of_rows),
+        cmocka_unit_test(test_casing_and_fill),     cmocka_unit_test(test_fill_of_bends),
+        cmocka_unit_test(test_polyline_range),      cmocka_unit_test(test_mesh_changes),
+        cmocka_unit_test(test_row_past_the_paints), cmocka_unit_test(test_passes_of_one_mesh),
     };
     return STUDIO_RUN(tests);
 }

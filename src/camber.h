@@ -1,4 +1,5 @@
-/* camber: polylines to anti-aliased pictures. OpenCL kernels tessellate, GLES shaders draw.
+/* camber: polylines to anti-aliased pictures. OpenCL kernels tessellate; GLES shaders draw, or kernels
+ * as well.
  *
  *     polylines -> tessellation -> mesh -> renderer -> rows of RGBA8
  *
@@ -589,9 +590,9 @@ typedef bool camber_rows_fn(void *user, const uint8_t *rgba, uint32_t first_row,
 /* Draws a frame and hands its rows over. rows may be NULL: the frame is drawn and finished, not read back.
  * stats may be NULL. Returns CAMBER_ERROR_ARGUMENT (a size or a pitch out of range, a dash, a ramp or an image that is
  * none, dashes, ramps, trims or patterns of a mesh that is not measured),
- * CAMBER_ERROR_LIMIT (more rows of strokes and paints, or images of one pass, than textures hold), CAMBER_ERROR_DEVICE
- * (a shader does not build, or the GL reported an error), CAMBER_ERROR_MEMORY, CAMBER_ERROR_IO (rows returned false).
- */
+ * CAMBER_ERROR_LIMIT (more rows of strokes and paints, or images of one pass, than textures hold, or in OpenCL images
+ * of one frame than a buffer), CAMBER_ERROR_DEVICE (a shader or a kernel does not build, or GL or OpenCL reported an
+ * error), CAMBER_ERROR_MEMORY, CAMBER_ERROR_IO (rows returned false). */
 CAMBER_API camber_status camber_render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows,
                                        void *user, camber_frame_stats *stats);
 
@@ -604,8 +605,9 @@ CAMBER_API camber_status camber_render(camber_renderer *renderer, const camber_f
  *
  * keeps the device and GL at work on two frames. CAMBER_FRAMES_IN_FLIGHT frames at most may have begun and not ended,
  * and none when camber_render is called; the passes' meshes, dashes, ramps and images must live until the end.
- * Tessellating a mesh before waits for the drawing, and so gains nothing. Where a picture takes several pieces, those
- * after the first are drawn at the end, from the meshes as they are then.
+ * Tessellating a mesh before waits for the drawing, and so gains nothing; nor does drawing in OpenCL gain, which has
+ * both steps on one device: begin draws the frame and keeps it. Where a picture takes several
+ * pieces, those after the first are drawn at the end, from the meshes as they are then.
  *
  * They return what camber_render returns. Where begin fails no frame has begun; where end fails the frame is given up.
  * Destroying the renderer gives up what is in flight. */

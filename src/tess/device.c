@@ -182,7 +182,8 @@ static camber_status choose(camber_device *device, const char *match, uint32_t n
         return camber_fail_cl(device->context, failed.name, failed.code);
     if (count == 0)
         return camber_fail(device->context, CAMBER_ERROR_DEVICE,
-                           "no OpenCL device: no platform answers; install a driver (Debian: pocl-opencl-icd)");
+                           "no OpenCL device: no platform answers; install a driver (Debian: pocl-opencl-icd), "
+                           "and let POCL_CACHE_DIR name a folder that PoCL can write to");
     char names[1024] = "";
     uint32_t seen = 0;
     int best = -1;

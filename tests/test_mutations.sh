@@ -282,6 +282,7 @@ mutant strip kernels/cover_canvas.cl "what lies below shines through" 'c->level[
     'c->level[level][3][i] = through'
 mutant strip kernels/cover_canvas.cl "groups that are opaque" 'seen = through * opacity' 'seen = through'
 mutant strip kernels/cover_canvas.cl "united lines: areas that are not summed" 'c->ink[1][i] += ' 'c->ink[1][i] = '
+mutant strip kernels/cover_batch.cl "tight joins that cut strokes narrower than their mesh" ' & (limit * c < outer)' ''
 mutant strip kernels/cover_batch.cl "cells that are whole too soon" 'full = h - p->extent - reach' 'full = h - p->extent'
 mutant strip kernels/cover_lanes.cl "places behind those of later lanes" 'popcount(*mark & before)' 'popcount(*mark & ~before) - 1'
 mutant strip kernels/cover_lanes.cl "cells that are full without a look" '& (next <= BATCH)' '& (next > BATCH)'

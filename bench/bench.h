@@ -4,6 +4,7 @@
 #define CAMBER_BENCH_H
 
 #include "camber_files.h"
+#include "camber_network.h"
 #include "peers/peer.h"
 
 #include <jansson.h>

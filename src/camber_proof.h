@@ -7,6 +7,7 @@
 #define CAMBER_PROOF_H
 
 #include "camber_files.h"
+#include "camber_network.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -5,6 +5,8 @@
 #include "lines/importance.h"
 #include "proof/oracle.h"
 
+#include "camber_network.h"
+
 #include <cairo.h>
 #include <cpl_error.h>
 #include <gdal.h>

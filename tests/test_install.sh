@@ -84,7 +84,7 @@ for library in "$libdir"/libcamber*.so "$libdir"/camber/*.so; do
     fi
 done
 exported=$(nm -D --defined-only "$libdir/libcamber.so" | awk '{print $3}' | grep '^camber_' | sort)
-declared=$(grep -ohE '^CAMBER_API [^(]*\(' "$folder"/usr/include/camber.h "$folder"/usr/include/camber_files.h "$folder"/usr/include/camber_proof.h | grep -oE 'camber_[a-z_]+\($' | tr -d '(' | sort)
+declared=$(grep -ohE '^CAMBER_API [^(]*\(' "$folder"/usr/include/camber.h "$folder"/usr/include/camber_files.h "$folder"/usr/include/camber_network.h "$folder"/usr/include/camber_proof.h | grep -oE 'camber_[a-z_]+\($' | tr -d '(' | sort)
 [ "$exported" = "$declared" ] || { diff <(echo "$exported") <(echo "$declared"); echo "exports and the headers differ"; exit 1; }
 "$folder/usr/bin/camber" --version
 [ "$map" = ON ] || exit 0

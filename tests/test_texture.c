@@ -288,7 +288,7 @@ static void test_in_turn(void **state) {
 /* ---- A context of the caller's ---- */
 
 typedef struct engine {
-    void *library;
+    void *egl;
     EGLDisplay display;
     EGLContext context;
     PFNEGLMAKECURRENTPROC make_current;
@@ -297,7 +297,7 @@ typedef struct engine {
 } engine;
 
 static void *symbol_of(const engine *e, const char *name) {
-    void *symbol = dlsym(e->library, name);
+    void *symbol = dlsym(e->egl, name);
     assert_non_null(symbol);
     return symbol;
 }
@@ -314,8 +314,8 @@ static bool open_engine(engine *e) {
     PFNEGLINITIALIZEPROC initialize;
     PFNEGLBINDAPIPROC bind;
     PFNEGLCREATECONTEXTPROC create;
-    *e = (engine){.library = dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL)};
-    if (!e->library)
+    *e = (engine){.egl = dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL)};
+    if (!e->egl)
         return false;
     TAKE(e, "eglInitialize", initialize);
     TAKE(e, "eglBindAPI", bind);

@@ -99,7 +99,7 @@ static bool words_differ(const char *field, const float *got, const float *expec
 
 static bool shapes_differ(const camber_drawing_stages *got, const camber_drawing_stages *expected,
                           camber_finding *finding) {
-    return words_differ("words", got->shapes, expected->shapes, expected->shape_words, expected, finding) ||
+    return words_differ("shape", got->shapes, expected->shapes, expected->shape_words, expected, finding) ||
            (expected->measures &&
             words_differ("measures", got->measures, expected->measures, expected->measure_words, expected, finding)) ||
            (expected->planes &&

@@ -1,6 +1,6 @@
 /* Networks as the kernels read them, and what of them lies on a device. */
-#ifndef CAMBER_NETWORK_H
-#define CAMBER_NETWORK_H
+#ifndef CAMBER_TESS_NETWORK_H
+#define CAMBER_TESS_NETWORK_H
 
 #include "kernels/network.h"
 #include "tess/tess.h"

@@ -7,13 +7,14 @@
  * together, it packs them into a float2, and PoCL does not vectorise over the points any more (5 times slower). */
 #define LANES (CAMBER_BLOCK / CAMBER_ITEM)
 
-kernel __attribute__((reqd_work_group_size(LANES, 1, 1))) void classify(
-    global const float *restrict x, global const float *restrict y, global const float *restrict x_before,
-    global const float *restrict y_before, global const float *restrict x_after, global const float *restrict y_after,
-    global const camber_u32 *restrict info, global const camber_u32 *restrict info_before,
-    global const camber_u32 *restrict info_after, global const camber_row *restrict rows,
-    global camber_u32 *restrict joins) {
-    const size_t first = get_group_id(0) * CAMBER_BLOCK + get_local_id(0) + 1;
+CAMBER_KERNEL(LANES, classify,
+              (global const float *restrict x, global const float *restrict y, global const float *restrict x_before,
+               global const float *restrict y_before, global const float *restrict x_after,
+               global const float *restrict y_after, global const camber_u32 *restrict info,
+               global const camber_u32 *restrict info_before, global const camber_u32 *restrict info_after,
+               global const camber_row *restrict rows, global camber_u32 *restrict joins),
+              (x, y, x_before, y_before, x_after, y_after, info, info_before, info_after, rows, joins)) {
+    const size_t first = CAMBER_ITEM_ID / LANES * CAMBER_BLOCK + CAMBER_ITEM_ID % LANES + 1;
 #pragma clang loop vectorize_width(16)
     for (size_t n = 0; n < CAMBER_BLOCK; n += LANES) {
         const size_t i = first + n;

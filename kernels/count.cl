@@ -17,11 +17,11 @@ static inline int is_one_tile(camber_u32 box, camber_u32 columns) {
 }
 
 #if CAMBER_LANES == 16
-kernel __attribute__((reqd_work_group_size(1, 1, 1))) void count(global const float *restrict shapes,
-                                                                 global const camber_u32 *restrict boxes,
-                                                                 global camber_u32 *restrict counts,
-                                                                 const camber_chunks c) {
-    const size_t chunk = get_global_id(0), first = chunk * c.a_chunk;
+CAMBER_KERNEL(1, count,
+              (global const float *restrict shapes, global const camber_u32 *restrict boxes,
+               global camber_u32 *restrict counts, const camber_chunks c),
+              (shapes, boxes, counts, c)) {
+    const size_t chunk = CAMBER_ITEM_ID, first = chunk * c.a_chunk;
     const size_t end = first + c.a_chunk < c.shape_count ? first + c.a_chunk : c.shape_count;
     const camber_tiles of = c.of;
     global camber_u32 *own = counts + chunk * c.tiles;

@@ -210,8 +210,10 @@ static inline void write_cells(private const canvas *c, global camber_u32 *pixel
 #if CAMBER_COVER_RICH
 #if CAMBER_COVER_PITCHED
 #define PLANES_TOO , global const float *restrict planes
+#define MORE_GIVEN , measures, more, tail, planes
 #else
 #define PLANES_TOO
+#define MORE_GIVEN , measures, more, tail
 #endif
 #define MORE                                                                                                           \
     , global const float *restrict measures, global const camber_ink_more *restrict more,                              \
@@ -222,17 +224,19 @@ static void draw_rich(private canvas *c, private const places *at, global const 
                       global const float *measure, global const float *tail);
 #else
 #define MORE
+#define MORE_GIVEN
 #endif
 
-kernel __attribute__((reqd_work_group_size(1, 1, 1))) void cover(
-    global const float *restrict shapes, global const camber_u32 *restrict starts,
-    global const camber_u32 *restrict lists, global const camber_ink *restrict inks,
-    global const camber_u32 *restrict items, global camber_u32 *restrict pixels, const camber_sheet s,
-    global float *restrict kept, const camber_slice slice MORE) {
+CAMBER_KERNEL(1, cover,
+              (global const float *restrict shapes, global const camber_u32 *restrict starts,
+               global const camber_u32 *restrict lists, global const camber_ink *restrict inks,
+               global const camber_u32 *restrict items, global camber_u32 *restrict pixels, const camber_sheet s,
+               global float *restrict kept, const camber_slice slice MORE),
+              (shapes, starts, lists, inks, items, pixels, s, kept, slice MORE_GIVEN)) {
     canvas c;
     places at;
     batch b;
-    const size_t item = get_global_id(0) + s.first_item, tile = items[2 * item];
+    const size_t item = CAMBER_ITEM_ID + s.first_item, tile = items[2 * item];
     const camber_u32 cells = items[2 * item + 1], column = (camber_u32)tile % s.columns,
                      row = (camber_u32)tile / s.columns;
     const int first = (int)(cells & 255u), last = (int)(cells >> 8);

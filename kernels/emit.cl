@@ -14,6 +14,7 @@ static inline void put_record(global camber_u32 *records, size_t k, float x, flo
 
 #if CAMBER_MEASURED
 #define MEASURES , global const float *restrict measures
+#define MEASURES_GIVEN , measures
 /* The records [k, k + count) lie as far along their line as point i. */
 static inline void put_measures(global camber_u32 *records, size_t k, size_t count, global const float *measures,
                                 size_t i) {
@@ -23,6 +24,7 @@ static inline void put_measures(global camber_u32 *records, size_t k, size_t cou
 }
 #else
 #define MEASURES
+#define MEASURES_GIVEN
 #endif
 
 #if CAMBER_METHOD == CAMBER_STRIP
@@ -76,14 +78,15 @@ static inline __attribute__((always_inline)) size_t put_two(camber_u32 join, cam
 }
 
 /* Four points at a time: their words become records in registers. */
-kernel __attribute__((reqd_work_group_size(LANES, 1, 1))) void emit(
-    global const float *restrict x, global const float *restrict y, global const camber_u32 *restrict info,
-    global const camber_row *restrict rows, global const camber_u32 *restrict joins,
-    global const camber_u32 *restrict offsets, global const camber_u64 *restrict bases,
-    global camber_u32 *restrict records, global camber_u32 *restrict indices MEASURES) {
-    const size_t first = get_global_id(0) * CAMBER_ITEM + 1;
+CAMBER_KERNEL(LANES, emit,
+              (global const float *restrict x, global const float *restrict y, global const camber_u32 *restrict info,
+               global const camber_row *restrict rows, global const camber_u32 *restrict joins,
+               global const camber_u32 *restrict offsets, global const camber_u64 *restrict bases,
+               global camber_u32 *restrict records, global camber_u32 *restrict indices MEASURES),
+              (x, y, info, rows, joins, offsets, bases, records, indices MEASURES_GIVEN)) {
+    const size_t first = CAMBER_ITEM_ID * CAMBER_ITEM + 1;
     /* two indices a record */
-    size_t k = ((size_t)bases[2 * get_group_id(0) + 1] + (offsets[get_global_id(0)] >> 16)) / 2;
+    size_t k = ((size_t)bases[2 * (CAMBER_ITEM_ID / LANES) + 1] + (offsets[CAMBER_ITEM_ID] >> 16)) / 2;
     for (size_t i = first; i < first + CAMBER_ITEM; i += 4) {
         if (CAMBER_MEASURED | is_rare(joins[i], info[i]) | is_rare(joins[i + 1], info[i + 1]) |
             is_rare(joins[i + 2], info[i + 2]) | is_rare(joins[i + 3], info[i + 3])) {
@@ -202,13 +205,14 @@ static inline size_t put_point(global const float *x, global const float *y, glo
     return body + 3u * camber_join_triangles(join);
 }
 
-kernel __attribute__((reqd_work_group_size(LANES, 1, 1))) void emit(
-    global const float *restrict x, global const float *restrict y, global const camber_u32 *restrict info,
-    global const camber_row *restrict rows, global const camber_u32 *restrict joins,
-    global const camber_u32 *restrict offsets, global const camber_u64 *restrict bases,
-    global camber_u32 *restrict records, global camber_u32 *restrict indices MEASURES) {
-    const size_t first = get_global_id(0) * CAMBER_ITEM + 1;
-    size_t at = (size_t)bases[2 * get_group_id(0) + 1] + (offsets[get_global_id(0)] >> 16);
+CAMBER_KERNEL(LANES, emit,
+              (global const float *restrict x, global const float *restrict y, global const camber_u32 *restrict info,
+               global const camber_row *restrict rows, global const camber_u32 *restrict joins,
+               global const camber_u32 *restrict offsets, global const camber_u64 *restrict bases,
+               global camber_u32 *restrict records, global camber_u32 *restrict indices MEASURES),
+              (x, y, info, rows, joins, offsets, bases, records, indices MEASURES_GIVEN)) {
+    const size_t first = CAMBER_ITEM_ID * CAMBER_ITEM + 1;
+    size_t at = (size_t)bases[2 * (CAMBER_ITEM_ID / LANES) + 1] + (offsets[CAMBER_ITEM_ID] >> 16);
     for (size_t i = first; i < first + CAMBER_ITEM; i++) {
         at += put_point(x, y, info, joins, i, records, indices + at);
 #if CAMBER_MEASURED

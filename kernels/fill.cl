@@ -3,13 +3,12 @@
  * Reads shapes, boxes[shape_count], starts[tiles]; counts[chunks * tiles] go on to the chunk's end; writes
  * lists[pairs]. */
 #if CAMBER_LANES == 16
-kernel __attribute__((reqd_work_group_size(1, 1, 1))) void fill(global const float *restrict shapes,
-                                                                global const camber_u32 *restrict boxes,
-                                                                global const camber_u32 *restrict starts,
-                                                                global camber_u32 *restrict counts,
-                                                                global camber_u32 *restrict lists,
-                                                                const camber_chunks c) {
-    const size_t chunk = get_global_id(0), first = chunk * c.a_chunk;
+CAMBER_KERNEL(1, fill,
+              (global const float *restrict shapes, global const camber_u32 *restrict boxes,
+               global const camber_u32 *restrict starts, global camber_u32 *restrict counts,
+               global camber_u32 *restrict lists, const camber_chunks c),
+              (shapes, boxes, starts, counts, lists, c)) {
+    const size_t chunk = CAMBER_ITEM_ID, first = chunk * c.a_chunk;
     const size_t end = first + c.a_chunk < c.shape_count ? first + c.a_chunk : c.shape_count;
     const camber_tiles of = c.of;
     global camber_u32 *own = counts + chunk * c.tiles;

@@ -35,6 +35,26 @@ typedef uint64_t camber_u64;
 #define CAMBER_ITEM 8
 #endif
 
+/* A kernel, work-groups of `size` work-items; its body finds its work-item's number in CAMBER_ITEM_ID. On a CPU the
+ * body is a function that the kernel calls: PoCL puts a kernel's body into three entries of each build and compiles its
+ * loop over work-items around each, which takes twice as long and runs no faster. */
+#ifdef __OPENCL_VERSION__
+#define CAMBER_LIST(...) __VA_ARGS__
+#if CAMBER_ITEM == CAMBER_BLOCK
+#define CAMBER_ITEM_ID item_id
+#define CAMBER_KERNEL(size, name, parameters, arguments)                                                               \
+    static void name##_item(const size_t item_id, CAMBER_LIST parameters) __attribute__((noinline));                   \
+    kernel __attribute__((reqd_work_group_size(size, 1, 1))) void name parameters {                                    \
+        name##_item(get_global_id(0), CAMBER_LIST arguments);                                                          \
+    }                                                                                                                  \
+    static void name##_item(const size_t item_id, CAMBER_LIST parameters)
+#else
+#define CAMBER_ITEM_ID get_global_id(0)
+#define CAMBER_KERNEL(size, name, parameters, arguments)                                                               \
+    kernel __attribute__((reqd_work_group_size(size, 1, 1))) void name parameters
+#endif
+#endif
+
 /* A point's info word: row << CAMBER_POINT_ROW_SHIFT | flags. 0 is a ghost: a neighbour to look at, or padding,
  * that emits nothing. A ring is stored as ghost of its last but one point, its points with the first repeated
  * at the end, ghost of its second point: so neighbours are always i - 1 and i + 1. */

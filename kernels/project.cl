@@ -6,17 +6,21 @@
 #if CAMBER_MEASURED
 #define MEASURES                                                                                                       \
     , global const float *restrict lengths, global const float *restrict totals, global float *restrict slot_measures
+#define MEASURES_GIVEN , lengths, totals, slot_measures
 #else
 #define MEASURES
+#define MEASURES_GIVEN
 #endif
 
-kernel __attribute__((reqd_work_group_size(CAMBER_WALKERS, 1, 1))) void project(
-    global const camber_i32 *restrict x, global const camber_i32 *restrict y, global const float *restrict importance,
-    global const camber_run *restrict runs, global const camber_u32 *restrict chunk_runs,
-    global const camber_u32 *restrict bases, global float *restrict slot_x, global float *restrict slot_y,
-    global camber_u32 *restrict slot_info, global camber_u32 *restrict joins MEASURES,
-    const camber_projection projection) {
-    const camber_u32 item = (camber_u32)get_global_id(0), chunk = projection.begin / CAMBER_CHUNK + item;
+CAMBER_KERNEL(CAMBER_WALKERS, project,
+              (global const camber_i32 *restrict x, global const camber_i32 *restrict y,
+               global const float *restrict importance, global const camber_run *restrict runs,
+               global const camber_u32 *restrict chunk_runs, global const camber_u32 *restrict bases,
+               global float *restrict slot_x, global float *restrict slot_y, global camber_u32 *restrict slot_info,
+               global camber_u32 *restrict joins MEASURES, const camber_projection projection),
+              (x, y, importance, runs, chunk_runs, bases, slot_x, slot_y, slot_info, joins MEASURES_GIVEN,
+               projection)) {
+    const camber_u32 item = (camber_u32)CAMBER_ITEM_ID, chunk = projection.begin / CAMBER_CHUNK + item;
     camber_u32 begin, end;
     camber_chunk_bounds(&projection, chunk, &begin, &end);
     if (begin >= end)

@@ -5,19 +5,19 @@
  * them up in 64 bits and learns the sizes by it. joins_before is joins once more, for the vectoriser's sake. */
 #define LANES (CAMBER_BLOCK / CAMBER_ITEM)
 
-kernel __attribute__((reqd_work_group_size(LANES, 1, 1))) void scan(global const camber_u32 *restrict joins,
-                                                                    global const camber_u32 *restrict joins_before,
-                                                                    global const camber_u32 *restrict info,
-                                                                    global camber_u32 *restrict offsets,
-                                                                    global camber_u32 *restrict sums) {
-    const size_t first = get_global_id(0) * CAMBER_ITEM + 1;
+CAMBER_KERNEL(LANES, scan,
+              (global const camber_u32 *restrict joins, global const camber_u32 *restrict joins_before,
+               global const camber_u32 *restrict info, global camber_u32 *restrict offsets,
+               global camber_u32 *restrict sums),
+              (joins, joins_before, info, offsets, sums)) {
+    const size_t first = CAMBER_ITEM_ID * CAMBER_ITEM + 1;
     camber_u32 own = 0;
 #pragma clang loop vectorize_width(16)
     for (size_t n = 0; n < CAMBER_ITEM; n++)
         own += camber_join_counts(joins[first + n], joins_before[first + n - 1], info[first + n], CAMBER_METHOD);
 #if LANES == 1
-    offsets[get_group_id(0)] = 0u;
-    sums[get_group_id(0)] = own;
+    offsets[CAMBER_ITEM_ID] = 0u;
+    sums[CAMBER_ITEM_ID] = own;
 #else
     local camber_u32 total[2][LANES];
     const size_t lane = get_local_id(0);

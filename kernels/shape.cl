@@ -102,6 +102,7 @@ static inline void turn_over(private float16 *words) {
 
 #if CAMBER_COVER_RICH
 #define MEASURES , global float *restrict measures
+#define MEASURES_GIVEN , measures
 
 static inline float2 measure_at(global const camber_u32 *records, int i, camber_shape_range r) {
     const int last = (int)r.record_count - 1, at = i < 0 ? 0 : i > last ? last : i;
@@ -125,6 +126,7 @@ static inline void put_measures(global const camber_u32 *records, int first, cam
 }
 #else
 #define MEASURES
+#define MEASURES_GIVEN
 #endif
 
 static inline void put_shapes(private float16 *words, global float *shapes, size_t a_shape) {
@@ -135,6 +137,7 @@ static inline void put_shapes(private float16 *words, global float *shapes, size
 
 #if CAMBER_COVER_PITCHED
 #define PLANES , global float *restrict planes
+#define PLANES_GIVEN , planes
 
 static inline void put_planes(private const camber_shape *s, private const camber_plane *p, global float *planes) {
     const float16 none = (float16)(0.0f);
@@ -147,14 +150,15 @@ static inline void put_planes(private const camber_shape *s, private const cambe
 }
 #else
 #define PLANES
+#define PLANES_GIVEN
 #endif
 
-kernel __attribute__((reqd_work_group_size(1, 1, 1))) void shape(global const camber_u32 *restrict records,
-                                                                 global const float *restrict rows,
-                                                                 global float *restrict shapes,
-                                                                 global camber_u32 *restrict boxes,
-                                                                 const camber_shape_range r MEASURES PLANES) {
-    const size_t group = get_global_id(0);
+CAMBER_KERNEL(1, shape,
+              (global const camber_u32 *restrict records, global const float *restrict rows,
+               global float *restrict shapes, global camber_u32 *restrict boxes,
+               const camber_shape_range r MEASURES PLANES),
+              (records, rows, shapes, boxes, r MEASURES_GIVEN PLANES_GIVEN)) {
+    const size_t group = CAMBER_ITEM_ID;
     const int first = (int)(r.first + 16 * (uint)group);
     const int16 lanes = (int16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
     sixteen b, before, second, third;

@@ -2,11 +2,13 @@
  * Reads x, y, importance[n], the runs and one behind them, chunk_runs[n / CAMBER_CHUNK, rounded up], which is the run
  * of each chunk's first point; writes counts[chunks], the chunks between the projection's begin and end. A work-item a
  * chunk. */
-kernel __attribute__((reqd_work_group_size(CAMBER_WALKERS, 1, 1))) void survey(
-    global const camber_i32 *restrict x, global const camber_i32 *restrict y, global const float *restrict importance,
-    global const camber_run *restrict runs, global const camber_u32 *restrict chunk_runs,
-    global camber_u32 *restrict counts, const camber_projection projection) {
-    const camber_u32 item = (camber_u32)get_global_id(0), chunk = projection.begin / CAMBER_CHUNK + item;
+CAMBER_KERNEL(CAMBER_WALKERS, survey,
+              (global const camber_i32 *restrict x, global const camber_i32 *restrict y,
+               global const float *restrict importance, global const camber_run *restrict runs,
+               global const camber_u32 *restrict chunk_runs, global camber_u32 *restrict counts,
+               const camber_projection projection),
+              (x, y, importance, runs, chunk_runs, counts, projection)) {
+    const camber_u32 item = (camber_u32)CAMBER_ITEM_ID, chunk = projection.begin / CAMBER_CHUNK + item;
     camber_u32 begin, end;
     camber_chunk_bounds(&projection, chunk, &begin, &end);
     if (begin >= end)

@@ -1,10 +1,11 @@
 /* total: of each tile the segments in the chunks before, and in all; sixteen tiles a work-item.
  * Turns counts[chunks * tiles] into sums before each chunk; writes totals[tiles]. */
 #if CAMBER_LANES == 16
-kernel __attribute__((reqd_work_group_size(1, 1, 1))) void total(global camber_u32 *restrict counts,
-                                                                 global camber_u32 *restrict totals,
-                                                                 const camber_u32 tiles, const camber_u32 chunks) {
-    const size_t at = get_global_id(0);
+CAMBER_KERNEL(1, total,
+              (global camber_u32 *restrict counts, global camber_u32 *restrict totals, const camber_u32 tiles,
+               const camber_u32 chunks),
+              (counts, totals, tiles, chunks)) {
+    const size_t at = CAMBER_ITEM_ID;
     uint16 sum = (uint16)(0u);
     for (camber_u32 i = 0; i < chunks; i++) {
         global camber_u32 *of_chunk = counts + (size_t)i * tiles;

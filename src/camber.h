@@ -85,7 +85,8 @@ typedef struct camber_context_desc {
     camber_progress_fn *progress; /* NULL: none */
     void *progress_user;
     /* Folder for compiled kernels and linked shaders. NULL: $XDG_CACHE_HOME/camber, else ~/.cache/camber; "": no cache.
-     * A folder that cannot be written is not an error. */
+     * A folder that cannot be written is not an error. Kernels are looked for in a folder that all users share first
+     * (camber_device_warm), which $CAMBER_KERNELS may name. */
     const char *cache_dir;
 } camber_context_desc;
 
@@ -229,6 +230,21 @@ typedef struct camber_surface camber_surface;
 CAMBER_API camber_status camber_device_create(camber_context *context, const camber_device_desc *desc,
                                               camber_surface *surface, camber_device **device);
 CAMBER_API void camber_device_destroy(camber_device *device);
+
+typedef struct camber_warmed {
+    size_t programs;   /* of the share */
+    size_t built;      /* the others lay in the cache */
+    char folder[1024]; /* where they lie; "": nowhere, as no folder can be written */
+} camber_warmed;
+
+/* Builds all kernels that the device can be asked for and saves those that the cache lacks, so that later runs load
+ * them: in the folder camber-kernels beside the library, which all users of the machine read, or where this user may
+ * not write there, in the user's cache. What was built for another device, driver or version of camber is left alone.
+ * Several processes can do it side by side, each its share of so many shares; 0 of 1 is all.
+ * Returns CAMBER_ERROR_ARGUMENT (no such share), CAMBER_ERROR_DEVICE (kernels that do not build),
+ * CAMBER_ERROR_MEMORY. Cost: some ten seconds of a CPU's compiler, once. */
+CAMBER_API camber_status camber_device_warm(camber_device *device, unsigned share, unsigned shares,
+                                            camber_warmed *warmed);
 CAMBER_API camber_device_info camber_device_get_info(const camber_device *device);
 
 typedef struct camber_device_memory {

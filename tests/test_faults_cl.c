@@ -349,8 +349,6 @@ static camber_status try_cached(stage_set *s, void *user) {
     camber_status status = camber_device_create(context, NULL, NULL, &device);
     if (status == CAMBER_OK)
         status = camber_device_program(device, (camber_program_desc){s->desc.method, s->desc.measured, true}, &program);
-    if (status == CAMBER_OK)
-        camber_program_save(device, program);
     s->h.errors += h.errors;
     if (h.errors)
         snprintf(s->h.last, sizeof s->h.last, "%s", h.last);

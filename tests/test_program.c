@@ -171,7 +171,7 @@ static bool tessellate_once(const char *cache_dir, camber_method method) {
         camber_polylines_create(context, &(camber_polylines_desc){points, 5, offsets, 1, NULL, false}, &polylines),
         CAMBER_OK);
     assert_int_equal(camber_device_program(device, (camber_program_desc){.method = method}, &program), CAMBER_OK);
-    const bool built = program->to_save;
+    const bool built = program->built;
     const camber_stroke stroke = {3, CAMBER_JOIN_ROUND, CAMBER_CAP_ROUND, 0};
     const camber_tessellation_desc desc = {&stroke, 1, method, 0, false};
     assert_int_equal(camber_tessellate(mesh, polylines, &desc), CAMBER_OK);

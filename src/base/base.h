@@ -17,6 +17,7 @@ struct camber_context {
     camber_context_desc desc;
     uint64_t next_serial; /* identifies polylines to meshes that keep them uploaded */
     const void *gdal;     /* source/load.c: what it found, NULL before */
+    bool saves_shared;    /* cache.c: files are saved for all users of the machine */
 };
 
 /* Memory is not cleared by camber_alloc; camber_alloc_zero clears it. NULL and a logged error on failure, also
@@ -67,13 +68,28 @@ static inline uint64_t camber_mix_point(uint64_t hash, const double *point) {
     return camber_mix(camber_mix(hash, words[0]), words[1]);
 }
 
-/* ---- Cache: small files by name in the context's cache folder; every failure is a miss ---- */
+/* ---- Cache: small files by name in the user's cache folder, or in the one that the machine's users share. Every
+ * failure is a miss. ---- */
 
-/* Whether the context has a cache folder at all. */
+enum { CAMBER_FOLDER_SIZE = 1024 };
+
+/* Whether the context has a cache folder of its user at all. */
 bool camber_cache_is_on(const camber_context *context);
 /* *bytes is freed with camber_free. */
 bool camber_cache_load(camber_context *context, const char *name, char **bytes, size_t *size_bytes);
+/* From the shared folder. */
+bool camber_cache_load_shared(camber_context *context, const char *name, char **bytes, size_t *size_bytes);
 /* Written beside and renamed: readers see a whole file or none. */
 void camber_cache_save(camber_context *context, const char *name, const void *bytes, size_t size_bytes);
+
+/* Whether what is saved goes to the shared folder from now on, where this user may write there. */
+void camber_cache_share(camber_context *context, bool wanted);
+/* Where files are saved, made where it is missing; false: nowhere. */
+bool camber_cache_folder(const camber_context *context, char folder[CAMBER_FOLDER_SIZE]);
+
+/* Of all processes that save where this one does, one at a time has the lock of a key. Below 0: none is to be had, and
+ * each works for itself. */
+int camber_cache_lock(camber_context *context, uint64_t key);
+void camber_cache_unlock(int lock);
 
 #endif

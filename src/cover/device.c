@@ -74,15 +74,15 @@ static bool has_lanes(const camber_cover *cover) {
     return cover->variant == 0 && cover->device->lanes == 1;
 }
 
-/* count work-items from the first one on, each a work-group, or what does their work. */
+/* So many work-items, each a work-group, or what does their work. */
 static camber_status run(camber_cover *cover, int stage, const argument *arguments, cl_uint argument_count,
-                         const size_t from_count[2]) {
+                         size_t item_count) {
     const camber_device *device = cover->device;
     const cl_kernel kernels[STAGES] = {cover->program->shape, cover->program->count, cover->program->total,
                                        cover->program->fill, cover->program->cover};
     const bool by_lanes = has_lanes(cover);
     const size_t lanes = by_lanes ? lanes_of[stage].lanes : 1, items = by_lanes ? lanes_of[stage].items : 1;
-    const size_t first = from_count[0] * lanes, count = (from_count[1] + items - 1) / items * lanes;
+    const size_t count = (item_count + items - 1) / items * lanes;
     cl_event event = NULL;
     if (count == 0)
         return CAMBER_OK;
@@ -91,7 +91,7 @@ static camber_status run(camber_cover *cover, int stage, const argument *argumen
         if (code != CL_SUCCESS)
             return camber_fail_stage(device, "clSetKernelArg", stage_names[stage], code);
     }
-    cl_int code = clEnqueueNDRangeKernel(device->queue, kernels[stage], 1, &first, &count, &lanes, 0, NULL, &event);
+    cl_int code = clEnqueueNDRangeKernel(device->queue, kernels[stage], 1, NULL, &count, &lanes, 0, NULL, &event);
     if (code != CL_SUCCESS)
         return camber_fail_stage(device, "clEnqueueNDRangeKernel", stage_names[stage], code);
     cover->pending[cover->pending_count++] = (camber_cover_pending){event, stage};
@@ -135,7 +135,7 @@ static camber_status make_shapes(camber_cover *cover, const camber_cover_scene *
         const argument arguments[] = {{sizeof(cl_mem), records}, BUFFER(BUFFER_ROWS), BUFFER(BUFFER_SHAPES),
                                       BUFFER(BUFFER_BOXES),      VALUE(range),        BUFFER(BUFFER_MEASURES),
                                       BUFFER(BUFFER_PLANES)};
-        const size_t items[2] = {0, (piece.end - piece.first + 15) / 16};
+        const size_t items = (piece.end - piece.first + 15) / 16;
         status = run(cover, STAGE_SHAPE, arguments, 5 + more_arguments(cover, 1), items);
     }
     return status;
@@ -171,9 +171,9 @@ static camber_status count_tiles(camber_cover *cover, chunks c, uint32_t chunk_c
     const argument count[] = {BUFFER(BUFFER_SHAPES), BUFFER(BUFFER_BOXES), BUFFER(BUFFER_COUNTS), VALUE(c)};
     const argument total[] = {BUFFER(BUFFER_COUNTS), BUFFER(BUFFER_TOTALS), VALUE(c.tiles), VALUE(chunk_count)};
     if (status == CAMBER_OK)
-        status = run(cover, STAGE_COUNT, count, 4, (size_t[]){0, chunk_count});
+        status = run(cover, STAGE_COUNT, count, 4, chunk_count);
     if (status == CAMBER_OK)
-        status = run(cover, STAGE_TOTAL, total, 4, (size_t[]){0, c.tiles / 16});
+        status = run(cover, STAGE_TOTAL, total, 4, c.tiles / 16);
     return status;
 }
 
@@ -212,7 +212,7 @@ static camber_status start_lists(camber_cover *cover, bool *fits) {
 static camber_status fill_lists(camber_cover *cover, chunks c, uint32_t chunk_count) {
     const argument fill[] = {BUFFER(BUFFER_SHAPES), BUFFER(BUFFER_BOXES), BUFFER(BUFFER_STARTS),
                              BUFFER(BUFFER_COUNTS), BUFFER(BUFFER_LISTS), VALUE(c)};
-    return run(cover, STAGE_FILL, fill, 6, (size_t[]){0, chunk_count});
+    return run(cover, STAGE_FILL, fill, 6, chunk_count);
 }
 
 static bool is_heavy(const camber_cover *cover, size_t tile) {
@@ -290,10 +290,10 @@ static camber_status cover_tiles(camber_cover *cover, const camber_cover_scene *
                                   BUFFER(BUFFER_PLANES)};
     const cl_uint count = 9 + more_arguments(cover, 3);
     if (status == CAMBER_OK)
-        status = run(cover, STAGE_COVER, arguments, count, (size_t[]){0, heavy});
+        status = run(cover, STAGE_COVER, arguments, count, heavy);
     s.first_item = (uint32_t)heavy;
     if (status == CAMBER_OK)
-        status = run(cover, STAGE_COVER, arguments, count, (size_t[]){0, items - heavy});
+        status = run(cover, STAGE_COVER, arguments, count, items - heavy);
     return status;
 }
 
@@ -435,8 +435,6 @@ camber_status camber_cover_draw_into(camber_cover *cover, const camber_cover_sce
     if (status != CAMBER_OK)
         clFinish(cover->device->queue); /* what is put goes with the scene */
     status = status == CAMBER_OK ? settled : status;
-    if (status == CAMBER_OK && p.shape_count > 0)
-        camber_program_save(cover->device, cover->program);
     camber_free(context, pieces);
     return status;
 }

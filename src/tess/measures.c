@@ -51,8 +51,6 @@ camber_status camber_part_measure(camber_mesh *mesh, camber_mesh_part *part) {
         status = carry_sums(device, mems[3], part->given_count / CAMBER_MEASURE_CHUNK);
     if (status == CAMBER_OK)
         status = camber_stage_run(device, stages[1], NULL);
-    if (status == CAMBER_OK && program->to_save && clFinish(device->queue) == CL_SUCCESS)
-        camber_program_save(mesh->device, program);
     return status;
 }
 

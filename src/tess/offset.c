@@ -221,8 +221,6 @@ camber_status camber_part_offset(camber_mesh *mesh, camber_mesh_part *part, bool
         status = reserve_slots(mesh, part, (size_t)padded);
         if (status == CAMBER_OK)
             status = run_shift(mesh, part, program, events + 2);
-        if (status == CAMBER_OK && program->to_save && clFinish(device->queue) == CL_SUCCESS)
-            camber_program_save(mesh->device, program);
     }
     for (size_t i = 0; i < 3; i++) {
         if (events[i] && status == CAMBER_OK)

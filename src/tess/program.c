@@ -1,9 +1,11 @@
-/* Building the kernels, and keeping what was built in the user's cache folder. */
+/* Building the kernels, and keeping what was built: what has been compiled once on a machine is loaded from then on. Of
+ * several processes that need a program which nobody has built yet, one compiles it and the others load it. */
 #include "tess/tess.h"
 
 #include "base/embedded.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const char *const OPTIONS = "-cl-std=CL1.2 -w -DCAMBER_METHOD=%d%s%s -DCAMBER_ITEM=%zu%s";
@@ -46,24 +48,19 @@ static uint64_t hash_binary(uint64_t key, const unsigned char *binary, size_t si
     return camber_hash(camber_hash(CAMBER_HASH_START, &key, sizeof key), binary, size_bytes);
 }
 
-/* The binary behind its hash. */
-static bool load(camber_device *device, camber_program *program, const char *options) {
-    char name[64], *bytes = NULL;
-    size_t size = 0;
+/* A program of a binary behind its hash. */
+static bool take_binary(camber_device *device, camber_program *program, const char *options, const char *bytes,
+                        size_t size) {
     uint64_t hash;
     cl_int code = CL_INVALID_BINARY, binary_code = CL_INVALID_BINARY;
-    cache_name(program->key, name);
-    if (!camber_cache_load(device->context, name, &bytes, &size))
+    if (size <= sizeof hash)
         return false;
-    if (size > sizeof hash) {
-        memcpy(&hash, bytes, sizeof hash);
-        const unsigned char *binary = (const unsigned char *)bytes + sizeof hash;
-        const size_t binary_size = size - sizeof hash;
-        if (hash == hash_binary(program->key, binary, binary_size))
-            program->cl =
-                clCreateProgramWithBinary(device->cl, 1, &device->id, &binary_size, &binary, &binary_code, &code);
-    }
-    camber_free(device->context, bytes);
+    memcpy(&hash, bytes, sizeof hash);
+    const unsigned char *binary = (const unsigned char *)bytes + sizeof hash;
+    const size_t binary_size = size - sizeof hash;
+    if (hash != hash_binary(program->key, binary, binary_size))
+        return false;
+    program->cl = clCreateProgramWithBinary(device->cl, 1, &device->id, &binary_size, &binary, &binary_code, &code);
     if (code == CL_SUCCESS && binary_code == CL_SUCCESS &&
         clBuildProgram(program->cl, 1, &device->id, options, NULL, NULL) == CL_SUCCESS)
         return true;
@@ -71,6 +68,24 @@ static bool load(camber_device *device, camber_program *program, const char *opt
         clReleaseProgram(program->cl);
     program->cl = NULL;
     return false;
+}
+
+/* What the machine's users share, or what this one has. */
+static bool load(camber_device *device, camber_program *program, const char *options) {
+    bool (*const loads[])(camber_context *, const char *, char **, size_t *) = {camber_cache_load_shared,
+                                                                                camber_cache_load};
+    char name[64];
+    bool loaded = false;
+    cache_name(program->key, name);
+    for (size_t i = 0; i < sizeof loads / sizeof *loads && !loaded; i++) {
+        char *bytes = NULL;
+        size_t size = 0;
+        if (!loads[i](device->context, name, &bytes, &size))
+            continue;
+        loaded = take_binary(device, program, options, bytes, size);
+        camber_free(device->context, bytes);
+    }
+    return loaded;
 }
 
 static camber_status fail_build(camber_device *device, cl_program program) {
@@ -88,10 +103,11 @@ static camber_status fail_build(camber_device *device, cl_program program) {
     return CAMBER_ERROR_DEVICE;
 }
 
-/* PoCL keeps what it builds by itself, and compiles each kernel once more where its binary is asked for: of those that
- * draw two seconds at the first run, for 30 ms at each one after. */
-static bool is_worth_saving(const camber_device *device, program_kind kind) {
-    return kind != PROGRAM_COVER || strcmp(device->info.platform, "Portable Computing Language") != 0;
+/* A binary of PoCL's has work-groups of any size. Where PoCL makes kernels for the size, offset and count of each
+ * launch instead, as it does unless it is told not to, that is compiled in vain, and PoCL's own cache has to do. */
+static bool is_worth_saving(const camber_device *device) {
+    const char *specialized = getenv("POCL_WORK_GROUP_SPECIALIZATION");
+    return strcmp(device->info.platform, "Portable Computing Language") != 0 || (specialized && specialized[0] == '0');
 }
 
 static camber_status build(camber_device *device, camber_program *program, const recipe *from) {
@@ -104,8 +120,32 @@ static camber_status build(camber_device *device, camber_program *program, const
         return fail_build(device, program->cl);
     if (code != CL_SUCCESS)
         return camber_fail_cl(device->context, "clBuildProgram", code);
-    program->to_save = is_worth_saving(device, from->kind);
+    program->built = true;
     return CAMBER_OK;
+}
+
+/* A file that is not saved fails nothing. */
+static void save(camber_device *device, const camber_program *program) {
+    size_t size = 0;
+    if (!is_worth_saving(device))
+        return;
+    if (clGetProgramInfo(program->cl, CL_PROGRAM_BINARY_SIZES, sizeof size, &size, NULL) != CL_SUCCESS || size == 0)
+        return;
+    uint64_t hash;
+    /* Past camber_alloc, which logs. */
+    const camber_context_desc *host = &device->context->desc;
+    unsigned char *bytes = host->reallocate(host->allocator_user, NULL, size + sizeof hash);
+    if (!bytes)
+        return;
+    unsigned char *binary = bytes + sizeof hash;
+    if (clGetProgramInfo(program->cl, CL_PROGRAM_BINARIES, sizeof binary, &binary, NULL) == CL_SUCCESS) {
+        char name[64];
+        hash = hash_binary(program->key, binary, size);
+        memcpy(bytes, &hash, sizeof hash);
+        cache_name(program->key, name);
+        camber_cache_save(device->context, name, bytes, size + sizeof hash);
+    }
+    camber_free(device->context, bytes);
 }
 
 static camber_status make_kernels(camber_device *device, camber_program *program, program_kind kind) {
@@ -139,9 +179,14 @@ static camber_status make_program(camber_device *device, const recipe *from, cam
     made->key = cache_key(&device->info, from);
     camber_status status = CAMBER_OK;
     const double begin = camber_now_ms();
-    const bool cached = load(device, made, from->options);
-    if (!cached)
+    const int lock = camber_cache_lock(device->context, made->key);
+    if (!load(device, made, from->options)) {
+        camber_progress(device->context, "compiling kernels, once", -1);
         status = build(device, made, from);
+        if (status == CAMBER_OK)
+            save(device, made);
+    }
+    camber_cache_unlock(lock);
     if (status == CAMBER_OK)
         status = make_kernels(device, made, from->kind);
     if (status != CAMBER_OK) {
@@ -149,7 +194,7 @@ static camber_status make_program(camber_device *device, const recipe *from, cam
         return status;
     }
     camber_log(device->context, CAMBER_LOG_INFO, "kernels of %s: %s in %.0f ms", from->name,
-               cached ? "from the cache" : "built", camber_now_ms() - begin);
+               made->built ? "built" : "from the cache", camber_now_ms() - begin);
     *program = made;
     return CAMBER_OK;
 }
@@ -215,28 +260,45 @@ camber_status camber_device_network_program(camber_device *device, bool measured
     return use_program(device, &from, &device->network_programs[measured][pitched], program);
 }
 
-void camber_program_save(camber_device *device, camber_program *program) {
-    size_t size = 0;
-    if (!program->to_save)
-        return;
-    program->to_save = false;
-    if (clGetProgramInfo(program->cl, CL_PROGRAM_BINARY_SIZES, sizeof size, &size, NULL) != CL_SUCCESS || size == 0)
-        return;
-    uint64_t hash;
-    /* Past camber_alloc, which logs: a file that is not saved fails nothing. */
-    const camber_context_desc *host = &device->context->desc;
-    unsigned char *bytes = host->reallocate(host->allocator_user, NULL, size + sizeof hash);
-    if (!bytes)
-        return;
-    unsigned char *binary = bytes + sizeof hash;
-    if (clGetProgramInfo(program->cl, CL_PROGRAM_BINARIES, sizeof binary, &binary, NULL) == CL_SUCCESS) {
-        char name[64];
-        hash = hash_binary(program->key, binary, size);
-        memcpy(bytes, &hash, sizeof hash);
-        cache_name(program->key, name);
-        camber_cache_save(device->context, name, bytes, size + sizeof hash);
+/* The n-th program of all that a device can be asked for, or none; what takes longest comes first. */
+static camber_status use_nth(camber_device *device, unsigned n, camber_program **program) {
+    static const unsigned variants[] = {CAMBER_COVER_RICH | CAMBER_COVER_PITCHED, CAMBER_COVER_RICH, 0};
+    enum { VARIANTS = sizeof variants / sizeof *variants, OFFSETS = 2, NETWORKS = 4, METHODS = 12 };
+    if (n < VARIANTS)
+        return camber_device_cover_program(device, variants[n], program);
+    n -= VARIANTS;
+    if (n < OFFSETS)
+        return camber_device_offsets(device, n, program);
+    n -= OFFSETS;
+    if (n < NETWORKS)
+        return camber_device_network_program(device, n & 1, n >> 1 & 1, program);
+    n -= NETWORKS;
+    if (n < METHODS)
+        return camber_device_program(device, (camber_program_desc){(camber_method)(n / 4), n & 1, n >> 1 & 1}, program);
+    return n == METHODS ? camber_device_measures(device, program) : CAMBER_OK;
+}
+
+camber_status camber_device_warm(camber_device *device, unsigned share, unsigned shares, camber_warmed *warmed) {
+    camber_warmed all = {0};
+    camber_status status = CAMBER_OK;
+    if (shares == 0 || share >= shares)
+        return camber_fail(device->context, CAMBER_ERROR_ARGUMENT, "share %u of %u; it must be below their number",
+                           share, shares);
+    camber_cache_share(device->context, true);
+    if (!camber_cache_folder(device->context, all.folder))
+        all.folder[0] = 0;
+    for (unsigned n = share; status == CAMBER_OK; n += shares) {
+        camber_program *program = NULL;
+        status = use_nth(device, n, &program);
+        if (!program)
+            break;
+        all.programs++;
+        all.built += program->built;
     }
-    camber_free(device->context, bytes);
+    camber_cache_share(device->context, false);
+    if (status == CAMBER_OK)
+        *warmed = all;
+    return status;
 }
 
 void camber_program_destroy(camber_context *context, camber_program *program) {

@@ -56,7 +56,7 @@ typedef struct camber_program {
     cl_kernel span, tell, shift; /* of offsets */
     cl_kernel shape, count, total, fill, cover;
     uint64_t key; /* of the cache */
-    bool to_save; /* built from source: its binary is saved once the kernels have run */
+    bool built;   /* from source: no cache had it */
 } camber_program;
 
 /* What the kernels of a mesh are built for. */
@@ -78,8 +78,6 @@ camber_status camber_device_network_program(camber_device *device, bool measured
 camber_status camber_device_measures(camber_device *device, camber_program **program);
 camber_status camber_device_offsets(camber_device *device, bool measured, camber_program **program);
 camber_status camber_device_cover_program(camber_device *device, unsigned variant, camber_program **program);
-/* Saves the binary if it is new. Called after the kernels have run: only then does PoCL's hold machine code. */
-void camber_program_save(camber_device *device, camber_program *program);
 void camber_program_destroy(camber_context *context, camber_program *program);
 
 /* ---- Output buffers, which GL may share: src/draw/share_*.c ---- */

@@ -342,10 +342,6 @@ static camber_status tessellate(camber_mesh *mesh, const source *from, const cam
             status = upload_rows(mesh, rows, desc->stroke_count);
         if (status == CAMBER_OK)
             status = run_parts(mesh, program);
-        if (status == CAMBER_OK && mesh->mesh_info.record_count > 0)
-            camber_program_save(mesh->device, program);
-        if (status == CAMBER_OK && mesh->held && mesh->mesh_info.record_count > 0)
-            camber_program_save(mesh->device, mesh->held->program);
         camber_mesh_info *info = &mesh->mesh_info;
         info->bytes = info->record_count * camber_record_bytes(info) + (info->strips ? 0 : 4 * info->index_count);
         mesh->joins_counted |= status != CAMBER_OK;

@@ -1,0 +1,179 @@
+/* Small files that save time: compiled kernels and linked shaders. They lie in the user's cache folder. Kernels may
+ * also lie in a folder beside the library, which all users of the machine read: camber_device_warm fills it where
+ * camber is installed. What is read from there runs in the reader's process, so it counts only where nobody but the
+ * owner could have written it, and the owner could have written the library as well. */
+#define _GNU_SOURCE /* dladdr, F_OFD_SETLK */
+
+#include "base/base.h"
+
+#include <dlfcn.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { PATH_SIZE = CAMBER_FOLDER_SIZE, LARGEST_BYTES = 64 << 20 };
+
+static const char SHARED_NAME[] = "camber-kernels";
+
+/* ---- Folders ---- */
+
+static bool users_folder(const camber_context *context, char folder[PATH_SIZE]) {
+    int length;
+    const char *xdg = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
+    if (context->desc.cache_dir)
+        length = snprintf(folder, PATH_SIZE, "%s", context->desc.cache_dir);
+    else if (xdg && xdg[0] == '/')
+        length = snprintf(folder, PATH_SIZE, "%s/camber", xdg);
+    else if (home && home[0] == '/')
+        length = snprintf(folder, PATH_SIZE, "%s/.cache/camber", home);
+    else
+        return false;
+    return length > 0 && length < PATH_SIZE;
+}
+
+/* The folder that $CAMBER_KERNELS names, or the one beside the library, which *owner could have written too. */
+static bool shared_folder(char folder[PATH_SIZE], uid_t *owner) {
+    const char *named = getenv("CAMBER_KERNELS");
+    Dl_info here;
+    struct stat about;
+    *owner = geteuid();
+    if (named)
+        return named[0] == '/' && snprintf(folder, PATH_SIZE, "%s", named) < PATH_SIZE;
+    if (!dladdr(SHARED_NAME, &here) || !here.dli_fname || here.dli_fname[0] != '/' || stat(here.dli_fname, &about) != 0)
+        return false;
+    *owner = about.st_uid;
+    const int length = (int)(strrchr(here.dli_fname, '/') + 1 - here.dli_fname);
+    return snprintf(folder, PATH_SIZE, "%.*s%s", length, here.dli_fname, SHARED_NAME) < PATH_SIZE;
+}
+
+static bool is_trusted(const struct stat *about, uid_t owner) {
+    const bool is_owners = about->st_uid == 0 || about->st_uid == geteuid() || about->st_uid == owner;
+    return is_owners && (about->st_mode & (S_IWGRP | S_IWOTH)) == 0;
+}
+
+static bool make_folders(char *folder, mode_t mode) {
+    for (char *slash = strchr(folder + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
+        *slash = 0;
+        const int made = mkdir(folder, mode);
+        *slash = '/';
+        if (made != 0 && errno != EEXIST)
+            return false;
+    }
+    return mkdir(folder, mode) == 0 || errno == EEXIST;
+}
+
+bool camber_cache_is_on(const camber_context *context) {
+    char folder[PATH_SIZE];
+    return users_folder(context, folder);
+}
+
+static bool may_share(void) {
+    char folder[PATH_SIZE];
+    struct stat about;
+    uid_t owner;
+    return shared_folder(folder, &owner) && (mkdir(folder, 0755) == 0 || errno == EEXIST) &&
+           stat(folder, &about) == 0 && S_ISDIR(about.st_mode) && is_trusted(&about, owner) &&
+           access(folder, W_OK | X_OK) == 0;
+}
+
+void camber_cache_share(camber_context *context, bool wanted) {
+    context->saves_shared = wanted && may_share();
+}
+
+bool camber_cache_folder(const camber_context *context, char folder[PATH_SIZE]) {
+    uid_t owner;
+    if (context->saves_shared)
+        return shared_folder(folder, &owner);
+    return users_folder(context, folder) && make_folders(folder, 0700);
+}
+
+/* ---- Files ---- */
+
+/* A regular file, whole; with owner, one that only a trusted user could have written. */
+static bool load_from(camber_context *context, const char *folder, const char *name, const uid_t *owner, char **bytes,
+                      size_t *size_bytes) {
+    char path[PATH_SIZE + 256];
+    struct stat about;
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    if (owner && (stat(folder, &about) != 0 || !is_trusted(&about, *owner)))
+        return false;
+    if (lstat(path, &about) != 0 || !S_ISREG(about.st_mode) || about.st_size > LARGEST_BYTES)
+        return false;
+    if (owner && !is_trusted(&about, *owner))
+        return false;
+    camber_soft_log kept;
+    camber_log_soften(context, &kept);
+    const camber_status status = camber_read_file(context, path, bytes, size_bytes);
+    camber_log_restore(context, &kept);
+    return status == CAMBER_OK;
+}
+
+bool camber_cache_load(camber_context *context, const char *name, char **bytes, size_t *size_bytes) {
+    char folder[PATH_SIZE];
+    return users_folder(context, folder) && load_from(context, folder, name, NULL, bytes, size_bytes);
+}
+
+bool camber_cache_load_shared(camber_context *context, const char *name, char **bytes, size_t *size_bytes) {
+    char folder[PATH_SIZE];
+    uid_t owner;
+    return shared_folder(folder, &owner) && load_from(context, folder, name, &owner, bytes, size_bytes);
+}
+
+void camber_cache_save(camber_context *context, const char *name, const void *bytes, size_t size_bytes) {
+    char folder[PATH_SIZE], path[PATH_SIZE + 256], beside[PATH_SIZE + 320];
+    if (!camber_cache_folder(context, folder))
+        return;
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    snprintf(beside, sizeof beside, "%s.XXXXXX", path);
+    const int handle = mkstemp(beside);
+    if (handle < 0)
+        return;
+    FILE *file = fdopen(handle, "wb");
+    if (!file) {
+        close(handle);
+        unlink(beside);
+        return;
+    }
+    bool whole = !context->saves_shared || fchmod(handle, 0644) == 0;
+    whole = fwrite(bytes, 1, size_bytes, file) == size_bytes && whole;
+    whole = fclose(file) == 0 && whole;
+    if (!whole || rename(beside, path) != 0)
+        unlink(beside);
+}
+
+/* ---- Locks ---- */
+
+/* How long another process may take to compile what this one needs, before this one does it as well. */
+static const double LONGEST_WAIT_MS = 60e3;
+
+int camber_cache_lock(camber_context *context, uint64_t key) {
+    char folder[PATH_SIZE], path[PATH_SIZE + 16];
+    if (!camber_cache_folder(context, folder))
+        return -1;
+    snprintf(path, sizeof path, "%s/lock", folder);
+    const int handle = open(path, O_RDWR | O_CREAT | O_CLOEXEC, context->saves_shared ? 0644 : 0600);
+    if (handle < 0)
+        return -1;
+    /* One file for all: each key has a byte of it. Locks of an open file go with it, also where a process dies. */
+    struct flock byte = {
+        .l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = (off_t)(key & INT32_MAX), .l_len = 1, .l_pid = 0};
+    const double begin = camber_now_ms();
+    while (fcntl(handle, F_OFD_SETLK, &byte) != 0) {
+        const struct timespec pause = {.tv_nsec = 5000000};
+        if ((errno != EAGAIN && errno != EACCES) || camber_now_ms() - begin > LONGEST_WAIT_MS) {
+            close(handle);
+            return -1;
+        }
+        nanosleep(&pause, NULL);
+    }
+    return handle;
+}
+
+void camber_cache_unlock(int lock) {
+    if (lock >= 0)
+        close(lock);
+}

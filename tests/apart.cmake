@@ -1,10 +1,11 @@
-# What every test of this directory gets: caches of its own, for PoCL has crashed when two processes built their first
-# kernel in one folder; and what the sanitizers are told.
+# What every test of this directory gets: one cache for all, so that each kernel is compiled once in all of them; and what
+# the sanitizers are told.
 get_property(all DIRECTORY PROPERTY TESTS)
+set(cache ${CMAKE_BINARY_DIR}/cache)
+file(MAKE_DIRECTORY ${cache}/pocl)
 foreach(test IN LISTS all)
-  set(cache ${CMAKE_BINARY_DIR}/cache/${test})
-  file(MAKE_DIRECTORY ${cache}/pocl)
-  set_property(TEST ${test} APPEND PROPERTY ENVIRONMENT XDG_CACHE_HOME=${cache} POCL_CACHE_DIR=${cache}/pocl)
+  set_property(TEST ${test} APPEND PROPERTY ENVIRONMENT XDG_CACHE_HOME=${cache} POCL_CACHE_DIR=${cache}/pocl
+               POCL_WORK_GROUP_SPECIALIZATION=0 CAMBER_KERNELS=${CAMBER_TEST_KERNELS})
   if(CAMBER_SANITIZE)
     # Drivers keep what they allocate until the process ends; camber's own leaks are not on the list. LLVM, inside the
     # drivers, puts its own signal stack where the sanitizer expects the one it made. The leak sanitizer falls over the

@@ -58,8 +58,7 @@ static inline void host_log(void *user, camber_log_level level, const char *mess
 }
 
 static inline camber_context_desc host_desc(host *h) {
-    return (camber_context_desc){
-        .reallocate = host_reallocate, .allocator_user = h, .log = host_log, .log_user = h, .cache_dir = ""};
+    return (camber_context_desc){.reallocate = host_reallocate, .allocator_user = h, .log = host_log, .log_user = h};
 }
 
 static inline camber_context *host_context(host *h) {
@@ -130,7 +129,7 @@ static inline void folder_remove(const char *path) {
     nftw(path, remove_one, 16, FTW_DEPTH | FTW_PHYS);
 }
 
-/* PoCL's own cache apart from that of other processes: concurrent first builds in one folder have crashed. */
+/* Of a test of compiling: PoCL's own cache apart from what others have compiled. */
 static inline void pocl_cache_apart(char path[64]) {
     snprintf(path, 64, "/tmp/camber-test-XXXXXX");
     if (mkdtemp(path))

@@ -75,15 +75,11 @@ static inline int covering_tear_down(void **state) {
 
 /* What main of a test of these returns. */
 static inline int covering_run(const char *name, const struct CMUnitTest *tests, size_t count) {
-    char cache[64];
-    pocl_cache_apart(cache);
     if (!device_is_there()) {
         puts("skipped: no OpenCL device");
-        folder_remove(cache);
         return 77;
     }
     const int failed = _cmocka_run_group_tests(name, tests, count, covering_set_up, covering_tear_down);
-    folder_remove(cache);
     return failed;
 }
 

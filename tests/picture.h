@@ -60,11 +60,9 @@ static inline camber_mesh *studio_mesh(const studio *s, camber_renderer *rendere
     return mesh;
 }
 
-/* Of a test program: PoCL's own cache apart, and whether there is something to draw with. false: what is missing is
- * said, and the folder is gone; the program returns 77. true: folder_remove(cache) at its end. */
-static inline bool studio_begin(char cache[64]) {
+/* Whether a test program has something to draw with. false: what is missing is said, and the program returns 77. */
+static inline bool studio_begin(void) {
     studio probe;
-    pocl_cache_apart(cache);
     bool possible = device_is_there();
     if (possible) {
         possible = studio_open(&probe);
@@ -73,7 +71,6 @@ static inline bool studio_begin(char cache[64]) {
     if (possible)
         return true;
     puts("skipped: no OpenCL device, or neither EGL nor OSMesa");
-    folder_remove(cache);
     return false;
 }
 
@@ -94,11 +91,9 @@ static inline int studio_tear_down(void **state) {
 
 /* What main of a test of pictures returns. */
 static inline int studio_run(const char *name, const struct CMUnitTest *tests, size_t count) {
-    char cache[64];
-    if (!studio_begin(cache))
+    if (!studio_begin())
         return 77;
     const int failed = _cmocka_run_group_tests(name, tests, count, studio_set_up, studio_tear_down);
-    folder_remove(cache);
     return failed;
 }
 

@@ -136,12 +136,10 @@ static int tear_down(void **state) {
 }
 
 int main(void) {
-    char cache[64];
-    if (!studio_begin(cache))
+    if (!studio_begin())
         return 77;
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_plain), cmocka_unit_test(test_crossing)};
     const int failed = cmocka_run_group_tests(tests, set_up, tear_down);
-    folder_remove(cache);
     return failed;
 }
 

@@ -123,6 +123,7 @@ static void test_context_memory(void **state) {
     (void)state;
     host h = {0};
     camber_context_desc desc = host_desc(&h);
+    desc.cache_dir = "/nowhere";
     size_t n = 1;
     for (;; n++) {
         camber_context *const untouched = (camber_context *)(void *)&h;

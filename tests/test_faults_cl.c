@@ -651,13 +651,10 @@ int main(void) {
         cmocka_unit_test(test_cached_program), cmocka_unit_test(test_small_device),  cmocka_unit_test(test_drawing),
         cmocka_unit_test(test_covered),        cmocka_unit_test(test_covered_again),
     };
-    char pocl_cache[64];
-    pocl_cache_apart(pocl_cache);
     int failed = 77;
     if (device_is_there())
         failed = cmocka_run_group_tests(tests, NULL, NULL);
     else
         puts("skipped: no OpenCL device");
-    folder_remove(pocl_cache);
     return failed;
 }

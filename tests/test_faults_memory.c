@@ -428,10 +428,8 @@ int main(void) {
         cmocka_unit_test(test_on_host), cmocka_unit_test(test_on_device),    cmocka_unit_test(test_with_cache),
         cmocka_unit_test(test_drawing), cmocka_unit_test(test_same_objects),
     };
-    char cache[64];
-    if (!studio_begin(cache))
+    if (!studio_begin())
         return 77;
     const int failed = cmocka_run_group_tests(tests, set_up, tear_down);
-    folder_remove(cache);
     return failed;
 }

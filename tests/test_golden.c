@@ -265,8 +265,7 @@ static void test_torture(void **state) {
 }
 
 int main(void) {
-    char cache[64];
-    if (!studio_begin(cache))
+    if (!studio_begin())
         return 77;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_round_joins),
@@ -287,6 +286,5 @@ int main(void) {
         cmocka_unit_test(test_torture),
     };
     const int failed = cmocka_run_group_tests(tests, studio_set_up, studio_tear_down);
-    folder_remove(cache);
     return failed;
 }

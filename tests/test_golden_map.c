@@ -115,12 +115,10 @@ static void test_moves(void **state) {
 }
 
 int main(void) {
-    char cache[64];
-    if (!studio_begin(cache))
+    if (!studio_begin())
         return 77;
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_light), cmocka_unit_test(test_dark),
                                        cmocka_unit_test(test_moves)};
     const int failed = cmocka_run_group_tests(tests, studio_set_up, studio_tear_down);
-    folder_remove(cache);
     return failed;
 }

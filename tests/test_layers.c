@@ -388,8 +388,7 @@ static void test_many_layers(void **state) {
 }
 
 int main(void) {
-    char cache[64];
-    if (!studio_begin(cache))
+    if (!studio_begin())
         return 77;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_sort_key),      cmocka_unit_test(test_strokes_by_feature),
@@ -399,6 +398,5 @@ int main(void) {
         cmocka_unit_test(test_overlap),       cmocka_unit_test(test_round_limit),
     };
     const int failed = cmocka_run_group_tests(tests, studio_set_up, studio_tear_down);
-    folder_remove(cache);
     return failed;
 }

@@ -429,9 +429,6 @@ static void test_context_cycles(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_context_cycles), IN_STUDIO(test_frames),
                                        IN_STUDIO(test_cycles)};
-    char pocl_cache[64];
-    pocl_cache_apart(pocl_cache);
     const int failed = device_is_there() ? cmocka_run_group_tests(tests, set_up, tear_down) : 77;
-    folder_remove(pocl_cache);
     return failed;
 }

@@ -294,13 +294,10 @@ int main(void) {
         cmocka_unit_test(test_in_turn),         cmocka_unit_test(test_networks),
         cmocka_unit_test(test_parts_of_lines),
     };
-    char pocl_cache[64];
-    pocl_cache_apart(pocl_cache);
     int failed = 77;
     if (device_is_there())
         failed = cmocka_run_group_tests(tests, bench_set_up, bench_tear_down);
     else
         puts("skipped: no OpenCL device");
-    folder_remove(pocl_cache);
     return failed;
 }

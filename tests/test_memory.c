@@ -809,13 +809,10 @@ int main(void) {
         cmocka_unit_test(test_refused_buffers), cmocka_unit_test(test_allocations),
         cmocka_unit_test(test_same_pictures),   cmocka_unit_test(test_refused_frames),
     };
-    char pocl_cache[64];
-    pocl_cache_apart(pocl_cache);
     int failed = 77;
     if (device_is_there())
         failed = cmocka_run_group_tests(tests, NULL, NULL);
     else
         puts("skipped: no OpenCL device");
-    folder_remove(pocl_cache);
     return failed;
 }

@@ -517,11 +517,8 @@ static void test_wrong_input(void **state) {
 }
 
 int main(void) {
-    char cache[64];
-    pocl_cache_apart(cache);
     if (!device_is_there()) {
         fprintf(stderr, "no OpenCL device\n");
-        folder_remove(cache);
         return 77;
     }
     const struct CMUnitTest tests[] = {
@@ -534,6 +531,5 @@ int main(void) {
         cmocka_unit_test(test_wrong_input),
     };
     const int failed = cmocka_run_group_tests(tests, set_up, tear_down);
-    folder_remove(cache);
     return failed;
 }

@@ -130,10 +130,7 @@ int main(void) {
         puts("no OpenCL device");
         return 77;
     }
-    char cache[64];
-    pocl_cache_apart(cache);
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_cities)};
     const int failed = cmocka_run_group_tests(tests, bench_set_up, bench_tear_down);
-    folder_remove(cache);
     return failed;
 }

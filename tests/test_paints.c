@@ -263,8 +263,7 @@ static void test_opacity_of_rows(void **state) {
 }
 
 int main(void) {
-    char cache[64];
-    if (!studio_begin(cache))
+    if (!studio_begin())
         return 77;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_gap),
@@ -276,6 +275,5 @@ int main(void) {
         cmocka_unit_test(test_opacity_of_rows),
     };
     const int failed = cmocka_run_group_tests(tests, studio_set_up, studio_tear_down);
-    folder_remove(cache);
     return failed;
 }

@@ -632,13 +632,10 @@ int main(void) {
         cmocka_unit_test(test_descriptions), cmocka_unit_test(test_memory),
         cmocka_unit_test(test_same_picture),
     };
-    char pocl_cache[64];
-    pocl_cache_apart(pocl_cache);
     int failed = 77;
     if (device_is_there())
         failed = cmocka_run_group_tests(tests, NULL, NULL);
     else
         puts("skipped: no OpenCL device");
-    folder_remove(pocl_cache);
     return failed;
 }

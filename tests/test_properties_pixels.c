@@ -327,8 +327,7 @@ static void test_methods(void **state) {
 }
 
 int main(void) {
-    char cache[64];
-    if (!studio_begin(cache))
+    if (!studio_begin())
         return 77;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_device),  cmocka_unit_test(test_reversed), cmocka_unit_test(test_point_added),
@@ -336,6 +335,5 @@ int main(void) {
         cmocka_unit_test(test_methods), cmocka_unit_test(test_truth),
     };
     const int failed = cmocka_run_group_tests(tests, easel_open, easel_close);
-    folder_remove(cache);
     return failed;
 }

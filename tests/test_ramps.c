@@ -301,11 +301,9 @@ int main(void) {
         cmocka_unit_test(test_halves),
         cmocka_unit_test(test_refused),
     };
-    char cache[64];
-    if (!studio_begin(cache))
+    if (!studio_begin())
         return 77;
     fill_many();
     const int failed = cmocka_run_group_tests(tests, studio_set_up, studio_tear_down);
-    folder_remove(cache);
     return failed;
 }

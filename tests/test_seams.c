@@ -234,12 +234,10 @@ static void test_all_tiles(void **state) {
 }
 
 int main(void) {
-    char cache[64];
-    if (!studio_begin(cache))
+    if (!studio_begin())
         return 77;
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_uncut), cmocka_unit_test(test_progress),
                                        cmocka_unit_test(test_all_tiles)};
     const int failed = cmocka_run_group_tests(tests, studio_set_up, studio_tear_down);
-    folder_remove(cache);
     return failed;
 }

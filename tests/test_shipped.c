@@ -577,8 +577,7 @@ static void test_documents(void **state) {
 }
 
 int main(void) {
-    char cache[64];
-    if (!studio_begin(cache))
+    if (!studio_begin())
         return 77;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_documents),   cmocka_unit_test(test_layers), cmocka_unit_test(test_line_layers),
@@ -586,6 +585,5 @@ int main(void) {
         cmocka_unit_test(test_widths),      cmocka_unit_test(test_file),
     };
     const int failed = cmocka_run_group_tests(tests, studio_set_up, studio_tear_down);
-    folder_remove(cache);
     return failed;
 }

@@ -427,14 +427,12 @@ int main(void) {
         cmocka_unit_test(test_features), cmocka_unit_test(test_windows), cmocka_unit_test(test_background),
         cmocka_unit_test(test_order),    cmocka_unit_test(test_sprites), cmocka_unit_test(test_memory),
     };
-    char cache[64];
     static folder f;
-    if (!studio_begin(cache))
+    if (!studio_begin())
         return 77;
     make_folder(&f);
     shared = &f;
     const int failed = cmocka_run_group_tests(tests, studio_set_up, studio_tear_down);
     folder_remove(f.path);
-    folder_remove(cache);
     return failed;
 }

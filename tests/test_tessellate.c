@@ -461,13 +461,10 @@ int main(void) {
         cmocka_unit_test(test_after_failure),
         cmocka_unit_test(test_real_lines),
     };
-    char pocl_cache[64];
-    pocl_cache_apart(pocl_cache);
     int failed = 77;
     if (device_is_there())
         failed = cmocka_run_group_tests(tests, bench_set_up, bench_tear_down);
     else
         puts("skipped: no OpenCL device");
-    folder_remove(pocl_cache);
     return failed;
 }

@@ -41,8 +41,7 @@ static int tear_down(void **state) {
 }
 
 int main(void) {
-    char cache[64];
-    if (!studio_begin(cache))
+    if (!studio_begin())
         return 77;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_strips_are_uniform),
@@ -50,6 +49,5 @@ int main(void) {
         cmocka_unit_test(test_fans_are_uniform),
     };
     const int failed = cmocka_run_group_tests(tests, set_up, tear_down);
-    folder_remove(cache);
     return failed;
 }

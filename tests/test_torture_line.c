@@ -78,20 +78,19 @@ static int tear_down(void **state) {
 }
 
 int main(void) {
-    char cache[64], path[1024];
+    char path[1024];
     const char *data = getenv("CAMBER_DATA");
     snprintf(path, sizeof path, "%s/%s", data ? data : "", FILE_NAME);
     if (!data || access(path, R_OK) != 0) {
         printf("no %s; set CAMBER_DATA\n", data ? path : FILE_NAME);
         return 77;
     }
-    if (!studio_begin(cache))
+    if (!studio_begin())
         return 77;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_strips_are_uniform),
         cmocka_unit_test(test_kites_are_uniform),
     };
     const int failed = cmocka_run_group_tests(tests, set_up, tear_down);
-    folder_remove(cache);
     return failed;
 }

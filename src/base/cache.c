@@ -2,13 +2,14 @@
  * also lie in a folder beside the library, which all users of the machine read: camber_device_warm fills it where
  * camber is installed. What is read from there runs in the reader's process, so it counts only where nobody but the
  * owner could have written it, and the owner could have written the library as well. */
-#define _GNU_SOURCE /* dladdr, F_OFD_SETLK */
+#define _GNU_SOURCE /* dladdr, F_OFD_SETLK, realpath */
 
 #include "base/base.h"
 
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/stat.h>
@@ -38,16 +39,18 @@ static bool users_folder(const camber_context *context, char folder[PATH_SIZE]) 
 /* The folder that $CAMBER_KERNELS names, or the one beside the library, which *owner could have written too. */
 static bool shared_folder(char folder[PATH_SIZE], uid_t *owner) {
     const char *named = getenv("CAMBER_KERNELS");
+    char library[PATH_MAX];
     Dl_info here;
     struct stat about;
     *owner = geteuid();
     if (named)
         return named[0] == '/' && snprintf(folder, PATH_SIZE, "%s", named) < PATH_SIZE;
-    if (!dladdr(SHARED_NAME, &here) || !here.dli_fname || here.dli_fname[0] != '/' || stat(here.dli_fname, &about) != 0)
+    if (!dladdr(SHARED_NAME, &here) || !here.dli_fname || !realpath(here.dli_fname, library) ||
+        stat(library, &about) != 0)
         return false;
     *owner = about.st_uid;
-    const int length = (int)(strrchr(here.dli_fname, '/') + 1 - here.dli_fname);
-    return snprintf(folder, PATH_SIZE, "%.*s%s", length, here.dli_fname, SHARED_NAME) < PATH_SIZE;
+    const int length = (int)(strrchr(library, '/') + 1 - library);
+    return snprintf(folder, PATH_SIZE, "%.*s%s", length, library, SHARED_NAME) < PATH_SIZE;
 }
 
 static bool is_trusted(const struct stat *about, uid_t owner) {
@@ -154,7 +157,7 @@ int camber_cache_lock(camber_context *context, uint64_t key) {
     char folder[PATH_SIZE], path[PATH_SIZE + 16];
     if (!camber_cache_folder(context, folder))
         return -1;
-    snprintf(path, sizeof path, "%s/lock", folder);
+    snprintf(path, sizeof path, "%s/.lock", folder);
     const int handle = open(path, O_RDWR | O_CREAT | O_CLOEXEC, context->saves_shared ? 0644 : 0600);
     if (handle < 0)
         return -1;

@@ -121,6 +121,8 @@ static const option_spec specs[] = {
     {"threads", 0, KIND_COUNT, EVERY, FIELD(threads), "N", "of OpenCL and GL on a CPU (all cores)", 1, 1024},
     {"memory", 0, KIND_BYTES, READING, FIELD(memory_bytes), "SIZE",
      "that meshes may take, as in 512M or 2G: what does not fit is made when it is drawn", 65536, 1099511627776.0},
+    {"warm", 0, KIND_FLAG, INFO, FIELD(warm), NULL,
+     "compile every kernel into the cache, for all users of this machine where it may be written", 0, 0},
     {"junit", 0, KIND_TEXT, VALIDATE, FIELD(junit), "FILE", "write the results as JUnit's XML", 0, 0},
     {"pictures", 0, KIND_TEXT, VALIDATE, FIELD(pictures), "FOLDER", "write PNGs of what differs", 0, 0},
     {"windows", 0, KIND_COUNT, VALIDATE, FIELD(windows), "N", "of each picture, held against the oracle (24)", 8,

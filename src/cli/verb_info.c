@@ -159,6 +159,8 @@ int camber_verb_info(camber_session *session) {
     const int status = camber_session_need(session, CAMBER_NEEDS_CONTEXT);
     if (status != CAMBER_EXIT_DONE)
         return status;
+    if (session->options->warm)
+        return camber_warm(session);
     json_t *object = json_pack("{s:s}", "camber", camber_version());
     if (!object)
         return camber_report_json(session->report, NULL);

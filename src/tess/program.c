@@ -181,7 +181,7 @@ static camber_status make_program(camber_device *device, const recipe *from, cam
     const double begin = camber_now_ms();
     const int lock = camber_cache_lock(device->context, made->key);
     if (!load(device, made, from->options)) {
-        camber_progress(device->context, "compiling kernels, once", -1);
+        camber_progress(device->context, "compiling kernels", -1);
         status = build(device, made, from);
         if (status == CAMBER_OK)
             save(device, made);

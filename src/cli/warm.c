@@ -1,0 +1,79 @@
+/* info --warm: every kernel is compiled and saved before anybody waits for it. PoCL compiles one kernel at a time in a
+ * process, so processes do it side by side, each its share; one that fails leaves its share to this one, which goes
+ * through all of them at the end and tells what there is. */
+#define _GNU_SOURCE /* sched_getaffinity */
+
+#include "cli/verbs.h"
+
+#include <sched.h>
+#include <stdlib.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { PROCESSES_MAX = 16 };
+
+static unsigned count_processes(const camber_options *options) {
+    cpu_set_t cores;
+    const int count = sched_getaffinity(0, sizeof cores, &cores) == 0 ? CPU_COUNT(&cores) : 1;
+    const unsigned wanted = options->threads ? options->threads : (unsigned)count;
+    return wanted < PROCESSES_MAX ? wanted : PROCESSES_MAX;
+}
+
+static camber_status warm_share(camber_session *session, unsigned share, unsigned shares, camber_warmed *warmed) {
+    const camber_status status = camber_session_open(session, CAMBER_NEEDS_DEVICE);
+    return status == CAMBER_OK ? camber_device_warm(session->device, share, shares, warmed) : status;
+}
+
+static pid_t start_share(camber_session *session, unsigned share, unsigned shares) {
+    camber_warmed warmed;
+    const pid_t process = fork();
+    if (process != 0)
+        return process;
+    pthread_sigmask(SIG_SETMASK, &session->guard->before, NULL);
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    _exit(warm_share(session, share, shares, &warmed) == CAMBER_OK ? 0 : 1);
+}
+
+/* Before this process has a device: its driver's threads would not be there in the others. */
+static void warm_side_by_side(camber_session *session) {
+    pid_t processes[PROCESSES_MAX];
+    const unsigned shares = count_processes(session->options);
+    for (unsigned i = 0; i < shares; i++)
+        processes[i] = shares > 1 ? start_share(session, i, shares) : -1;
+    for (unsigned i = 0; i < shares; i++) {
+        int how;
+        camber_report_progress(session->report, "compiling kernels", (double)i / shares);
+        if (processes[i] > 0)
+            waitpid(processes[i], &how, 0);
+    }
+    camber_report_erase_bar(session->report);
+}
+
+static json_t *describe(camber_session *session, const camber_warmed *warmed, double ms) {
+    json_t *object = json_pack("{s:s, s:o, s:o, s:o, s:o}", "camber", camber_version(), "folder",
+                               camber_json_text(warmed->folder), "programs", camber_json_count(warmed->programs),
+                               "compiled", camber_json_count(warmed->built), "ms", camber_json_ms(ms));
+    if (object)
+        camber_session_describe(session, object);
+    return object;
+}
+
+int camber_warm(camber_session *session) {
+    camber_warmed warmed;
+    const double begin_ms = camber_clock_ms();
+    warm_side_by_side(session);
+    const camber_status status = warm_share(session, 0, 1, &warmed);
+    if (status != CAMBER_OK)
+        return camber_report_status(session->report, status);
+    if (!warmed.folder[0])
+        return camber_report_fail(session->report, CAMBER_EXIT_CREATE,
+                                  "kernels: no folder can be written to keep them in; set XDG_CACHE_HOME or "
+                                  "CAMBER_KERNELS to one that can");
+    const double ms = camber_clock_ms() - begin_ms;
+    if (session->options->json)
+        return camber_report_json(session->report, describe(session, &warmed, ms));
+    printf("kernels   %zu programs for %s, ready in %.1f s\n          %s\n", warmed.programs,
+           camber_device_get_info(session->device).name, ms / 1e3, warmed.folder);
+    return camber_report_flush(session->report);
+}

@@ -10,7 +10,7 @@ endif()
 
 file(GLOB_RECURSE lint_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/*.c ${PROJECT_SOURCE_DIR}/bench/*.c)
 file(GLOB_RECURSE lint_headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/*.h ${PROJECT_SOURCE_DIR}/kernels/*.h)
-file(GLOB_RECURSE lint_others CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/*.[ch] ${PROJECT_SOURCE_DIR}/kernels/*.cl)
+file(GLOB_RECURSE lint_others CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/*.c ${PROJECT_SOURCE_DIR}/tests/*.h ${PROJECT_SOURCE_DIR}/kernels/*.cl)
 
 set(stamps ${CMAKE_BINARY_DIR}/lint)
 set(done)

@@ -1,0 +1,32 @@
+# What every test of this directory gets: one cache for all, kernels that were compiled before the first of them, a count of
+# those that are compiled all the same, and what the sanitizers are told.
+set(CAMBER_TEST_CACHE ${CMAKE_BINARY_DIR}/cache CACHE PATH "Where tests keep what they compile")
+set(CAMBER_TEST_KERNELS ${CMAKE_BINARY_DIR}/src/camber-kernels CACHE PATH "Kernels that are compiled before the tests")
+file(MAKE_DIRECTORY ${CAMBER_TEST_CACHE}/pocl)
+set(environment XDG_CACHE_HOME=${CAMBER_TEST_CACHE} POCL_CACHE_DIR=${CAMBER_TEST_CACHE}/pocl POCL_WORK_GROUP_SPECIALIZATION=0
+    CAMBER_KERNELS=${CAMBER_TEST_KERNELS})
+get_property(all DIRECTORY PROPERTY TESTS)
+foreach(test IN LISTS all)
+  set_property(TEST ${test} APPEND PROPERTY ENVIRONMENT ${environment})
+  if(CAMBER_SANITIZE)
+    # Drivers keep what they allocate until the process ends; camber's own leaks are not on the list. LLVM, inside the
+    # drivers, puts its own signal stack where the sanitizer expects the one it made. The leak sanitizer falls over the
+    # thread-local storage of what has been unloaded, now and then: it looks for no pointer there.
+    set_property(TEST ${test} APPEND PROPERTY ENVIRONMENT ASAN_OPTIONS=use_sigaltstack=0
+                 LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/fixtures/lsan.supp:print_suppressions=0:use_tls=0
+                 UBSAN_OPTIONS=print_stacktrace=1)
+  endif()
+  get_test_property(${test} LABELS label)
+  if(NOT CAMBER_SANITIZE AND NOT label MATCHES "unit|deep|fuzz" AND NOT test MATCHES "^(kernels|compilations)$")
+    get_test_property(${test} FIXTURES_REQUIRED required)
+    if(required)
+      set_tests_properties(${test} PROPERTIES FIXTURES_REQUIRED "${required};kernels")
+    else()
+      set_tests_properties(${test} PROPERTIES FIXTURES_REQUIRED kernels)
+    endif()
+    if(NOT test STREQUAL test_environment) # which has a library of its own that is loaded first
+      set_property(TEST ${test} APPEND PROPERTY ENVIRONMENT LD_PRELOAD=$<TARGET_FILE:count_compilations>
+                   CAMBER_COMPILATIONS=${CAMBER_TEST_CACHE}/compilations)
+    endif()
+  endif()
+endforeach()

@@ -1,0 +1,122 @@
+#!/bin/bash
+# What a run compiles: with empty caches, with its own, with those that the machine's users share, and thirty runs at
+# once. test_cold.sh TOOL CITY
+# PoCL's cache tells: a folder with program.bc is a program, a .so in it a kernel that is built for one kind of launch.
+set -u
+tool=$(realpath "$1")
+city=$(realpath "$2")
+tmp=$(mktemp -d) || exit 1
+trap 'rm -rf "$tmp"' EXIT
+chmod 755 "$tmp"
+export CAMBER_KERNELS= XDG_CACHE_HOME=$tmp/cache POCL_CACHE_DIR=$tmp/pocl
+unset CAMBER_COMPILATIONS LD_PRELOAD POCL_WORK_GROUP_SPECIALIZATION
+failures=0
+
+fail() {
+    failures=$((failures + 1))
+    echo "FAILED: $*"
+}
+
+empty() { # the caches, or others
+    rm -rf "$XDG_CACHE_HOME" "$POCL_CACHE_DIR"
+    mkdir -p "$XDG_CACHE_HOME" "$POCL_CACHE_DIR"
+}
+
+draw() { # OUT: what it says is in OUT.log
+    "$tool" render "$city" -vfo "$1" --size 640x480 --draw cl 2>"$1.log" </dev/null
+}
+
+built() { # LOG...: how many programs these runs compiled
+    cat "$@" | grep -c '^camber: info: kernels of .*: built in'
+}
+
+compiled() { # what lies in PoCL's cache: programs and kernels
+    echo "$(find "$POCL_CACHE_DIR" -name program.bc | wc -l) programs, $(find "$POCL_CACHE_DIR" -name '*.so' | wc -l) kernels"
+}
+
+has_pocl() { "$tool" info --json 2>/dev/null | grep -q '"platform": "Portable Computing Language"'; }
+has_pocl || { echo "no PoCL: skipped"; exit 77; }
+
+# ---- One run after the other ----
+
+empty
+begin=$(date +%s%N)
+draw "$tmp/cold.png" || fail "cold: $(cat "$tmp/cold.png.log")"
+cold_ms=$((($(date +%s%N) - begin) / 1000000))
+[ "$(built "$tmp/cold.png.log")" = 3 ] || fail "cold: compiles $(built "$tmp/cold.png.log") programs, not 3"
+[ "$(compiled)" = "3 programs, 10 kernels" ] || fail "cold: $(compiled)"
+[ -z "$(find "$POCL_CACHE_DIR" -name '*.so' ! -path '*/0-0-0/*')" ] || fail "a kernel is built for one size of work-groups"
+begin=$(date +%s%N)
+draw "$tmp/warm.png" || fail "warm: $(cat "$tmp/warm.png.log")"
+warm_ms=$((($(date +%s%N) - begin) / 1000000))
+[ "$(built "$tmp/warm.png.log")" = 0 ] || fail "warm: compiles $(built "$tmp/warm.png.log") programs"
+[ "$(compiled)" = "3 programs, 10 kernels" ] || fail "warm: $(compiled)"
+cmp "$tmp/cold.png" "$tmp/warm.png" || fail "warm: another picture"
+echo "cold $cold_ms ms, warm $warm_ms ms"
+
+# ---- Thirty at once ----
+
+empty
+for run in $(seq 30); do
+    draw "$tmp/$run.png" &
+    runs[run]=$!
+done
+for run in $(seq 30); do
+    wait "${runs[run]}" || fail "run $run of thirty: $(cat "$tmp/$run.png.log")"
+    cmp -s "$tmp/cold.png" "$tmp/$run.png" || fail "run $run of thirty: another picture"
+done
+[ "$(built "$tmp"/[0-9]*.png.log)" = 3 ] || fail "thirty at once compile $(built "$tmp"/[0-9]*.png.log) programs, not 3"
+[ "$(compiled)" = "3 programs, 10 kernels" ] || fail "thirty at once: $(compiled)"
+
+# ---- Kernels that all users share ----
+
+# A file whose bytes are right is used from there, and one that others could have written is not.
+shares() { # WHAT COUNT: a run with empty caches of its own compiles so many programs
+    empty
+    draw "$tmp/shared.png" || fail "$1: $(cat "$tmp/shared.png.log")"
+    [ "$(built "$tmp/shared.png.log")" = "$2" ] || fail "$1: compiles $(built "$tmp/shared.png.log") programs, not $2"
+    cmp -s "$tmp/cold.png" "$tmp/shared.png" || fail "$1: another picture"
+}
+mkdir -m 755 "$tmp/shared"
+cp "$XDG_CACHE_HOME"/camber/kernels-*.bin "$tmp/shared/"
+chmod 644 "$tmp/shared"/*
+export CAMBER_KERNELS=$tmp/shared
+shares "shared" 0
+[ "$(compiled)" = "3 programs, 10 kernels" ] || fail "shared: $(compiled)"
+chmod 664 "$tmp/shared"/*
+shares "files that the group may write" 3
+chmod 644 "$tmp/shared"/* && chmod 777 "$tmp/shared"
+shares "a folder that all may write" 3
+chmod 755 "$tmp/shared"
+for file in "$tmp/shared"/*; do
+    mv "$file" "$tmp/kept.bin" && ln -s "$tmp/kept.bin" "$file"
+    break
+done
+shares "a link in place of a file" 1
+mv "$tmp/kept.bin" "$file"
+if [ "$(id -u)" = 0 ] && setpriv --reuid=65534 --clear-groups true 2>/dev/null; then
+    chown 65534 "$tmp/shared"/*
+    shares "files of another user's" 3
+    chown 0 "$tmp/shared"/*
+    mkdir -m 700 "$tmp/theirs" && chown 65534 "$tmp/theirs"
+    if setpriv --reuid=65534 --clear-groups "$tool" --version >"$tmp/version" 2>&1; then
+        XDG_CACHE_HOME=$tmp/theirs POCL_CACHE_DIR=$tmp/theirs/pocl setpriv --reuid=65534 --clear-groups \
+            "$tool" render - -vo - --size 640x480 --draw cl <"$city" 2>"$tmp/theirs.log" >"$tmp/theirs.png" ||
+            fail "root's kernels, another user: $(cat "$tmp/theirs.log")"
+        [ "$(built "$tmp/theirs.log")" = 0 ] || fail "root's kernels, another user: compiles $(built "$tmp/theirs.log")"
+    fi
+fi
+
+# ---- Ahead ----
+
+empty
+export CAMBER_KERNELS=$tmp/none/at/all
+"$tool" info --warm --json >"$tmp/warm.json" 2>"$tmp/warm.log" || fail "info --warm: $(cat "$tmp/warm.log")"
+grep -q "\"folder\": \"$XDG_CACHE_HOME/camber\"" "$tmp/warm.json" || fail "info --warm: not in the user's cache: $(cat "$tmp/warm.json")"
+programs=$(sed -n 's/^  "programs": \([0-9]*\),*/\1/p' "$tmp/warm.json")
+[ "$(find "$XDG_CACHE_HOME/camber" -name 'kernels-*.bin' | wc -l)" = "$programs" ] || fail "info --warm: not $programs files"
+draw "$tmp/ahead.png" || fail "after info --warm: $(cat "$tmp/ahead.png.log")"
+[ "$(built "$tmp/ahead.png.log")" = 0 ] || fail "after info --warm: compiles $(built "$tmp/ahead.png.log") programs"
+
+echo "$failures failures"
+[ "$failures" = 0 ]

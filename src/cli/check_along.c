@@ -154,7 +154,8 @@ int camber_check_along(camber_validation *v) {
         for (size_t e = 0; e < v->rigs.list[r].easel_count && v->rigs.list[r].easels[e].surface; e++)
             for (int method = 0; method < 3; method++)
                 for (size_t i = 0; i < sizeof rows / sizeof *rows && status == CAMBER_EXIT_DONE; i++)
-                    if ((options->method < 0 || options->method == method) && !v->rigs.list[r].broken[method])
+                    if ((options->method < 0 || options->method == method) &&
+                        camber_draws_method(options, (camber_method)method) && !v->rigs.list[r].broken[method])
                         status = check_row(v, &v->rigs.list[r], &v->rigs.list[r].easels[e], (camber_method)method, i);
     return status;
 }

@@ -35,6 +35,10 @@ bool camber_subject_takes(const camber_subject *s, const camber_options *options
     return s->network ? s->method == method : options->method < 0 || options->method == (int)method;
 }
 
+bool camber_draws_method(const camber_options *options, camber_method method) {
+    return options->full || (int)method == (options->method < 0 ? CAMBER_METHOD_STRIP : options->method);
+}
+
 /* ---- What is looked at ---- */
 
 static camber_status see_twin(camber_validation *v, const camber_subject *s, const camber_tessellation_desc *desc,

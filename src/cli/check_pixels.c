@@ -270,7 +270,8 @@ static int check_style(job *j) {
         for (int method = 0; method < 3 && status == CAMBER_EXIT_DONE; method++) {
             j->rig = &j->v->rigs.list[r];
             j->desc.method = (camber_method)method;
-            if (camber_subject_takes(j->s, j->v->session->options, j->desc.method))
+            if (camber_subject_takes(j->s, j->v->session->options, j->desc.method) &&
+                camber_draws_method(j->v->session->options, j->desc.method))
                 status = check_rig(j);
         }
     return status;

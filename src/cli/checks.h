@@ -37,6 +37,10 @@ camber_status camber_subject_tessellate(const camber_subject *subject, camber_me
 /* Whether the subject is checked with a method. */
 bool camber_subject_takes(const camber_subject *subject, const camber_options *options, camber_method method);
 
+/* Whether what is drawn of a method is checked: all of it with --full, else that of the method that was asked for, or
+ * of strips, which users draw. */
+bool camber_draws_method(const camber_options *options, camber_method method);
+
 /* Each returns an exit status, its line printed: what a check found is no failure of the call. */
 int camber_check_meshes(camber_validation *validation, const camber_subject *subject);
 /* The subject as a network under several cameras. network: the one that the subject is a view of, with its camera and

@@ -47,8 +47,8 @@ bool camber_environment_set(const camber_options *options) {
     set = setenv("EGL_LOG_LEVEL", "fatal", 0) == 0 && set;
     /* A core for each of PoCL's threads: left to themselves two of them often share one. */
     set = (!may_pin() || setenv("POCL_AFFINITY", "1", 0) == 0) && set;
-    /* One build of each kernel for all sizes of work-groups, which the cache can keep: a build for each size, offset and
-     * count is no faster for these kernels, and the first run would compile twice as much. */
+    /* One build of each kernel for all sizes of work-groups, which the cache can keep: a build for each size, offset
+     * and count is no faster for these kernels, and the first run would compile twice as much. */
     set = setenv("POCL_WORK_GROUP_SPECIALIZATION", "0", 0) == 0 && set;
     /* PoCL sets it while it looks for devices. A variable that is new then moves the environment, under a getenv of
      * GDAL's on another thread; one that is there stays where it is. */

@@ -125,6 +125,8 @@ static const option_spec specs[] = {
      "compile every kernel into the cache, for all users of this machine where it may be written", 0, 0},
     {"junit", 0, KIND_TEXT, VALIDATE, FIELD(junit), "FILE", "write the results as JUnit's XML", 0, 0},
     {"pictures", 0, KIND_TEXT, VALIDATE, FIELD(pictures), "FOLDER", "write PNGs of what differs", 0, 0},
+    {"full", 0, KIND_FLAG, VALIDATE, FIELD(full), NULL,
+     "draw by every method, with every join and cap, and as GPUs draw, too; three minutes", 0, 0},
     {"windows", 0, KIND_COUNT, VALIDATE, FIELD(windows), "N", "of each picture, held against the oracle (24)", 8,
      100000},
     {"json", 0, KIND_FLAG, TALKING, FIELD(json), NULL, "one JSON object on standard output", 0, 0},

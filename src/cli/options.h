@@ -39,7 +39,7 @@ typedef struct camber_options {
     size_t input_count;
     const char **wheres; /* where_count, each as --where gave it */
     size_t where_count;
-    bool help, version, json, quiet, verbose, force, warm;
+    bool help, version, json, quiet, verbose, force, warm, full;
     const char *output, *dump, *polylines, *plot, *junit, *pictures, *style, *layer, *device;
     const char *where; /* the first */
     int format;        /* 0: png, 1: glb */

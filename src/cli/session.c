@@ -155,8 +155,8 @@ static void say_once(void *user, const char *stage, double fraction) {
     camber_opener *opener = user;
     (void)fraction;
     if (opener->on_terminal && !opener->said)
-        camber_report_say(&opener->report, "%s for this machine, once; `camber info --warm` does it ahead, for all its users",
-                          stage);
+        camber_report_say(&opener->report,
+                          "%s for this machine, once; `camber info --warm` does it ahead, for all its users", stage);
     opener->said = true;
 }
 

@@ -10,11 +10,15 @@
 #include <unistd.h>
 
 static int check_subject(camber_validation *v, const camber_subject *s) {
+    camber_verdicts_group(&v->verdicts, "%s: meshes as the CPU twin's", s->name);
     int status = camber_check_meshes(v, s);
+    camber_verdicts_group(&v->verdicts, "%s: pictures as the CPU twin's", s->name);
     if (status == CAMBER_EXIT_DONE)
         status = camber_check_drawing(v, s);
+    camber_verdicts_group(&v->verdicts, "%s: pixels as the oracle's", s->name);
     if (status == CAMBER_EXIT_DONE)
         status = camber_check_pixels(v, s);
+    camber_verdicts_group(&v->verdicts, "%s: networks under five cameras", s->name);
     return status;
 }
 
@@ -95,6 +99,7 @@ static int check_input(camber_validation *v, camber_input *input) {
 static int check_all(camber_validation *v, camber_input *input) {
     camber_session *session = v->session;
     const bool bars = !v->verdicts.tap || !isatty(STDOUT_FILENO); /* lines of TAP are progress enough */
+    camber_verdicts_group(&v->verdicts, "devices and back ends");
     int status = camber_rigs_open(&v->rigs, session, &v->verdicts);
     const size_t count = input ? 1 : camber_builtin_count();
     for (size_t i = 0; i < count && status == CAMBER_EXIT_DONE; i++) {
@@ -102,8 +107,10 @@ static int check_all(camber_validation *v, camber_input *input) {
             camber_report_progress(session->report, "checking", (double)i / (double)count);
         status = input ? check_input(v, input) : check_builtin(v, i);
     }
+    camber_verdicts_group(&v->verdicts, "lines beside others");
     if (status == CAMBER_EXIT_DONE && !input)
         status = camber_check_offsets(v);
+    camber_verdicts_group(&v->verdicts, "along lines: pixels");
     if (status == CAMBER_EXIT_DONE && !input)
         status = camber_check_along(v);
     camber_report_erase_bar(session->report);
@@ -117,6 +124,16 @@ static int open_input(camber_input *input, camber_session *session) {
     if (status == CAMBER_EXIT_DONE)
         camber_input_warn_empty(input, "nothing is checked");
     return status;
+}
+
+static void say_what_was_left(const camber_validation *v) {
+    const camber_options *options = v->session->options;
+    camber_report_say(
+        v->session->report, "%zu checks in %.0f s: %zu failed, %zu skipped%s", v->verdicts.count,
+        (camber_clock_ms() - v->session->start_ms) / 1e3, v->verdicts.failed, v->verdicts.skipped,
+        options->full
+            ? ""
+            : "; --full draws by every method, with every join and cap on each back end, and as GPUs draw, too");
 }
 
 int camber_verb_validate(camber_session *session) {
@@ -133,7 +150,7 @@ int camber_verb_validate(camber_session *session) {
     if (status == CAMBER_EXIT_DONE && given)
         status = open_input(&input, session);
     if (status == CAMBER_EXIT_DONE) {
-        camber_verdicts_open(&v.verdicts, session->report, !options->json);
+        camber_verdicts_open(&v.verdicts, session->report, !options->json, options->verbose);
         status = check_all(&v, given ? &input : NULL);
         if (status != CAMBER_EXIT_DONE)
             camber_verdicts_bail(&v.verdicts);
@@ -142,6 +159,8 @@ int camber_verb_validate(camber_session *session) {
         status = camber_junit_write(&v.verdicts, &junit);
     if (status == CAMBER_EXIT_DONE)
         status = camber_verdicts_print(&v.verdicts);
+    if (v.rigs.count && (status == CAMBER_EXIT_DONE || status == CAMBER_EXIT_CHECK))
+        say_what_was_left(&v);
     camber_verdicts_close(&v.verdicts);
     camber_rigs_close(&v.rigs);
     camber_input_close(&input);

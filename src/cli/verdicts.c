@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-void camber_verdicts_open(camber_verdicts *verdicts, camber_report *report, bool tap) {
-    *verdicts = (camber_verdicts){.report = report, .tap = tap};
+void camber_verdicts_open(camber_verdicts *verdicts, camber_report *report, bool tap, bool each) {
+    *verdicts = (camber_verdicts){.report = report, .tap = tap, .each = each};
     if (tap)
         puts("TAP version 14");
 }
@@ -117,6 +117,56 @@ static void print_tap(const camber_check *check, size_t number) {
     fflush(stdout); /* for who waits for the first failure */
 }
 
+/* ---- Groups ---- */
+
+/* One that failed shows what its first failure found, and names the others. */
+static void print_group(const camber_verdicts *verdicts, size_t failed, size_t skipped) {
+    const camber_check *first = NULL;
+    const size_t count = verdicts->count - verdicts->group_first;
+    printf("%s %zu - ", failed ? "not ok" : "ok", verdicts->group_count);
+    print_description(verdicts->group);
+    printf(": %zu check%s", count, count == 1 ? "" : "s");
+    if (failed)
+        printf(", %zu failed", failed);
+    if (skipped)
+        printf(", %zu skipped", skipped);
+    putchar('\n');
+    for (size_t i = verdicts->group_first; i < verdicts->count; i++) {
+        const camber_check *check = &verdicts->list[i];
+        if (check->verdict != CAMBER_VERDICT_FAILED)
+            continue;
+        if (!first)
+            print_finding(&check->finding);
+        first = first ? first : check;
+        fputs("# failed: ", stdout);
+        print_text(check->name, "");
+        putchar('\n');
+    }
+    fflush(stdout);
+}
+
+static void end_group(camber_verdicts *verdicts) {
+    size_t failed = 0, skipped = 0;
+    for (size_t i = verdicts->group_first; i < verdicts->count; i++) {
+        failed += verdicts->list[i].verdict == CAMBER_VERDICT_FAILED;
+        skipped += verdicts->list[i].verdict == CAMBER_VERDICT_SKIPPED;
+    }
+    if (verdicts->tap && !verdicts->each && verdicts->group[0] && verdicts->count > verdicts->group_first) {
+        verdicts->group_count++;
+        print_group(verdicts, failed, skipped);
+    }
+    verdicts->group[0] = 0;
+    verdicts->group_first = verdicts->count;
+}
+
+void camber_verdicts_group(camber_verdicts *verdicts, const char *format, ...) {
+    va_list list;
+    end_group(verdicts);
+    va_start(list, format);
+    vsnprintf(verdicts->group, sizeof verdicts->group, format, list);
+    va_end(list);
+}
+
 /* ---- Adding ---- */
 
 void camber_verdicts_add(camber_verdicts *verdicts, const camber_check *check) {
@@ -136,7 +186,7 @@ void camber_verdicts_add(camber_verdicts *verdicts, const camber_check *check) {
     camber_check *kept = &verdicts->list[verdicts->count++];
     *kept = *check;
     kept->ms = camber_clock_ms() - kept->start_ms;
-    if (verdicts->tap)
+    if (verdicts->tap && verdicts->each)
         print_tap(kept, verdicts->count);
 }
 
@@ -220,12 +270,13 @@ void camber_verdicts_bail(const camber_verdicts *verdicts) {
     fflush(stdout);
 }
 
-int camber_verdicts_print(const camber_verdicts *verdicts) {
+int camber_verdicts_print(camber_verdicts *verdicts) {
     if (verdicts->full)
         return camber_report_status(verdicts->report, CAMBER_ERROR_MEMORY);
     int status = CAMBER_EXIT_DONE;
+    end_group(verdicts);
     if (verdicts->tap) {
-        printf("1..%zu\n", verdicts->count);
+        printf("1..%zu\n", verdicts->each ? verdicts->count : verdicts->group_count);
         status = camber_report_flush(verdicts->report);
     } else {
         status = print_json(verdicts);

@@ -1,4 +1,4 @@
-/* What the checks of validate found: TAP as they end, JSON at the end, JUnit in junit.c. */
+/* What the checks of validate found: TAP as they or their groups end, JSON at the end, JUnit in junit.c. */
 #ifndef CAMBER_CLI_VERDICTS_H
 #define CAMBER_CLI_VERDICTS_H
 
@@ -60,13 +60,18 @@ size_t camber_character_size(const char *character);
 
 typedef struct camber_verdicts {
     camber_report *report;
-    bool tap;           /* prints each as it comes */
+    bool tap; /* prints what comes of them: a line a group, or with each a line a check */
+    bool each;
+    char group[256]; /* of the checks from group_first on; "": none is open */
+    size_t group_first, group_count;
     camber_check *list; /* count */
     size_t count, capacity, failed, skipped;
     bool full; /* of memory: the list is not whole */
 } camber_verdicts;
 
-void camber_verdicts_open(camber_verdicts *verdicts, camber_report *report, bool tap);
+void camber_verdicts_open(camber_verdicts *verdicts, camber_report *report, bool tap, bool each);
+/* What is added from now on is this group's. */
+void camber_verdicts_group(camber_verdicts *verdicts, const char *format, ...) CAMBER_PRINTF(2, 3);
 /* Starts a check on a device and a back end, NULL where there is none: its clock and its name. */
 camber_check camber_check_start(const char *device, const char *backend, const char *format, ...) CAMBER_PRINTF(3, 4);
 /* Adds what came of it. Takes over the finding's picture. */
@@ -75,8 +80,9 @@ void camber_verdicts_add(camber_verdicts *verdicts, const camber_check *check);
 void camber_verdicts_skip(camber_verdicts *verdicts, camber_check check, const char *reason);
 /* TAP's word for an end before the last check. */
 void camber_verdicts_bail(const camber_verdicts *verdicts);
-/* TAP's plan, or JSON. Returns an exit status, its line printed; CAMBER_EXIT_CHECK where a check failed. */
-int camber_verdicts_print(const camber_verdicts *verdicts);
+/* Ends the last group. TAP's plan, or JSON. Returns an exit status, its line printed; CAMBER_EXIT_CHECK where a check
+ * failed. */
+int camber_verdicts_print(camber_verdicts *verdicts);
 void camber_verdicts_close(camber_verdicts *verdicts);
 
 #endif

@@ -32,14 +32,14 @@ drawer=()
 validate() {
     local drawn=(--backend "$backend")
     [ ${#drawer[@]} = 0 ] || drawn=("${drawer[@]}")
-    "$tmp/build/src/camber" validate --windows 12 "${drawn[@]}" "$@" >"$tmp/tap" 2>"$tmp/stderr"
+    "$tmp/build/src/camber" validate --full -v --windows 12 "${drawn[@]}" "$@" >"$tmp/tap" 2>"$tmp/stderr"
 }
 
 # As validate, but no further than the first check that fails: a row needs one. Ends with 1 there too.
 validate_until_failure() {
     local drawn=(--backend "$backend") process
     [ ${#drawer[@]} = 0 ] || drawn=("${drawer[@]}")
-    "$tmp/build/src/camber" validate --windows 12 "${drawn[@]}" "$@" >"$tmp/pipe" 2>"$tmp/stderr" &
+    "$tmp/build/src/camber" validate --full -v --windows 12 "${drawn[@]}" "$@" >"$tmp/pipe" 2>"$tmp/stderr" &
     process=$!
     if awk '{ print } /^not ok/ { failed = 1 } failed && /^  [.][.][.]$/ { exit } END { exit !failed }' \
         <"$tmp/pipe" >"$tmp/tap"; then
@@ -58,7 +58,7 @@ look_at_evidence() { # FILE METHOD
     [ "$(head -c 4 "${picture:-/dev/null}" | tail -c 3)" = PNG ] || fail "$1: no picture: '$picture'"
     [ "$(find "$tmp/pictures" -name '*.png' | wc -l)" -le 32 ] || fail "$1: more than 32 pictures"
     [ "$(grep -c '<failure ' "$tmp/junit.xml")" = "$(grep -c '^not ok' "$tmp/tap")" ] || fail "$1: JUnit has other failures"
-    "$tmp/build/src/camber" validate --windows 12 --backend $backend --method "$2" --json >"$tmp/json" 2>"$tmp/stderr"
+    "$tmp/build/src/camber" validate --full --windows 12 --backend $backend --method "$2" --json >"$tmp/json" 2>"$tmp/stderr"
     [ $? = 1 ] || fail "$1: another exit status with --json"
     for member in '"stage": "' '"polyline": [0-9]' '"point": [0-9]' '"field": "' '"got": ' '"expected": ' '"difference": "'; do
         grep -q "$member" "$tmp/json" || fail "$1: the JSON lacks $member"

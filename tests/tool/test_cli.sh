@@ -512,8 +512,12 @@ is_json() {
 }
 
 lines=$tmp/in/lines.bin
+expect 0 "validate, a line a group" validate --polylines "$lines" --windows 8
+passes 4
+has "$tmp/stdout" ': meshes as the CPU twin.s: [0-9]* checks' ': pictures as the CPU twin' ': pixels as the oracle' ': networks under five cameras'
+says ' checks in [0-9]* s: 0 failed, .*; --full '
 head -c 4 "$lines" >"$tmp/in/short.bin"
-expect 0 "validate" validate --method strip --windows 8 --junit built-in.xml --pictures pictures
+expect 0 "validate" validate -v --method strip --windows 8 --junit built-in.xml --pictures pictures
 passes 100
 has "$tmp/stdout" ': as the CPU twin, on ' ': the same bytes from run to run, on ' ': the same bytes in work-groups of 64, on ' \
     ': the same bytes in parts, on ' ': pixels, on ' '^# .* pixels: mean ' ': network, zoomed out: strip: as the CPU twin, on ' \
@@ -540,20 +544,20 @@ has "$tmp/stdout" '"checks": [1-9]' '"failed": 0' '"skipped": [0-9]' '"failures"
     '"reason": ' '"bounds": ' '"mean": ' '"past_64": ' '"windows": 8'
 cmp -s built-in.xml "$tmp/in/built-in.xml" && fail "the file has not changed"
 rm -f built-in.xml
-expect 0 "validate a map" validate "$tiger" --method kite --size 200x200 --backend osmesa
+expect 0 "validate a map" validate -v "$tiger" --method kite --size 200x200 --backend osmesa
 passes 40
 has "$tmp/stdout" ': network, zoomed in: kite: as the CPU twin, on '
 lacks "$tmp/stdout" 'EGL'
-expect 0 "validate what kernels draw" validate --polylines "$lines" --draw cl --windows 8
+expect 0 "validate what kernels draw" validate -v --polylines "$lines" --draw cl --windows 8
 passes 12
 has "$tmp/stdout" ': pixels, on .*, OpenCL$' ': united, on .*, OpenCL$'
 lacks "$tmp/stdout" 'EGL'
 lacks "$tmp/stdout" 'OSMesa'
-expect 0 "validate what GL draws" validate --polylines "$lines" --draw gl --method strip --windows 8
+expect 0 "validate what GL draws" validate -v --polylines "$lines" --draw gl --method strip --windows 8
 lacks "$tmp/stdout" ', OpenCL$'
-expect 0 "validate both" validate --polylines "$lines" --method strip --windows 8
+expect 0 "validate both" validate -v --polylines "$lines" --method strip --windows 8
 has "$tmp/stdout" ': OpenCL as E\|: OpenCL as O'
-run "${without_gl[@]}" "$tool" validate --polylines "$lines" --method strip --windows 8
+run "${without_gl[@]}" "$tool" validate -v --polylines "$lines" --method strip --windows 8
 name="validate without GL"
 verify 0
 passes 12
@@ -561,21 +565,21 @@ has "$tmp/stdout" ': pixels, on .*, OpenCL$' '^ok .* EGL # SKIP .' '^ok .* OSMes
 name="odd names"
 odd=$tmp/in/$'a#b\\<c>&"d\'\xff\n\x01.bin'
 cp "$lines" "$odd"
-run "$tool" validate --polylines "$odd" --method strip --windows 8 --junit odd.xml
+run "$tool" validate -v --polylines "$odd" --method strip --windows 8 --junit odd.xml
 verify 0
 passes 12
 has "$tmp/stdout" 'a\\#b'
 is_xml odd.xml
 has odd.xml 'a#b' '&lt;c&gt;&amp;&quot;d'
 rm -f odd.xml "$odd"
-run env POCL_DEVICES='pthread pthread' "$tool" validate --polylines "$lines" --method strip --windows 8
+run env POCL_DEVICES='pthread pthread' "$tool" validate -v --polylines "$lines" --method strip --windows 8
 name="two devices of one name"
 verify 0
 if grep -q 'twin, on pthread' "$tmp/stdout"; then
     has "$tmp/stdout" ': as the CPU twin, on pthread.* (2)$'
 fi
 name="no EGL"
-run env __EGL_VENDOR_LIBRARY_FILENAMES="$tmp/in/none.json" "$tool" validate --polylines "$lines" --method strip --windows 8
+run env __EGL_VENDOR_LIBRARY_FILENAMES="$tmp/in/none.json" "$tool" validate -v --polylines "$lines" --method strip --windows 8
 verify 0
 passes 12
 if grep -q '^ok .* EGL # SKIP .' "$tmp/stdout"; then

@@ -146,6 +146,29 @@ done
 expect 0 "version" --version
 has "$tmp/stdout" '^camber [0-9]*\.[0-9]*\.[0-9]*$'
 expect 0 "version of a verb" render --version
+cp "$tmp/stdout" "$tmp/version"
+for words in -V version 'render -V'; do
+    # shellcheck disable=SC2086
+    expect 0 "version by $words" $words
+    cmp -s "$tmp/stdout" "$tmp/version" || fail "not what --version says"
+done
+for verb in '' render compare bench; do
+    expect 0 "help of '$verb' by its option" $verb --help
+    cp "$tmp/stdout" "$tmp/help"
+    # shellcheck disable=SC2086
+    expect 0 "help of '$verb' by its verb" help $verb
+    cmp -s "$tmp/stdout" "$tmp/help" || fail "not what --help says"
+done
+expect 2 "help of an unknown verb" help frobnicate
+# A verb's help speaks of no other verb, and of no option that it does not take.
+for verb in render tessellate compare validate bench; do
+    expect 0 "help of $verb alone" $verb --help
+    for other in render tessellate compare validate bench; do
+        [ $verb = $other ] || lacks "$tmp/stdout" "^  .*[ (]$other[,:)]"
+    done
+    case $verb in compare | validate | bench) ;; *) lacks "$tmp/stdout" '--polylines' ;; esac
+    case $verb in render | bench) has "$tmp/stdout" '--pitch' ;; *) lacks "$tmp/stdout" '--pitch' ;; esac
+done
 
 # ---- Info ----
 

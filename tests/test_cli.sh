@@ -119,6 +119,14 @@ expect 2 "bench of both" bench "$osm" --polylines x
 expect 2 "standard input twice" render - - -o a.png
 expect 2 "where twice" render "$osm" -o a.png --where 'a = 1' --where 'b = 2'
 says 'AND or OR'
+for gl in '--backend egl' '--backend osmesa' '--sharing copy'; do
+    for verb in "render $osm -o a.png" "compare $osm" "bench $osm" info; do
+        # shellcheck disable=SC2086
+        expect 2 "OpenCL draws, and $gl: $verb" $verb --draw cl $gl
+        says "--draw cl and ${gl% *}: .* without any GL; leave out ${gl% *}, or give --draw gl"
+    done
+done
+expect 2 "OpenCL draws, and a back end is checked" validate --draw cl --backend egl
 expect 2 "compare without input" compare
 expect 2 "compare with a style" compare "$osm" --style x.json
 expect 2 "compare with an output" compare "$osm" -o a.png

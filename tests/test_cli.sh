@@ -69,6 +69,15 @@ lacks() {
 be32() { od -An -tu1 -j"$2" -N4 "$1" | awk '{print (($1 * 256 + $2) * 256 + $3) * 256 + $4}'; }
 le32() { od -An -tu1 -j"$2" -N4 "$1" | awk '{print (($4 * 256 + $3) * 256 + $2) * 256 + $1}'; }
 
+# The stages of the summary on standard error, in ms, and the whole that they and the start make.
+adds_up() {
+    awk '/^start .* in all / { found = 1; split($0, half, ";"); gsub(/[^0-9. ]/, " ", half[1]); gsub(/[^0-9. ]/, " ", half[2])
+            n = split(half[1], part, " "); for (i = 1; i <= n; i++) sum += part[i]; split(half[2], whole, " ")
+            off = sum - whole[1] }
+        END { exit !(found && off < 0.5 && off > -0.5) }' "$tmp/stderr" ||
+        fail "its times do not add up: $(head -c 600 "$tmp/stderr")"
+}
+
 is_png() { # FILE WIDTH HEIGHT
     [ -s "$1" ] || { fail "no $1"; return; }
     [ "$(od -An -tx1 -N8 "$1" | tr -d ' \n')" = 89504e470d0a1a0a ] || fail "$1 is no PNG"
@@ -221,6 +230,8 @@ is_png city.png 300 200
 has city.png 'OpenStreetMap contributors' "camber [0-9]"
 says 'OpenStreetMap contributors'
 says 'city.png'
+[ $own = gl ] && says 'triangles (strip), [0-9]* draw calls*$' || says 'triangles (strip), drawn by OpenCL kernels$'
+adds_up
 cp city.png "$tmp/in/city.png"
 expect 73 "output exists" render "$osm" -o city.png --size 30x20
 cmp -s city.png "$tmp/in/city.png" || fail "the file has changed"
@@ -280,6 +291,11 @@ verify 69
 says 'EGL: .*; install libegl1'
 expect 0 "few draw calls" render "$osm" -o calls.png --size 512x512 --json --draw gl
 has "$tmp/stdout" '"draw_calls": [1-4],'
+expect 0 "draw calls in words" render "$osm" -o calls.png -f --size 64x64 --draw gl
+says 'triangles (strip), [1-4] draw calls*$'
+adds_up
+expect 0 "no draw calls of kernels" render "$osm" -o calls.png -f --size 64x64 --draw cl --json
+has "$tmp/stdout" '"draw_calls": 0,' '"start_ms": [0-9]'
 rm -f calls.png
 expect 0 "one thread, dark" render "$tiger" -o dark.png --size 64x64 --theme dark --threads 1
 cmp -s dark.png tiger.png && fail "dark looks like light"
@@ -636,7 +652,12 @@ done
 expect 65 "a folder" render "$tmp/in" -o a.png
 expect 65 "no such layer" render "$osm" -o a.png --layer nope
 expect 0 "one line" render "$tmp/in/line.geojson" -o a.png --size 64x64
+says '^1 feature, 1 polyline, 2 points, '
 rm -f a.png
+expect 0 "one line, tessellated" tessellate "$tmp/in/line.geojson" -o a.glb
+says '^1 feature, 1 polyline, 2 points$'
+adds_up
+rm -f a.glb
 run sh -c "head -c 500 /dev/urandom | '$tool' render - -o a.png"
 name="random standard input"
 verify 65

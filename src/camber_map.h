@@ -140,8 +140,10 @@ CAMBER_API camber_status camber_features_read(camber_features *features, const c
 CAMBER_API void camber_features_destroy(camber_features *features);
 CAMBER_API camber_features_stats camber_features_get_stats(const camber_features *features);
 CAMBER_API camber_features_times camber_features_get_times(const camber_features *features);
-/* Whether any of the data is OpenStreetMap's, whose licence asks for attribution. */
-CAMBER_API bool camber_features_is_osm(const camber_features *features);
+/* Whom to name beside a picture of the data, as UTF-8: "(c) OpenStreetMap contributors" of OpenStreetMap's own formats,
+ * whose licence asks for it; of tiles what their metadata or the style's source says, with its HTML left out. Of other
+ * files nothing is known. Several stand with commas between. NULL: none is known. Valid until more is read. */
+CAMBER_API const char *camber_features_attribution(const camber_features *features);
 
 /* Whether camber_features_read of such a file needs GDAL. */
 CAMBER_API bool camber_source_needs_gdal(const camber_source_desc *desc);

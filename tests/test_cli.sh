@@ -227,8 +227,9 @@ has "$tmp/stdout" '^GL *egl: not available: .*; install' '^GL *osmesa: not avail
 
 expect 0 "render" render "$osm" -o city.png --size 300x200
 is_png city.png 300 200
-has city.png 'OpenStreetMap contributors' "camber [0-9]"
-says 'OpenStreetMap contributors'
+has city.png "camber [0-9]"
+lacks city.png 'OpenStreetMap' # its tiles do not say whose they are
+lacks "$tmp/stderr" 'OpenStreetMap'
 says 'city.png'
 [ $own = gl ] && says 'triangles (strip), [0-9]* draw calls*$' || says 'triangles (strip), drawn by OpenCL kernels$'
 adds_up
@@ -338,7 +339,16 @@ if command -v taskset >/dev/null && [ "$(nproc)" -gt 1 ]; then
     cmp -s dark.png pinned.png || fail "the cores show"
 fi
 expect 0 "two inputs" render "$osm" "$tiger" -o two.png --size 64x64
-has two.png 'OpenStreetMap contributors'
+credit='(c) Ümläut & <Söhne>'
+expect 0 "an attribution" render "$tiger" -o signed.png --size 64x64 --attribution "$credit"
+has signed.png "$credit"
+says "^$credit\$"
+expect 0 "an attribution as JSON" render "$tiger" -o signed.png -f --size 64x64 --attribution "$credit" --json
+has "$tmp/stdout" "\"attribution\": \"$credit\""
+expect 0 "an attribution of a mesh" tessellate "$tiger" -o signed.glb --attribution "$credit"
+has signed.glb "$credit"
+expect 2 "an attribution that is no text" render "$tiger" -o a.png --attribution $'\xff'
+rm -f signed.glb
 expect 0 "pitch" render "$osm" -o tilted.png --center -122.03,36.974 --zoom 14 --bearing 30 --pitch 85 --size 99x77
 expect 0 "centre and zoom" render "$osm" -o close.png --center -122.03,36.974 --zoom 14 --bearing 30 --size 99x77
 is_png close.png 99 77
@@ -367,7 +377,7 @@ for method in strip kite fan; do
     expect 0 "tessellate, $method" tessellate "$osm" -o mesh.glb -f --method $method --size 200x200 --json
     [ "$(head -c 4 mesh.glb)" = glTF ] || fail "no GLB"
     [ "$(le32 mesh.glb 8)" = "$(stat -c %s mesh.glb)" ] || fail "its head says $(le32 mesh.glb 8) bytes"
-    has mesh.glb POSITION 'OpenStreetMap contributors'
+    has mesh.glb POSITION
     has "$tmp/stdout" "\"output_bytes\": $(stat -c %s mesh.glb)" "\"method\": \"$method\"" '"triangles": [1-9]'
 done
 rm -f mesh.glb
@@ -653,6 +663,25 @@ expect 65 "a folder" render "$tmp/in" -o a.png
 expect 65 "no such layer" render "$osm" -o a.png --layer nope
 expect 0 "one line" render "$tmp/in/line.geojson" -o a.png --size 64x64
 says '^1 feature, 1 polyline, 2 points, '
+lacks a.png OpenStreetMap # anyone's roads may have a key of theirs
+lacks "$tmp/stderr" OpenStreetMap
+rm -f a.png
+cat >"$tmp/in/roads.osm" <<'XML'
+<osm version="0.6">
+<node id="1" lat="1" lon="1"/><node id="2" lat="1.1" lon="1.1"/><node id="3" lat="1.2" lon="1"/>
+<way id="10"><nd ref="1"/><nd ref="2"/><tag k="highway" v="primary"/><tag k="lit" v="yes"/></way>
+<way id="11"><nd ref="2"/><nd ref="3"/><tag k="railway" v="rail"/></way>
+</osm>
+XML
+expect 0 "OpenStreetMap's own format" render "$tmp/in/roads.osm" -o a.png --size 64x64
+has a.png '(c) OpenStreetMap contributors'
+says '^(c) OpenStreetMap contributors$'
+expect 0 "OpenStreetMap's own format, signed by the user" render "$tmp/in/roads.osm" -o a.png -f --size 64x64 --attribution Me
+has a.png 'Me'
+lacks a.png OpenStreetMap
+expect 0 "OpenStreetMap's own format, not signed" render "$tmp/in/roads.osm" -o a.png -f --size 64x64 --attribution ''
+lacks a.png Copyright
+lacks "$tmp/stderr" OpenStreetMap
 rm -f a.png
 expect 0 "one line, tessellated" tessellate "$tmp/in/line.geojson" -o a.glb
 says '^1 feature, 1 polyline, 2 points$'

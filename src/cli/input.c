@@ -224,7 +224,8 @@ static int open_map(camber_input *input) {
             session->report, camber_features_read_sprites(input->features, input->view.ratio, input->base_path));
     if (status != CAMBER_EXIT_DONE)
         return status;
-    input->osm = camber_features_is_osm(input->features);
+    const char *asked = session->options->attribution;
+    input->attribution = asked ? (*asked ? asked : NULL) : camber_features_attribution(input->features);
     const camber_features_stats stats = camber_features_get_stats(input->features);
     input->points_in = stats.points;
     input->segments_in = stats.points > stats.polylines ? stats.points - stats.polylines : 0;

@@ -1,5 +1,6 @@
 #include "cli/options.h"
 
+#include <jansson.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -27,6 +28,7 @@ enum {
     MAPS = 0,
 #endif
     STYLED = MAPS & ~COMPARE,
+    SIGNED = MAPS & (RENDER | TESSELLATE),
 };
 
 typedef struct verb_spec {
@@ -57,6 +59,7 @@ static const verb_spec verbs[] = {
 typedef enum option_kind {
     KIND_FLAG,   /* bool */
     KIND_TEXT,   /* const char * */
+    KIND_WORDS,  /* const char *, UTF-8; may be empty */
     KIND_TEXTS,  /* wheres */
     KIND_NUMBER, /* double, least to most */
     KIND_COUNT,  /* uint32_t, least to most */
@@ -118,6 +121,8 @@ static const option_spec specs[] = {
      0,
      85,
      {{TILTING, "how far the camera is tilted, to 85 (0)"}, {MAPS & ~TILTING, ""}}},
+    {"attribution", 0, KIND_WORDS, SIGNED, FIELD(attribution), "TEXT",
+     "sign OUT with this instead of what INPUT says of itself; '': not at all", 0, 0},
     {"style", 0, KIND_TEXT, STYLED, FIELD(style), "NAME|FILE", "a style that ships, or a MapLibre style (roads)", 0, 0},
     {"theme", 0, KIND_CHOICE, STYLED, FIELD(theme), "light|dark", "of a style that ships (light)", 0, 0},
     {"layer", 0, KIND_TEXT, MAPS, FIELD(layer), "NAME", "read this layer of INPUT only", 0, 0},
@@ -355,6 +360,16 @@ static int parse_view(const parser *p, const option_spec *spec, const char *text
     return CAMBER_EXIT_DONE;
 }
 
+/* Files have it as UTF-8. */
+static int parse_words(const parser *p, const option_spec *spec, const char *text, const char **value) {
+    json_t *checked = json_string(text);
+    json_decref(checked);
+    if (!checked)
+        return usage(p, "--%s: is not UTF-8; write it in a terminal whose locale is", spec->name);
+    *value = text;
+    return CAMBER_EXIT_DONE;
+}
+
 static int parse_value(const parser *p, const option_spec *spec, const char *text) {
     char *field = (char *)p->options + spec->offset;
     switch (spec->kind) {
@@ -376,6 +391,7 @@ static int parse_value(const parser *p, const option_spec *spec, const char *tex
         *(double *)(void *)field = number;
         return CAMBER_EXIT_DONE;
     }
+    case KIND_WORDS: return parse_words(p, spec, text, (const char **)(void *)field);
     case KIND_COUNT: {
         uint32_t count;
         const char *rest = text;

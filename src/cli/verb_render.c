@@ -96,7 +96,8 @@ static int print_json(const job *j) {
     };
     for (size_t i = 0; i < sizeof times / sizeof *times; i++)
         json_object_set_new(object, times[i].name, camber_json_ms(times[i].ms));
-    json_object_set_new(object, "attribution", j->input.osm ? json_string(CAMBER_ATTRIBUTION) : json_null());
+    json_object_set_new(object, "attribution",
+                        j->input.attribution ? camber_json_text(j->input.attribution) : json_null());
     return camber_report_json(session->report, object);
 }
 
@@ -126,8 +127,8 @@ static void print_text(const job *j) {
                       "read back %.1f, write %.1f; in all %.1f ms and %.0f MB",
                       start_ms(j), j->input.read_ms, j->input.scene_ms, j->tessellate_ms, j->times.frame.draw_ms,
                       j->times.frame.read_ms, j->times.write_ms, j->total_ms, (double)camber_peak_rss_bytes() / 1e6);
-    if (j->input.osm)
-        camber_report_say(report, "%s", CAMBER_ATTRIBUTION);
+    if (j->input.attribution)
+        camber_report_say(report, "%s", j->input.attribution);
 }
 
 int camber_verb_render(camber_session *session) {

@@ -37,7 +37,7 @@ static bool gather_paints(job *j, size_t count) {
 static int write_mesh(job *j) {
     camber_session *session = j->session;
     const double began_ms = camber_clock_ms();
-    camber_glb_desc desc = {.copyright = j->input.osm ? CAMBER_ATTRIBUTION : NULL};
+    camber_glb_desc desc = {.copyright = j->input.attribution};
     desc.strokes = camber_input_strokes(&j->input, &desc.stroke_count);
     if (!gather_paints(j, desc.stroke_count))
         return camber_report_status(session->report, CAMBER_ERROR_MEMORY);
@@ -101,7 +101,8 @@ static int print_json(const job *j) {
     json_object_set_new(object, "write_ms", camber_json_ms(j->write_ms));
     json_object_set_new(object, "total_ms", camber_json_ms(j->total_ms));
     json_object_set_new(object, "peak_rss_bytes", camber_json_count(camber_peak_rss_bytes()));
-    json_object_set_new(object, "attribution", j->input.osm ? json_string(CAMBER_ATTRIBUTION) : json_null());
+    json_object_set_new(object, "attribution",
+                        j->input.attribution ? camber_json_text(j->input.attribution) : json_null());
     return camber_report_json(session->report, object);
 }
 
@@ -122,8 +123,8 @@ static void print_text(const job *j) {
                       "in all %.1f ms and %.0f MB",
                       start_ms(j), j->input.read_ms, j->input.scene_ms, j->tessellate_ms, j->write_ms, j->total_ms,
                       (double)camber_peak_rss_bytes() / 1e6);
-    if (j->input.osm)
-        camber_report_say(report, "%s", CAMBER_ATTRIBUTION);
+    if (j->input.attribution)
+        camber_report_say(report, "%s", j->input.attribution);
 }
 
 int camber_verb_tessellate(camber_session *session) {

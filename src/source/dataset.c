@@ -258,19 +258,6 @@ void camber_dataset_close(camber_dataset *dataset) {
     dataset->conf = NULL;
 }
 
-/* OSM's ids and its main tag as columns, as osmtogeojson, osm2pgsql and OGR write them, or the licence's own words. */
-bool camber_dataset_is_osm(const camber_dataset *dataset) {
-    static const char *const names[] = {"osm_id", "@id", "highway"};
-    if (dataset->osm)
-        return true;
-    const char *attribution = GDALGetMetadataItem(dataset->handle, "attribution", NULL);
-    if (attribution && strstr(attribution, "OpenStreetMap"))
-        return true;
-    for (int i = 0; i < GDALDatasetGetLayerCount(dataset->handle); i++) {
-        OGRFeatureDefnH schema = OGR_L_GetLayerDefn(GDALDatasetGetLayer(dataset->handle, i));
-        for (size_t k = 0; k < sizeof names / sizeof *names; k++)
-            if (OGR_FD_GetFieldIndex(schema, names[k]) >= 0)
-                return true;
-    }
-    return false;
+const char *camber_dataset_attribution(const camber_dataset *dataset) {
+    return dataset->osm ? "(c) OpenStreetMap contributors" : GDALGetMetadataItem(dataset->handle, "attribution", NULL);
 }

@@ -302,8 +302,8 @@ static camber_status read_dataset(reader *self, bool *unsorted) {
         status = camber_tiles_finish(self->tiles, self->features);
     if (status == CAMBER_OK)
         status = judge(self, features_before);
-    if (status == CAMBER_OK && camber_dataset_is_osm(&self->dataset))
-        self->features->is_osm = true;
+    if (status == CAMBER_OK)
+        status = camber_features_sign(self->features, camber_dataset_attribution(&self->dataset));
 done:
     camber_free(context, layers);
     return status;
@@ -348,7 +348,7 @@ static camber_status read_once(camber_features *features, const camber_source_de
     reader self = {
         .context = features->context, .features = features, .desc = desc, .parts.context = features->context};
     const size_t points = features->point_count, polylines = features->polyline_count, count = features->feature_count;
-    const bool was_osm = features->is_osm;
+    const size_t signed_size = features->attribution_size;
     const camber_features_stats stats = features->stats;
     const double start_ms = camber_now_ms();
     camber_status status = camber_dataset_open(features->context, desc, features->style, *unsorted, &self.dataset);
@@ -373,7 +373,7 @@ static camber_status read_once(camber_features *features, const camber_source_de
         features->point_count = points;
         features->polyline_count = polylines;
         features->feature_count = count;
-        features->is_osm = was_osm;
+        camber_features_unsign(features, signed_size);
         features->stats = stats;
     }
     return status;

@@ -73,8 +73,8 @@ typedef struct camber_dataset {
 camber_status camber_dataset_open(camber_context *context, const camber_source_desc *desc, const camber_style *style,
                                   bool unsorted, camber_dataset *dataset);
 void camber_dataset_close(camber_dataset *dataset);
-/* Whether the data is OpenStreetMap's. */
-bool camber_dataset_is_osm(const camber_dataset *dataset);
+/* Of OpenStreetMap's own formats what its licence asks for, of others what the file says. NULL: nothing. */
+const char *camber_dataset_attribution(const camber_dataset *dataset);
 /* Indices of the layers to read; freed with camber_free. */
 camber_status camber_dataset_layers(camber_dataset *dataset, bool wants_polygons, int **layers, size_t *count);
 /* CPLErrorHandler whose user data is a camber_gdal_errors. */

@@ -83,13 +83,11 @@ static camber_status read_geojson(camber_sources *sources, source *one) {
     json_decref(loaded);
     if (status != CAMBER_OK)
         return status;
-    const char *attribution = json_string_value(json_object_get(one->style->json, "attribution"));
-    sources->features->is_osm |= attribution && strstr(attribution, "OpenStreetMap");
     memcpy(one->bounds, stats.bounds, sizeof one->bounds);
     sources->features->stats.skipped_features += stats.skipped_features;
     sources->features->stats.damaged_features += stats.damaged_features;
     warn(sources, one->what, stats.damaged_features, stats.damage, stats.skipped_features);
-    return CAMBER_OK;
+    return camber_features_sign(sources->features, json_string_value(json_object_get(one->style->json, "attribution")));
 }
 
 /* ---- Vector tiles: opening ---- */
@@ -168,10 +166,10 @@ static camber_status open_vector(camber_sources *sources, source *one) {
         status = open_tilejson(sources, one, url.path, about);
     if (status != CAMBER_OK)
         goto done;
-    camber_tile_set_describe(one->set, about);
+    status = camber_tile_set_describe(one->set, about);
     one->is_bounded = json_object_get(about, "bounds") != NULL;
     take_bounds(one);
-    if (one->set->min_zoom > one->set->max_zoom)
+    if (status == CAMBER_OK && one->set->min_zoom > one->set->max_zoom)
         status = camber_fail(context, CAMBER_ERROR_INPUT, "%s: minzoom %d lies above maxzoom %d; swap them", one->what,
                              one->set->min_zoom, one->set->max_zoom);
 done:
@@ -299,9 +297,10 @@ static camber_status read_places(camber_sources *sources, const source *one, con
     camber_status status = camber_tiles_read(features, reading, &result);
     if (status == CAMBER_OK)
         status = finish(features, first_polyline);
+    if (status == CAMBER_OK)
+        status = camber_features_sign(features, one->set->attribution);
     if (status != CAMBER_OK)
         return status;
-    features->is_osm |= result.stats.names_osm || one->set->is_osm;
     features->stats.skipped_features += result.stats.skipped_features;
     features->stats.damaged_features += result.stats.damaged_features;
     warn(sources, one->what, result.stats.damaged_features, result.stats.damage, result.stats.skipped_features);

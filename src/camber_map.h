@@ -133,9 +133,9 @@ CAMBER_API camber_status camber_features_create(camber_context *context, const c
                                                 camber_features **features);
 /* Reads one more file into the set. Warnings are logged once a cause.
  * Returns CAMBER_ERROR_NOT_FOUND, CAMBER_ERROR_INPUT (unreadable, cut off, no line layer, no such layer),
- * CAMBER_ERROR_ARGUMENT (where does not parse), CAMBER_ERROR_IO (also where GDAL cannot be loaded),
- * CAMBER_ERROR_MEMORY. Cost: the first call of a process does what camber_gdal_load does, and registers GDAL's drivers
- * (3 ms). */
+ * CAMBER_ERROR_ARGUMENT (where does not parse, or names a field that no layer has), CAMBER_ERROR_IO (also where GDAL
+ * cannot be loaded), CAMBER_ERROR_MEMORY. Cost: the first call of a process does what camber_gdal_load does, and
+ * registers GDAL's drivers (3 ms). */
 CAMBER_API camber_status camber_features_read(camber_features *features, const camber_source_desc *desc);
 CAMBER_API void camber_features_destroy(camber_features *features);
 CAMBER_API camber_features_stats camber_features_get_stats(const camber_features *features);

@@ -659,6 +659,13 @@ for file in empty.geojson empty.osm.pbf empty cut.mbtiles random.osm.pbf random.
     expect 65 "$file, tessellated" tessellate "$tmp/in/$file" -o a.glb --json
     [ -s "$tmp/stdout" ] && fail "an error has something on standard output"
 done
+printf 'root:x:0:0:root:/root:/bin/sh\n' >"$tmp/in/text"
+cp "$tmp/in/text" "$tmp/in/text.geojson"
+for file in text text.geojson; do
+    expect 65 "text that never was a map: $file" render "$tmp/in/$file" -o a.png
+    says "$file: no map in a format that camber reads; name another file (camber info lists the formats)\$"
+    lacks "$tmp/stderr" root
+done
 expect 65 "a folder" render "$tmp/in" -o a.png
 expect 65 "no such layer" render "$osm" -o a.png --layer nope
 expect 0 "one line" render "$tmp/in/line.geojson" -o a.png --size 64x64
@@ -673,6 +680,27 @@ cat >"$tmp/in/roads.osm" <<'XML'
 <way id="11"><nd ref="2"/><nd ref="3"/><tag k="railway" v="rail"/></way>
 </osm>
 XML
+# Attribute filters: any key of OpenStreetMap, and what its driver makes on demand; a warning where nothing passes.
+for where in "lit = 'yes'" "\"highway\" = 'primary'" "osm_id = '10'" "other_tags LIKE '%lit%'" \
+    "all_tags LIKE '%lit%'"; do
+    expect 0 "filter $where" render "$tmp/in/roads.osm" -o a.png -f --size 64x64 --where "$where"
+    says '^1 feature, '
+    lacks "$tmp/stderr" warning
+done
+for where in "hihgway = 'primary':hihgway" 'highway = "primary":primary'; do
+    expect 0 "filter ${where%:*}" render "$tmp/in/roads.osm" -o a.png -f --size 64x64 --where "${where%:*}"
+    says "^camber: warning: .*nothing passes the filter .*: no line has the key \"${where#*:}\"; check it, and put values in single quotes"
+    [ "$(grep -c warning "$tmp/stderr")" = 1 ] || fail "more than one warning"
+done
+expect 0 "filter of values that are not there" render "$tmp/in/roads.osm" -o a.png -f --size 64x64 --where "highway = 'x'"
+says '^camber: warning: .*nothing passes the filter .*; check the values'
+expect 0 "filter of tiles that nothing passes" render "$osm" -o a.png -f --size 64x64 --where "type = 'x'"
+says '^camber: warning: .*nothing passes the filter'
+rm -f a.png
+expect 2 "filter of a field that is not there" render "$tmp/in/line.geojson" -o a.png --where "hihgway = 'primary'"
+says '"hihgway" not recogni.ed as an available field; .*layer "line" has: highway$'
+expect 2 "filter of tiles by a field that is not there" render "$osm" -o a.png --where "highway = 'primary'"
+says 'layer "roads" has: .*type, name'
 expect 0 "OpenStreetMap's own format" render "$tmp/in/roads.osm" -o a.png --size 64x64
 has a.png '(c) OpenStreetMap contributors'
 says '^(c) OpenStreetMap contributors$'

@@ -279,11 +279,22 @@ int camber_input_project(camber_input *input) {
     return camber_report_status(input->session->report, status);
 }
 
+/* The library has told why there is nothing: no feature passed the filter. */
+static bool knows_why_empty(const camber_input *input) {
+#ifdef CAMBER_MAP
+    return input->features && input->session->options->where &&
+           camber_features_get_stats(input->features).features == 0;
+#else
+    (void)input;
+    return false;
+#endif
+}
+
 void camber_input_warn_empty(const camber_input *input, const char *consequence) {
-    if (camber_polylines_get_stats(camber_input_polylines(input)).polylines == 0)
-        camber_report_warn(input->session->report, "%s; %s",
-                           input->features ? "no line that the style draws is in the view" : "no polylines",
-                           consequence);
+    if (camber_polylines_get_stats(camber_input_polylines(input)).polylines > 0 || knows_why_empty(input))
+        return;
+    camber_report_warn(input->session->report, "%s; %s",
+                       input->features ? "no line that the style draws is in the view" : "no polylines", consequence);
 }
 
 const camber_polylines *camber_input_polylines(const camber_input *input) {

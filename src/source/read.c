@@ -28,6 +28,7 @@ typedef struct reader {
     camber_features_stats stats; /* of this file */
     char damage[512];            /* what the first damage was */
     size_t read;                 /* features that the layer gave */
+    size_t passed;               /* that all layers gave */
     double shown_ms;
 } reader;
 
@@ -192,6 +193,7 @@ static camber_status read_layer(reader *self, GIntBig expected, bool *unsorted) 
                 fraction = fmin((double)++self->read / (double)expected, 1);
             else
                 self->read++;
+            self->passed++;
             status = read_feature(self, feature, failed);
             show_progress(self, fraction);
         }
@@ -206,6 +208,33 @@ static camber_status check_count(reader *self, GIntBig expected) {
     if (self->desc->where || !EQUAL(driver, "FlatGeobuf") || expected < 0 || self->read >= (size_t)expected)
         return CAMBER_OK;
     return fail_stream(self, "its header announces more");
+}
+
+/* Of OpenStreetMap every key is a field. */
+static camber_status fail_where(const reader *self) {
+    char fields[512] = "keys of OpenStreetMap, as in highway = 'primary'";
+    if (!self->dataset.osm)
+        camber_where_list_fields(self->layer, fields, sizeof fields);
+    return camber_fail(self->context, CAMBER_ERROR_ARGUMENT,
+                       "%s: the filter \"%s\" does not fit: %s; put values in single quotes, and compare what layer "
+                       "\"%s\" has: %s",
+                       self->desc->path, self->desc->where,
+                       self->dataset.errors.failures ? self->dataset.errors.message : "it does not parse",
+                       OGR_L_GetName(self->layer), fields);
+}
+
+/* A key that no feature has is mostly one that is spelt wrong, or a value in double quotes. */
+static void warn_where(const reader *self) {
+    char key[256];
+    if (self->dataset.osm && camber_where_find_unknown(&self->dataset, self->layer, key, sizeof key))
+        camber_log(self->context, CAMBER_LOG_WARNING,
+                   "%s: nothing passes the filter \"%s\": no line has the key \"%s\"; check it, and put values in "
+                   "single quotes, as in highway = 'primary'",
+                   self->desc->path, self->desc->where, key);
+    else
+        camber_log(self->context, CAMBER_LOG_WARNING,
+                   "%s: nothing passes the filter \"%s\"; check the values that it compares with", self->desc->path,
+                   self->desc->where);
 }
 
 static camber_status read_layers(reader *self, const int *layers, size_t count, bool *unsorted) {
@@ -227,13 +256,7 @@ static camber_status read_layers(reader *self, const int *layers, size_t count, 
         if (status != CAMBER_OK)
             return status;
     }
-    if (any)
-        return CAMBER_OK;
-    return camber_fail(self->context, CAMBER_ERROR_ARGUMENT,
-                       "%s: the filter \"%s\" does not fit: %s; compare fields of "
-                       "the layer, as in highway = 'primary'",
-                       self->desc->path, self->desc->where,
-                       self->dataset.errors.failures ? self->dataset.errors.message : "it does not parse");
+    return any ? CAMBER_OK : fail_where(self);
 }
 
 /* ---- A file ---- */
@@ -302,6 +325,8 @@ static camber_status read_dataset(reader *self, bool *unsorted) {
         status = camber_tiles_finish(self->tiles, self->features);
     if (status == CAMBER_OK)
         status = judge(self, features_before);
+    if (status == CAMBER_OK && self->desc->where && self->passed == 0)
+        warn_where(self);
     if (status == CAMBER_OK)
         status = camber_features_sign(self->features, camber_dataset_attribution(&self->dataset));
 done:

@@ -80,6 +80,18 @@ camber_status camber_dataset_layers(camber_dataset *dataset, bool wants_polygons
 /* CPLErrorHandler whose user data is a camber_gdal_errors. */
 void CPL_STDCALL camber_gdal_collect(CPLErr level, CPLErrorNum number, const char *message);
 
+/* ---- where.c: attribute filters ---- */
+
+/* The next word of a filter outside '...': it may be a key. *at moves behind it. NULL: there is no more. */
+const char *camber_where_next(const char **at, size_t *length);
+/* Whether it is made of what such words are. */
+bool camber_where_is_key(const char *text, size_t length);
+/* Of OpenStreetMap data whose filter nothing passes: the first key it names that no feature of the layer has. Reads the
+ * file again, without the filter. false: all keys are there. */
+bool camber_where_find_unknown(const camber_dataset *dataset, OGRLayerH layer, char *key, size_t size);
+/* "class, name, ...": the fields that a filter of the layer can compare. */
+void camber_where_list_fields(OGRLayerH layer, char *text, size_t size);
+
 /* ---- attributes.c: the fields of a layer that are read ---- */
 
 /* What a style's property is read from. */

@@ -197,9 +197,10 @@ CAMBER_API camber_status camber_features_read_sources(camber_features *features,
 
 /* Reads the images that the style's patterns are of: its sprites, those for high resolutions where ratio, device px a
  * CSS px (0: 1), is above 1 and they are there. Paths are as those of sources. A style without patterns reads nothing;
- * one with patterns leaves out what is drawn with images that are not there or not read, and warns. Returns
- * CAMBER_ERROR_INPUT (a sprite on the network, or one that is not what it says), CAMBER_ERROR_IO, CAMBER_ERROR_LIMIT (a
- * sheet above 2^24 px), CAMBER_ERROR_ARGUMENT (the ratio), CAMBER_ERROR_MEMORY. */
+ * what is drawn with images that are in none of its sprites, or in one on the network, is left out, and warned of.
+ * Returns CAMBER_ERROR_NOT_FOUND (a sprite's file), CAMBER_ERROR_INPUT (one that is not what it says, an unknown
+ * scheme), CAMBER_ERROR_IO, CAMBER_ERROR_LIMIT (a sheet above 2^24 px), CAMBER_ERROR_ARGUMENT (the ratio),
+ * CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_features_read_sprites(camber_features *features, double ratio, const char *base_path);
 
 /* ---- Scene: a view of features in a style, ready to tessellate and draw --------------------------- */

@@ -761,6 +761,10 @@ is_png a.png 64 64
 rm -f a.png
 sed 's/line.geojson/none.geojson/' "$tmp/in/own.json" >"$tmp/in/gone.json"
 expect 66 "a style whose source is not there" render --style "$tmp/in/gone.json" -o a.png
+says '/gone.json: /sources/s: .*/none.geojson: no such file; check the path in the style'
+sed 's/line.geojson/text/' "$tmp/in/own.json" >"$tmp/in/passwd.json"
+expect 65 "a style whose source is text" render --style "$tmp/in/passwd.json" -o a.png
+lacks "$tmp/stderr" root
 sed 's|line.geojson|https://example.org/a.geojson|' "$tmp/in/own.json" >"$tmp/in/url.json"
 expect 65 "a style whose source is elsewhere" render --style "$tmp/in/url.json" -o a.png
 says '/url.json: /sources/s: https://example.org'
@@ -770,6 +774,14 @@ echo '{"a": {"x": 0, "y": 0, "width": 60000, "height": 60000, "pixelRatio": 1}}'
 sed 's/"version": 8,/& "sprite": "vast",/; s/"line-width": 3/"line-pattern": "a"/' "$tmp/in/own.json" >"$tmp/in/pattern.json"
 expect 65 "a style whose sprite is too large" render --style "$tmp/in/pattern.json" -o a.png
 says '60000 x 60000 px; cut it'
+sed 's/"vast"/"none"/' "$tmp/in/pattern.json" >"$tmp/in/nosprite.json"
+expect 66 "a style whose sprite is not there" render --style "$tmp/in/nosprite.json" -o a.png
+says 'sprite "default": .*/none.png: no such file; check the path in the style'
+expect 66 "nor its large form" render --style "$tmp/in/nosprite.json" -o a.png --ratio 2
+sed 's|"vast"|"https://example.org/sprite"|' "$tmp/in/pattern.json" >"$tmp/in/farsprite.json"
+expect 0 "a style whose sprite is elsewhere" render --style "$tmp/in/farsprite.json" -o a.png --size 64x64
+says '^camber: warning: sprite "default": https://example.org/sprite is on the network'
+rm -f a.png
 expect 0 "the built-in style by its name" render "$tiger" --style roads --theme dark -qo named.png --size 64x64
 expect 0 "the built-in style" render "$tiger" --theme dark -qo builtin.png --size 64x64
 cmp -s named.png builtin.png || fail "roads is not the built-in style"
@@ -778,7 +790,9 @@ expect 0 "a style that ships" style check openmaptiles
 expect 66 "no style of that name" render "$tiger" --style streets -o a.png
 says 'roads, openmaptiles, transit'
 expect 66 "a style that ships, without its tiles" render --style openmaptiles --theme dark -o a.png
-says 'openmaptiles.mbtiles'
+says 'OpenMapTiles.*: /sources/openmaptiles: openmaptiles.mbtiles: no such file; tilemaker makes it'
+expect 66 "a style that ships, without its lines" render --style transit -o a.png
+says 'transit.*: /sources/transit: transit.geojson: no such file; osmium and transit-lines.py make it'
 cp "$tmp/in/own.json" roads
 expect 2 "a file goes before a style that ships" render "$tiger" --style roads --theme dark -o a.png
 rm -f roads

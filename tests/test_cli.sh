@@ -673,6 +673,13 @@ says '^1 feature, 1 polyline, 2 points, '
 lacks a.png OpenStreetMap # anyone's roads may have a key of theirs
 lacks "$tmp/stderr" OpenStreetMap
 rm -f a.png
+point='{"type":"Feature","properties":{},"geometry":{"type":"Point","coordinates":[1,1]}}'
+echo "{\"type\":\"FeatureCollection\",\"features\":[$line,$point]}" >"$tmp/in/mixed.geojson"
+expect 0 "a line and a point" render "$tmp/in/mixed.geojson" -o a.png --size 64x64
+lacks "$tmp/stderr" '^camber: '
+expect 0 "a line and a point, at length" render "$tmp/in/mixed.geojson" -o a.png -f --size 64x64 -v
+says '^camber: info: .*left out what is no line .* of 1 features$'
+rm -f a.png
 cat >"$tmp/in/roads.osm" <<'XML'
 <osm version="0.6">
 <node id="1" lat="1" lon="1"/><node id="2" lat="1.1" lon="1.1"/><node id="3" lat="1.2" lon="1"/>

@@ -261,6 +261,7 @@ static camber_status read_layers(reader *self, const int *layers, size_t count, 
 
 /* ---- A file ---- */
 
+/* Points and areas are no news: nobody asked for them. */
 static void warn(const reader *self) {
     const camber_features_stats *stats = &self->stats;
     const char *path = self->desc->path;
@@ -269,7 +270,7 @@ static void warn(const reader *self) {
                    "%s: %zu damaged features (the first: %s); what of them reads is kept", path,
                    stats->damaged_features, self->damage);
     if (stats->skipped_features)
-        camber_log(self->context, CAMBER_LOG_WARNING,
+        camber_log(self->context, CAMBER_LOG_INFO,
                    "%s: left out what is no line (points, areas, empty geometry) of %zu features", path,
                    stats->skipped_features);
     if (stats->invalid_points)

@@ -304,13 +304,14 @@ static void add_stats(camber_features *features, const camber_mvt_stats *stats) 
     features->stats.damaged_features += stats->damaged_features;
 }
 
+/* Points and areas are no news: nobody asked for them. */
 static void warn(const input *self, const camber_mvt_stats *stats) {
     if (stats->damaged_features)
         camber_log(self->context, CAMBER_LOG_WARNING,
                    "%s: %zu damaged features (the first: %s); what of them reads is kept", self->desc->path,
                    stats->damaged_features, stats->damage);
     if (stats->skipped_features)
-        camber_log(self->context, CAMBER_LOG_WARNING,
+        camber_log(self->context, CAMBER_LOG_INFO,
                    "%s: left out what is no line (points, areas, empty geometry) of %zu features", self->desc->path,
                    stats->skipped_features);
 }

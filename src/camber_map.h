@@ -219,6 +219,7 @@ typedef struct camber_scene_info {
     double bearing_deg, pitch_deg;
     uint32_t width, height;   /* device px */
     bool opaque;              /* the background covers the picture */
+    size_t undrawn;           /* features, wherever they lie, of which the style draws nothing at this zoom */
     size_t layers;            /* of the style that draw something here */
     size_t features;          /* of the polylines of which something lies in the view, once for layers that
                                * share lines; a merged polyline counts for all features that are in it */
@@ -228,7 +229,8 @@ typedef struct camber_scene_info {
 
 typedef struct camber_scene camber_scene;
 
-/* Evaluates the style and makes a network of what it draws. The features must outlive the scene.
+/* Evaluates the style and makes a network of what it draws. The features must outlive the scene. That the style draws
+ * none of them is warned of, with the keys that it goes by.
  * Returns CAMBER_ERROR_ARGUMENT (a view out of range), CAMBER_ERROR_MEMORY. Nothing to draw is no error. */
 CAMBER_API camber_status camber_scene_create(const camber_features *features, const camber_scene_desc *desc,
                                              camber_scene **scene);
@@ -244,7 +246,7 @@ CAMBER_API camber_status camber_scene_tessellate(const camber_scene *scene, camb
 CAMBER_API camber_network *camber_scene_network(const camber_scene *scene, camber_camera *camera,
                                                 camber_tessellation_desc *desc);
 
-/* Where the view is and whether its background is opaque; counts are 0. Makes nothing. */
+/* Where the view is, whether its background is opaque, and undrawn; other counts are 0. Makes nothing. */
 CAMBER_API camber_scene_info camber_scene_get_view(const camber_scene *scene);
 /* Counts are 0 where memory for the parts below ran out. */
 CAMBER_API camber_scene_info camber_scene_get_info(const camber_scene *scene);

@@ -673,6 +673,18 @@ says '^1 feature, 1 polyline, 2 points, '
 lacks a.png OpenStreetMap # anyone's roads may have a key of theirs
 lacks "$tmp/stderr" OpenStreetMap
 rm -f a.png
+# What the style leaves out is told at length; where it leaves out everything, always.
+rail=${line/highway/railway}
+echo "{\"type\":\"FeatureCollection\",\"features\":[$line,$rail]}" >"$tmp/in/rail.geojson"
+expect 0 "a line that the style leaves out" render "$tmp/in/rail.geojson" -o a.png --size 64x64
+lacks "$tmp/stderr" '^camber: '
+expect 0 "a line that the style leaves out, at length" render "$tmp/in/rail.geojson" -o a.png -f --size 64x64 -v
+says '^camber: info: style: draws nothing of 1 of 2 features$'
+echo "{\"type\":\"FeatureCollection\",\"features\":[$rail,${line/primary/nothing of a road}]}" >"$tmp/in/undrawn.geojson"
+expect 0 "lines that the style leaves out" render "$tmp/in/undrawn.geojson" -o a.png -f --size 64x64
+says '^camber: warning: style: no layer draws any of the 2 features at this zoom: it goes by .*highway.*; name a style'
+[ "$(grep -c warning "$tmp/stderr")" = 1 ] || fail "more than one warning"
+rm -f a.png
 point='{"type":"Feature","properties":{},"geometry":{"type":"Point","coordinates":[1,1]}}'
 echo "{\"type\":\"FeatureCollection\",\"features\":[$line,$point]}" >"$tmp/in/mixed.geojson"
 expect 0 "a line and a point" render "$tmp/in/mixed.geojson" -o a.png --size 64x64

@@ -279,11 +279,13 @@ int camber_input_project(camber_input *input) {
     return camber_report_status(input->session->report, status);
 }
 
-/* The library has told why there is nothing: no feature passed the filter. */
+/* The library has told why there is nothing: no feature passed the filter, or the style draws none. */
 static bool knows_why_empty(const camber_input *input) {
 #ifdef CAMBER_MAP
-    return input->features && input->session->options->where &&
-           camber_features_get_stats(input->features).features == 0;
+    if (!input->features)
+        return false;
+    const size_t features = camber_features_get_stats(input->features).features;
+    return features ? camber_scene_get_view(input->scene).undrawn == features : input->session->options->where != NULL;
 #else
     (void)input;
     return false;

@@ -164,6 +164,8 @@ expect 0 "version" --version
 has "$tmp/stdout" '^camber [0-9]*\.[0-9]*\.[0-9]*$'
 expect 0 "version of a verb" render --version
 cp "$tmp/stdout" "$tmp/version"
+grep -q "^\.TH CAMBER 1 \"[A-Z][a-z]* 20[0-9]*\" \"$(cat "$tmp/version")\" " "$here/../src/cli/camber.1" ||
+    fail "the man page is of another version"
 for words in -V version 'render -V'; do
     # shellcheck disable=SC2086
     expect 0 "version by $words" $words

@@ -36,7 +36,8 @@ static camber_status fail(const camber_tile_set *set) {
                            "to it",
                            set->name, said);
     case SQLITE_NOTADB:
-        return camber_fail(set->context, CAMBER_ERROR_INPUT, "%s: no MBTiles: %s; name such a file, or get it again", set->name, said);
+        return camber_fail(set->context, CAMBER_ERROR_INPUT, "%s: no MBTiles: %s; name such a file, or get it again",
+                           set->name, said);
     case SQLITE_INTERRUPT:
         return camber_fail(set->context, CAMBER_ERROR_INPUT,
                            "%s: a query takes too long; make an index on tiles (zoom_level, tile_column, tile_row)",

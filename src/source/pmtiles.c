@@ -375,7 +375,8 @@ static camber_status read_header(camber_tile_set *set) {
         return status;
     const unsigned char *head = self->packed.data;
     if (why || memcmp(head, "PMTiles", 7) != 0)
-        return camber_fail(set->context, CAMBER_ERROR_INPUT, "%s: no PMTiles; name such a file, or get it again", set->name);
+        return camber_fail(set->context, CAMBER_ERROR_INPUT, "%s: no PMTiles; name such a file, or get it again",
+                           set->name);
     if (head[7] != 3)
         return camber_fail(set->context, CAMBER_ERROR_INPUT, "%s: version %d of PMTiles; convert it to version 3",
                            set->name, head[7]);

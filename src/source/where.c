@@ -3,6 +3,7 @@
 
 #include <cpl_string.h>
 #include <ctype.h>
+#include <stdio.h>
 #include <string.h>
 
 static bool is_word_character(char c) {

@@ -133,15 +133,17 @@ CAMBER_API camber_status camber_features_create(camber_context *context, const c
                                                 camber_features **features);
 /* Reads one more file into the set. Warnings are logged once a cause.
  * Returns CAMBER_ERROR_NOT_FOUND, CAMBER_ERROR_INPUT (unreadable, cut off, no line layer, no such layer),
- * CAMBER_ERROR_ARGUMENT (where does not parse), CAMBER_ERROR_IO (also where GDAL cannot be loaded),
- * CAMBER_ERROR_MEMORY. Cost: the first call of a process does what camber_gdal_load does, and registers GDAL's drivers
- * (3 ms). */
+ * CAMBER_ERROR_ARGUMENT (where does not parse, or names a field that no layer has), CAMBER_ERROR_IO (also where GDAL
+ * cannot be loaded), CAMBER_ERROR_MEMORY. Cost: the first call of a process does what camber_gdal_load does, and
+ * registers GDAL's drivers (3 ms). */
 CAMBER_API camber_status camber_features_read(camber_features *features, const camber_source_desc *desc);
 CAMBER_API void camber_features_destroy(camber_features *features);
 CAMBER_API camber_features_stats camber_features_get_stats(const camber_features *features);
 CAMBER_API camber_features_times camber_features_get_times(const camber_features *features);
-/* Whether any of the data is OpenStreetMap's, whose licence asks for attribution. */
-CAMBER_API bool camber_features_is_osm(const camber_features *features);
+/* Whom to name beside a picture of the data, as UTF-8: "(c) OpenStreetMap contributors" of OpenStreetMap's own formats,
+ * whose licence asks for it; of tiles what their metadata or the style's source says, with its HTML left out. Of other
+ * files nothing is known. Several stand with commas between. NULL: none is known. Valid until more is read. */
+CAMBER_API const char *camber_features_attribution(const camber_features *features);
 
 /* Whether camber_features_read of such a file needs GDAL. */
 CAMBER_API bool camber_source_needs_gdal(const camber_source_desc *desc);
@@ -195,9 +197,10 @@ CAMBER_API camber_status camber_features_read_sources(camber_features *features,
 
 /* Reads the images that the style's patterns are of: its sprites, those for high resolutions where ratio, device px a
  * CSS px (0: 1), is above 1 and they are there. Paths are as those of sources. A style without patterns reads nothing;
- * one with patterns leaves out what is drawn with images that are not there or not read, and warns. Returns
- * CAMBER_ERROR_INPUT (a sprite on the network, or one that is not what it says), CAMBER_ERROR_IO, CAMBER_ERROR_LIMIT (a
- * sheet above 2^24 px), CAMBER_ERROR_ARGUMENT (the ratio), CAMBER_ERROR_MEMORY. */
+ * what is drawn with images that are in none of its sprites, or in one on the network, is left out, and warned of.
+ * Returns CAMBER_ERROR_NOT_FOUND (a sprite's file), CAMBER_ERROR_INPUT (one that is not what it says, an unknown
+ * scheme), CAMBER_ERROR_IO, CAMBER_ERROR_LIMIT (a sheet above 2^24 px), CAMBER_ERROR_ARGUMENT (the ratio),
+ * CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_features_read_sprites(camber_features *features, double ratio, const char *base_path);
 
 /* ---- Scene: a view of features in a style, ready to tessellate and draw --------------------------- */
@@ -216,6 +219,7 @@ typedef struct camber_scene_info {
     double bearing_deg, pitch_deg;
     uint32_t width, height;   /* device px */
     bool opaque;              /* the background covers the picture */
+    size_t undrawn;           /* features, wherever they lie, of which the style draws nothing at this zoom */
     size_t layers;            /* of the style that draw something here */
     size_t features;          /* of the polylines of which something lies in the view, once for layers that
                                * share lines; a merged polyline counts for all features that are in it */
@@ -225,7 +229,8 @@ typedef struct camber_scene_info {
 
 typedef struct camber_scene camber_scene;
 
-/* Evaluates the style and makes a network of what it draws. The features must outlive the scene.
+/* Evaluates the style and makes a network of what it draws. The features must outlive the scene. That the style draws
+ * none of them is warned of, with the keys that it goes by.
  * Returns CAMBER_ERROR_ARGUMENT (a view out of range), CAMBER_ERROR_MEMORY. Nothing to draw is no error. */
 CAMBER_API camber_status camber_scene_create(const camber_features *features, const camber_scene_desc *desc,
                                              camber_scene **scene);
@@ -241,7 +246,7 @@ CAMBER_API camber_status camber_scene_tessellate(const camber_scene *scene, camb
 CAMBER_API camber_network *camber_scene_network(const camber_scene *scene, camber_camera *camera,
                                                 camber_tessellation_desc *desc);
 
-/* Where the view is and whether its background is opaque; counts are 0. Makes nothing. */
+/* Where the view is, whether its background is opaque, and undrawn; other counts are 0. Makes nothing. */
 CAMBER_API camber_scene_info camber_scene_get_view(const camber_scene *scene);
 /* Counts are 0 where memory for the parts below ran out. */
 CAMBER_API camber_scene_info camber_scene_get_info(const camber_scene *scene);

@@ -224,7 +224,8 @@ static int open_map(camber_input *input) {
             session->report, camber_features_read_sprites(input->features, input->view.ratio, input->base_path));
     if (status != CAMBER_EXIT_DONE)
         return status;
-    input->osm = camber_features_is_osm(input->features);
+    const char *asked = session->options->attribution;
+    input->attribution = asked ? (*asked ? asked : NULL) : camber_features_attribution(input->features);
     const camber_features_stats stats = camber_features_get_stats(input->features);
     input->points_in = stats.points;
     input->segments_in = stats.points > stats.polylines ? stats.points - stats.polylines : 0;
@@ -278,11 +279,24 @@ int camber_input_project(camber_input *input) {
     return camber_report_status(input->session->report, status);
 }
 
+/* The library has told why there is nothing: no feature passed the filter, or the style draws none. */
+static bool knows_why_empty(const camber_input *input) {
+#ifdef CAMBER_MAP
+    if (!input->features)
+        return false;
+    const size_t features = camber_features_get_stats(input->features).features;
+    return features ? camber_scene_get_view(input->scene).undrawn == features : input->session->options->where != NULL;
+#else
+    (void)input;
+    return false;
+#endif
+}
+
 void camber_input_warn_empty(const camber_input *input, const char *consequence) {
-    if (camber_polylines_get_stats(camber_input_polylines(input)).polylines == 0)
-        camber_report_warn(input->session->report, "%s; %s",
-                           input->features ? "no line that the style draws is in the view" : "no polylines",
-                           consequence);
+    if (camber_polylines_get_stats(camber_input_polylines(input)).polylines > 0 || knows_why_empty(input))
+        return;
+    camber_report_warn(input->session->report, "%s; %s",
+                       input->features ? "no line that the style draws is in the view" : "no polylines", consequence);
 }
 
 const camber_polylines *camber_input_polylines(const camber_input *input) {

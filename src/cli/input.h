@@ -4,11 +4,9 @@
 
 #include "cli/session.h"
 
-#define CAMBER_ATTRIBUTION "(c) OpenStreetMap contributors"
-
 typedef struct camber_input {
     camber_session *session;
-    bool osm;                      /* the data asks for CAMBER_ATTRIBUTION */
+    const char *attribution;       /* of the options, or else of the data. NULL: none */
     size_t points_in, segments_in; /* as read */
     double read_ms, scene_ms;
 

@@ -1,5 +1,6 @@
 #include "cli/options.h"
 
+#include <jansson.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -16,6 +17,7 @@ enum {
     BENCH = 1 << CAMBER_VERB_BENCH,
     INFO = 1 << CAMBER_VERB_INFO,
     WRITING = RENDER | TESSELLATE | BENCH,
+    TILTING = RENDER | BENCH,
     READING = RENDER | TESSELLATE | COMPARE | VALIDATE | BENCH,
     EVERY = READING | INFO,
     STYLE = 1 << CAMBER_VERB_STYLE,
@@ -26,6 +28,7 @@ enum {
     MAPS = 0,
 #endif
     STYLED = MAPS & ~COMPARE,
+    SIGNED = MAPS & (RENDER | TESSELLATE),
 };
 
 typedef struct verb_spec {
@@ -56,6 +59,7 @@ static const verb_spec verbs[] = {
 typedef enum option_kind {
     KIND_FLAG,   /* bool */
     KIND_TEXT,   /* const char * */
+    KIND_WORDS,  /* const char *, UTF-8; may be empty */
     KIND_TEXTS,  /* wheres */
     KIND_NUMBER, /* double, least to most */
     KIND_COUNT,  /* uint32_t, least to most */
@@ -66,6 +70,12 @@ typedef enum option_kind {
     KIND_CENTER,
 } option_kind;
 
+/* What --help of some verbs says of an option, where it is not what it says of all. "": nothing. */
+typedef struct option_note {
+    int verbs; /* 0: no more notes */
+    const char *help;
+} option_note;
+
 typedef struct option_spec {
     const char *name;
     char letter; /* 0: none */
@@ -73,8 +83,9 @@ typedef struct option_spec {
     int verbs; /* 1 << camber_verb of those that take it */
     size_t offset;
     const char *argument;
-    const char *help;
+    const char *help; /* of the tool */
     double least, most;
+    option_note notes[3];
 } option_spec;
 
 #define FIELD(member) offsetof(camber_options, member)
@@ -85,33 +96,87 @@ static const option_spec specs[] = {
     {"force", 'f', KIND_FLAG, WRITING | COMPARE | VALIDATE, FIELD(force), NULL,
      "replace the file to write where it exists", 0, 0},
     {"format", 0, KIND_CHOICE, WRITING, FIELD(format), "png|glb", "of OUT, where its extension does not tell", 0, 0},
-    {"size", 0, KIND_SIZE, READING, 0, "WxH", "of the picture in CSS px (1024x1024; 2048x2048 with --polylines)", 0, 0},
+    {"size",
+     0,
+     KIND_SIZE,
+     READING,
+     0,
+     "WxH",
+     "of the picture in CSS px (1024x1024; 2048x2048 with --polylines)",
+     0,
+     0,
+     {{RENDER | TESSELLATE, "of the picture in CSS px (1024x1024)"}}},
     {"ratio", 0, KIND_NUMBER, READING, FIELD(view.ratio), "R", "device pixels a CSS px (1)", 1e-3, 1e3},
     {"bbox", 0, KIND_BBOX, MAPS, 0, "W,S,E,N", "show this box, degrees; W > E crosses the antimeridian", 0, 0},
     {"center", 0, KIND_CENTER, MAPS, 0, "LON,LAT", "show what lies around this place, with --zoom", 0, 0},
     {"zoom", 0, KIND_NUMBER, MAPS, FIELD(zoom), "Z", "MapLibre's: the world is 512 CSS px wide at 0", -2, 30},
     {"bearing", 0, KIND_NUMBER, MAPS, FIELD(bearing_deg), "DEG", "the direction that is up, clockwise (0)", -1e6, 1e6},
-    {"pitch", 0, KIND_NUMBER, MAPS, FIELD(pitch_deg), "DEG", "how far the camera is tilted, to 85; render, bench (0)",
-     0, 85},
+    {"pitch",
+     0,
+     KIND_NUMBER,
+     MAPS,
+     FIELD(pitch_deg),
+     "DEG",
+     "how far the camera is tilted, to 85; render, bench (0)",
+     0,
+     85,
+     {{TILTING, "how far the camera is tilted, to 85 (0)"}, {MAPS & ~TILTING, ""}}},
+    {"attribution", 0, KIND_WORDS, SIGNED, FIELD(attribution), "TEXT",
+     "sign OUT with this instead of what INPUT says of itself; '': not at all", 0, 0},
     {"style", 0, KIND_TEXT, STYLED, FIELD(style), "NAME|FILE", "a style that ships, or a MapLibre style (roads)", 0, 0},
     {"theme", 0, KIND_CHOICE, STYLED, FIELD(theme), "light|dark", "of a style that ships (light)", 0, 0},
     {"layer", 0, KIND_TEXT, MAPS, FIELD(layer), "NAME", "read this layer of INPUT only", 0, 0},
-    {"where", 0, KIND_TEXTS, MAPS, 0, "SQL", "an OGR attribute filter; compare: one a network", 0, 0},
+    {"where",
+     0,
+     KIND_TEXTS,
+     MAPS,
+     0,
+     "SQL",
+     "an OGR attribute filter; compare: one a network",
+     0,
+     0,
+     {{COMPARE, "an OGR attribute filter; several: one a network"}, {MAPS, "an OGR attribute filter"}}},
     {"polylines", 0, KIND_TEXT, COMPARE | BENCH | VALIDATE, FIELD(polylines), "FILE",
      "polylines in pixels instead of a map", 0, 0},
-    {"width-px", 0, KIND_NUMBER, COMPARE | BENCH | VALIDATE, FIELD(width_px), "W",
-     "of the lines, device pixels (2; compare: 8)", 1e-3, 16384},
+    {"width-px",
+     0,
+     KIND_NUMBER,
+     COMPARE | BENCH | VALIDATE,
+     FIELD(width_px),
+     "W",
+     "of the lines, device pixels (2; compare: 8)",
+     1e-3,
+     16384,
+     {{COMPARE, "of the lines, device pixels (8)"}, {BENCH | VALIDATE, "of the lines, device pixels (2)"}}},
     {"dump", 0, KIND_TEXT, BENCH, FIELD(dump), "FILE", "write the polylines in pixels, as --polylines reads them", 0,
      0},
     {"plot", 0, KIND_TEXT, COMPARE, FIELD(plot), "FILE", "bars of the averages, .svg or .png, drawn by gnuplot", 0, 0},
     {"runs", 0, KIND_COUNT, COMPARE | BENCH, FIELD(runs), "N", "timed runs, after 3 that are not (9)", 1, 100000},
-    {"method", 0, KIND_CHOICE, READING, FIELD(method), "strip|kite|fan",
-     "how lines become triangles (strip; compare, validate: all)", 0, 0},
+    {"method",
+     0,
+     KIND_CHOICE,
+     READING,
+     FIELD(method),
+     "strip|kite|fan",
+     "how lines become triangles (strip; compare, validate: all)",
+     0,
+     0,
+     {{COMPARE | VALIDATE, "how lines become triangles (all)"}, {READING, "how lines become triangles (strip)"}}},
     {"fan-tolerance-px", 0, KIND_NUMBER, COMPARE, FIELD(fan_tolerance_px), "T",
      "farthest that a fan's chord lies from its arc (0.25)", 1e-6, 16384},
     {"coverage", 0, KIND_CHOICE, READING, FIELD(coverage), "exact|linear", "how edges are smoothed (exact)", 0, 0},
-    {"simplify-px", 0, KIND_NUMBER, READING, FIELD(simplify_px), "T",
-     "drop points that the line stays this close to (render, bench: 0.1, else 0: none)", 0, 1e6},
+    {"simplify-px",
+     0,
+     KIND_NUMBER,
+     READING,
+     FIELD(simplify_px),
+     "T",
+     "drop points that the line stays this close to (render, bench: 0.1, else 0: none)",
+     0,
+     1e6,
+     {{RENDER, "drop points that the line stays this close to (0.1; 0: none)"},
+      {BENCH, "drop points that the line stays this close to (0.1; with --polylines 0: none)"},
+      {READING, "drop points that the line stays this close to (0: none)"}}},
     {"device", 0, KIND_TEXT, EVERY, FIELD(device), "TEXT", "OpenCL: cpu, gpu, or part of a device's name", 0, 0},
     {"backend", 0, KIND_CHOICE, EVERY, FIELD(backend), "auto|egl|osmesa", "where GL comes from (auto)", 0, 0},
     {"sharing", 0, KIND_CHOICE, RENDER | COMPARE | BENCH | INFO, FIELD(sharing), "auto|gl|zero-copy|copy",
@@ -133,7 +198,7 @@ static const option_spec specs[] = {
     {"quiet", 'q', KIND_FLAG, TALKING, FIELD(quiet), NULL, "errors only", 0, 0},
     {"verbose", 'v', KIND_FLAG, TALKING, FIELD(verbose), NULL, "say what is chosen and how long it takes", 0, 0},
     {"help", 'h', KIND_FLAG, TALKING, FIELD(help), NULL, "this text", 0, 0},
-    {"version", 0, KIND_FLAG, TALKING, FIELD(version), NULL, "the version", 0, 0},
+    {"version", 'V', KIND_FLAG, TALKING, FIELD(version), NULL, "the version", 0, 0},
 };
 
 #define SPEC_COUNT (sizeof specs / sizeof *specs)
@@ -141,17 +206,25 @@ static const option_spec specs[] = {
 
 /* ---- Help ---- */
 
+/* mask: of one verb, or TALKING. */
+static const char *help_of(const option_spec *spec, int mask) {
+    for (size_t i = 0; mask != TALKING && i < sizeof spec->notes / sizeof *spec->notes; i++)
+        if (spec->notes[i].verbs & mask)
+            return spec->notes[i].help;
+    return spec->help;
+}
+
 static void print_options(int mask, FILE *file) {
     for (size_t i = 0; i < SPEC_COUNT; i++) {
         const option_spec *spec = &specs[i];
-        if (!(spec->verbs & mask))
+        const char *help = help_of(spec, mask);
+        if (!(spec->verbs & mask) || !*help)
             continue;
         char left[64];
         const char letter[] = {'-', spec->letter, ',', ' ', 0};
         snprintf(left, sizeof left, "%s--%s%s%s", spec->letter ? letter : "    ", spec->name, spec->argument ? " " : "",
                  spec->argument ? spec->argument : "");
-        fprintf(file, strlen(left) < 32 ? "  %-32s%s\n" : "  %s\n                                  %s\n", left,
-                spec->help);
+        fprintf(file, strlen(left) < 32 ? "  %-32s%s\n" : "  %s\n                                  %s\n", left, help);
     }
 }
 
@@ -166,6 +239,8 @@ void camber_options_help(camber_verb verb, FILE *file) {
     fputs("camber VERB [OPTION...] [INPUT...]\nturns map lines into anti-aliased pictures\n\n", file);
     for (size_t i = 0; i < VERB_COUNT; i++)
         fprintf(file, "  %-12s%s\n", verbs[i].name, verbs[i].summary);
+    fprintf(file, "  %-12s%s\n", "help [VERB]", "this text, or a verb's own");
+    fprintf(file, "  %-12s%s\n", "version", "the version");
 #ifdef CAMBER_MAP
     fputs("\nINPUT: what OGR reads (OSM PBF and XML, GeoJSON, Shapefile, GeoPackage, ...); -: standard input.\n", file);
 #endif
@@ -289,6 +364,16 @@ static int parse_view(const parser *p, const option_spec *spec, const char *text
     return CAMBER_EXIT_DONE;
 }
 
+/* Files have it as UTF-8. */
+static int parse_words(const parser *p, const option_spec *spec, const char *text, const char **value) {
+    json_t *checked = json_string(text);
+    json_decref(checked);
+    if (!checked)
+        return usage(p, "--%s: is not UTF-8; write it in a terminal whose locale is", spec->name);
+    *value = text;
+    return CAMBER_EXIT_DONE;
+}
+
 static int parse_value(const parser *p, const option_spec *spec, const char *text) {
     char *field = (char *)p->options + spec->offset;
     switch (spec->kind) {
@@ -310,6 +395,7 @@ static int parse_value(const parser *p, const option_spec *spec, const char *tex
         *(double *)(void *)field = number;
         return CAMBER_EXIT_DONE;
     }
+    case KIND_WORDS: return parse_words(p, spec, text, (const char **)(void *)field);
     case KIND_COUNT: {
         uint32_t count;
         const char *rest = text;
@@ -395,15 +481,26 @@ static int parse_short(const parser *p, int argc, char **argv, int *at) {
     return CAMBER_EXIT_DONE;
 }
 
+/* "help" and "version" are what --help and --version are; a verb may stand behind the first. */
 static int parse_verb(const parser *p, const char *text) {
+    camber_options *options = p->options;
+    if (strcmp(text, "help") == 0) {
+        options->help = true;
+        return CAMBER_EXIT_DONE;
+    }
+    if (strcmp(text, "version") == 0) {
+        options->version = true;
+        return CAMBER_EXIT_DONE;
+    }
     for (size_t i = 0; i < VERB_COUNT; i++)
         if (strcmp(verbs[i].name, text) == 0) {
-            p->options->verb = verbs[i].verb;
+            options->verb = verbs[i].verb;
             return CAMBER_EXIT_DONE;
         }
-    char names[128] = "";
+    char names[160] = "";
     for (size_t i = 0; i < VERB_COUNT; i++)
-        snprintf(names + strlen(names), sizeof names - strlen(names), "%s%s", i ? ", " : "", verbs[i].name);
+        snprintf(names + strlen(names), sizeof names - strlen(names), "%s, ", verbs[i].name);
+    snprintf(names + strlen(names), sizeof names - strlen(names), "help, version");
     return usage(p, "%s: no such verb; it is one of %s", text, names);
 }
 

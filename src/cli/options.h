@@ -41,8 +41,9 @@ typedef struct camber_options {
     size_t where_count;
     bool help, version, json, quiet, verbose, force, warm, full;
     const char *output, *dump, *polylines, *plot, *junit, *pictures, *style, *layer, *device;
-    const char *where; /* the first */
-    int format;        /* 0: png, 1: glb */
+    const char *attribution; /* "": none */
+    const char *where;       /* the first */
+    int format;              /* 0: png, 1: glb */
     int theme, method, coverage, backend, sharing, draw;
     camber_view_desc view; /* width and height are set by camber_options_parse */
     bool has_bbox, has_center;

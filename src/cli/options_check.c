@@ -142,6 +142,16 @@ static int check_style(const checked *p) {
     return CAMBER_EXIT_DONE;
 }
 
+/* What draws in OpenCL loads no GL: an option that names a part of GL would have no effect. */
+static int check_draw(const checked *p) {
+    const camber_options *options = p->options;
+    const bool named = options->backend != CAMBER_BACKEND_AUTO;
+    if (options->draw != CAMBER_DRAW_CL || (!named && options->sharing == CAMBER_SHARING_AUTO))
+        return CAMBER_EXIT_DONE;
+    return usage(p, "--draw cl and --%s: OpenCL kernels draw without any GL; leave out --%s, or give --draw gl",
+                 named ? "backend" : "sharing", named ? "backend" : "sharing");
+}
+
 static int check_plot(const checked *p) {
     const char *plot = p->options->plot;
     if (plot && !has_extension(plot, ".svg") && !has_extension(plot, ".png"))
@@ -160,6 +170,8 @@ int camber_options_check(camber_options *options, const char *verb, char *messag
     int status = check_inputs(p);
     if (status == CAMBER_EXIT_DONE)
         status = check_view(p);
+    if (status == CAMBER_EXIT_DONE)
+        status = check_draw(p);
     if (status == CAMBER_EXIT_DONE && writes)
         status = check_output(p);
     if (status == CAMBER_EXIT_DONE)

@@ -24,12 +24,12 @@ int camber_picture_write(camber_input *input, camber_mesh *mesh, camber_output *
     const camber_frame frame = camber_input_frame(input, mesh);
     char software[64];
     snprintf(software, sizeof software, "camber %s", camber_version());
-    const camber_png_text texts[] = {{"Software", software}, {"Copyright", CAMBER_ATTRIBUTION}};
+    const camber_png_text texts[] = {{"Software", software}, {"Copyright", input->attribution}};
     const camber_png_desc desc = {.width = frame.width,
                                   .height = frame.height,
                                   .opaque = camber_input_opaque(input),
                                   .texts = texts,
-                                  .text_count = input->osm ? 2 : 1};
+                                  .text_count = input->attribution ? 2 : 1};
     camber_picture_times none;
     if (!times)
         times = &none;

@@ -120,6 +120,10 @@ void camber_report_say(camber_report *report, const char *format, ...) {
     print_line(report, "", text);
 }
 
+const char *camber_plural(size_t count) {
+    return count == 1 ? "" : "s";
+}
+
 json_t *camber_json_text(const char *text) {
     json_t *string = json_string(text);
     if (string)

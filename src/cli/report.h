@@ -39,6 +39,9 @@ void camber_report_warn(camber_report *report, const char *format, ...) CAMBER_P
 /* A line of people's text on standard error, unless quiet. */
 void camber_report_say(camber_report *report, const char *format, ...) CAMBER_PRINTF(2, 3);
 
+/* "s" behind a noun of which there are so many; "" of one. */
+const char *camber_plural(size_t count);
+
 /* A string for JSON: bytes that are not UTF-8 become '?'. */
 json_t *camber_json_text(const char *text);
 json_t *camber_json_count(size_t count);

@@ -212,15 +212,19 @@ static int print_text(const job *j) {
                 camber_sharing_name(camber_renderer_get_sharing(session->renderer)));
     else
         fprintf(file, "%s; drawn in OpenCL\n", device.name);
-    fprintf(file, "%u x %u px, %s, %zu polylines, %zu points (%zu read), %zu segments (%zu read)\n", j->width,
-            j->height, camber_method_name(mesh.method), lines.polylines, lines.kept_points, j->input.points_in,
-            lines.kept_segments, j->input.segments_in);
-    fprintf(file, "%zu vertices, %zu triangles, %.1f MB, %zu draw calls, peak memory %.0f MB\n", mesh.vertex_count,
-            mesh.triangle_count, (double)mesh.bytes / 1e6, j->stats.draw_calls, (double)camber_peak_rss_bytes() / 1e6);
+    fprintf(file, "%u x %u px, %s, %zu polyline%s, %zu points (%zu read), %zu segments (%zu read)\n", j->width,
+            j->height, camber_method_name(mesh.method), lines.polylines, camber_plural(lines.polylines),
+            lines.kept_points, j->input.points_in, lines.kept_segments, j->input.segments_in);
+    fprintf(file, "%zu vertices, %zu triangles, %.1f MB, ", mesh.vertex_count, mesh.triangle_count,
+            (double)mesh.bytes / 1e6);
+    if (session->surface) /* kernels have no draw calls */
+        fprintf(file, "%zu draw call%s, ", j->stats.draw_calls, camber_plural(j->stats.draw_calls));
+    fprintf(file, "peak memory %.0f MB\n", (double)camber_peak_rss_bytes() / 1e6);
     static const char *const names[TIMES] = {"tessellate", "draw",  "frame", "survey", "project", "classify", "scan",
                                              "emit",       "shape", "count", "total",  "fill",    "cover"};
     const size_t count = camber_renderer_get_draw(session->renderer) == CAMBER_DRAW_CL ? TIMES : 8;
-    fprintf(file, "\n%-12s %10s %10s %10s   ms, %u runs\n", "", "min", "median", "max", options->runs);
+    fprintf(file, "\n%-12s %10s %10s %10s   ms, %u run%s\n", "", "min", "median", "max", options->runs,
+            camber_plural(options->runs));
     for (size_t i = 0; i < count; i++)
         fprintf(file, "%-12s %10.3f %10.3f %10.3f\n", names[i], j->summaries[i].min, j->summaries[i].median,
                 j->summaries[i].max);

@@ -10,8 +10,17 @@ typedef struct job {
     camber_mesh *mesh;
     double tessellate_ms;
     camber_picture_times times;
+    double total_ms;
     size_t written_bytes;
 } job;
+
+/* What is not a stage's: libraries, the device and its kernels, as far as they take longer than what is read beside.
+ * The stages and this are the whole. */
+static double start_ms(const job *j) {
+    const camber_frame_stats *frame = &j->times.frame;
+    return j->total_ms - j->input.read_ms - j->input.scene_ms - j->tessellate_ms - frame->draw_ms - frame->read_ms -
+           j->times.write_ms;
+}
 
 static int draw(job *j) {
     camber_session *session = j->session;
@@ -31,11 +40,11 @@ static int draw(job *j) {
         return status;
     camber_input_warn_empty(&j->input, "the picture has none");
     camber_report_progress(session->report, "tessellating", -1);
-    const double start_ms = camber_clock_ms();
+    const double began_ms = camber_clock_ms();
     camber_status made = camber_mesh_create(session->device, session->renderer, &j->mesh);
     if (made == CAMBER_OK)
         made = camber_input_tessellate(&j->input, j->mesh);
-    j->tessellate_ms = camber_clock_ms() - start_ms;
+    j->tessellate_ms = camber_clock_ms() - began_ms;
     if (made != CAMBER_OK)
         return camber_report_status(session->report, made);
     status = camber_picture_write(&j->input, j->mesh, &j->output, &j->times);
@@ -80,44 +89,52 @@ static int print_json(const job *j) {
         const char *name;
         double ms;
     } times[] = {
-        {"read_ms", j->input.read_ms},
-        {"project_ms", j->input.scene_ms},
-        {"tessellate_ms", j->tessellate_ms},
-        {"draw_ms", j->times.frame.draw_ms},
-        {"read_back_ms", j->times.frame.read_ms},
-        {"write_ms", j->times.write_ms},
-        {"total_ms", camber_clock_ms() - session->start_ms},
+        {"start_ms", start_ms(j)},           {"read_ms", j->input.read_ms},
+        {"project_ms", j->input.scene_ms},   {"tessellate_ms", j->tessellate_ms},
+        {"draw_ms", j->times.frame.draw_ms}, {"read_back_ms", j->times.frame.read_ms},
+        {"write_ms", j->times.write_ms},     {"total_ms", j->total_ms},
     };
     for (size_t i = 0; i < sizeof times / sizeof *times; i++)
         json_object_set_new(object, times[i].name, camber_json_ms(times[i].ms));
-    json_object_set_new(object, "attribution", j->input.osm ? json_string(CAMBER_ATTRIBUTION) : json_null());
+    json_object_set_new(object, "attribution",
+                        j->input.attribution ? camber_json_text(j->input.attribution) : json_null());
     return camber_report_json(session->report, object);
+}
+
+/* Kernels draw without draw calls. */
+static void print_counts(const job *j, const camber_scene_info *scene) {
+    const camber_mesh_info mesh = camber_mesh_get_info(j->mesh);
+    const size_t calls = j->times.frame.draw_calls;
+    char drawn[64] = "drawn by OpenCL kernels";
+    if (camber_renderer_get_draw(j->session->renderer) == CAMBER_DRAW_GL)
+        snprintf(drawn, sizeof drawn, "%zu draw call%s", calls, camber_plural(calls));
+    camber_report_say(j->session->report, "%zu feature%s, %zu polyline%s, %zu point%s, %zu triangle%s (%s), %s",
+                      scene->features, camber_plural(scene->features), scene->polylines,
+                      camber_plural(scene->polylines), scene->points, camber_plural(scene->points), mesh.triangle_count,
+                      camber_plural(mesh.triangle_count), camber_method_name(mesh.method), drawn);
 }
 
 static void print_text(const job *j) {
     camber_session *session = j->session;
     camber_report *report = session->report;
     const camber_scene_info scene = camber_scene_get_info(j->input.scene);
-    const camber_mesh_info mesh = camber_mesh_get_info(j->mesh);
     const char *path = session->options->output;
     camber_report_say(report, "%s: %u x %u px, zoom %.2f at %.5f, %.5f", path[0] == '-' && !path[1] ? "picture" : path,
                       scene.width, scene.height, scene.zoom, scene.longitude, scene.latitude);
-    camber_report_say(report, "%zu features, %zu polylines, %zu points, %zu triangles (%s), %zu draw calls",
-                      scene.features, scene.polylines, scene.points, mesh.triangle_count,
-                      camber_method_name(mesh.method), j->times.frame.draw_calls);
+    print_counts(j, &scene);
     camber_report_say(report,
-                      "read %.1f ms, project %.1f, tessellate %.1f, draw %.1f, read back %.1f, write %.1f; "
-                      "in all %.1f ms and %.0f MB",
-                      j->input.read_ms, j->input.scene_ms, j->tessellate_ms, j->times.frame.draw_ms,
-                      j->times.frame.read_ms, j->times.write_ms, camber_clock_ms() - session->start_ms,
-                      (double)camber_peak_rss_bytes() / 1e6);
-    if (j->input.osm)
-        camber_report_say(report, "%s", CAMBER_ATTRIBUTION);
+                      "start %.1f ms (device, kernels), read %.1f, project %.1f, tessellate %.1f, draw %.1f, "
+                      "read back %.1f, write %.1f; in all %.1f ms and %.0f MB",
+                      start_ms(j), j->input.read_ms, j->input.scene_ms, j->tessellate_ms, j->times.frame.draw_ms,
+                      j->times.frame.read_ms, j->times.write_ms, j->total_ms, (double)camber_peak_rss_bytes() / 1e6);
+    if (j->input.attribution)
+        camber_report_say(report, "%s", j->input.attribution);
 }
 
 int camber_verb_render(camber_session *session) {
     job j = {.session = session};
     int status = draw(&j);
+    j.total_ms = camber_clock_ms() - session->start_ms;
     if (status == CAMBER_EXIT_DONE && session->options->json)
         status = print_json(&j);
     else if (status == CAMBER_EXIT_DONE)

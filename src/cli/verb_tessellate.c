@@ -12,9 +12,14 @@ typedef struct job {
     camber_mesh *mesh;
     camber_paint *paints;
     camber_mesh_data data;
-    double tessellate_ms, write_ms;
+    double tessellate_ms, write_ms, total_ms;
     size_t written_bytes;
 } job;
+
+/* What is not a stage's: libraries, the device and its kernels. The stages and this are the whole. */
+static double start_ms(const job *j) {
+    return j->total_ms - j->input.read_ms - j->input.scene_ms - j->tessellate_ms - j->write_ms;
+}
 
 /* A row's paint is that of the topmost pass that draws it: the fill where there is a casing. */
 static bool gather_paints(job *j, size_t count) {
@@ -31,8 +36,8 @@ static bool gather_paints(job *j, size_t count) {
 
 static int write_mesh(job *j) {
     camber_session *session = j->session;
-    const double start_ms = camber_clock_ms();
-    camber_glb_desc desc = {.copyright = j->input.osm ? CAMBER_ATTRIBUTION : NULL};
+    const double began_ms = camber_clock_ms();
+    camber_glb_desc desc = {.copyright = j->input.attribution};
     desc.strokes = camber_input_strokes(&j->input, &desc.stroke_count);
     if (!gather_paints(j, desc.stroke_count))
         return camber_report_status(session->report, CAMBER_ERROR_MEMORY);
@@ -43,7 +48,7 @@ static int write_mesh(job *j) {
         return camber_output_status(&j->output, status);
     j->written_bytes = j->output.size_bytes;
     const int published = camber_output_publish(&j->output);
-    j->write_ms = camber_clock_ms() - start_ms;
+    j->write_ms = camber_clock_ms() - began_ms;
     camber_report_erase_bar(session->report);
     return published;
 }
@@ -62,13 +67,13 @@ static int run(job *j) {
         return status;
     camber_input_warn_empty(&j->input, "the mesh is empty");
     camber_report_progress(session->report, "tessellating", -1);
-    const double start_ms = camber_clock_ms();
+    const double began_ms = camber_clock_ms();
     camber_status made = camber_mesh_create(session->device, NULL, &j->mesh);
     if (made == CAMBER_OK)
         made = camber_input_tessellate(&j->input, j->mesh);
     if (made == CAMBER_OK)
         made = camber_mesh_read(j->mesh, &j->data);
-    j->tessellate_ms = camber_clock_ms() - start_ms;
+    j->tessellate_ms = camber_clock_ms() - began_ms;
     if (made != CAMBER_OK)
         return camber_report_status(session->report, made);
     return write_mesh(j);
@@ -89,13 +94,15 @@ static int print_json(const job *j) {
     if (!object)
         return camber_report_json(session->report, NULL);
     camber_session_describe(session, object);
+    json_object_set_new(object, "start_ms", camber_json_ms(start_ms(j)));
     json_object_set_new(object, "read_ms", camber_json_ms(j->input.read_ms));
     json_object_set_new(object, "project_ms", camber_json_ms(j->input.scene_ms));
     json_object_set_new(object, "tessellate_ms", camber_json_ms(j->tessellate_ms));
     json_object_set_new(object, "write_ms", camber_json_ms(j->write_ms));
-    json_object_set_new(object, "total_ms", camber_json_ms(camber_clock_ms() - session->start_ms));
+    json_object_set_new(object, "total_ms", camber_json_ms(j->total_ms));
     json_object_set_new(object, "peak_rss_bytes", camber_json_count(camber_peak_rss_bytes()));
-    json_object_set_new(object, "attribution", j->input.osm ? json_string(CAMBER_ATTRIBUTION) : json_null());
+    json_object_set_new(object, "attribution",
+                        j->input.attribution ? camber_json_text(j->input.attribution) : json_null());
     return camber_report_json(session->report, object);
 }
 
@@ -104,20 +111,26 @@ static void print_text(const job *j) {
     camber_report *report = session->report;
     const camber_scene_info scene = camber_scene_get_info(j->input.scene);
     const char *path = session->options->output;
-    camber_report_say(report, "%s: %zu vertices, %zu triangles (%s), %zu bytes",
-                      path[0] == '-' && !path[1] ? "mesh" : path, j->data.info.vertex_count,
-                      j->data.info.triangle_count, camber_method_name(j->data.info.method), j->written_bytes);
-    camber_report_say(report, "%zu features, %zu polylines, %zu points", scene.features, scene.polylines, scene.points);
-    camber_report_say(report, "read %.1f ms, project %.1f, tessellate %.1f, write %.1f; in all %.1f ms and %.0f MB",
-                      j->input.read_ms, j->input.scene_ms, j->tessellate_ms, j->write_ms,
-                      camber_clock_ms() - session->start_ms, (double)camber_peak_rss_bytes() / 1e6);
-    if (j->input.osm)
-        camber_report_say(report, "%s", CAMBER_ATTRIBUTION);
+    const size_t triangles = j->data.info.triangle_count;
+    camber_report_say(report, "%s: %zu vertices, %zu triangle%s (%s), %zu bytes",
+                      path[0] == '-' && !path[1] ? "mesh" : path, j->data.info.vertex_count, triangles,
+                      camber_plural(triangles), camber_method_name(j->data.info.method), j->written_bytes);
+    camber_report_say(report, "%zu feature%s, %zu polyline%s, %zu point%s", scene.features,
+                      camber_plural(scene.features), scene.polylines, camber_plural(scene.polylines), scene.points,
+                      camber_plural(scene.points));
+    camber_report_say(report,
+                      "start %.1f ms (device, kernels), read %.1f, project %.1f, tessellate %.1f, write %.1f; "
+                      "in all %.1f ms and %.0f MB",
+                      start_ms(j), j->input.read_ms, j->input.scene_ms, j->tessellate_ms, j->write_ms, j->total_ms,
+                      (double)camber_peak_rss_bytes() / 1e6);
+    if (j->input.attribution)
+        camber_report_say(report, "%s", j->input.attribution);
 }
 
 int camber_verb_tessellate(camber_session *session) {
     job j = {.session = session};
     int status = run(&j);
+    j.total_ms = camber_clock_ms() - session->start_ms;
     if (status == CAMBER_EXIT_DONE && session->options->json)
         status = print_json(&j);
     else if (status == CAMBER_EXIT_DONE)

@@ -65,6 +65,7 @@ typedef struct camber_plan {
     size_t pair_count;
     uint64_t key; /* of the sets and classes of the pairs: two plans of the same features have equal entries by it */
     camber_plan_entry *entries;
+    size_t undrawn; /* features of which no layer draws anything */
 } camber_plan;
 
 /* Evaluates the style, once a set and class. Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT (2^24 rows).

@@ -130,6 +130,8 @@ static camber_status list_by_set(const camber_features *features, camber_plan *p
                            features->polyline_count);
     for (size_t p = 0; p < features->polyline_count; p++) {
         const uint32_t class = features->feature_class[features->polyline_feature[p]];
+        if (by_class->first[class] == by_class->first[class + 1])
+            plan->undrawn += features->feature_counts[p];
         for (size_t k = by_class->first[class]; k < by_class->first[class + 1]; k++)
             plan->sets[by_class->pairs[k].set].entry_count++;
     }

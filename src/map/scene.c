@@ -1,6 +1,7 @@
 #include "map/geometry.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 /* 2.4 GB. */
@@ -326,6 +327,45 @@ static camber_scene bare_scene(const camber_features *features, double simplify_
                           .plan = {.context = features->context}};
 }
 
+/* Keys that the style reads, some of them: "highway, MTFCC, ..."; "": none. */
+static void list_properties(const camber_style *style, char *text, size_t size) {
+    size_t used = 0, listed = 0;
+    *text = 0;
+    for (size_t i = 0; i < style->property_count; i++) {
+        const char *name = style->properties[i];
+        if (strcmp(name, CAMBER_PLAIN_PROPERTY) == 0)
+            continue;
+        const bool fits = listed < 8 && used + strlen(name) + sizeof ", , ..." <= size;
+        used += (size_t)snprintf(text + used, size - used, "%s%s", listed++ ? ", " : "", fits ? name : "...");
+        if (!fits)
+            return;
+    }
+}
+
+static bool has_patterns(const camber_plan *plan) {
+    for (size_t i = 0; i < plan->layer_count; i++)
+        if (plan->layers[i].look.layer->properties[CAMBER_LINE_PATTERN])
+            return true;
+    return false;
+}
+
+/* What a style leaves out is its business, but not where that is everything. Images of patterns that are not there are
+ * told of already. */
+static void tell_undrawn(const camber_scene *scene) {
+    const size_t undrawn = scene->plan.undrawn, all = scene->features->feature_count;
+    char keys[256];
+    if (has_patterns(&scene->plan))
+        return;
+    if (undrawn && undrawn < all)
+        camber_log(scene->context, CAMBER_LOG_INFO, "style: draws nothing of %zu of %zu features", undrawn, all);
+    if (!undrawn || undrawn < all)
+        return;
+    list_properties(scene->features->style, keys, sizeof keys);
+    camber_log(scene->context, CAMBER_LOG_WARNING,
+               "style: no layer draws any of the %zu feature%s at this zoom%s%s; name a style that does with --style",
+               all, all == 1 ? "" : "s", *keys ? ": it goes by " : "", keys);
+}
+
 camber_status camber_scene_create(const camber_features *features, const camber_scene_desc *desc,
                                   camber_scene **scene) {
     camber_context *context = features->context;
@@ -344,6 +384,7 @@ camber_status camber_scene_create(const camber_features *features, const camber_
         camber_scene_destroy(made);
         return status;
     }
+    tell_undrawn(made);
     if (made->plan.patterns.unread)
         camber_log(context, CAMBER_LOG_WARNING,
                    "style: its patterns are left out, for its sprites are not read; read them with the features");
@@ -396,7 +437,8 @@ camber_scene_info camber_scene_get_view(const camber_scene *scene) {
                               .pitch_deg = scene->view.pitch_deg,
                               .width = scene->view.width,
                               .height = scene->view.height,
-                              .opaque = scene->plan.background.a >= 1.0f};
+                              .opaque = scene->plan.background.a >= 1.0f,
+                              .undrawn = scene->plan.undrawn};
     camber_view_center(&scene->view, &info.longitude, &info.latitude);
     return info;
 }

@@ -20,22 +20,14 @@ void CPL_STDCALL camber_gdal_collect(CPLErr level, CPLErrorNum number, const cha
     if (errors->failures++ == 0) {
         errors->number = number;
         snprintf(errors->message, sizeof errors->message, "%s", message);
+        /* It stands within a sentence of ours. */
+        size_t length = strlen(errors->message);
+        while (length && strchr(". \n", errors->message[length - 1]))
+            errors->message[--length] = 0;
     }
 }
 
 /* ---- The OSM driver's configuration ---- */
-
-static bool is_key_character(char c) {
-    return isalnum((unsigned char)c) || c == '_' || c == ':' || c == '@' || c == '-' || c == '.';
-}
-
-/* The key goes into a comma-separated line of the configuration. */
-static bool is_key(const char *key, size_t length) {
-    for (size_t i = 0; i < length; i++)
-        if (!is_key_character(key[i]))
-            return false;
-    return length > 0;
-}
 
 typedef struct key_list {
     camber_context *context;
@@ -51,7 +43,8 @@ static bool has_key(const key_list *list, const char *key, size_t length) {
 }
 
 static bool add_key(key_list *list, const char *key, size_t length) {
-    if (!is_key(key, length) || (list->size && has_key(list, key, length)))
+    /* The key goes into a comma-separated line of the configuration. */
+    if (!camber_where_is_key(key, length) || (list->size && has_key(list, key, length)))
         return true;
     if (!camber_grow(list->context, &list->text, &list->capacity, list->size + length + 2, 1))
         return false;
@@ -63,37 +56,40 @@ static bool add_key(key_list *list, const char *key, size_t length) {
     return true;
 }
 
-/* Every word of an attribute filter outside '...' may be a key; SQL's own words do no harm as keys. */
-static bool add_where_keys(key_list *list, const char *where) {
-    bool quoted = false;
-    for (const char *c = where; *c;) {
-        if (*c == '\'')
-            quoted = !quoted;
-        if (quoted || !is_key_character(*c)) {
-            c++;
-            continue;
-        }
-        const char *start = c;
-        while (is_key_character(*c))
-            c++;
-        if (!add_key(list, start, (size_t)(c - start)))
+/* Columns that are no keys, and that the driver makes on demand. */
+static const char *const columns[] = {"osm_id",   "osm_version",   "osm_timestamp", "osm_uid",
+                                      "osm_user", "osm_changeset", "other_tags",    "all_tags"};
+
+enum { COLUMNS = sizeof columns / sizeof *columns };
+
+static bool take_column(bool named[COLUMNS], const char *word, size_t length) {
+    for (size_t i = 0; i < COLUMNS; i++)
+        if (strlen(columns[i]) == length && strncmp(columns[i], word, length) == 0)
+            return named[i] = true;
+    return false;
+}
+
+/* Every word of an attribute filter may be a key; SQL's own words do no harm as keys. */
+static bool add_where_keys(key_list *list, const char *where, bool named[COLUMNS]) {
+    size_t length;
+    const char *word;
+    while ((word = camber_where_next(&where, &length)) != NULL)
+        if (!take_column(named, word, length) && !add_key(list, word, length))
             return false;
-    }
     return true;
 }
 
-/* Replaces each @attributes@ of the template. */
-static char *fill_template(camber_context *context, const char *keys) {
-    static const char mark[] = "@attributes@";
-    const size_t mark_size = sizeof mark - 1, keys_size = strlen(keys);
+/* Replaces each mark of the template. */
+static char *fill_template(camber_context *context, const char *text, const char *mark, const char *keys) {
+    const size_t mark_size = strlen(mark), keys_size = strlen(keys);
     size_t marks = 0;
-    for (const char *at = camber_osmconf; (at = strstr(at, mark)) != NULL; at += mark_size)
+    for (const char *at = text; (at = strstr(at, mark)) != NULL; at += mark_size)
         marks++;
-    char *filled = camber_alloc(context, camber_osmconf_size + marks * keys_size + 1, 1);
+    char *filled = camber_alloc(context, strlen(text) + marks * keys_size + 1, 1);
     if (!filled)
         return NULL;
     char *out = filled;
-    const char *from = camber_osmconf;
+    const char *from = text;
     for (const char *at; (at = strstr(from, mark)) != NULL; from = at + mark_size) {
         memcpy(out, from, (size_t)(at - from));
         out += at - from;
@@ -104,9 +100,26 @@ static char *fill_template(camber_context *context, const char *keys) {
     return filled;
 }
 
+/* A line each. */
+static void list_columns(const bool named[COLUMNS], char text[256]) {
+    size_t used = 0;
+    for (size_t i = 0; i < COLUMNS; i++)
+        used += (size_t)snprintf(text + used, 256 - used, "%s=%s\n", columns[i], named[i] ? "yes" : "no");
+}
+
+static char *make_conf(camber_context *context, const char *keys, const bool named[COLUMNS]) {
+    char columns_text[256];
+    list_columns(named, columns_text);
+    char *made = fill_template(context, camber_osmconf, "@attributes@", keys);
+    char *filled = made ? fill_template(context, made, "@columns@\n", columns_text) : NULL;
+    camber_free(context, made);
+    return filled;
+}
+
 static camber_status write_conf(camber_dataset *dataset, const camber_style *style) {
     camber_context *context = dataset->context;
     key_list list = {.context = context};
+    bool named[COLUMNS] = {false};
     /* Never empty: the driver would fall back on nothing. */
     bool made = add_key(&list, "highway", strlen("highway"));
     for (size_t i = 0; made && i < style->property_count; i++)
@@ -115,9 +128,9 @@ static camber_status write_conf(camber_dataset *dataset, const camber_style *sty
     for (size_t i = 0; made && camber_osm_area_keys[i]; i++)
         made = add_key(&list, camber_osm_area_keys[i], strlen(camber_osm_area_keys[i]));
     if (made && dataset->desc->where)
-        made = add_where_keys(&list, dataset->desc->where);
+        made = add_where_keys(&list, dataset->desc->where, named);
     if (made)
-        dataset->conf = fill_template(context, list.text);
+        dataset->conf = make_conf(context, list.text, named);
     camber_free(context, list.text);
     if (!dataset->conf)
         return CAMBER_ERROR_MEMORY;
@@ -173,9 +186,13 @@ static camber_status fail_open(const camber_dataset *dataset, bool directory) {
         return camber_fail(dataset->context, CAMBER_ERROR_NOT_FOUND, "%s: no such file; check the path", path);
     if (there && about.st_size == 0)
         return camber_fail(dataset->context, CAMBER_ERROR_INPUT, "%s: the file is empty; get it again", path);
-    if (dataset->errors.failures == 0 || strstr(said, "not recognized as a supported file format"))
+    if (ends_with(path, ".pmtiles") && dataset->desc->where)
         return camber_fail(dataset->context, CAMBER_ERROR_INPUT,
-                           "%s: not in a vector format that GDAL reads; camber info lists the formats", path);
+                           "%s: this GDAL filters no PMTiles; leave out the filter, or convert them to MBTiles", path);
+    if (dataset->errors.failures == 0 || strstr(said, "not recognized as "))
+        return camber_fail(
+            dataset->context, CAMBER_ERROR_INPUT,
+            "%s: no map in a format that camber reads; name another file (camber info lists the formats)", path);
     return camber_fail(dataset->context, CAMBER_ERROR_INPUT, "%s: damaged or cut off: %s; get the file again", path,
                        said);
 }
@@ -258,19 +275,6 @@ void camber_dataset_close(camber_dataset *dataset) {
     dataset->conf = NULL;
 }
 
-/* OSM's ids and its main tag as columns, as osmtogeojson, osm2pgsql and OGR write them, or the licence's own words. */
-bool camber_dataset_is_osm(const camber_dataset *dataset) {
-    static const char *const names[] = {"osm_id", "@id", "highway"};
-    if (dataset->osm)
-        return true;
-    const char *attribution = GDALGetMetadataItem(dataset->handle, "attribution", NULL);
-    if (attribution && strstr(attribution, "OpenStreetMap"))
-        return true;
-    for (int i = 0; i < GDALDatasetGetLayerCount(dataset->handle); i++) {
-        OGRFeatureDefnH schema = OGR_L_GetLayerDefn(GDALDatasetGetLayer(dataset->handle, i));
-        for (size_t k = 0; k < sizeof names / sizeof *names; k++)
-            if (OGR_FD_GetFieldIndex(schema, names[k]) >= 0)
-                return true;
-    }
-    return false;
+const char *camber_dataset_attribution(const camber_dataset *dataset) {
+    return dataset->osm ? "(c) OpenStreetMap contributors" : GDALGetMetadataItem(dataset->handle, "attribution", NULL);
 }

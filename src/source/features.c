@@ -76,6 +76,7 @@ void camber_features_destroy(camber_features *features) {
     for (size_t i = 0; i < features->layer_count; i++)
         camber_free(context, features->layer_names[i]);
     camber_free(context, features->layer_names);
+    camber_free(context, features->attribution);
     camber_free(context, features->values);
     camber_free(context, features->classes);
     camber_free(context, features->feature_class);
@@ -96,10 +97,6 @@ camber_features_stats camber_features_get_stats(const camber_features *features)
 
 camber_features_times camber_features_get_times(const camber_features *features) {
     return features->times;
-}
-
-bool camber_features_is_osm(const camber_features *features) {
-    return features->is_osm;
 }
 
 /* FNV's low bits are weak for short keys; fold the high ones in. */

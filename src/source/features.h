@@ -55,8 +55,9 @@ struct camber_features {
     char **layer_names; /* source layers, in the order they were met */
     size_t layer_count, layer_capacity;
 
-    uint32_t source; /* of the classes found now; CAMBER_NO_SOURCE at first */
-    bool is_osm;
+    uint32_t source;   /* of the classes found now; CAMBER_NO_SOURCE at first */
+    char *attribution; /* attribution_size bytes and a 0; NULL: none yet */
+    size_t attribution_size, attribution_capacity;
     camber_features_stats stats;
     camber_features_times times;
 

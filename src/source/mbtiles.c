@@ -36,7 +36,8 @@ static camber_status fail(const camber_tile_set *set) {
                            "to it",
                            set->name, said);
     case SQLITE_NOTADB:
-        return camber_fail(set->context, CAMBER_ERROR_INPUT, "%s: no MBTiles: %s; get the file again", set->name, said);
+        return camber_fail(set->context, CAMBER_ERROR_INPUT, "%s: no MBTiles: %s; name such a file, or get it again",
+                           set->name, said);
     case SQLITE_INTERRUPT:
         return camber_fail(set->context, CAMBER_ERROR_INPUT,
                            "%s: a query takes too long; make an index on tiles (zoom_level, tile_column, tile_row)",
@@ -84,7 +85,8 @@ static camber_status read_metadata(camber_tile_set *set) {
     camber_status status = step == SQLITE_DONE ? CAMBER_OK : fail(set);
     sqlite3_finalize(rows);
     self->most_calls = MOST_CALLS;
-    camber_tile_set_describe(set, about);
+    if (status == CAMBER_OK)
+        status = camber_tile_set_describe(set, about);
     const char *format = json_string_value(json_object_get(about, "format"));
     if (status == CAMBER_OK && format && strcmp(format, "pbf") != 0 && strcmp(format, "mvt") != 0 &&
         strcmp(format, "application/x-protobuf") != 0 && strcmp(format, "application/vnd.mapbox-vector-tile") != 0)

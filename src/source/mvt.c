@@ -121,7 +121,6 @@ static const char *promoted_name(const camber_mvt *mvt) {
 }
 
 static bool find_keys(camber_mvt *mvt) {
-    static const char *const osm_keys[] = {"osm_id", "@id", "highway"};
     const tile_layer *layer = mvt->layer;
     const char *promoted = promoted_name(mvt);
     mvt->key_properties = camber_pool_alloc(&mvt->pool, (layer->n_keys + 1) * sizeof *mvt->key_properties);
@@ -139,8 +138,6 @@ static bool find_keys(camber_mvt *mvt) {
             mvt->ids[i] = is_text(key, id_keys[i]) ? k : mvt->ids[i];
         for (int i = 0; i < 2 && mvt->desc.wants_progress; i++)
             mvt->clips[i] = is_text(key, clip_keys[i]) ? k : mvt->clips[i];
-        for (size_t i = 0; i < sizeof osm_keys / sizeof *osm_keys; i++)
-            mvt->stats.names_osm |= is_text(key, osm_keys[i]);
         if (promoted && is_text(key, promoted))
             mvt->promoted = k;
     }

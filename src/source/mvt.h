@@ -30,7 +30,6 @@ typedef struct camber_mvt_stats {
     size_t damaged_features; /* what of them reads is kept; a tile or a layer that does not parse counts as one */
     char damage[256];        /* the first: tile, layer, cause */
     size_t features;         /* of the wanted layers */
-    bool names_osm;          /* a key of OpenStreetMap's */
     bool names_property;     /* a wanted layer has a key that the style names */
 } camber_mvt_stats;
 

@@ -375,7 +375,8 @@ static camber_status read_header(camber_tile_set *set) {
         return status;
     const unsigned char *head = self->packed.data;
     if (why || memcmp(head, "PMTiles", 7) != 0)
-        return camber_fail(set->context, CAMBER_ERROR_INPUT, "%s: no PMTiles; get the file again", set->name);
+        return camber_fail(set->context, CAMBER_ERROR_INPUT, "%s: no PMTiles; name such a file, or get it again",
+                           set->name);
     if (head[7] != 3)
         return camber_fail(set->context, CAMBER_ERROR_INPUT, "%s: version %d of PMTiles; convert it to version 3",
                            set->name, head[7]);
@@ -408,7 +409,7 @@ static camber_status read_metadata(camber_tile_set *set) {
     const camber_bytes *bytes;
     if (self->metadata.size == 0)
         return CAMBER_OK;
-    const camber_status status = read_packed(set, self->metadata, "its metadata", &bytes);
+    camber_status status = read_packed(set, self->metadata, "its metadata", &bytes);
     if (status != CAMBER_OK)
         return status;
     json_t *about = json_loadb((const char *)bytes->data, bytes->size_bytes, JSON_DECODE_INT_AS_REAL, NULL);
@@ -417,10 +418,10 @@ static camber_status read_metadata(camber_tile_set *set) {
         json_object_del(about, "minzoom");
         json_object_del(about, "maxzoom");
         json_object_del(about, "bounds");
-        camber_tile_set_describe(set, about);
+        status = camber_tile_set_describe(set, about);
     }
     json_decref(about);
-    return CAMBER_OK;
+    return status;
 }
 
 camber_status camber_pmtiles_open(camber_tile_set *set, const char *path) {

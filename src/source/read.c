@@ -28,6 +28,7 @@ typedef struct reader {
     camber_features_stats stats; /* of this file */
     char damage[512];            /* what the first damage was */
     size_t read;                 /* features that the layer gave */
+    size_t passed;               /* that all layers gave */
     double shown_ms;
 } reader;
 
@@ -192,6 +193,7 @@ static camber_status read_layer(reader *self, GIntBig expected, bool *unsorted) 
                 fraction = fmin((double)++self->read / (double)expected, 1);
             else
                 self->read++;
+            self->passed++;
             status = read_feature(self, feature, failed);
             show_progress(self, fraction);
         }
@@ -206,6 +208,33 @@ static camber_status check_count(reader *self, GIntBig expected) {
     if (self->desc->where || !EQUAL(driver, "FlatGeobuf") || expected < 0 || self->read >= (size_t)expected)
         return CAMBER_OK;
     return fail_stream(self, "its header announces more");
+}
+
+/* Of OpenStreetMap every key is a field. */
+static camber_status fail_where(const reader *self) {
+    char fields[512] = "keys of OpenStreetMap, as in highway = 'primary'";
+    if (!self->dataset.osm)
+        camber_where_list_fields(self->layer, fields, sizeof fields);
+    return camber_fail(self->context, CAMBER_ERROR_ARGUMENT,
+                       "%s: the filter \"%s\" does not fit: %s; put values in single quotes, and compare what layer "
+                       "\"%s\" has: %s",
+                       self->desc->path, self->desc->where,
+                       self->dataset.errors.failures ? self->dataset.errors.message : "it does not parse",
+                       OGR_L_GetName(self->layer), fields);
+}
+
+/* A key that no feature has is mostly one that is spelt wrong, or a value in double quotes. */
+static void warn_where(const reader *self) {
+    char key[256];
+    if (self->dataset.osm && camber_where_find_unknown(&self->dataset, self->layer, key, sizeof key))
+        camber_log(self->context, CAMBER_LOG_WARNING,
+                   "%s: nothing passes the filter \"%s\": no line has the key \"%s\"; check it, and put values in "
+                   "single quotes, as in highway = 'primary'",
+                   self->desc->path, self->desc->where, key);
+    else
+        camber_log(self->context, CAMBER_LOG_WARNING,
+                   "%s: nothing passes the filter \"%s\"; check the values that it compares with", self->desc->path,
+                   self->desc->where);
 }
 
 static camber_status read_layers(reader *self, const int *layers, size_t count, bool *unsorted) {
@@ -227,17 +256,12 @@ static camber_status read_layers(reader *self, const int *layers, size_t count, 
         if (status != CAMBER_OK)
             return status;
     }
-    if (any)
-        return CAMBER_OK;
-    return camber_fail(self->context, CAMBER_ERROR_ARGUMENT,
-                       "%s: the filter \"%s\" does not fit: %s; compare fields of "
-                       "the layer, as in highway = 'primary'",
-                       self->desc->path, self->desc->where,
-                       self->dataset.errors.failures ? self->dataset.errors.message : "it does not parse");
+    return any ? CAMBER_OK : fail_where(self);
 }
 
 /* ---- A file ---- */
 
+/* Points and areas are no news: nobody asked for them. */
 static void warn(const reader *self) {
     const camber_features_stats *stats = &self->stats;
     const char *path = self->desc->path;
@@ -246,7 +270,7 @@ static void warn(const reader *self) {
                    "%s: %zu damaged features (the first: %s); what of them reads is kept", path,
                    stats->damaged_features, self->damage);
     if (stats->skipped_features)
-        camber_log(self->context, CAMBER_LOG_WARNING,
+        camber_log(self->context, CAMBER_LOG_INFO,
                    "%s: left out what is no line (points, areas, empty geometry) of %zu features", path,
                    stats->skipped_features);
     if (stats->invalid_points)
@@ -302,8 +326,10 @@ static camber_status read_dataset(reader *self, bool *unsorted) {
         status = camber_tiles_finish(self->tiles, self->features);
     if (status == CAMBER_OK)
         status = judge(self, features_before);
-    if (status == CAMBER_OK && camber_dataset_is_osm(&self->dataset))
-        self->features->is_osm = true;
+    if (status == CAMBER_OK && self->desc->where && self->passed == 0)
+        warn_where(self);
+    if (status == CAMBER_OK)
+        status = camber_features_sign(self->features, camber_dataset_attribution(&self->dataset));
 done:
     camber_free(context, layers);
     return status;
@@ -348,7 +374,7 @@ static camber_status read_once(camber_features *features, const camber_source_de
     reader self = {
         .context = features->context, .features = features, .desc = desc, .parts.context = features->context};
     const size_t points = features->point_count, polylines = features->polyline_count, count = features->feature_count;
-    const bool was_osm = features->is_osm;
+    const size_t signed_size = features->attribution_size;
     const camber_features_stats stats = features->stats;
     const double start_ms = camber_now_ms();
     camber_status status = camber_dataset_open(features->context, desc, features->style, *unsorted, &self.dataset);
@@ -373,7 +399,7 @@ static camber_status read_once(camber_features *features, const camber_source_de
         features->point_count = points;
         features->polyline_count = polylines;
         features->feature_count = count;
-        features->is_osm = was_osm;
+        camber_features_unsign(features, signed_size);
         features->stats = stats;
     }
     return status;

@@ -73,12 +73,24 @@ typedef struct camber_dataset {
 camber_status camber_dataset_open(camber_context *context, const camber_source_desc *desc, const camber_style *style,
                                   bool unsorted, camber_dataset *dataset);
 void camber_dataset_close(camber_dataset *dataset);
-/* Whether the data is OpenStreetMap's. */
-bool camber_dataset_is_osm(const camber_dataset *dataset);
+/* Of OpenStreetMap's own formats what its licence asks for, of others what the file says. NULL: nothing. */
+const char *camber_dataset_attribution(const camber_dataset *dataset);
 /* Indices of the layers to read; freed with camber_free. */
 camber_status camber_dataset_layers(camber_dataset *dataset, bool wants_polygons, int **layers, size_t *count);
 /* CPLErrorHandler whose user data is a camber_gdal_errors. */
 void CPL_STDCALL camber_gdal_collect(CPLErr level, CPLErrorNum number, const char *message);
+
+/* ---- where.c: attribute filters ---- */
+
+/* The next word of a filter outside '...': it may be a key. *at moves behind it. NULL: there is no more. */
+const char *camber_where_next(const char **at, size_t *length);
+/* Whether it is made of what such words are. */
+bool camber_where_is_key(const char *text, size_t length);
+/* Of OpenStreetMap data whose filter nothing passes: the first key it names that no feature of the layer has. Reads the
+ * file again, without the filter. false: all keys are there. */
+bool camber_where_find_unknown(const camber_dataset *dataset, OGRLayerH layer, char *key, size_t size);
+/* "class, name, ...": the fields that a filter of the layer can compare. */
+void camber_where_list_fields(OGRLayerH layer, char *text, size_t size);
 
 /* ---- attributes.c: the fields of a layer that are read ---- */
 

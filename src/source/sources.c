@@ -4,8 +4,10 @@
 #include "source/tile_reader.h"
 #include "source/url.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
+#include <sys/stat.h>
 
 typedef struct source {
     const camber_style_source *style;
@@ -47,8 +49,21 @@ static camber_status load_json(camber_context *context, const char *what, const 
     camber_free(context, text);
     if (*root)
         return CAMBER_OK;
+    /* Not what it quotes: a style may name any file. */
+    char *quoted = strstr(error.text, " near '");
+    if (quoted)
+        *quoted = 0;
     return camber_fail(context, CAMBER_ERROR_INPUT, "%s: %s: no JSON at line %d, column %d: %s; get the file again",
                        what, path, error.line, error.column, error.text);
+}
+
+/* The style says what to do, or it is a matter of its paths. */
+static camber_status check_there(const camber_sources *sources, const source *one, const char *path) {
+    struct stat about;
+    if (stat(path, &about) == 0 || (errno != ENOENT && errno != ENOTDIR))
+        return CAMBER_OK;
+    return camber_fail(sources->context, CAMBER_ERROR_NOT_FOUND, "%s: %s: no such file; %s", one->place, path,
+                       one->style->missing ? one->style->missing : "check the path in the style");
 }
 
 /* ---- GeoJSON ---- */
@@ -70,6 +85,8 @@ static camber_status read_geojson(camber_sources *sources, source *one) {
         camber_url url = {0};
         status = camber_url_resolve(context, one->place, json_string_value(data), sources->desc.base_path, &url);
         if (status == CAMBER_OK)
+            status = check_there(sources, one, url.path);
+        if (status == CAMBER_OK)
             status = load_json(context, one->what, url.path, &loaded);
         camber_free(context, url.path);
     } else if (!json_is_object(data)) {
@@ -83,18 +100,19 @@ static camber_status read_geojson(camber_sources *sources, source *one) {
     json_decref(loaded);
     if (status != CAMBER_OK)
         return status;
-    const char *attribution = json_string_value(json_object_get(one->style->json, "attribution"));
-    sources->features->is_osm |= attribution && strstr(attribution, "OpenStreetMap");
     memcpy(one->bounds, stats.bounds, sizeof one->bounds);
     sources->features->stats.skipped_features += stats.skipped_features;
     sources->features->stats.damaged_features += stats.damaged_features;
     warn(sources, one->what, stats.damaged_features, stats.damage, stats.skipped_features);
-    return CAMBER_OK;
+    return camber_features_sign(sources->features, json_string_value(json_object_get(one->style->json, "attribution")));
 }
 
 /* ---- Vector tiles: opening ---- */
 
 static camber_status open_archive(camber_sources *sources, source *one, const camber_url *url) {
+    const camber_status there = check_there(sources, one, url->path);
+    if (there != CAMBER_OK)
+        return there;
     if (url->kind == CAMBER_URL_FILE || camber_tile_set_knows(url->path))
         return camber_tile_set_open(sources->context, url->path, &one->set);
     return camber_fail(sources->context, CAMBER_ERROR_INPUT,
@@ -129,7 +147,9 @@ static camber_status open_template(camber_sources *sources, source *one, const j
 /* about: of the style, laid over what the TileJSON file tells. */
 static camber_status open_tilejson(camber_sources *sources, source *one, const char *path, json_t *about) {
     json_t *loaded = NULL;
-    camber_status status = load_json(sources->context, one->what, path, &loaded);
+    camber_status status = check_there(sources, one, path);
+    if (status == CAMBER_OK)
+        status = load_json(sources->context, one->what, path, &loaded);
     if (status != CAMBER_OK)
         return status;
     /* Its own paths start from itself. */
@@ -168,10 +188,10 @@ static camber_status open_vector(camber_sources *sources, source *one) {
         status = open_tilejson(sources, one, url.path, about);
     if (status != CAMBER_OK)
         goto done;
-    camber_tile_set_describe(one->set, about);
+    status = camber_tile_set_describe(one->set, about);
     one->is_bounded = json_object_get(about, "bounds") != NULL;
     take_bounds(one);
-    if (one->set->min_zoom > one->set->max_zoom)
+    if (status == CAMBER_OK && one->set->min_zoom > one->set->max_zoom)
         status = camber_fail(context, CAMBER_ERROR_INPUT, "%s: minzoom %d lies above maxzoom %d; swap them", one->what,
                              one->set->min_zoom, one->set->max_zoom);
 done:
@@ -216,8 +236,10 @@ static camber_status open_source(camber_sources *sources, source *one) {
     return CAMBER_OK;
 }
 
-static void write_place(source *one, const char *base_path) {
-    snprintf(one->place, sizeof one->place, "%.800s: /sources/", base_path ? base_path : "style");
+/* A style that is no file has its own name. */
+static void write_place(source *one, const camber_style *style, const char *base_path) {
+    const char *name = style->name && *style->name ? style->name : "style";
+    snprintf(one->place, sizeof one->place, "%.800s: /sources/", base_path ? base_path : name);
     size_t used = strlen(one->place);
     for (const char *c = one->style->name; *c && used + 3 < sizeof one->place; c++) {
         const bool is_escaped = *c == '~' || *c == '/';
@@ -246,7 +268,7 @@ camber_status camber_sources_open(camber_features *features, const camber_source
         source *one = &made->items[made->count++];
         *one = (source){.style = &style->sources[i], .index = i, .bounds = {1, 1, 0, 0}};
         snprintf(one->what, sizeof one->what, "source \"%s\"", style->sources[i].name);
-        write_place(one, desc->base_path);
+        write_place(one, style, desc->base_path);
         status = open_source(made, one);
     }
     features->times.file_ms += camber_now_ms() - start_ms;
@@ -299,9 +321,10 @@ static camber_status read_places(camber_sources *sources, const source *one, con
     camber_status status = camber_tiles_read(features, reading, &result);
     if (status == CAMBER_OK)
         status = finish(features, first_polyline);
+    if (status == CAMBER_OK)
+        status = camber_features_sign(features, one->set->attribution);
     if (status != CAMBER_OK)
         return status;
-    features->is_osm |= result.stats.names_osm || one->set->is_osm;
     features->stats.skipped_features += result.stats.skipped_features;
     features->stats.damaged_features += result.stats.damaged_features;
     warn(sources, one->what, result.stats.damaged_features, result.stats.damage, result.stats.skipped_features);

@@ -4,10 +4,12 @@
 #include "source/url.h"
 #include "style/json.h"
 
+#include <errno.h>
 #include <math.h>
 #include <png.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 
 enum { SIDE_MAX_PX = CAMBER_IMAGE_SIDE_MAX, AREA_MAX_PX = 1 << 24, MISSED_MAX = 16 };
 
@@ -158,10 +160,8 @@ static camber_status find_file(camber_context *context, const char *path, const 
     char *whole = with_tail(context, path, tail);
     if (!whole)
         return CAMBER_ERROR_MEMORY;
-    FILE *file = fopen(whole, "rb");
-    if (file)
-        fclose(file);
-    *found = file != NULL;
+    struct stat about;
+    *found = stat(whole, &about) == 0 || (errno != ENOENT && errno != ENOTDIR); /* what else is wrong is told later */
     camber_free(context, whole);
     return CAMBER_OK;
 }
@@ -177,15 +177,27 @@ static camber_status load_any(camber_sprites *sprites, const camber_style_sprite
         status = find_file(sprites->context, path, ".png", &small);
     if (status != CAMBER_OK || large || small)
         return status == CAMBER_OK ? load_at(sprites, sprite, path, large) : status;
+    return camber_fail(sprites->context, CAMBER_ERROR_NOT_FOUND,
+                       "sprite \"%s\": %s.png: no such file; check the path in the style, or take its patterns out",
+                       sprite->id, path);
+}
+
+/* A map without its patterns is better than none. */
+static void leave_out(const camber_sprites *sprites, const camber_style_sprite *sprite) {
     camber_log(sprites->context, CAMBER_LOG_WARNING,
-               "sprite: %s.png is not there; what is drawn with its images is left out", path);
-    return CAMBER_OK;
+               "sprite \"%s\": %s is on the network, which camber does not use; what is drawn with its images is left "
+               "out: download it, and name the file",
+               sprite->id, sprite->url);
 }
 
 static camber_status load(camber_sprites *sprites, const camber_style *style, const char *base_path, double ratio) {
     for (size_t i = 0; i < style->sprite_count; i++) {
         const camber_style_sprite *sprite = style->sprites + i;
         camber_url url = {0};
+        if (camber_url_is_remote(sprite->url)) {
+            leave_out(sprites, sprite);
+            continue;
+        }
         camber_status status = camber_url_resolve(sprites->context, "sprite", sprite->url, base_path, &url);
         if (status != CAMBER_OK)
             return status;

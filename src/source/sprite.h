@@ -28,9 +28,9 @@ typedef struct camber_sprites {
 } camber_sprites;
 
 /* Loads the style's sprites, those for high resolutions (@2x) where the ratio is above 1 and they are there. URLs are
- * as those of sources. One that is not there is warned of, and has no images. Returns CAMBER_ERROR_INPUT (what is no
- * PNG, no index, or an image that does not lie on its sheet), CAMBER_ERROR_IO, CAMBER_ERROR_LIMIT (a sheet above 16384
- * px a side or 2^24 px), CAMBER_ERROR_MEMORY. */
+ * as those of sources. One on the network is warned of, and has no images. Returns CAMBER_ERROR_NOT_FOUND,
+ * CAMBER_ERROR_INPUT (what is no PNG, no index, or an image that does not lie on its sheet; an unknown scheme),
+ * CAMBER_ERROR_IO, CAMBER_ERROR_LIMIT (a sheet above 16384 px a side or 2^24 px), CAMBER_ERROR_MEMORY. */
 camber_status camber_sprites_load(camber_context *context, const camber_style *style, const char *base_path,
                                   double ratio, camber_sprites **sprites);
 void camber_sprites_destroy(camber_sprites *sprites);

@@ -6,15 +6,15 @@
 static const double PROGRESS_MS = 50;
 
 camber_features_mark camber_features_here(const camber_features *features) {
-    return (camber_features_mark){features->point_count, features->polyline_count, features->feature_count,
-                                  features->is_osm,      features->stats,          features->source};
+    return (camber_features_mark){features->point_count,      features->polyline_count, features->feature_count,
+                                  features->attribution_size, features->stats,          features->source};
 }
 
 void camber_features_reset(camber_features *features, const camber_features_mark *mark) {
     features->point_count = mark->point_count;
     features->polyline_count = mark->polyline_count;
     features->feature_count = mark->feature_count;
-    features->is_osm = mark->is_osm;
+    camber_features_unsign(features, mark->attribution_size);
     features->stats = mark->stats;
     features->source = mark->source;
 }
@@ -304,13 +304,14 @@ static void add_stats(camber_features *features, const camber_mvt_stats *stats) 
     features->stats.damaged_features += stats->damaged_features;
 }
 
+/* Points and areas are no news: nobody asked for them. */
 static void warn(const input *self, const camber_mvt_stats *stats) {
     if (stats->damaged_features)
         camber_log(self->context, CAMBER_LOG_WARNING,
                    "%s: %zu damaged features (the first: %s); what of them reads is kept", self->desc->path,
                    stats->damaged_features, stats->damage);
     if (stats->skipped_features)
-        camber_log(self->context, CAMBER_LOG_WARNING,
+        camber_log(self->context, CAMBER_LOG_INFO,
                    "%s: left out what is no line (points, areas, empty geometry) of %zu features", self->desc->path,
                    stats->skipped_features);
 }
@@ -339,7 +340,7 @@ camber_status camber_tiles_read_file(camber_features *features, const camber_sou
     if (status == CAMBER_OK)
         status = judge(&self, &result.stats, &before);
     if (status == CAMBER_OK)
-        features->is_osm |= result.stats.names_osm || self.set->is_osm;
+        status = camber_features_sign(features, self.set->attribution);
     camber_tile_set_close(self.set);
     camber_free(self.context, self.layers);
     camber_free(self.context, self.layer);

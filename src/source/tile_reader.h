@@ -28,7 +28,7 @@ camber_status camber_tiles_read_file(camber_features *features, const camber_sou
 
 typedef struct camber_features_mark {
     size_t point_count, polyline_count, feature_count;
-    bool is_osm;
+    size_t attribution_size;
     camber_features_stats stats;
     uint32_t source;
 } camber_features_mark;

@@ -110,7 +110,20 @@ static bool read_bounds(const json_t *json, double bounds[4]) {
            bounds[1] < bounds[3];
 }
 
-void camber_tile_set_describe(camber_tile_set *set, const json_t *about) {
+/* What tells more of the set later has the last word. */
+static camber_status take_attribution(camber_tile_set *set, const json_t *about) {
+    const char *text = json_string_value(json_object_get(about, "attribution"));
+    char *copy = text ? camber_copy_string(set->context, text) : NULL;
+    if (!text)
+        return CAMBER_OK;
+    if (!copy)
+        return CAMBER_ERROR_MEMORY;
+    camber_free(set->context, set->attribution);
+    set->attribution = copy;
+    return CAMBER_OK;
+}
+
+camber_status camber_tile_set_describe(camber_tile_set *set, const json_t *about) {
     double bounds[4];
     read_zoom(about, "minzoom", &set->min_zoom);
     read_zoom(about, "maxzoom", &set->max_zoom);
@@ -118,13 +131,12 @@ void camber_tile_set_describe(camber_tile_set *set, const json_t *about) {
         memcpy(set->bounds, bounds, sizeof bounds);
         set->has_bounds = true;
     }
-    const char *attribution = json_string_value(json_object_get(about, "attribution"));
-    set->is_osm |= attribution && strstr(attribution, "OpenStreetMap");
     json_t *layers = json_object_get(about, "vector_layers");
     if (json_is_array(layers) && json_array_size(layers)) {
         json_decref(set->layers);
         set->layers = json_incref(layers);
     }
+    return take_attribution(set, about);
 }
 
 /* ---- Files by a template ---- */
@@ -313,6 +325,7 @@ void camber_tile_set_close(camber_tile_set *set) {
     if (set->self)
         set->calls->close(set);
     json_decref(set->layers);
+    camber_free(set->context, set->attribution);
     camber_bytes_free(&set->raw);
     camber_free(set->context, set->name);
     camber_free(set->context, set);

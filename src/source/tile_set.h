@@ -42,9 +42,9 @@ struct camber_tile_set {
     int min_zoom, max_zoom;
     double bounds[4]; /* west, south, east, north, degrees; the whole world where nothing is said */
     bool has_bounds;
-    bool is_osm;    /* the attribution names OpenStreetMap */
-    json_t *layers; /* an array of objects with an "id". NULL: not told */
-    void *self;     /* the kind's own */
+    char *attribution; /* as it stands there, maybe HTML. NULL: not told */
+    json_t *layers;    /* an array of objects with an "id". NULL: not told */
+    void *self;        /* the kind's own */
     camber_bytes raw;
 };
 
@@ -65,8 +65,8 @@ camber_status camber_tile_set_of_files(camber_context *context, const camber_til
                                        camber_tile_set **set);
 
 /* Takes what TileJSON and the metadata of the other kinds have in common: minzoom, maxzoom, bounds, attribution,
- * vector_layers. Values that make no sense are left out. */
-void camber_tile_set_describe(camber_tile_set *set, const json_t *about);
+ * vector_layers. Values that make no sense are left out. Returns CAMBER_ERROR_MEMORY. */
+camber_status camber_tile_set_describe(camber_tile_set *set, const json_t *about);
 
 /* The tile's bytes, decompressed; size 0 where there is none. *why: NULL, or what is wrong with this one tile. Returns
  * CAMBER_ERROR_INPUT where the set itself is damaged, CAMBER_ERROR_IO, CAMBER_ERROR_MEMORY. */

@@ -44,9 +44,13 @@ static char *join(camber_context *context, const char *base_path, const char *pa
     return joined;
 }
 
+bool camber_url_is_remote(const char *text) {
+    return starts_with(text, "http://") || starts_with(text, "https://") || starts_with(text, "mapbox://");
+}
+
 /* rest: behind mbtiles:// and its like. */
 static camber_status fail_scheme(camber_context *context, const char *what, const char *text, const char *rest) {
-    if (starts_with(rest, "http://") || starts_with(rest, "https://") || starts_with(rest, "mapbox://"))
+    if (camber_url_is_remote(rest))
         return camber_fail(context, CAMBER_ERROR_INPUT,
                            "%s: %s is on the network, which camber does not use; download it, and name the file", what,
                            text);

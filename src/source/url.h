@@ -15,6 +15,9 @@ typedef struct camber_url {
     char *path; /* freed with camber_free */
 } camber_url;
 
+/* Whether it is on the network, where nothing is read. */
+bool camber_url_is_remote(const char *text);
+
 /* file://, mbtiles://, pmtiles:// and plain paths; relative ones start from the folder of base_path, a file (NULL: the
  * working folder). what names the source in messages. Returns CAMBER_ERROR_INPUT (another scheme; the network),
  * CAMBER_ERROR_MEMORY. */

@@ -102,10 +102,14 @@ static bool read_source(camber_document *d, const char *name, json_t *json) {
     camber_style_source *source = &c->style->sources[c->style->source_count++];
     if (json_object_set_new(d->source_indices, name, json_integer((json_int_t)c->style->source_count - 1)) != 0)
         return camber_compiler_fail_memory(c);
+    const json_t *metadata = json_object_get(d->root, "metadata");
+    const json_t *missing = json_object_get(json_object_get(metadata, "camber:missing"), name);
     source->json = json_incref(json);
     source->name = camber_copy_string(c->context, name);
     if (!source->name)
         return camber_document_fail_memory(d);
+    if (json_is_string(missing) && !camber_document_copy_string(d, missing, &source->missing))
+        return false;
     if (!camber_document_copy_string(d, type, &source->type))
         return false;
     json_t *filter = json_object_get(json, "filter");
@@ -353,6 +357,7 @@ void camber_style_destroy(camber_style *style) {
     for (size_t i = 0; i < style->source_count; i++) {
         camber_free(context, style->sources[i].name);
         camber_free(context, style->sources[i].type);
+        camber_free(context, style->sources[i].missing);
         json_decref(style->sources[i].json);
         camber_expression_destroy(context, style->sources[i].filter);
     }

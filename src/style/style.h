@@ -90,8 +90,9 @@ typedef struct camber_style_layer {
 
 typedef struct camber_style_source {
     char *name;
-    char *type;                /* "geojson", "vector", ... */
-    json_t *json;              /* a reference to the source as it stands in the document */
+    char *type;    /* "geojson", "vector", ... */
+    json_t *json;  /* a reference to the source as it stands in the document */
+    char *missing; /* what to do where its file is not there, of the style's metadata camber:missing. NULL: not told */
     camber_expression *filter; /* GeoJSON: of the features that there are at all. NULL: everything */
 } camber_style_source;
 

@@ -69,6 +69,15 @@ lacks() {
 be32() { od -An -tu1 -j"$2" -N4 "$1" | awk '{print (($1 * 256 + $2) * 256 + $3) * 256 + $4}'; }
 le32() { od -An -tu1 -j"$2" -N4 "$1" | awk '{print (($4 * 256 + $3) * 256 + $2) * 256 + $1}'; }
 
+# The stages of the summary on standard error, in ms, and the whole that they and the start make.
+adds_up() {
+    awk '/^start .* in all / { found = 1; split($0, half, ";"); gsub(/[^0-9. ]/, " ", half[1]); gsub(/[^0-9. ]/, " ", half[2])
+            n = split(half[1], part, " "); for (i = 1; i <= n; i++) sum += part[i]; split(half[2], whole, " ")
+            off = sum - whole[1] }
+        END { exit !(found && off < 0.5 && off > -0.5) }' "$tmp/stderr" ||
+        fail "its times do not add up: $(head -c 600 "$tmp/stderr")"
+}
+
 is_png() { # FILE WIDTH HEIGHT
     [ -s "$1" ] || { fail "no $1"; return; }
     [ "$(od -An -tx1 -N8 "$1" | tr -d ' \n')" = 89504e470d0a1a0a ] || fail "$1 is no PNG"
@@ -119,6 +128,14 @@ expect 2 "bench of both" bench "$osm" --polylines x
 expect 2 "standard input twice" render - - -o a.png
 expect 2 "where twice" render "$osm" -o a.png --where 'a = 1' --where 'b = 2'
 says 'AND or OR'
+for gl in '--backend egl' '--backend osmesa' '--sharing copy'; do
+    for verb in "render $osm -o a.png" "compare $osm" "bench $osm" info; do
+        # shellcheck disable=SC2086
+        expect 2 "OpenCL draws, and $gl: $verb" $verb --draw cl $gl
+        says "--draw cl and ${gl% *}: .* without any GL; leave out ${gl% *}, or give --draw gl"
+    done
+done
+expect 2 "OpenCL draws, and a back end is checked" validate --draw cl --backend egl
 expect 2 "compare without input" compare
 expect 2 "compare with a style" compare "$osm" --style x.json
 expect 2 "compare with an output" compare "$osm" -o a.png
@@ -146,6 +163,31 @@ done
 expect 0 "version" --version
 has "$tmp/stdout" '^camber [0-9]*\.[0-9]*\.[0-9]*$'
 expect 0 "version of a verb" render --version
+cp "$tmp/stdout" "$tmp/version"
+grep -q "^\.TH CAMBER 1 \"[A-Z][a-z]* 20[0-9]*\" \"$(cat "$tmp/version")\" " "$here/../src/cli/camber.1" ||
+    fail "the man page is of another version"
+for words in -V version 'render -V'; do
+    # shellcheck disable=SC2086
+    expect 0 "version by $words" $words
+    cmp -s "$tmp/stdout" "$tmp/version" || fail "not what --version says"
+done
+for verb in '' render compare bench; do
+    expect 0 "help of '$verb' by its option" $verb --help
+    cp "$tmp/stdout" "$tmp/help"
+    # shellcheck disable=SC2086
+    expect 0 "help of '$verb' by its verb" help $verb
+    cmp -s "$tmp/stdout" "$tmp/help" || fail "not what --help says"
+done
+expect 2 "help of an unknown verb" help frobnicate
+# A verb's help speaks of no other verb, and of no option that it does not take.
+for verb in render tessellate compare validate bench; do
+    expect 0 "help of $verb alone" $verb --help
+    for other in render tessellate compare validate bench; do
+        [ $verb = $other ] || lacks "$tmp/stdout" "^  .*[ (]$other[,:)]"
+    done
+    case $verb in compare | validate | bench) ;; *) lacks "$tmp/stdout" '--polylines' ;; esac
+    case $verb in render | bench) has "$tmp/stdout" '--pitch' ;; *) lacks "$tmp/stdout" '--pitch' ;; esac
+done
 
 # ---- Info ----
 
@@ -187,9 +229,12 @@ has "$tmp/stdout" '^GL *egl: not available: .*; install' '^GL *osmesa: not avail
 
 expect 0 "render" render "$osm" -o city.png --size 300x200
 is_png city.png 300 200
-has city.png 'OpenStreetMap contributors' "camber [0-9]"
-says 'OpenStreetMap contributors'
+has city.png "camber [0-9]"
+lacks city.png 'OpenStreetMap' # its tiles do not say whose they are
+lacks "$tmp/stderr" 'OpenStreetMap'
 says 'city.png'
+[ $own = gl ] && says 'triangles (strip), [0-9]* draw calls*$' || says 'triangles (strip), drawn by OpenCL kernels$'
+adds_up
 cp city.png "$tmp/in/city.png"
 expect 73 "output exists" render "$osm" -o city.png --size 30x20
 cmp -s city.png "$tmp/in/city.png" || fail "the file has changed"
@@ -249,6 +294,11 @@ verify 69
 says 'EGL: .*; install libegl1'
 expect 0 "few draw calls" render "$osm" -o calls.png --size 512x512 --json --draw gl
 has "$tmp/stdout" '"draw_calls": [1-4],'
+expect 0 "draw calls in words" render "$osm" -o calls.png -f --size 64x64 --draw gl
+says 'triangles (strip), [1-4] draw calls*$'
+adds_up
+expect 0 "no draw calls of kernels" render "$osm" -o calls.png -f --size 64x64 --draw cl --json
+has "$tmp/stdout" '"draw_calls": 0,' '"start_ms": [0-9]'
 rm -f calls.png
 expect 0 "one thread, dark" render "$tiger" -o dark.png --size 64x64 --theme dark --threads 1
 cmp -s dark.png tiger.png && fail "dark looks like light"
@@ -291,7 +341,16 @@ if command -v taskset >/dev/null && [ "$(nproc)" -gt 1 ]; then
     cmp -s dark.png pinned.png || fail "the cores show"
 fi
 expect 0 "two inputs" render "$osm" "$tiger" -o two.png --size 64x64
-has two.png 'OpenStreetMap contributors'
+credit='(c) Ümläut & <Söhne>'
+expect 0 "an attribution" render "$tiger" -o signed.png --size 64x64 --attribution "$credit"
+has signed.png "$credit"
+says "^$credit\$"
+expect 0 "an attribution as JSON" render "$tiger" -o signed.png -f --size 64x64 --attribution "$credit" --json
+has "$tmp/stdout" "\"attribution\": \"$credit\""
+expect 0 "an attribution of a mesh" tessellate "$tiger" -o signed.glb --attribution "$credit"
+has signed.glb "$credit"
+expect 2 "an attribution that is no text" render "$tiger" -o a.png --attribution $'\xff'
+rm -f signed.glb
 expect 0 "pitch" render "$osm" -o tilted.png --center -122.03,36.974 --zoom 14 --bearing 30 --pitch 85 --size 99x77
 expect 0 "centre and zoom" render "$osm" -o close.png --center -122.03,36.974 --zoom 14 --bearing 30 --size 99x77
 is_png close.png 99 77
@@ -321,7 +380,7 @@ for method in strip kite fan; do
     expect 0 "tessellate, $method" tessellate "$osm" -o mesh.glb -f --method $method --size 200x200 --json
     [ "$(head -c 4 mesh.glb)" = glTF ] || fail "no GLB"
     [ "$(le32 mesh.glb 8)" = "$(stat -c %s mesh.glb)" ] || fail "its head says $(le32 mesh.glb 8) bytes"
-    has mesh.glb POSITION 'OpenStreetMap contributors'
+    has mesh.glb POSITION
     has "$tmp/stdout" "\"output_bytes\": $(stat -c %s mesh.glb)" "\"method\": \"$method\"" '"triangles": [1-9]'
 done
 rm -f mesh.glb
@@ -607,10 +666,81 @@ for file in empty.geojson empty.osm.pbf empty cut.mbtiles random.osm.pbf random.
     expect 65 "$file, tessellated" tessellate "$tmp/in/$file" -o a.glb --json
     [ -s "$tmp/stdout" ] && fail "an error has something on standard output"
 done
+printf 'root:x:0:0:root:/root:/bin/sh\n' >"$tmp/in/text"
+cp "$tmp/in/text" "$tmp/in/text.geojson"
+for file in text text.geojson; do
+    expect 65 "text that never was a map: $file" render "$tmp/in/$file" -o a.png
+    says "$file: no map in a format that camber reads; name another file (camber info lists the formats)\$"
+    lacks "$tmp/stderr" root
+done
 expect 65 "a folder" render "$tmp/in" -o a.png
 expect 65 "no such layer" render "$osm" -o a.png --layer nope
 expect 0 "one line" render "$tmp/in/line.geojson" -o a.png --size 64x64
+says '^1 feature, 1 polyline, 2 points, '
+lacks a.png OpenStreetMap # anyone's roads may have a key of theirs
+lacks "$tmp/stderr" OpenStreetMap
 rm -f a.png
+# What the style leaves out is told at length; where it leaves out everything, always.
+rail=${line/highway/railway}
+echo "{\"type\":\"FeatureCollection\",\"features\":[$line,$rail]}" >"$tmp/in/rail.geojson"
+expect 0 "a line that the style leaves out" render "$tmp/in/rail.geojson" -o a.png --size 64x64
+lacks "$tmp/stderr" '^camber: '
+expect 0 "a line that the style leaves out, at length" render "$tmp/in/rail.geojson" -o a.png -f --size 64x64 -v
+says '^camber: info: style: draws nothing of 1 of 2 features$'
+echo "{\"type\":\"FeatureCollection\",\"features\":[$rail,${line/primary/nothing of a road}]}" >"$tmp/in/undrawn.geojson"
+expect 0 "lines that the style leaves out" render "$tmp/in/undrawn.geojson" -o a.png -f --size 64x64
+says '^camber: warning: style: no layer draws any of the 2 features at this zoom: it goes by .*highway.*; name a style'
+[ "$(grep -c warning "$tmp/stderr")" = 1 ] || fail "more than one warning"
+rm -f a.png
+point='{"type":"Feature","properties":{},"geometry":{"type":"Point","coordinates":[1,1]}}'
+echo "{\"type\":\"FeatureCollection\",\"features\":[$line,$point]}" >"$tmp/in/mixed.geojson"
+expect 0 "a line and a point" render "$tmp/in/mixed.geojson" -o a.png --size 64x64
+lacks "$tmp/stderr" '^camber: '
+expect 0 "a line and a point, at length" render "$tmp/in/mixed.geojson" -o a.png -f --size 64x64 -v
+says '^camber: info: .*left out what is no line .* of 1 features$'
+rm -f a.png
+cat >"$tmp/in/roads.osm" <<'XML'
+<osm version="0.6">
+<node id="1" lat="1" lon="1"/><node id="2" lat="1.1" lon="1.1"/><node id="3" lat="1.2" lon="1"/>
+<way id="10"><nd ref="1"/><nd ref="2"/><tag k="highway" v="primary"/><tag k="lit" v="yes"/></way>
+<way id="11"><nd ref="2"/><nd ref="3"/><tag k="railway" v="rail"/></way>
+</osm>
+XML
+# Attribute filters: any key of OpenStreetMap, and what its driver makes on demand; a warning where nothing passes.
+for where in "lit = 'yes'" "\"highway\" = 'primary'" "osm_id = '10'" "other_tags LIKE '%lit%'" \
+    "all_tags LIKE '%lit%'"; do
+    expect 0 "filter $where" render "$tmp/in/roads.osm" -o a.png -f --size 64x64 --where "$where"
+    says '^1 feature, '
+    lacks "$tmp/stderr" warning
+done
+for where in "hihgway = 'primary':hihgway" 'highway = "primary":primary'; do
+    expect 0 "filter ${where%:*}" render "$tmp/in/roads.osm" -o a.png -f --size 64x64 --where "${where%:*}"
+    says "^camber: warning: .*nothing passes the filter .*: no line has the key \"${where#*:}\"; check it, and put values in single quotes"
+    [ "$(grep -c warning "$tmp/stderr")" = 1 ] || fail "more than one warning"
+done
+expect 0 "filter of values that are not there" render "$tmp/in/roads.osm" -o a.png -f --size 64x64 --where "highway = 'x'"
+says '^camber: warning: .*nothing passes the filter .*; check the values'
+expect 0 "filter of tiles that nothing passes" render "$osm" -o a.png -f --size 64x64 --where "type = 'x'"
+says '^camber: warning: .*nothing passes the filter'
+rm -f a.png
+expect 2 "filter of a field that is not there" render "$tmp/in/line.geojson" -o a.png --where "hihgway = 'primary'"
+says '"hihgway" not recogni.ed as an available field; .*layer "line" has: highway$'
+expect 2 "filter of tiles by a field that is not there" render "$osm" -o a.png --where "highway = 'primary'"
+says 'layer "roads" has: .*type, name'
+expect 0 "OpenStreetMap's own format" render "$tmp/in/roads.osm" -o a.png --size 64x64
+has a.png '(c) OpenStreetMap contributors'
+says '^(c) OpenStreetMap contributors$'
+expect 0 "OpenStreetMap's own format, signed by the user" render "$tmp/in/roads.osm" -o a.png -f --size 64x64 --attribution Me
+has a.png 'Me'
+lacks a.png OpenStreetMap
+expect 0 "OpenStreetMap's own format, not signed" render "$tmp/in/roads.osm" -o a.png -f --size 64x64 --attribution ''
+lacks a.png Copyright
+lacks "$tmp/stderr" OpenStreetMap
+rm -f a.png
+expect 0 "one line, tessellated" tessellate "$tmp/in/line.geojson" -o a.glb
+says '^1 feature, 1 polyline, 2 points$'
+adds_up
+rm -f a.glb
 run sh -c "head -c 500 /dev/urandom | '$tool' render - -o a.png"
 name="random standard input"
 verify 65
@@ -657,6 +787,10 @@ is_png a.png 64 64
 rm -f a.png
 sed 's/line.geojson/none.geojson/' "$tmp/in/own.json" >"$tmp/in/gone.json"
 expect 66 "a style whose source is not there" render --style "$tmp/in/gone.json" -o a.png
+says '/gone.json: /sources/s: .*/none.geojson: no such file; check the path in the style'
+sed 's/line.geojson/text/' "$tmp/in/own.json" >"$tmp/in/passwd.json"
+expect 65 "a style whose source is text" render --style "$tmp/in/passwd.json" -o a.png
+lacks "$tmp/stderr" root
 sed 's|line.geojson|https://example.org/a.geojson|' "$tmp/in/own.json" >"$tmp/in/url.json"
 expect 65 "a style whose source is elsewhere" render --style "$tmp/in/url.json" -o a.png
 says '/url.json: /sources/s: https://example.org'
@@ -666,6 +800,14 @@ echo '{"a": {"x": 0, "y": 0, "width": 60000, "height": 60000, "pixelRatio": 1}}'
 sed 's/"version": 8,/& "sprite": "vast",/; s/"line-width": 3/"line-pattern": "a"/' "$tmp/in/own.json" >"$tmp/in/pattern.json"
 expect 65 "a style whose sprite is too large" render --style "$tmp/in/pattern.json" -o a.png
 says '60000 x 60000 px; cut it'
+sed 's/"vast"/"none"/' "$tmp/in/pattern.json" >"$tmp/in/nosprite.json"
+expect 66 "a style whose sprite is not there" render --style "$tmp/in/nosprite.json" -o a.png
+says 'sprite "default": .*/none.png: no such file; check the path in the style'
+expect 66 "nor its large form" render --style "$tmp/in/nosprite.json" -o a.png --ratio 2
+sed 's|"vast"|"https://example.org/sprite"|' "$tmp/in/pattern.json" >"$tmp/in/farsprite.json"
+expect 0 "a style whose sprite is elsewhere" render --style "$tmp/in/farsprite.json" -o a.png --size 64x64
+says '^camber: warning: sprite "default": https://example.org/sprite is on the network'
+rm -f a.png
 expect 0 "the built-in style by its name" render "$tiger" --style roads --theme dark -qo named.png --size 64x64
 expect 0 "the built-in style" render "$tiger" --theme dark -qo builtin.png --size 64x64
 cmp -s named.png builtin.png || fail "roads is not the built-in style"
@@ -674,7 +816,9 @@ expect 0 "a style that ships" style check openmaptiles
 expect 66 "no style of that name" render "$tiger" --style streets -o a.png
 says 'roads, openmaptiles, transit'
 expect 66 "a style that ships, without its tiles" render --style openmaptiles --theme dark -o a.png
-says 'openmaptiles.mbtiles'
+says 'OpenMapTiles.*: /sources/openmaptiles: openmaptiles.mbtiles: no such file; tilemaker makes it'
+expect 66 "a style that ships, without its lines" render --style transit -o a.png
+says 'transit.*: /sources/transit: transit.geojson: no such file; osmium and transit-lines.py make it'
 cp "$tmp/in/own.json" roads
 expect 2 "a file goes before a style that ships" render "$tiger" --style roads --theme dark -o a.png
 rm -f roads

@@ -156,6 +156,31 @@ static void test_no_properties(void **state) {
     camber_features_destroy(features);
 }
 
+/* Each once, as plain text; what failed takes its own out again. */
+static void test_attribution(void **state) {
+    fixture *it = *state;
+    camber_features *set = it->features;
+    assert_null(camber_features_attribution(set));
+    static const char *const nothing[] = {NULL, "", " \n", "<br>"};
+    for (size_t i = 0; i < sizeof nothing / sizeof *nothing; i++)
+        assert_int_equal(camber_features_sign(set, nothing[i]), CAMBER_OK);
+    assert_null(camber_features_attribution(set));
+    assert_int_equal(
+        camber_features_sign(set, " <a href=\"https://a.example/?b>c\" target='_blank'>&copy; A &amp; B</a>\n"),
+        CAMBER_OK);
+    assert_string_equal(camber_features_attribution(set), "\xc2\xa9 A & B");
+    camber_features_unsign(set, 0);
+    assert_null(camber_features_attribution(set));
+    assert_int_equal(camber_features_sign(set, "<a href=\"https://a.example\">&copy;  A</a> <i>1 < 2</i>"), CAMBER_OK);
+    assert_string_equal(camber_features_attribution(set), "\xc2\xa9 A 1 < 2");
+    const size_t size = set->attribution_size;
+    assert_int_equal(camber_features_sign(set, "B"), CAMBER_OK);
+    assert_int_equal(camber_features_sign(set, "\xc2\xa9 A"), CAMBER_OK);
+    assert_string_equal(camber_features_attribution(set), "\xc2\xa9 A 1 < 2, B");
+    camber_features_unsign(set, size);
+    assert_string_equal(camber_features_attribution(set), "\xc2\xa9 A 1 < 2");
+}
+
 static void *reallocate_some(void *user, void *block, size_t size) {
     int *left = user;
     if (size == 0) {
@@ -205,6 +230,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_classes, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_polylines, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_no_properties, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_attribution, set_up, tear_down),
         cmocka_unit_test(test_out_of_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -154,7 +154,7 @@ static void test_archive(void **state) {
         assert_int_equal(open_archive(it, &a, &set), CAMBER_OK);
         assert_int_equal(set->min_zoom, 0);
         assert_int_equal(set->max_zoom, 2);
-        assert_true(set->is_osm);
+        assert_string_equal(set->attribution, "(c) OpenStreetMap contributors");
         assert_true(set->bounds[0] > -10.0001 && set->bounds[0] < -9.9999 && set->bounds[3] > 39.9999);
         assert_int_equal(json_array_size(set->layers), 1);
         assert_string_equal(text_of(it, set, 0, 0, 0), "@zero");

@@ -172,6 +172,14 @@ static void expect_bent(fixture *it, const char *source) {
     assert_int_equal(it->features->classes[0].source, 0);
 }
 
+static void expect_attribution(const fixture *it, const char *text) {
+    const char *got = camber_features_attribution(it->features);
+    if (text)
+        assert_string_equal(got, text);
+    else
+        assert_null(got);
+}
+
 static void test_templates(void **state) {
     fixture *it = *state;
     char source[512];
@@ -189,8 +197,10 @@ static void test_templates(void **state) {
     expect_bent(it, source);
     /* TileJSON, its paths from itself; what the style says comes first. */
     write_text(it, "tiles.json",
-               "{\"tilejson\": \"2.2.0\", \"tiles\": [\"t{x}.{y}.pbf\"], \"maxzoom\": 14, \"scheme\": \"tms\"}");
+               "{\"tilejson\": \"2.2.0\", \"tiles\": [\"t{x}.{y}.pbf\"], \"maxzoom\": 14, \"scheme\": \"tms\", "
+               "\"attribution\": \"A\"}");
     expect_bent(it, "\"s\": {\"type\": \"vector\", \"maxzoom\": 1, \"url\": \"tiles.json\"}");
+    expect_attribution(it, "A");
 }
 
 static void test_archives(void **state) {
@@ -210,7 +220,8 @@ static void test_archives(void **state) {
     }
     char path[256], source[512];
     assert_true(write_mbtiles(in_folder(it, "a.mbtiles", path), tiles, 3,
-                              "INSERT INTO metadata VALUES ('minzoom', '1'), ('maxzoom', '1'), ('format', 'pbf')"));
+                              "INSERT INTO metadata VALUES ('minzoom', '1'), ('maxzoom', '1'), ('format', 'pbf'), "
+                              "('attribution', '<b>Tiles</b>')"));
     for (int i = 0; i < 3; i++)
         blob_free(&tiles[i].content);
     archive.root = directory_of(entries, 3);
@@ -225,7 +236,11 @@ static void test_archives(void **state) {
         snprintf(url, sizeof url, i == 4 ? "pmtiles://file://%s/a.pmtiles" : "%s", i == 4 ? it->folder : forms[i]);
         snprintf(source, sizeof source, "\"s\": {\"type\": \"vector\", \"url\": \"%s\"}", url);
         expect_bent(it, source);
+        expect_attribution(it, i < 2 ? "Tiles" : NULL);
     }
+    /* The style has the last word. */
+    expect_bent(it, "\"s\": {\"type\": \"vector\", \"url\": \"a.mbtiles\", \"attribution\": \"Mine\"}");
+    expect_attribution(it, "Mine");
     expect_bent(it, "\"s\": {\"type\": \"vector\", \"maxzoom\": 1, \"tiles\": [\"pmtiles://a.pmtiles/{z}/{x}/{y}\"]}");
     /* As input, too: both are read whole. */
     for (int i = 0; i < 2; i++) {
@@ -236,6 +251,7 @@ static void test_archives(void **state) {
         assert_false(camber_source_needs_gdal(&desc));
         expect_ok(it, camber_features_read(it->features, &desc));
         expect_units(it, 0, 8192, 4, BENT_UNITS);
+        expect_attribution(it, i ? NULL : "Tiles");
         assert_int_equal(it->features->classes[0].source, CAMBER_NO_SOURCE);
     }
 }
@@ -547,6 +563,9 @@ static void test_geojson_options(void **state) {
     fixture *it = *state;
     read_geojson(it, ", \"generateId\": true");
     assert_true(id_of(it, 0)->number == 0 && id_of(it, 2)->number == 2);
+    expect_attribution(it, NULL);
+    read_geojson(it, ", \"attribution\": \"Mine\"");
+    expect_attribution(it, "Mine");
     read_geojson(it, ", \"promoteId\": \"name\"");
     assert_int_equal(id_of(it, 0)->type, CAMBER_VALUE_NULL);
     assert_string_equal(id_of(it, 1)->string, "thirteen");

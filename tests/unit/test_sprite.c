@@ -182,14 +182,18 @@ static void test_false_sizes(void **state) {
     assert_story(&d.h, NULL);
     close_desk(&d);
     open_desk(&d, "\"none\"");
+    assert_int_equal(camber_sprites_load(d.context, d.style, d.base, 2, &sprites), CAMBER_ERROR_NOT_FOUND);
+    assert_story(&d.h, "none.png: no such file");
+    close_desk(&d);
+    open_desk(&d, "\"https://example.org/sprite\"");
     assert_int_equal(camber_sprites_load(d.context, d.style, d.base, 1, &sprites), CAMBER_OK);
     assert_int_equal(sprites->image_count, 0);
     assert_int_equal(d.h.warnings, 1);
     camber_sprites_destroy(sprites);
     close_desk(&d);
-    open_desk(&d, "\"https://example.org/sprite\"");
+    open_desk(&d, "\"gopher://example.org/sprite\"");
     assert_int_equal(camber_sprites_load(d.context, d.style, d.base, 1, &sprites), CAMBER_ERROR_INPUT);
-    assert_story(&d.h, "network");
+    assert_story(&d.h, "gopher");
     close_desk(&d);
 }
 

@@ -3,7 +3,7 @@
 # Prints what failed and exits 1 if anything did.
 set -u
 tool=$1
-here=$(cd "$(dirname "$0")" && pwd)
+here=$(cd "$(dirname "$0")/.." && pwd)
 osm=$here/data/santa_cruz/osm.mbtiles
 tiger=$here/data/santa_cruz/tiger.mbtiles
 tmp=$(mktemp -d) || exit 1
@@ -402,7 +402,7 @@ expect 0 "bench as a table" bench --polylines lines.bin --runs 1 --size 64x64
 has "$tmp/stdout" '^tessellate ' '^draw ' '^frame ' '^classify ' '^scan ' '^emit '
 head -c 1000 lines.bin >"$tmp/in/cut.bin"
 expect 65 "polylines cut off" bench --polylines "$tmp/in/cut.bin"
-expect 65 "polylines of text" validate --polylines "$here/test_cli.sh"
+expect 65 "polylines of text" validate --polylines "$here/tool/test_cli.sh"
 expect 66 "no such polylines" bench --polylines "$tmp/in/none.bin"
 expect 65 "a folder of polylines" bench --polylines "$tmp/in"
 cp lines.bin "$tmp/in/lines.bin"

@@ -64,7 +64,7 @@ uninstall || { cat "$folder/log"; exit 1; }
 left=$(cd "$DESTDIR" && find . ! -type d -o -name '*camber*')
 [ -z "$left" ] || { echo "left behind: $left"; exit 1; }
 unset DESTDIR
-rm -r "$folder/usr"
+rm -r "${folder:?}/usr"
 mv "$folder/installed" "$folder/usr"
 
 programs=core

@@ -156,10 +156,12 @@ CAMBER_FN void camber_pitch_cells_meet(const camber_pitch_pen *p, camber_real x,
                    (along < p->to + axis) & (aside < p->wide + axis) & (fa >= far_a) & (fb < far_b);
     const float ends = p->sharp ? -CAMBER_ALWAYS_PX : p->margin, close = 0.5f * p->margin;
     const camber_real from = camber_form_at(&p->x, x, y), to = camber_form_at(&p->past_b, x, y);
-    cells->nears = (from < ends + camber_cell_reach(p->x.x, p->x.y)) |
-                   (to > -ends - camber_cell_reach(p->past_b.x, p->past_b.y)) | (fa < close + reach_a) |
-                   (fb > -close - reach_b) | camber_cut_is_near(&p->cut_a, p->wide_a, x, y) |
-                   camber_cut_is_near(&p->cut_b, p->wide_b, x, y);
+    const float reach_from = camber_cell_reach(p->x.x, p->x.y);
+    const float reach_to = camber_cell_reach(p->past_b.x, p->past_b.y);
+    const camber_mask cut_a = camber_cut_is_near(&p->cut_a, p->wide_a, x, y);
+    const camber_mask cut_b = camber_cut_is_near(&p->cut_b, p->wide_b, x, y);
+    cells->nears = (from < ends + reach_from) | (to > -ends - reach_to) | (fa < close + reach_a) |
+                   (fb > -close - reach_b) | cut_a | cut_b;
     cells->inside = (in_left >= p->left.extent + left) & (in_right >= p->right.extent + right);
 }
 

@@ -1,11 +1,36 @@
-# The target `lint`: formatting, clang-tidy, every kernel and every public header by itself.
-find_program(CLANG clang)
-find_program(CLANG_FORMAT clang-format)
-find_program(CLANG_TIDY clang-tidy)
-if(NOT CLANG OR NOT CLANG_FORMAT OR NOT CLANG_TIDY)
-  add_custom_target(lint COMMAND ${CMAKE_COMMAND} -E echo "lint: clang, clang-format and clang-tidy are needed; see ./dev setup"
+# The target `lint`: formatting, clang-tidy, every kernel and every public header by itself. It counts with the clang of
+# .ci/pinned: another one formats otherwise and has other checks. Such a clang-format or clang-tidy is left out, and what
+# such a clang warns of is information.
+set(lint_notes)
+set(lint_missing)
+foreach(tool clang clang-format clang-tidy)
+  string(TOUPPER ${tool} name)
+  string(REPLACE "-" "_" name ${name})
+  find_program(${name} NAMES ${tool}-${pinned_clang} ${tool})
+  if(NOT ${name})
+    list(APPEND lint_missing ${tool})
+    continue()
+  endif()
+  execute_process(COMMAND ${${name}} --version OUTPUT_VARIABLE version)
+  string(REGEX MATCH "version ([0-9]+)" version "${version}")
+  set(${name}_IS_PINNED OFF)
+  if(CMAKE_MATCH_1 STREQUAL pinned_clang)
+    set(${name}_IS_PINNED ON)
+  elseif(tool STREQUAL clang)
+    list(APPEND lint_notes COMMAND ${CMAKE_COMMAND} -E echo "lint: ${tool} ${CMAKE_MATCH_1}, made for ${pinned_clang}: its warnings do not count")
+  else()
+    list(APPEND lint_notes COMMAND ${CMAKE_COMMAND} -E echo "lint: ${tool} ${CMAKE_MATCH_1}, made for ${pinned_clang}: skipped")
+  endif()
+endforeach()
+if(lint_missing)
+  list(JOIN lint_missing ", " lint_missing)
+  add_custom_target(lint COMMAND ${CMAKE_COMMAND} -E echo "lint: not here: ${lint_missing}, see ./dev setup"
                     COMMAND ${CMAKE_COMMAND} -E false)
   return()
+endif()
+set(lint_warnings -Wall -Wextra)
+if(CLANG_IS_PINNED)
+  list(APPEND lint_warnings -Werror)
 endif()
 
 file(GLOB_RECURSE lint_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/*.c ${PROJECT_SOURCE_DIR}/bench/*.c)
@@ -22,17 +47,19 @@ function(lint_step name)
 endfunction()
 file(MAKE_DIRECTORY ${stamps})
 
-lint_step(format COMMAND ${CLANG_FORMAT} --dry-run -Werror ${lint_sources} ${lint_headers} ${lint_others} DEPENDS ${lint_sources} ${lint_headers} ${lint_others})
+if(CLANG_FORMAT_IS_PINNED)
+  lint_step(format COMMAND ${CLANG_FORMAT} --dry-run -Werror ${lint_sources} ${lint_headers} ${lint_others} DEPENDS ${lint_sources} ${lint_headers} ${lint_others})
+endif()
 
 foreach(method 0 1 2)
   lint_step(kernels_${method}
-    COMMAND ${CLANG} -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only -Wall -Wextra -Werror
+    COMMAND ${CLANG} -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only ${lint_warnings}
             -Wno-unused-function -Wno-unused-parameter -Wno-ignored-pragmas -DCAMBER_METHOD=${method} -D__OPENCL_VERSION__=120 ${CMAKE_BINARY_DIR}/src/kernels.cl
     DEPENDS ${CMAKE_BINARY_DIR}/src/kernels.cl)
 endforeach()
 
 lint_step(kernels_network
-  COMMAND ${CLANG} -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only -Wall -Wextra -Werror
+  COMMAND ${CLANG} -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only ${lint_warnings}
           -Wno-unused-function -Wno-unused-parameter -Wno-ignored-pragmas -D__OPENCL_VERSION__=120 ${CMAKE_BINARY_DIR}/src/network.cl
   DEPENDS ${CMAKE_BINARY_DIR}/src/network.cl)
 
@@ -40,25 +67,28 @@ foreach(variant 0,0 1,0 1,1)
   string(REGEX REPLACE "(.),(.)" "-DCAMBER_COVER_RICH=\\1;-DCAMBER_COVER_PITCHED=\\2" macros ${variant})
   string(REPLACE "," "_" variant ${variant})
   lint_step(kernels_cover_${variant}
-    COMMAND ${CLANG} -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only -Wall -Wextra -Werror
+    COMMAND ${CLANG} -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only ${lint_warnings}
             -Wno-unused-function -Wno-unused-parameter -Wno-ignored-pragmas -D__OPENCL_VERSION__=120 ${macros}
             ${CMAKE_BINARY_DIR}/src/cover.cl
     DEPENDS ${CMAKE_BINARY_DIR}/src/cover.cl)
 endforeach()
 
 lint_step(kernels_cover_lanes
-  COMMAND ${CLANG} -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only -Wall -Wextra -Werror
+  COMMAND ${CLANG} -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only ${lint_warnings}
           -Wno-unused-function -Wno-unused-parameter -Wno-ignored-pragmas -D__OPENCL_VERSION__=120 -Wno-bitwise-instead-of-logical -DCAMBER_LANES=1
           ${CMAKE_BINARY_DIR}/src/cover.cl
   DEPENDS ${CMAKE_BINARY_DIR}/src/cover.cl)
 
-foreach(header camber.h camber_map.h)
-  lint_step(c_${header} COMMAND ${CLANG} -std=c11 -pedantic -Wall -Wextra -Werror -fsyntax-only -x c ${PROJECT_SOURCE_DIR}/src/${header}
-            DEPENDS ${PROJECT_SOURCE_DIR}/src/camber.h ${PROJECT_SOURCE_DIR}/src/camber_map.h)
-  lint_step(cxx_${header} COMMAND ${CLANG} -std=c++17 -pedantic -Wall -Wextra -Werror -fsyntax-only -x c++ ${PROJECT_SOURCE_DIR}/src/${header}
-            DEPENDS ${PROJECT_SOURCE_DIR}/src/camber.h ${PROJECT_SOURCE_DIR}/src/camber_map.h)
+file(GLOB public_headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/camber*.h)
+foreach(header IN LISTS public_headers)
+  get_filename_component(name ${header} NAME)
+  lint_step(c_${name} COMMAND ${CLANG} -std=c11 -pedantic ${lint_warnings} -fsyntax-only -x c ${header} DEPENDS ${public_headers})
+  lint_step(cxx_${name} COMMAND ${CLANG} -std=c++17 -pedantic ${lint_warnings} -fsyntax-only -x c++ ${header} DEPENDS ${public_headers})
 endforeach()
 
+if(NOT CLANG_TIDY_IS_PINNED)
+  set(lint_sources)
+endif()
 foreach(source IN LISTS lint_sources)
   file(RELATIVE_PATH name ${PROJECT_SOURCE_DIR} ${source})
   if(name MATCHES "^src/(style|source|map)/" AND NOT CAMBER_MAP)
@@ -69,4 +99,4 @@ foreach(source IN LISTS lint_sources)
             DEPENDS ${source} ${lint_headers} ${PROJECT_SOURCE_DIR}/.clang-tidy)
 endforeach()
 
-add_custom_target(lint DEPENDS ${done})
+add_custom_target(lint ${lint_notes} DEPENDS ${done})

@@ -368,7 +368,7 @@ camber_status camber_input_tessellate(const camber_input *input, camber_mesh *me
     camber_tessellation_desc desc = {.method = camber_session_method(input->session)};
 #ifdef CAMBER_MAP
     /* What is drawn is made on the device; what proves something, of the polylines that it is held against. */
-    const int verb = input->session->options->verb;
+    const camber_verb verb = input->session->options->verb;
     if (input->scene && (verb == CAMBER_VERB_RENDER || verb == CAMBER_VERB_BENCH))
         return camber_scene_tessellate(input->scene, mesh, desc.method);
 #endif

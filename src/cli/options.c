@@ -501,6 +501,10 @@ static int parse_verb(const parser *p, const char *text) {
     for (size_t i = 0; i < VERB_COUNT; i++)
         snprintf(names + strlen(names), sizeof names - strlen(names), "%s, ", verbs[i].name);
     snprintf(names + strlen(names), sizeof names - strlen(names), "help, version");
+#ifndef CAMBER_MAP
+    if (!strcmp(text, "render") || !strcmp(text, "tessellate") || !strcmp(text, "style"))
+        return usage(p, "%s: this build has no map (CAMBER_MAP=OFF); its verbs are %s", text, names);
+#endif
     return usage(p, "%s: no such verb; it is one of %s", text, names);
 }
 

@@ -23,7 +23,7 @@ static inline size_t camber_farthest(const double *points, size_t first, size_t 
         const double along = px * dx + py * dy, cross = px * dy - py * dx;
         const double beside = cross * cross * inverse, before = px * px + py * py, beyond = qx * qx + qy * qy;
         const double past = along <= 0.0 ? before : beyond;
-        const double d = (along > 0.0) & (along < length_squared) ? beside : past;
+        const double d = ((along > 0.0) & (along < length_squared)) ? beside : past;
         if (d > most) {
             most = d;
             found = i;

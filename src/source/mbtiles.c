@@ -125,7 +125,7 @@ static camber_status get_tile(camber_tile_set *set, int zoom, camber_tile_place 
     bytes->size_bytes = 0;
     sqlite3_bind_int(self->get, 1, zoom);
     sqlite3_bind_int64(self->get, 2, place.column);
-    sqlite3_bind_int64(self->get, 3, (INT64_C(1) << zoom) - 1 - place.row);
+    sqlite3_bind_int64(self->get, 3, ((sqlite3_int64)1 << zoom) - 1 - place.row);
     const int step = sqlite3_step(self->get);
     camber_status status = step == SQLITE_ROW || step == SQLITE_DONE ? CAMBER_OK : fail(set);
     if (step == SQLITE_ROW) {

@@ -178,7 +178,7 @@ static camber_color from_rgba8(uint32_t r, uint32_t g, uint32_t b, uint32_t a) {
 }
 
 static bool parse_hex(const char *text, size_t length, camber_color *color) {
-    uint32_t digits[8];
+    uint32_t digits[8] = {0};
     if (length != 3 && length != 4 && length != 6 && length != 8)
         return false;
     for (size_t i = 0; i < length; i++) {

@@ -3,9 +3,13 @@
 set -eu
 source=$1 folder=$2
 shift 2
-if ! command -v clang >/dev/null || ! echo 'int LLVMFuzzerTestOneInput(const char *b, unsigned long n) { return b && !n; }' |
+if ! command -v clang >/dev/null; then
+    echo "no clang: skipped"
+    exit 77
+fi
+if ! echo 'int LLVMFuzzerTestOneInput(const char *b, unsigned long n) { return b && !n; }' |
     clang -x c -fsanitize=fuzzer,address - -o /dev/null 2>/dev/null; then
-    echo "no clang with libFuzzer (Debian: clang, libclang-rt-14-dev): skipped"
+    echo "no libFuzzer for clang (Debian: libclang-rt-$(clang -dumpversion | cut -d. -f1)-dev): skipped"
     exit 77
 fi
 mkdir -p "$folder"

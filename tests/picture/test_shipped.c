@@ -412,7 +412,7 @@ static void test_slots(void **state) {
         for (int slot = -1; slot <= 1; slot++)
             for (int c = 0; c < 3; c++)
                 assert_float_equal(picture_value(&p, WIDE / 2, (uint32_t)(HIGH / 2 + 6 * slot), c),
-                                   c == (backwards ? 1 - slot : 1 + slot), 0.02);
+                                   (float)(c == (backwards ? 1 - slot : 1 + slot)), 0.02);
         for (int c = 0; c < 3; c++) {
             assert_true(picture_value(&p, WIDE / 2, HIGH / 2 - 3, c) > 0.3);
             assert_true(picture_value(&p, WIDE / 2, HIGH / 2 - 10, c) > 0.95); /* the casing's edge */

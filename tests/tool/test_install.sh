@@ -1,11 +1,20 @@
 #!/usr/bin/env bash
-# A ten-line program against the installed tree, through pkg-config and through CMake: test_install.sh BUILD MAP
+# A ten-line program against the installed tree, through pkg-config and through CMake; then all of it is uninstalled:
+# test_install.sh SOURCE BUILD MAP
 set -eu
-build=$1
-map=$2
+source=$1
+build=$2
+map=$3
 folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
+manifest=$build/install_manifest.txt
+[ ! -f "$manifest" ] || mv "$manifest" "$folder/manifest"
+# Whoever has installed from this folder wants to uninstall that.
+trap 'rm -f "$manifest"; [ ! -f "$folder/manifest" ] || mv "$folder/manifest" "$manifest"; rm -rf "$folder"' EXIT
 cmake --install "$build" --prefix "$folder/usr" >"$folder/log" || { cat "$folder/log"; exit 1; }
+cp -a "$folder/usr" "$folder/installed"
+for file in LICENSE README.md CHANGELOG.md; do
+    cmp "$source/$file" "$folder/usr/share/doc/camber/$file"
+done
 
 cat >"$folder/core.c" <<'C'
 #include <camber_proof.h>
@@ -38,6 +47,26 @@ int main(void) {
     return 0;
 }
 C
+# Uninstalled is all of it, but nothing of anyone else's. As the target does it: in a folder that is being tested CMake
+# is not to run again.
+uninstall() { cmake -DMANIFEST="$manifest" -P "$source/src/uninstall.cmake" >"$folder/log" 2>&1; }
+ninja -C "$build" -t query uninstall >/dev/null
+mkdir -p "$folder/usr/share/camber"
+touch "$folder/usr/share/camber/mine.json"
+uninstall || { cat "$folder/log"; exit 1; }
+left=$(cd "$folder/usr" && find . ! -type d -o -name '*camber*' | sort | xargs)
+[ "$left" = "./share/camber ./share/camber/mine.json" ] || { echo "left behind: $left"; exit 1; }
+! uninstall || { echo "uninstalled twice"; exit 1; }
+export DESTDIR=$folder/stage
+cmake --install "$build" --prefix /usr >"$folder/log" || { cat "$folder/log"; exit 1; }
+"$DESTDIR/usr/bin/camber" --version
+uninstall || { cat "$folder/log"; exit 1; }
+left=$(cd "$DESTDIR" && find . ! -type d -o -name '*camber*')
+[ -z "$left" ] || { echo "left behind: $left"; exit 1; }
+unset DESTDIR
+rm -r "${folder:?}/usr"
+mv "$folder/installed" "$folder/usr"
+
 programs=core
 [ "$map" = ON ] && programs="core map"
 libdir=$(dirname "$(find "$folder/usr" -name libcamber.so | head -n 1)")
@@ -87,7 +116,14 @@ exported=$(nm -D --defined-only "$libdir/libcamber.so" | awk '{print $3}' | grep
 declared=$(grep -ohE '^CAMBER_API [^(]*\(' "$folder"/usr/include/camber.h "$folder"/usr/include/camber_files.h "$folder"/usr/include/camber_network.h "$folder"/usr/include/camber_proof.h | grep -oE 'camber_[a-z_]+\($' | tr -d '(' | sort)
 [ "$exported" = "$declared" ] || { diff <(echo "$exported") <(echo "$declared"); echo "exports and the headers differ"; exit 1; }
 "$folder/usr/bin/camber" --version
-[ "$map" = ON ] || exit 0
+if [ "$map" != ON ]; then
+    status=0
+    "$folder/usr/bin/camber" render line.geojson -o line.png 2>"$folder/log" || status=$?
+    [ "$status" = 2 ] && grep -q 'this build has no map (CAMBER_MAP=OFF)' "$folder/log" && exit 0
+    cat "$folder/log"
+    echo "render in a build without maps: status $status"
+    exit 1
+fi
 for style in roads-light roads-dark openmaptiles-light openmaptiles-dark transit-light transit-dark; do
     "$folder/usr/bin/camber" style check "$folder/usr/share/camber/styles/$style.json"
 done

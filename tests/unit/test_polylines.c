@@ -256,7 +256,7 @@ static float hostile_number(uint64_t *seed) {
 /* The runs of a polyline by the contract's words, independent of the code: gives what must be counted. */
 static void count_polyline(const float *points, size_t count, bool keep_open, camber_polylines_stats *s) {
     s->empty_polylines += count == 0;
-    size_t run = 0, kept = 0, runs = 0;
+    size_t run = 0, kept = 0;
     const float *last = NULL;
     bool whole = true;
     for (size_t i = 0; i <= count; i++) {
@@ -274,7 +274,6 @@ static void count_polyline(const float *points, size_t count, bool keep_open, ca
         s->invalid_points += i < count;
         if (!run)
             continue;
-        runs++;
         s->kept_points += kept;
         s->kept_segments += kept - 1;
         s->dots += kept == 1;

@@ -1,0 +1,155 @@
+#!/usr/bin/env bash
+# The README's recipes, each as it stands there, in a fresh Debian with the packages that it names and no other.
+#
+#   recipes.sh [DEBIAN...]      bookworm and trixie where none is named; RECIPES="build ci" chooses from build, core, ci, demo
+#
+# A recipe is the block below a line <!-- recipe: NAME --> of README.md: shell, or steps of GitHub Actions, whose `run` is
+# run and whose `checkout` is a copy of this tree. Needs root, debootstrap and Debian's mirror; ends with 77 where one is
+# not to be had. Fresh systems and packages are kept in CAMBER_CHROOTS (/var/cache/camber-chroots) for the next time.
+# All mounts lie in a namespace of their own: they go with it, however this ends.
+set -euo pipefail
+source=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+kept=${CAMBER_CHROOTS:-/var/cache/camber-chroots}
+mirror=http://deb.debian.org/debian
+
+skip() { echo "skipped: $*"; exit 77; }
+
+# ---- Inside the namespace ----
+
+# A system like the kept one, of which nothing that is written stays: mount_root DEBIAN FOLDER
+mount_root() {
+    local base=$kept/$1 folder=$2 root=$2/root
+    mkdir -p "$root" "$folder/upper" "$folder/work" "$kept/$1.debs"
+    mount -t overlay none -o "lowerdir=$base,upperdir=$folder/upper,workdir=$folder/work" "$root" 2>/dev/null ||
+        cp -a "$base/." "$root"
+    mount -t proc none "$root/proc"
+    mount -t sysfs none "$root/sys"
+    mount --bind /dev "$root/dev"
+    mount --bind "$kept/$1.debs" "$root/var/cache/apt/archives"
+    cp -L /etc/resolv.conf "$root/etc/resolv.conf"
+    printf '#!/bin/sh\nexec "$@"\n' >"$root/usr/local/bin/sudo" # who asks is root
+    chmod +x "$root/usr/local/bin/sudo"
+}
+
+# in_root DEBIAN FOLDER SCRIPT
+in_root() {
+    mount_root "$1" "$2"
+    mkdir -p "$2/root/checkout" "$2/root/root/here"
+    [ ! -d "$2/../checkout" ] || mount --bind "$2/../checkout" "$2/root/checkout"
+    cp "$3" "$2/root/script.sh"
+    chroot "$2/root" env -i PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 \
+        DEBIAN_FRONTEND=noninteractive CAMBER_URL=/checkout bash -c 'cd /root/here && exec bash -eux /script.sh'
+}
+
+# make_base DEBIAN
+make_base() {
+    rm -rf --one-file-system "${kept:?}/$1.part"
+    debootstrap --variant=minbase "$1" "$kept/$1.part" "$mirror" && mv "$kept/$1.part" "$kept/$1"
+}
+
+if [ "${1:-}" = inside ]; then
+    shift
+    "$@"
+    exit
+fi
+inside() { unshare --mount --pid --fork --kill-child bash "${BASH_SOURCE[0]}" inside "$@"; }
+
+# ---- Outside ----
+
+# The block of README.md below a recipe's mark.
+block() { # NAME
+    awk -v mark="<!-- recipe: $1 -->" '
+        $0 == mark { found = 1; next }
+        found && /^```/ { if (fenced) exit; fenced = 1; next }
+        found && fenced { print; next }
+        found && /^    / { print substr($0, 5); indented = 1; next }
+        found && indented { exit }' "$source/README.md"
+}
+
+# Steps of GitHub Actions as shell.
+steps() {
+    awk 'function flush() {
+             if (checkout) print "cp -a /checkout/. " (path ? path : ".")
+             if (run != "") print run
+             checkout = 0; path = run = ""; folded = 0
+         }
+         /^ *- /                           { flush() }
+         /^ *- uses: actions\/checkout/    { checkout = ++checkouts > 1; next } # the first one is of the roads
+         /^ *path: / && checkout           { path = $2; next }
+         /^ *- run: >$/                    { folded = 1; next }
+         /^ *- run: /                      { sub(/^ *- run: /, ""); run = $0; next }
+         folded                            { sub(/^ */, ""); run = run (run == "" ? "" : " ") $0 }
+         END                               { flush() }'
+}
+
+# What is to be true after a recipe.
+script_of() { # NAME
+    case $1 in
+    build)
+        block build
+        echo 'od -An -c -N4 city.png | grep -q "P   N   G"'
+        echo 'sudo cmake --build build --target uninstall && test ! -e /usr/local/bin/camber'
+        ;;
+    core)
+        echo 'sudo apt-get update && sudo apt-get install -y --no-install-recommends git ca-certificates'
+        block core
+        ;;
+    ci)
+        cat <<'ROADS'
+echo '{"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {"highway": "primary"}, "geometry":
+    {"type": "LineString", "coordinates": [[0, 0], [0.01, 0.004], [0.013, 0.012], [0.02, 0]]}}]}' >roads.geojson
+ROADS
+        block ci | steps
+        echo 'test -s camber.xml && test -s roads.xml'
+        ;;
+    demo)
+        echo 'cp -a /checkout camber && cd camber'
+        block demo | grep -v '^\./dev test'
+        echo 'test -s build/santa_cruz.png && test -s build/santa_cruz_downtown.png'
+        echo 'cmake --install build && ldconfig && camber --version'
+        ;;
+    *) echo "no recipe $1" >&2; exit 2 ;;
+    esac
+}
+
+[ "$(id -u)" = 0 ] || skip "the README's recipes: not root"
+command -v debootstrap >/dev/null || skip "the README's recipes: no debootstrap (Debian: debootstrap)"
+command -v git >/dev/null || skip "the README's recipes: no git"
+unshare --mount --pid --fork true 2>/dev/null || skip "the README's recipes: no right to mount"
+mkdir -p "$kept"
+run=$(mktemp -d "$kept/run.XXXXXX")
+trap 'rm -rf --one-file-system "$run"' EXIT
+trap 'exit 130' INT TERM
+
+# A clean clone of this tree as it is now, what is not committed yet included.
+mkdir "$run/checkout"
+git -c safe.directory='*' -C "$source" ls-files -coz --exclude-standard | (cd "$source" && tar --null -T - --ignore-failed-read -cf -) | tar -xf - -C "$run/checkout"
+git -C "$run/checkout" -c init.defaultBranch=main init -q
+git -C "$run/checkout" add -A
+git -C "$run/checkout" -c user.name=camber -c user.email=camber@example.org commit -qm "as it is now"
+chown -R root: "$run/checkout"
+
+[ $# -gt 0 ] || set -- bookworm trixie
+failures=0
+for debian; do
+    if [ ! -d "$kept/$debian" ]; then
+        begun=$SECONDS
+        inside make_base "$debian" >"$run/log" 2>&1 || { tail -n 3 "$run/log"; skip "the README's recipes: debootstrap of $debian failed"; }
+        echo "$debian: a fresh system, $((SECONDS - begun)) s"
+    fi
+    echo 'apt-get -qq update -o APT::Update::Error-Mode=any' >"$run/update"
+    inside in_root "$debian" "$run/$debian.update" "$run/update" >"$run/log" 2>&1 || { tail -n 3 "$run/log"; skip "the README's recipes: no $mirror"; }
+    for recipe in ${RECIPES:-build core ci demo}; do
+        begun=$SECONDS
+        script_of "$recipe" >"$run/$recipe"
+        if [ "$(block "$recipe" | wc -l)" != 0 ] && inside in_root "$debian" "$run/$debian.$recipe" "$run/$recipe" >"$run/log" 2>&1; then
+            echo "$debian: $recipe: works, $((SECONDS - begun)) s"
+        else
+            failures=$((failures + 1))
+            tail -n 40 "$run/log"
+            echo "FAILED: $debian: $recipe, after $((SECONDS - begun)) s"
+        fi
+        rm -rf --one-file-system "$run/$debian.$recipe"
+    done
+done
+[ $failures = 0 ]

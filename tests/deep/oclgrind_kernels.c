@@ -379,7 +379,7 @@ static void print_log(void *user, camber_log_level level, const char *message) {
 int main(void) {
     static const uint32_t sizes[] = {64, 128, 256};
     static scene s;
-    const camber_context_desc desc = {.log = print_log, .cache_dir = ""};
+    const camber_context_desc desc = {.log = print_log};
     camber_context *context = NULL;
     int failures = 0;
     fill_blocks(&s);

@@ -8,7 +8,7 @@
 # not to be had. Fresh systems and packages are kept in CAMBER_CHROOTS (/var/cache/camber-chroots) for the next time.
 # All mounts lie in a namespace of their own: they go with it, however this ends.
 set -euo pipefail
-source=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+source=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 kept=${CAMBER_CHROOTS:-/var/cache/camber-chroots}
 mirror=http://deb.debian.org/debian
 

@@ -6,6 +6,7 @@ source=$1
 build=$2
 map=$3
 folder=$(mktemp -d)
+unset CAMBER_KERNELS LD_PRELOAD # what is installed brings its kernels
 manifest=$build/install_manifest.txt
 [ ! -f "$manifest" ] || mv "$manifest" "$folder/manifest"
 # Whoever has installed from this folder wants to uninstall that.
@@ -130,7 +131,13 @@ done
 # GDAL comes with the first file, and what is wrong where it cannot come is one line.
 if ldd "$folder/usr/bin/camber" | grep libgdal; then echo "the tool links GDAL from the start"; exit 1; fi
 echo '{"type":"LineString","coordinates":[[0,0],[1,1]]}' >"$folder/line.geojson"
-"$folder/usr/bin/camber" tessellate -q "$folder/line.geojson" -o "$folder/line.glb"
+mkdir "$folder/pocl"
+XDG_CACHE_HOME=$folder/cache POCL_CACHE_DIR=$folder/pocl env -u POCL_WORK_GROUP_SPECIALIZATION \
+    "$folder/usr/bin/camber" tessellate -v "$folder/line.geojson" -o "$folder/line.glb" 2>"$folder/log" || { cat "$folder/log"; exit 1; }
+if [ -n "$(find "$libdir/camber-kernels" -name '*.bin' 2>/dev/null)" ]; then # not where there is no device
+    if grep 'built in' "$folder/log"; then echo "the installed kernels are not used"; exit 1; fi
+    grep -q 'kernels of .*: from the cache' "$folder/log" || { cat "$folder/log"; exit 1; }
+fi
 rm "$libdir"/camber/camber-gdal.so
 status=0
 "$folder/usr/bin/camber" tessellate -q "$folder/line.geojson" -o "$folder/none.glb" 2>"$folder/log" || status=$?

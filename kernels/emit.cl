@@ -5,7 +5,7 @@
  * has. Measured, it reads measures[2 * n] as well, and records are twice as long. */
 #define LANES (CAMBER_BLOCK / CAMBER_ITEM)
 
-/* No restrict in what kernels call: oclgrind does not know what becomes of it where a call is inlined. */
+/* No restrict in what is inlined into kernels: oclgrind does not know what becomes of it there. */
 
 static inline void put_record(global camber_u32 *records, size_t k, float x, float y, camber_u32 join,
                               camber_u32 last) {

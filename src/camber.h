@@ -234,6 +234,7 @@ CAMBER_API void camber_device_destroy(camber_device *device);
 typedef struct camber_warmed {
     size_t programs;   /* of the share */
     size_t built;      /* the others lay in the cache */
+    size_t kept;       /* that lie in the folder now */
     char folder[1024]; /* where they lie; "": nowhere, as no folder can be written */
 } camber_warmed;
 
@@ -242,7 +243,8 @@ typedef struct camber_warmed {
  * not write there, in the user's cache. What was built for another device, driver or version of camber is left alone.
  * Several processes can do it side by side, each its share of so many shares; 0 of 1 is all.
  * Returns CAMBER_ERROR_ARGUMENT (no such share), CAMBER_ERROR_DEVICE (kernels that do not build),
- * CAMBER_ERROR_MEMORY. Cost: some ten seconds of a CPU's compiler, once. */
+ * CAMBER_ERROR_MEMORY. Cost: some ten seconds of a CPU's compiler, once. PoCL's kernels are kept where
+ * POCL_WORK_GROUP_SPECIALIZATION=0 was in the environment before the first OpenCL call; else kept stays 0. */
 CAMBER_API camber_status camber_device_warm(camber_device *device, unsigned share, unsigned shares,
                                             camber_warmed *warmed);
 CAMBER_API camber_device_info camber_device_get_info(const camber_device *device);

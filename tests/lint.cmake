@@ -54,6 +54,11 @@ if(CLANG_FORMAT_IS_PINNED)
 endif()
 
 foreach(method 0 1 2)
+  # As for a GPU, and as for a CPU, where a kernel calls its body (CAMBER_KERNEL).
+  lint_step(kernels_cpu_${method}
+    COMMAND ${CLANG} -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only ${lint_warnings}
+            -Wno-unused-function -Wno-unused-parameter -Wno-ignored-pragmas -DCAMBER_METHOD=${method} -DCAMBER_ITEM=256 -D__OPENCL_VERSION__=120 ${CMAKE_BINARY_DIR}/src/kernels.cl
+    DEPENDS ${CMAKE_BINARY_DIR}/src/kernels.cl)
   lint_step(kernels_${method}
     COMMAND ${CLANG} -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only ${lint_warnings}
             -Wno-unused-function -Wno-unused-parameter -Wno-ignored-pragmas -DCAMBER_METHOD=${method} -D__OPENCL_VERSION__=120 ${CMAKE_BINARY_DIR}/src/kernels.cl

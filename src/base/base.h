@@ -80,16 +80,16 @@ bool camber_cache_load(camber_context *context, const char *name, char **bytes, 
 /* From the shared folder. */
 bool camber_cache_load_shared(camber_context *context, const char *name, char **bytes, size_t *size_bytes);
 /* Written beside and renamed: readers see a whole file or none. */
-void camber_cache_save(camber_context *context, const char *name, const void *bytes, size_t size_bytes);
+bool camber_cache_save(camber_context *context, const char *name, const void *bytes, size_t size_bytes);
 
 /* Whether what is saved goes to the shared folder from now on, where this user may write there. */
 void camber_cache_share(camber_context *context, bool wanted);
 /* Where files are saved, made where it is missing; false: nowhere. */
 bool camber_cache_folder(const camber_context *context, char folder[CAMBER_FOLDER_SIZE]);
 
-/* Of all processes that save where this one does, one at a time has the lock of a key. Below 0: none is to be had, and
- * each works for itself. */
-int camber_cache_lock(camber_context *context, uint64_t key);
+/* Of all processes that save where this one does, one at a time has the lock of a key. Below 0: none is to be had, or
+ * not within the time, and each works for itself. */
+int camber_cache_lock(camber_context *context, uint64_t key, double longest_ms);
 void camber_cache_unlock(int lock);
 
 #endif

@@ -45,8 +45,9 @@ static bool shared_folder(char folder[PATH_SIZE], uid_t *owner) {
     *owner = geteuid();
     if (named)
         return named[0] == '/' && snprintf(folder, PATH_SIZE, "%s", named) < PATH_SIZE;
-    if (!dladdr(SHARED_NAME, &here) || !here.dli_fname || !realpath(here.dli_fname, library) ||
-        stat(library, &about) != 0)
+    /* Of a program with the library in itself this is argv[0], which without a slash would be a file that lies here. */
+    if (!dladdr(SHARED_NAME, &here) || !here.dli_fname || here.dli_fname[0] != '/' ||
+        !realpath(here.dli_fname, library) || stat(library, &about) != 0)
         return false;
     *owner = about.st_uid;
     const int length = (int)(strrchr(library, '/') + 1 - library);
@@ -74,13 +75,17 @@ bool camber_cache_is_on(const camber_context *context) {
     return users_folder(context, folder);
 }
 
+/* Whoever makes it means it for all, whatever the umask is. */
+static bool make_shared(const char *folder) {
+    return mkdir(folder, 0755) == 0 ? chmod(folder, 0755) == 0 : errno == EEXIST;
+}
+
 static bool may_share(void) {
     char folder[PATH_SIZE];
     struct stat about;
     uid_t owner;
-    return shared_folder(folder, &owner) && (mkdir(folder, 0755) == 0 || errno == EEXIST) &&
-           stat(folder, &about) == 0 && S_ISDIR(about.st_mode) && is_trusted(&about, owner) &&
-           access(folder, W_OK | X_OK) == 0;
+    return shared_folder(folder, &owner) && make_shared(folder) && stat(folder, &about) == 0 &&
+           S_ISDIR(about.st_mode) && is_trusted(&about, owner) && access(folder, W_OK | X_OK) == 0;
 }
 
 void camber_cache_share(camber_context *context, bool wanted) {
@@ -96,69 +101,84 @@ bool camber_cache_folder(const camber_context *context, char folder[PATH_SIZE]) 
 
 /* ---- Files ---- */
 
-/* A regular file, whole; with owner, one that only a trusted user could have written. */
-static bool load_from(camber_context *context, const char *folder, const char *name, const uid_t *owner, char **bytes,
-                      size_t *size_bytes) {
-    char path[PATH_SIZE + 256];
+/* All of an open regular file that nobody but its owner can write: root, this user, or the one that is named. */
+static bool read_trusted(camber_context *context, int file, uid_t owner, char **bytes, size_t *size_bytes) {
     struct stat about;
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    if (owner && (stat(folder, &about) != 0 || !is_trusted(&about, *owner)))
+    if (fstat(file, &about) != 0 || !S_ISREG(about.st_mode) || about.st_size > LARGEST_BYTES ||
+        !is_trusted(&about, owner))
         return false;
-    if (lstat(path, &about) != 0 || !S_ISREG(about.st_mode) || about.st_size > LARGEST_BYTES)
+    const size_t size = (size_t)about.st_size;
+    char *block = context->desc.reallocate(context->desc.allocator_user, NULL, size + 1);
+    size_t got = 0;
+    for (ssize_t more = 1; block && more > 0 && got<size; got += more> 0 ? (size_t)more : 0)
+        more = read(file, block + got, size - got);
+    if (!block || got < size) {
+        camber_free(context, block);
         return false;
-    if (owner && !is_trusted(&about, *owner))
-        return false;
-    camber_soft_log kept;
-    camber_log_soften(context, &kept);
-    const camber_status status = camber_read_file(context, path, bytes, size_bytes);
-    camber_log_restore(context, &kept);
-    return status == CAMBER_OK;
+    }
+    *bytes = block;
+    *size_bytes = size;
+    return true;
+}
+
+/* By handles, so that what is looked at is what is read. */
+static bool load_from(camber_context *context, const char *path, bool shared, uid_t owner, const char *name,
+                      char **bytes, size_t *size_bytes) {
+    struct stat about;
+    const int folder = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    const bool trusted = folder >= 0 && (!shared || (fstat(folder, &about) == 0 && is_trusted(&about, owner)));
+    const int file = trusted ? openat(folder, name, O_RDONLY | O_CLOEXEC | O_NONBLOCK | (shared ? O_NOFOLLOW : 0)) : -1;
+    const bool loaded = file >= 0 && read_trusted(context, file, owner, bytes, size_bytes);
+    if (file >= 0)
+        close(file);
+    if (folder >= 0)
+        close(folder);
+    return loaded;
 }
 
 bool camber_cache_load(camber_context *context, const char *name, char **bytes, size_t *size_bytes) {
     char folder[PATH_SIZE];
-    return users_folder(context, folder) && load_from(context, folder, name, NULL, bytes, size_bytes);
+    return users_folder(context, folder) && load_from(context, folder, false, geteuid(), name, bytes, size_bytes);
 }
 
 bool camber_cache_load_shared(camber_context *context, const char *name, char **bytes, size_t *size_bytes) {
     char folder[PATH_SIZE];
     uid_t owner;
-    return shared_folder(folder, &owner) && load_from(context, folder, name, &owner, bytes, size_bytes);
+    return shared_folder(folder, &owner) && load_from(context, folder, true, owner, name, bytes, size_bytes);
 }
 
-void camber_cache_save(camber_context *context, const char *name, const void *bytes, size_t size_bytes) {
+bool camber_cache_save(camber_context *context, const char *name, const void *bytes, size_t size_bytes) {
     char folder[PATH_SIZE], path[PATH_SIZE + 256], beside[PATH_SIZE + 320];
     if (!camber_cache_folder(context, folder))
-        return;
+        return false;
     snprintf(path, sizeof path, "%s/%s", folder, name);
     snprintf(beside, sizeof beside, "%s.XXXXXX", path);
     const int handle = mkstemp(beside);
     if (handle < 0)
-        return;
+        return false;
     FILE *file = fdopen(handle, "wb");
     if (!file) {
         close(handle);
         unlink(beside);
-        return;
+        return false;
     }
     bool whole = !context->saves_shared || fchmod(handle, 0644) == 0;
     whole = fwrite(bytes, 1, size_bytes, file) == size_bytes && whole;
     whole = fclose(file) == 0 && whole;
-    if (!whole || rename(beside, path) != 0)
+    whole = whole && rename(beside, path) == 0;
+    if (!whole)
         unlink(beside);
+    return whole;
 }
 
 /* ---- Locks ---- */
 
-/* How long another process may take to compile what this one needs, before this one does it as well. */
-static const double LONGEST_WAIT_MS = 60e3;
-
-int camber_cache_lock(camber_context *context, uint64_t key) {
+int camber_cache_lock(camber_context *context, uint64_t key, double longest_ms) {
     char folder[PATH_SIZE], path[PATH_SIZE + 16];
     if (!camber_cache_folder(context, folder))
         return -1;
     snprintf(path, sizeof path, "%s/.lock", folder);
-    const int handle = open(path, O_RDWR | O_CREAT | O_CLOEXEC, context->saves_shared ? 0644 : 0600);
+    const int handle = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
     if (handle < 0)
         return -1;
     /* One file for all: each key has a byte of it. Locks of an open file go with it, also where a process dies. */
@@ -166,8 +186,8 @@ int camber_cache_lock(camber_context *context, uint64_t key) {
         .l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = (off_t)(key & INT32_MAX), .l_len = 1, .l_pid = 0};
     const double begin = camber_now_ms();
     while (fcntl(handle, F_OFD_SETLK, &byte) != 0) {
-        const struct timespec pause = {.tv_nsec = 5000000};
-        if ((errno != EAGAIN && errno != EACCES) || camber_now_ms() - begin > LONGEST_WAIT_MS) {
+        const struct timespec pause = {.tv_nsec = 1000000};
+        if ((errno != EAGAIN && errno != EACCES) || camber_now_ms() - begin > longest_ms) {
             close(handle);
             return -1;
         }

@@ -14,6 +14,7 @@
 void camber_report_open(camber_report *report, const camber_options *options) {
     *report = (camber_report){
         .quiet = options->quiet, .verbose = options->verbose, .bars = !options->quiet && isatty(STDERR_FILENO)};
+    report->terminal = report->bars;
 }
 
 /* A name of a file may hold anything: an error stays one line and sends nothing to the terminal. */
@@ -32,8 +33,21 @@ void camber_report_erase_bar(camber_report *report) {
     report->bar_ms = 0;
 }
 
+/* A line that stays: what takes so long, and that it is once. Another thread's bar may be there. */
+static void say_compiles(camber_report *report, const char *stage) {
+    if (!report->terminal || report->said_compiles)
+        return;
+    report->said_compiles = report->bar_drawn = true;
+    camber_report_say(report, "%s for this machine, once; `camber info --warm` does it ahead, for all its users",
+                      stage);
+}
+
 void camber_report_progress(void *user, const char *stage, double fraction) {
     camber_report *report = user;
+    if (strcmp(stage, "compiling kernels") == 0) {
+        say_compiles(report, stage);
+        return;
+    }
     const double now_ms = camber_clock_ms();
     if (!report->bars || (report->bar_drawn && now_ms - report->bar_ms < BAR_EVERY_MS))
         return;

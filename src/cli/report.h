@@ -16,10 +16,12 @@ typedef struct camber_report {
     bool quiet, verbose;
     bool bars; /* standard error is a terminal, and bars are wanted */
     bool bar_drawn;
-    double bar_ms;     /* when it was drawn */
-    const char *spool; /* the copy of standard input, which messages name as that; NULL: none */
-    bool sealed;       /* the first failure is known; what it causes is not news */
-    char error[4096];  /* the library's last error: the story of the status that a call returns */
+    bool terminal;      /* it is one, and not to be quiet */
+    bool said_compiles; /* that a first run waits for a compiler */
+    double bar_ms;      /* when it was drawn */
+    const char *spool;  /* the copy of standard input, which messages name as that; NULL: none */
+    bool sealed;        /* the first failure is known; what it causes is not news */
+    char error[4096];   /* the library's last error: the story of the status that a call returns */
 } camber_report;
 
 void camber_report_open(camber_report *report, const camber_options *options);

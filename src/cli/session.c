@@ -104,7 +104,6 @@ struct camber_opener {
     double pitch_deg;
     pthread_t thread;
     bool running;
-    bool on_terminal, said; /* that kernels are compiled */
 };
 
 /* One line through the kernels and the shaders that maps use: drivers compile them now, not in the first frame. What
@@ -150,20 +149,10 @@ static void log_beside(void *user, camber_log_level level, const char *message) 
     camber_report_log(opener->told, level, message);
 }
 
-/* All that takes long here is the compiler, which runs where no cache has the kernels. */
-static void say_once(void *user, const char *stage, double fraction) {
-    camber_opener *opener = user;
-    (void)fraction;
-    if (opener->on_terminal && !opener->said)
-        camber_report_say(&opener->report,
-                          "%s for this machine, once; `camber info --warm` does it ahead, for all its users", stage);
-    opener->said = true;
-}
-
 static void *open_beside(void *user) {
     camber_opener *opener = user;
     const camber_context_desc desc = {
-        .log = log_beside, .log_user = opener, .progress = say_once, .progress_user = opener};
+        .log = log_beside, .log_user = opener, .progress = camber_report_progress, .progress_user = &opener->report};
     opener->status = camber_context_create(&desc, &opener->context);
     if (opener->status == CAMBER_OK)
         opener->status = open_drawing(opener->session, opener->context, &opener->report, CAMBER_NEEDS_RENDERER);
@@ -200,7 +189,6 @@ void camber_session_start(camber_session *session, camber_outlook outlook, doubl
     opener->outlook = outlook;
     opener->pitch_deg = pitch_deg;
     opener->report = *session->report;
-    opener->on_terminal = opener->report.bars;
     opener->report.bars = false;
     opener->told = &opener->report;
     opener->running = pthread_create(&opener->thread, NULL, open_beside, opener) == 0;

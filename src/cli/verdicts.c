@@ -125,7 +125,7 @@ static void print_group(const camber_verdicts *verdicts, size_t failed, size_t s
     const size_t count = verdicts->count - verdicts->group_first;
     printf("%s %zu - ", failed ? "not ok" : "ok", verdicts->group_count);
     print_description(verdicts->group);
-    printf(": %zu check%s", count, count == 1 ? "" : "s");
+    printf(": %zu check%s", count, camber_plural(count));
     if (failed)
         printf(", %zu failed", failed);
     if (skipped)
@@ -263,7 +263,8 @@ static int print_json(const camber_verdicts *verdicts) {
                                         "pixels", pixels));
 }
 
-void camber_verdicts_bail(const camber_verdicts *verdicts) {
+void camber_verdicts_bail(camber_verdicts *verdicts) {
+    end_group(verdicts);
     if (!verdicts->tap)
         return;
     puts("Bail out! see standard error");

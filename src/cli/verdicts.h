@@ -78,8 +78,8 @@ camber_check camber_check_start(const char *device, const char *backend, const c
 void camber_verdicts_add(camber_verdicts *verdicts, const camber_check *check);
 /* A check that cannot be made here. */
 void camber_verdicts_skip(camber_verdicts *verdicts, camber_check check, const char *reason);
-/* TAP's word for an end before the last check. */
-void camber_verdicts_bail(const camber_verdicts *verdicts);
+/* Ends the last group. TAP's word for an end before the last check. */
+void camber_verdicts_bail(camber_verdicts *verdicts);
 /* Ends the last group. TAP's plan, or JSON. Returns an exit status, its line printed; CAMBER_EXIT_CHECK where a check
  * failed. */
 int camber_verdicts_print(camber_verdicts *verdicts);

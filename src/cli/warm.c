@@ -11,7 +11,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { PROCESSES_MAX = 16 };
+/* Each takes a quarter of a gigabyte. */
+enum { PROCESSES_MAX = 4 };
 
 static unsigned count_processes(const camber_options *options) {
     cpu_set_t cores;
@@ -43,7 +44,7 @@ static void warm_side_by_side(camber_session *session) {
         processes[i] = shares > 1 ? start_share(session, i, shares) : -1;
     for (unsigned i = 0; i < shares; i++) {
         int how;
-        camber_report_progress(session->report, "compiling kernels", (double)i / shares);
+        camber_report_progress(session->report, "compiling", (double)i / shares);
         if (processes[i] > 0)
             waitpid(processes[i], &how, 0);
     }
@@ -70,6 +71,11 @@ int camber_warm(camber_session *session) {
         return camber_report_fail(session->report, CAMBER_EXIT_CREATE,
                                   "kernels: no folder can be written to keep them in; set XDG_CACHE_HOME or "
                                   "CAMBER_KERNELS to one that can");
+    if (warmed.kept < warmed.programs)
+        return camber_report_fail(session->report, CAMBER_EXIT_IO,
+                                  "%s: %zu of %zu programs could not be kept; make room, and leave "
+                                  "POCL_WORK_GROUP_SPECIALIZATION alone",
+                                  warmed.folder, warmed.programs - warmed.kept, warmed.programs);
     const double ms = camber_clock_ms() - begin_ms;
     if (session->options->json)
         return camber_report_json(session->report, describe(session, &warmed, ms));

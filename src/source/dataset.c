@@ -70,11 +70,16 @@ static bool take_column(bool named[COLUMNS], const char *word, size_t length) {
 }
 
 /* Every word of an attribute filter may be a key; SQL's own words do no harm as keys. */
+/* OGR's own names of every feature's parts, which are no keys. */
+static bool is_ogrs(const char *word, size_t length) {
+    return (length == 3 && EQUALN(word, "FID", 3)) || (length > 4 && EQUALN(word, "OGR_", 4));
+}
+
 static bool add_where_keys(key_list *list, const char *where, bool named[COLUMNS]) {
     size_t length;
     const char *word;
     while ((word = camber_where_next(&where, &length)) != NULL)
-        if (!take_column(named, word, length) && !add_key(list, word, length))
+        if (!take_column(named, word, length) && !is_ogrs(word, length) && !add_key(list, word, length))
             return false;
     return true;
 }

@@ -70,14 +70,15 @@ static bool take_binary(camber_device *device, camber_program *program, const ch
     return false;
 }
 
-/* What the machine's users share, or what this one has. */
+/* What the machine's users share, or what this one has; where it is made for all of them, what they share. */
 static bool load(camber_device *device, camber_program *program, const char *options) {
     bool (*const loads[])(camber_context *, const char *, char **, size_t *) = {camber_cache_load_shared,
                                                                                 camber_cache_load};
     char name[64];
     bool loaded = false;
     cache_name(program->key, name);
-    for (size_t i = 0; i < sizeof loads / sizeof *loads && !loaded; i++) {
+    const size_t count = device->context->saves_shared ? 1 : sizeof loads / sizeof *loads;
+    for (size_t i = 0; i < count && !loaded; i++) {
         char *bytes = NULL;
         size_t size = 0;
         if (!loads[i](device->context, name, &bytes, &size))
@@ -124,28 +125,30 @@ static camber_status build(camber_device *device, camber_program *program, const
     return CAMBER_OK;
 }
 
-/* A file that is not saved fails nothing. */
-static void save(camber_device *device, const camber_program *program) {
+/* false, and nothing fails by it: the file is not saved. */
+static bool save(camber_device *device, const camber_program *program) {
     size_t size = 0;
+    bool saved = false;
     if (!is_worth_saving(device))
-        return;
+        return false;
     if (clGetProgramInfo(program->cl, CL_PROGRAM_BINARY_SIZES, sizeof size, &size, NULL) != CL_SUCCESS || size == 0)
-        return;
+        return false;
     uint64_t hash;
     /* Past camber_alloc, which logs. */
     const camber_context_desc *host = &device->context->desc;
     unsigned char *bytes = host->reallocate(host->allocator_user, NULL, size + sizeof hash);
     if (!bytes)
-        return;
+        return false;
     unsigned char *binary = bytes + sizeof hash;
     if (clGetProgramInfo(program->cl, CL_PROGRAM_BINARIES, sizeof binary, &binary, NULL) == CL_SUCCESS) {
         char name[64];
         hash = hash_binary(program->key, binary, size);
         memcpy(bytes, &hash, sizeof hash);
         cache_name(program->key, name);
-        camber_cache_save(device->context, name, bytes, size + sizeof hash);
+        saved = camber_cache_save(device->context, name, bytes, size + sizeof hash);
     }
     camber_free(device->context, bytes);
+    return saved;
 }
 
 static camber_status make_kernels(camber_device *device, camber_program *program, program_kind kind) {
@@ -172,6 +175,31 @@ static camber_status make_kernels(camber_device *device, camber_program *program
     return CAMBER_OK;
 }
 
+/* PoCL unpacks a binary file by file, and another process that unpacks the same may look for one at the wrong moment.
+ */
+static bool load_alone(camber_device *device, camber_program *program, const char *options) {
+    static const double LONGEST_MS = 500; /* it takes two: longer, and something else is wrong */
+    const int lock = camber_cache_lock(device->context, program->key, LONGEST_MS);
+    const bool loaded = load(device, program, options);
+    camber_cache_unlock(lock);
+    return loaded;
+}
+
+/* Unless another process does so meanwhile. */
+static camber_status build_alone(camber_device *device, camber_program *program, const recipe *from) {
+    static const double LONGEST_MS = 60e3;
+    const int lock = camber_cache_lock(device->context, program->key, LONGEST_MS);
+    camber_status status = CAMBER_OK;
+    program->kept = load(device, program, from->options);
+    if (!program->kept) {
+        camber_progress(device->context, "compiling kernels", -1);
+        status = build(device, program, from);
+        program->kept = status == CAMBER_OK && save(device, program);
+    }
+    camber_cache_unlock(lock);
+    return status;
+}
+
 static camber_status make_program(camber_device *device, const recipe *from, camber_program **program) {
     camber_program *made = camber_alloc_zero(device->context, 1, sizeof *made);
     if (!made)
@@ -179,14 +207,9 @@ static camber_status make_program(camber_device *device, const recipe *from, cam
     made->key = cache_key(&device->info, from);
     camber_status status = CAMBER_OK;
     const double begin = camber_now_ms();
-    const int lock = camber_cache_lock(device->context, made->key);
-    if (!load(device, made, from->options)) {
-        camber_progress(device->context, "compiling kernels", -1);
-        status = build(device, made, from);
-        if (status == CAMBER_OK)
-            save(device, made);
-    }
-    camber_cache_unlock(lock);
+    made->kept = load_alone(device, made, from->options);
+    if (!made->kept)
+        status = build_alone(device, made, from);
     if (status == CAMBER_OK)
         status = make_kernels(device, made, from->kind);
     if (status != CAMBER_OK) {
@@ -294,6 +317,7 @@ camber_status camber_device_warm(camber_device *device, unsigned share, unsigned
             break;
         all.programs++;
         all.built += program->built;
+        all.kept += program->kept;
     }
     camber_cache_share(device->context, false);
     if (status == CAMBER_OK)

@@ -57,6 +57,7 @@ typedef struct camber_program {
     cl_kernel shape, count, total, fill, cover;
     uint64_t key; /* of the cache */
     bool built;   /* from source: no cache had it */
+    bool kept;    /* a cache has it now */
 } camber_program;
 
 /* What the kernels of a mesh are built for. */

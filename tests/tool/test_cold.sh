@@ -53,6 +53,7 @@ warm_ms=$((($(date +%s%N) - begin) / 1000000))
 [ "$(compiled)" = "3 programs, 10 kernels" ] || fail "warm: $(compiled)"
 cmp "$tmp/cold.png" "$tmp/warm.png" || fail "warm: another picture"
 echo "cold $cold_ms ms, warm $warm_ms ms"
+[ $((4 * warm_ms)) -lt "$cold_ms" ] || fail "warm takes $warm_ms ms, more than a quarter of what a cold run takes"
 
 # ---- Thirty at once ----
 
@@ -104,6 +105,8 @@ if [ "$(id -u)" = 0 ] && setpriv --reuid=65534 --clear-groups true 2>/dev/null; 
             "$tool" render - -vo - --size 640x480 --draw cl <"$city" 2>"$tmp/theirs.log" >"$tmp/theirs.png" ||
             fail "root's kernels, another user: $(cat "$tmp/theirs.log")"
         [ "$(built "$tmp/theirs.log")" = 0 ] || fail "root's kernels, another user: compiles $(built "$tmp/theirs.log")"
+    else
+        echo "skipped: root's kernels, another user: who cannot run $tool"
     fi
 fi
 
@@ -117,6 +120,15 @@ programs=$(sed -n 's/^  "programs": \([0-9]*\),*/\1/p' "$tmp/warm.json")
 [ "$(find "$XDG_CACHE_HOME/camber" -name 'kernels-*.bin' | wc -l)" = "$programs" ] || fail "info --warm: not $programs files"
 draw "$tmp/ahead.png" || fail "after info --warm: $(cat "$tmp/ahead.png.log")"
 [ "$(built "$tmp/ahead.png.log")" = 0 ] || fail "after info --warm: compiles $(built "$tmp/ahead.png.log") programs"
+
+# What this user has already is made for all, too; under any umask; and where nothing is kept that is no success.
+export CAMBER_KERNELS=$tmp/all
+(umask 077 && "$tool" info --warm >"$tmp/warm.out" 2>"$tmp/warm.log") || fail "info --warm for all: $(cat "$tmp/warm.log")"
+[ "$(find "$CAMBER_KERNELS" -perm 644 -name 'kernels-*.bin' | wc -l)" = "$programs" ] || fail "info --warm for all: not $programs files"
+[ "$(stat -c %a "$CAMBER_KERNELS")" = 755 ] || fail "a folder for all of mode $(stat -c %a "$CAMBER_KERNELS")"
+status=0
+CAMBER_KERNELS=$tmp/nothing POCL_WORK_GROUP_SPECIALIZATION=1 "$tool" info --warm >"$tmp/warm.out" 2>"$tmp/warm.log" || status=$?
+[ "$status" = 74 ] || fail "info --warm that keeps nothing: status $status: $(cat "$tmp/warm.log")"
 
 echo "$failures failures"
 [ "$failures" = 0 ]

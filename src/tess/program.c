@@ -232,9 +232,26 @@ static void set_options(const camber_device *device, int method, bool measured, 
              measured ? " -DCAMBER_MEASURED=1" : "");
 }
 
+#ifdef CAMBER_KERNEL_FOLDER
+/* For who changes kernels: their text is read where the build has written it, and a change is no build. */
+static camber_status make_current(camber_device *device, recipe *from, camber_program **program) {
+    static const char *const files[] = {"kernels.cl", "network.cl", "measure.cl", "offset.cl", "cover.cl"};
+    char path[CAMBER_FOLDER_SIZE], *text = NULL;
+    snprintf(path, sizeof path, "%s/%s", CAMBER_KERNEL_FOLDER, files[from->kind]);
+    camber_status status = camber_read_file(device->context, path, &text, &from->source_size);
+    from->source = text;
+    if (status == CAMBER_OK)
+        status = make_program(device, from, program);
+    camber_free(device->context, text);
+    return status;
+}
+#else
+#define make_current make_program
+#endif
+
 /* Makes a program unless it is there, and gives it. */
 static camber_status use_program(camber_device *device, recipe *from, camber_program **kept, camber_program **program) {
-    const camber_status status = *kept ? CAMBER_OK : make_program(device, from, kept);
+    const camber_status status = *kept ? CAMBER_OK : make_current(device, from, kept);
     if (status == CAMBER_OK)
         *program = *kept;
     return status;

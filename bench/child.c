@@ -86,17 +86,29 @@ static void run(bench_child *child, const char *const *arguments, const char *in
     }
 }
 
+/* Sets a variable and gives what to give back; NULL as a value: not set. */
+static char *swap_variable(const char *name, const char *value) {
+    const char *before = getenv(name);
+    char *kept = before ? strdup(before) : NULL;
+    if (value)
+        setenv(name, value, 1);
+    else
+        unsetenv(name);
+    return kept;
+}
+
 bench_child bench_child_run(const char *const *arguments, const char *cache_dir, const char *input) {
     bench_child child = {.status = -1};
-    const char *before = getenv("XDG_CACHE_HOME");
-    char *kept = before ? strdup(before) : NULL;
-    if (cache_dir)
-        setenv("XDG_CACHE_HOME", cache_dir, 1);
+    if (!cache_dir) {
+        run(&child, arguments, input);
+        return child;
+    }
+    /* Without the kernels that the build has compiled for all users, too. */
+    char *cache = swap_variable("XDG_CACHE_HOME", cache_dir), *kernels = swap_variable("CAMBER_KERNELS", "");
     run(&child, arguments, input);
-    if (cache_dir && kept)
-        setenv("XDG_CACHE_HOME", kept, 1);
-    else if (cache_dir)
-        unsetenv("XDG_CACHE_HOME");
-    free(kept);
+    free(swap_variable("XDG_CACHE_HOME", cache));
+    free(swap_variable("CAMBER_KERNELS", kernels));
+    free(cache);
+    free(kernels);
     return child;
 }

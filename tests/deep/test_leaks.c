@@ -385,19 +385,28 @@ static growth repeat_bare(bool (*cycle)(void), const char *what) {
     return grown(before, measure(), CYCLES, what);
 }
 
-/* Ours is what grows past the drivers' own. */
-static void repeat(atelier *a, int backend, cycle_fn *cycle, growth drivers, const char *what) {
-    char name[64];
+/* Of so many cycles, after some that fill what is filled once. */
+static growth grow(atelier *a, int backend, cycle_fn *cycle, const char *what) {
     usage before = {0};
-    snprintf(name, sizeof name, "%s, %s", BACKEND_NAME[backend], what);
     for (size_t n = 0; n < FIRST_CYCLES + CYCLES; n++) {
         if (n == FIRST_CYCLES)
             before = measure();
         assert_int_equal(cycle(a, backend), CAMBER_OK);
     }
-    const growth g = grown(before, measure(), CYCLES, name);
-    const growth ours = {g.resident - fmax(drivers.resident, 0), g.heap - fmax(drivers.heap, 0)};
-    assert_at_most(ours, 8192, 512, name);
+    return grown(before, measure(), CYCLES, what);
+}
+
+/* Ours is what grows past the drivers' own. They fill some things late, once: what leaks grows again. */
+static void repeat(atelier *a, int backend, cycle_fn *cycle, growth drivers, const char *what) {
+    static const double RESIDENT_MOST = 8192, HEAP_MOST = 512;
+    char name[64];
+    growth ours = {INFINITY, INFINITY};
+    snprintf(name, sizeof name, "%s, %s", BACKEND_NAME[backend], what);
+    for (int turn = 0; turn < 2 && (ours.resident > RESIDENT_MOST || ours.heap > HEAP_MOST); turn++) {
+        const growth all = grow(a, backend, cycle, name);
+        ours = (growth){all.resident - fmax(drivers.resident, 0), all.heap - fmax(drivers.heap, 0)};
+    }
+    assert_at_most(ours, RESIDENT_MOST, HEAP_MOST, name);
 }
 
 static void test_cycles(void **state) {

@@ -256,7 +256,7 @@ bool bench_readme_write(const json_t *document, const char *json_path, const cha
     if (ending)
         *ending = 0;
     const bool done = camber_context_create(NULL, &context) == CAMBER_OK &&
-                      camber_read_file(context, path, &text, &size) == CAMBER_OK &&
+                      camber_read_file(context, path, CAMBER_NAMED_BY_CALLER, &text, &size) == CAMBER_OK &&
                       rewrite(document, results, text, path);
     if (!done)
         fprintf(stderr, "camber_bench: %s: cannot be written, or lacks one of the lines\n%s%s", path, BEGIN_MARKER,

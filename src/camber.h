@@ -61,6 +61,44 @@ CAMBER_API const char *camber_status_name(camber_status status);
 /* "0.1.0" of the library in use. */
 CAMBER_API const char *camber_version(void);
 
+/* ---- Budget: what files may make a run take ------------------------------------------------------- */
+
+/* A small file can ask for more than a machine has. What a budget refuses fails with CAMBER_ERROR_MEMORY or
+ * CAMBER_ERROR_LIMIT, and the log says which bound it was. */
+typedef struct camber_budget_desc {
+    /* Held at once by all contexts of the budget: blocks of the allocator, and OpenCL buffers in the host's memory.
+     * Libraries' own memory is not counted. 0: three quarters of what this process can still have, by what the machine
+     * has free and what its control group and its limits allow, when it holds 64 MB for the first time. */
+    uint64_t memory_bytes;
+    /* Of one set of features: */
+    uint64_t tiles;  /* vector tiles looked for. 0: 262144 */
+    uint64_t steps;  /* of databases' machines, besides 4096 a tile. 0: 2^26, some seconds */
+    uint32_t unfold; /* bytes that come out of tiles for each byte of their files, besides 4 MB. 0: 32 */
+} camber_budget_desc;
+
+typedef struct camber_budget camber_budget;
+
+/* desc may be NULL. A budget must outlive its contexts, which different threads may use at once.
+ * Returns CAMBER_ERROR_MEMORY. */
+CAMBER_API camber_status camber_budget_create(const camber_budget_desc *desc, camber_budget **budget);
+CAMBER_API void camber_budget_destroy(camber_budget *budget);
+/* What is held now, and what may be held: UINT64_MAX as long as that is not looked up. */
+CAMBER_API uint64_t camber_budget_held_bytes(const camber_budget *budget);
+CAMBER_API uint64_t camber_budget_most_bytes(const camber_budget *budget);
+
+/* ---- Access: what files may reach ------------------------------------------------------------------ */
+
+/* Nothing is opened but what the caller names, what a style names, and the parts that a format has beside its file
+ * (.shx, .dbf, .prj, -wal); none of these by a link to a device or a pipe; and nothing is fetched. */
+typedef struct camber_access {
+    bool remote; /* files named as input may lead to the network, and may be there themselves */
+    bool vrt;    /* files named as input may name other files (VRT) */
+    /* A folder beyond which no file lies that a style names: sources, TileJSON, tiles, sprites. NULL: anywhere. */
+    const char *root;
+    /* A file that is about to be replaced, which nothing may read. NULL: none. */
+    const char *output;
+} camber_access;
+
 /* ---- Context: allocator, log, cache -------------------------------------------------------------- */
 
 typedef enum camber_log_level {
@@ -88,6 +126,8 @@ typedef struct camber_context_desc {
      * A folder that cannot be written is not an error. Kernels are looked for in a folder that all users share first
      * (camber_device_warm), which $CAMBER_KERNELS may name. */
     const char *cache_dir;
+    camber_budget *budget; /* NULL: one of its own, all zero */
+    camber_access access;  /* its strings are copied */
 } camber_context_desc;
 
 typedef struct camber_context camber_context;

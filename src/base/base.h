@@ -5,6 +5,7 @@
 #include "camber_files.h"
 
 #include <stdarg.h>
+#include <stdatomic.h>
 #include <string.h>
 
 #if defined(__GNUC__)
@@ -13,8 +14,21 @@
 #define CAMBER_PRINTF(format_index, first)
 #endif
 
+struct camber_budget {
+    camber_budget_desc desc; /* what is 0 stands as it is meant, but for memory_bytes */
+    _Atomic uint64_t held_bytes, most_bytes;
+};
+
+/* Of a budget, by the set of features that is read. */
+typedef struct camber_spent {
+    uint64_t tiles, steps, file_bytes, unfolded_bytes;
+} camber_spent;
+
 struct camber_context {
     camber_context_desc desc;
+    camber_budget *budget;
+    camber_budget own_budget;
+    camber_spent spent;
     uint64_t next_serial; /* identifies polylines to meshes that keep them uploaded */
     const void *gdal;     /* source/load.c: what it found, NULL before */
     bool saves_shared;    /* cache.c: files are saved for all users of the machine */
@@ -28,6 +42,8 @@ void *camber_alloc_zero(camber_context *context, size_t count, size_t size_bytes
  * failure, and then the old block stays. items is the address of a pointer to elements. */
 bool camber_grow(camber_context *context, void *items, size_t *capacity, size_t needed, size_t size_bytes);
 void camber_free(camber_context *context, void *block);
+/* Without a word; block may be NULL. NULL: there is no room, and the block is as it was. */
+void *camber_resize_quietly(camber_context *context, void *block, size_t size_bytes);
 char *camber_copy_string(camber_context *context, const char *text);
 
 void camber_log(camber_context *context, camber_log_level level, const char *format, ...) CAMBER_PRINTF(3, 4);
@@ -45,9 +61,47 @@ void camber_progress(camber_context *context, const char *stage, double fraction
 /* Milliseconds of a monotonic clock. */
 double camber_now_ms(void);
 
-/* Reads a whole file; *bytes is freed with camber_free and has a 0 behind its end. Returns
- * CAMBER_ERROR_NOT_FOUND, CAMBER_ERROR_INPUT (a directory), CAMBER_ERROR_IO, CAMBER_ERROR_MEMORY. */
-camber_status camber_read_file(camber_context *context, const char *path, char **bytes, size_t *size_bytes);
+/* Who names a file that is read: the caller, or a style, which reaches no farther than the context's access has it. */
+typedef enum camber_file_naming {
+    CAMBER_NAMED_BY_CALLER = 0,
+    CAMBER_NAMED_BY_STYLE,
+} camber_file_naming;
+
+/* ---- Budget ---- */
+
+void camber_budget_init(camber_budget *budget, const camber_budget_desc *desc);
+/* Of memory that is not the allocator's, too. false: it is not allowed, and camber_budget_fail says so. */
+bool camber_budget_take(camber_context *context, uint64_t size_bytes);
+void camber_budget_give(camber_context *context, uint64_t size_bytes);
+bool camber_budget_has(const camber_context *context, uint64_t size_bytes);
+camber_status camber_budget_fail(camber_context *context, uint64_t size_bytes);
+/* A set of features begins. */
+void camber_budget_begin(camber_context *context);
+/* name stands in messages. */
+camber_status camber_budget_take_tiles(camber_context *context, const char *name, uint64_t count);
+/* false: a database has had as many as it may. */
+bool camber_budget_take_steps(camber_context *context, uint64_t count);
+/* A file of tiles is read, which has so many bytes. */
+void camber_budget_open(camber_context *context, uint64_t file_bytes);
+/* So many bytes came out of a tile; and how many may still come. */
+camber_status camber_budget_unfold(camber_context *context, const char *name, uint64_t size_bytes);
+uint64_t camber_budget_unfolds(const camber_context *context);
+
+/* ---- Files ---- */
+
+/* Opens a file to read, and tells its size. Returns CAMBER_ERROR_NOT_FOUND, CAMBER_ERROR_INPUT (a folder, a device or
+ * a pipe; one that lies beyond the root), CAMBER_ERROR_ARGUMENT (the output), CAMBER_ERROR_IO. */
+camber_status camber_file_open(camber_context *context, const char *path, camber_file_naming naming, int *file,
+                               uint64_t *size_bytes);
+/* The same of what another library opens by its path. */
+camber_status camber_file_check(camber_context *context, const char *path, camber_file_naming naming,
+                                uint64_t *size_bytes);
+/* Logs why a file cannot be read, by its errno, and gives the status it stands for. */
+camber_status camber_file_fail(camber_context *context, const char *path, int cause);
+/* Reads a whole file; *bytes is freed with camber_free and has a 0 behind its end. Returns what camber_file_open does,
+ * and CAMBER_ERROR_MEMORY. */
+camber_status camber_read_file(camber_context *context, const char *path, camber_file_naming naming, char **bytes,
+                               size_t *size_bytes);
 
 /* ---- Hashes ---- */
 

@@ -108,7 +108,7 @@ static bool read_trusted(camber_context *context, int file, uid_t owner, char **
         !is_trusted(&about, owner))
         return false;
     const size_t size = (size_t)about.st_size;
-    char *block = context->desc.reallocate(context->desc.allocator_user, NULL, size + 1);
+    char *block = camber_resize_quietly(context, NULL, size + 1);
     size_t got = 0;
     for (ssize_t more = 1; block && more > 0 && got<size; got += more> 0 ? (size_t)more : 0)
         more = read(file, block + got, size - got);

@@ -14,6 +14,11 @@ static void *reallocate_libc(void *user, void *block, size_t size_bytes) {
     return realloc(block, size_bytes);
 }
 
+static bool copy_text(camber_context *context, const char *text, const char **copy) {
+    *copy = text ? camber_copy_string(context, text) : NULL;
+    return !text || *copy;
+}
+
 camber_status camber_context_create(const camber_context_desc *desc, camber_context **context) {
     const camber_context_desc zero = {0};
     camber_context_desc full = desc ? *desc : zero;
@@ -23,13 +28,14 @@ camber_status camber_context_create(const camber_context_desc *desc, camber_cont
     if (!made)
         return CAMBER_ERROR_MEMORY;
     *made = (camber_context){.desc = full, .next_serial = 1};
-    made->desc.cache_dir = NULL;
-    if (full.cache_dir) {
-        made->desc.cache_dir = camber_copy_string(made, full.cache_dir);
-        if (!made->desc.cache_dir) {
-            camber_context_destroy(made);
-            return CAMBER_ERROR_MEMORY;
-        }
+    made->budget = full.budget ? full.budget : &made->own_budget;
+    camber_budget_init(&made->own_budget, NULL);
+    made->desc.cache_dir = made->desc.access.root = made->desc.access.output = NULL;
+    if (!copy_text(made, full.cache_dir, &made->desc.cache_dir) ||
+        !copy_text(made, full.access.root, &made->desc.access.root) ||
+        !copy_text(made, full.access.output, &made->desc.access.output)) {
+        camber_context_destroy(made);
+        return CAMBER_ERROR_MEMORY;
     }
     *context = made;
     return CAMBER_OK;
@@ -39,7 +45,9 @@ void camber_context_destroy(camber_context *context) {
     if (!context)
         return;
     const camber_context_desc desc = context->desc;
-    desc.reallocate(desc.allocator_user, (char *)(uintptr_t)desc.cache_dir, 0);
+    const char *const texts[] = {desc.cache_dir, desc.access.root, desc.access.output};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
+        camber_free(context, (char *)(uintptr_t)texts[i]);
     desc.reallocate(desc.allocator_user, context, 0);
 }
 
@@ -64,15 +72,44 @@ const char *camber_version(void) {
     return TEXT(CAMBER_VERSION_MAJOR) "." TEXT(CAMBER_VERSION_MINOR) "." TEXT(CAMBER_VERSION_PATCH);
 }
 
-void *camber_alloc(camber_context *context, size_t count, size_t size_bytes) {
-    void *block = NULL;
-    const size_t elements = count ? count : 1;
-    if (size_bytes <= SIZE_MAX / elements)
-        block = context->desc.reallocate(context->desc.allocator_user, NULL, elements * size_bytes);
-    if (!block)
+/* Each block begins with its size, which the budget has it for, and is aligned as the allocator's are. */
+enum { HEAD_BYTES = 16 };
+
+static size_t size_of(const void *block) {
+    size_t size_bytes = 0;
+    if (block)
+        memcpy(&size_bytes, (const char *)block - HEAD_BYTES, sizeof size_bytes);
+    return size_bytes;
+}
+
+void *camber_resize_quietly(camber_context *context, void *block, size_t size_bytes) {
+    const size_t before = size_of(block), more = size_bytes > before ? size_bytes - before : 0;
+    if (size_bytes > SIZE_MAX - HEAD_BYTES || !camber_budget_take(context, more))
+        return NULL;
+    char *head = block ? (char *)block - HEAD_BYTES : NULL;
+    char *made = context->desc.reallocate(context->desc.allocator_user, head, HEAD_BYTES + size_bytes);
+    if (!made) {
+        camber_budget_give(context, more);
+        return NULL;
+    }
+    camber_budget_give(context, before > size_bytes ? before - size_bytes : 0);
+    memcpy(made, &size_bytes, sizeof size_bytes);
+    return made + HEAD_BYTES;
+}
+
+static void *resize(camber_context *context, void *block, size_t count, size_t size_bytes) {
+    const bool fits = count <= SIZE_MAX / (size_bytes ? size_bytes : 1);
+    void *made = fits ? camber_resize_quietly(context, block, count * size_bytes) : NULL;
+    if (!made && fits && !camber_budget_has(context, count * size_bytes - size_of(block)))
+        camber_budget_fail(context, count * size_bytes - size_of(block));
+    else if (!made)
         camber_log(context, CAMBER_LOG_ERROR,
                    "out of memory: %zu elements of %zu bytes; give it less data or more memory", count, size_bytes);
-    return block;
+    return made;
+}
+
+void *camber_alloc(camber_context *context, size_t count, size_t size_bytes) {
+    return resize(context, NULL, count ? count : 1, size_bytes);
 }
 
 void *camber_alloc_zero(camber_context *context, size_t count, size_t size_bytes) {
@@ -92,23 +129,19 @@ bool camber_grow(camber_context *context, void *items, size_t *capacity, size_t 
         wanted = 16;
     void *block;
     memcpy(&block, items, sizeof block);
-    if (wanted <= SIZE_MAX / size_bytes)
-        block = context->desc.reallocate(context->desc.allocator_user, block, wanted * size_bytes);
-    else
-        block = NULL;
-    if (!block) {
-        camber_log(context, CAMBER_LOG_ERROR,
-                   "out of memory: %zu elements of %zu bytes; give it less data or more memory", wanted, size_bytes);
+    block = resize(context, block, wanted, size_bytes);
+    if (!block)
         return false;
-    }
     memcpy(items, &block, sizeof block);
     *capacity = wanted;
     return true;
 }
 
 void camber_free(camber_context *context, void *block) {
-    if (block)
-        context->desc.reallocate(context->desc.allocator_user, block, 0);
+    if (!block)
+        return;
+    camber_budget_give(context, size_of(block));
+    context->desc.reallocate(context->desc.allocator_user, (char *)block - HEAD_BYTES, 0);
 }
 
 char *camber_copy_string(camber_context *context, const char *text) {

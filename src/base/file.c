@@ -1,55 +1,141 @@
+/* The files that camber reads: which may be read, and reading them. */
+#define _XOPEN_SOURCE 700 /* realpath */
+
 #include "base/base.h"
 
 #include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
 #include <stdio.h>
-#include <string.h>
+#include <stdlib.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
-static camber_status fail_errno(camber_context *context, const char *path) {
-    const int cause = errno;
+camber_status camber_file_fail(camber_context *context, const char *path, int cause) {
+    if (cause == EMFILE || cause == ENFILE)
+        return camber_fail(context, CAMBER_ERROR_IO, "%s: cannot be read: too many open files; allow more (ulimit -n)",
+                           path);
     const camber_status status = cause == ENOENT || cause == ENOTDIR ? CAMBER_ERROR_NOT_FOUND : CAMBER_ERROR_IO;
     return camber_fail(context, status, "%s: cannot be read: %s; check the path and its permissions", path,
                        strerror(cause));
 }
 
-static camber_status read_stream(camber_context *context, FILE *file, const char *path, char **bytes,
-                                 size_t *size_bytes) {
-    char *block = NULL;
-    size_t capacity = 0, size = 0;
-    camber_status status = CAMBER_ERROR_MEMORY;
-    for (;;) {
-        if (!camber_grow(context, &block, &capacity, size + 65536, 1))
-            goto done;
-        const size_t got = fread(block + size, 1, capacity - size - 1, file);
-        size += got;
-        if (got == 0)
-            break;
-    }
-    if (ferror(file)) {
-        status = fail_errno(context, path);
-        goto done;
-    }
-    block[size] = 0;
-    *bytes = block;
-    *size_bytes = size;
-    return CAMBER_OK;
-done:
-    camber_free(context, block);
+/* ---- Access ---- */
+
+static camber_status check_kind(camber_context *context, const char *path, const struct stat *about) {
+    if (S_ISREG(about->st_mode))
+        return CAMBER_OK;
+    if (S_ISDIR(about->st_mode))
+        return camber_fail(context, CAMBER_ERROR_INPUT, "%s: is a folder; name a file in it", path);
+    return camber_fail(context, CAMBER_ERROR_INPUT, "%s: is a device or a pipe; copy what it gives to a file", path);
+}
+
+/* As it is without links. Of a file that is not there its folder counts. */
+static bool resolve(const char *path, char found[PATH_MAX]) {
+    const char *slash = strrchr(path, '/');
+    char folder[PATH_MAX];
+    if (realpath(path, found))
+        return true;
+    const int length = snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path) + 1 : 1, slash ? path : ".");
+    return errno == ENOENT && length > 0 && length < PATH_MAX && realpath(folder, found);
+}
+
+static bool lies_in(const char *path, const char *folder) {
+    char found[PATH_MAX], root[PATH_MAX];
+    if (!realpath(folder, root) || !resolve(path, found))
+        return false;
+    const size_t length = strcmp(root, "/") == 0 ? 0 : strlen(root);
+    return strncmp(found, root, length) == 0 && (found[length] == '/' || found[length] == 0);
+}
+
+static camber_status check_access(camber_context *context, const char *path, const struct stat *about) {
+    const char *output = context->desc.access.output;
+    struct stat other;
+    const camber_status status = check_kind(context, path, about);
+    if (status != CAMBER_OK || !output || stat(output, &other) != 0 || other.st_dev != about->st_dev ||
+        other.st_ino != about->st_ino)
+        return status;
+    return camber_fail(context, CAMBER_ERROR_ARGUMENT, "%s: is read, and would be written to; write to another file",
+                       path);
+}
+
+/* Before it is known whether there is such a file: beyond the root nobody is told. */
+static camber_status check_root(camber_context *context, const char *path, camber_file_naming naming) {
+    const char *root = context->desc.access.root;
+    if (naming == CAMBER_NAMED_BY_CALLER || !root || lies_in(path, root))
+        return CAMBER_OK;
+    return camber_fail(context, CAMBER_ERROR_INPUT,
+                       "%s: is no file in %s, beyond which a style may name none; put it there", path, root);
+}
+
+camber_status camber_file_check(camber_context *context, const char *path, camber_file_naming naming,
+                                uint64_t *size_bytes) {
+    struct stat about;
+    camber_status status = check_root(context, path, naming);
+    if (status == CAMBER_OK && stat(path, &about) != 0)
+        return camber_file_fail(context, path, errno);
+    if (status == CAMBER_OK)
+        status = check_access(context, path, &about);
+    if (status == CAMBER_OK)
+        *size_bytes = (uint64_t)about.st_size;
     return status;
 }
 
-camber_status camber_read_file(camber_context *context, const char *path, char **bytes, size_t *size_bytes) {
+/* Opening a pipe without a writer does not wait, and the file that is looked at is the one that is read. */
+camber_status camber_file_open(camber_context *context, const char *path, camber_file_naming naming, int *file,
+                               uint64_t *size_bytes) {
     struct stat about;
-    if (stat(path, &about) != 0)
-        return fail_errno(context, path);
-    if (S_ISDIR(about.st_mode))
-        return camber_fail(context, CAMBER_ERROR_INPUT, "%s: is a directory; name a file in it", path);
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        return fail_errno(context, path);
-    const camber_status status = read_stream(context, file, path, bytes, size_bytes);
-    fclose(file);
-    return status;
+    camber_status status = check_root(context, path, naming);
+    if (status != CAMBER_OK)
+        return status;
+    const int opened = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+    if (opened < 0 || fstat(opened, &about) != 0)
+        status = camber_file_fail(context, path, errno);
+    else
+        status = check_access(context, path, &about);
+    if (status != CAMBER_OK) {
+        if (opened >= 0)
+            close(opened);
+        return status;
+    }
+    *file = opened;
+    *size_bytes = (uint64_t)about.st_size;
+    return CAMBER_OK;
+}
+
+/* ---- Reading ---- */
+
+static camber_status read_bytes(camber_context *context, int file, const char *path, char *block, size_t size,
+                                size_t *done) {
+    ssize_t got = 1;
+    *done = 0;
+    while (*done < size && (got > 0 || (got < 0 && errno == EINTR))) {
+        got = read(file, block + *done, size - *done);
+        *done += got > 0 ? (size_t)got : 0;
+    }
+    return got < 0 ? camber_file_fail(context, path, errno) : CAMBER_OK;
+}
+
+/* A file that grows meanwhile is read as far as it went when it was opened. */
+camber_status camber_read_file(camber_context *context, const char *path, camber_file_naming naming, char **bytes,
+                               size_t *size_bytes) {
+    int file;
+    uint64_t size;
+    size_t done = 0;
+    camber_status status = camber_file_open(context, path, naming, &file, &size);
+    if (status != CAMBER_OK)
+        return status;
+    char *block = size < SIZE_MAX ? camber_alloc(context, (size_t)size + 1, 1) : NULL;
+    status = block ? read_bytes(context, file, path, block, (size_t)size, &done) : CAMBER_ERROR_MEMORY;
+    close(file);
+    if (status != CAMBER_OK) {
+        camber_free(context, block);
+        return status;
+    }
+    block[done] = 0;
+    *bytes = block;
+    *size_bytes = done;
+    return CAMBER_OK;
 }
 
 uint64_t camber_hash(uint64_t hash, const void *bytes, size_t size_bytes) {

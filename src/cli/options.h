@@ -43,6 +43,8 @@ typedef struct camber_options {
     const char *output, *dump, *polylines, *plot, *junit, *pictures, *style, *layer, *device;
     const char *attribution; /* "": none */
     const char *where;       /* the first */
+    const char *root;        /* folder beyond which a style reaches no file. NULL: anywhere */
+    bool allow_remote, allow_vrt;
     int format;              /* 0: png, 1: glb */
     int theme, method, coverage, backend, sharing, draw;
     camber_view_desc view; /* width and height are set by camber_options_parse */
@@ -50,7 +52,7 @@ typedef struct camber_options {
     double zoom, bearing_deg, pitch_deg; /* NAN where not given */
     double simplify_px, width_px, fan_tolerance_px;
     uint32_t threads;      /* 0: as many as there are */
-    uint64_t memory_bytes; /* of meshes. 0: no bound */
+    uint64_t memory_bytes; /* of the run, its libraries apart. 0: as the library has it */
     uint32_t runs;
     uint32_t windows; /* of each picture, held against the oracle */
 } camber_options;

@@ -7,13 +7,34 @@
 #include <pthread.h>
 #include <stdarg.h>
 #include <stdlib.h>
+#include <string.h>
+
+/* In so little whatever is read may be. */
+static const uint64_t LEAST_BUDGET_BYTES = 128 << 20;
+
+static camber_access access_of(const camber_options *options) {
+    const bool is_file = options->output && strcmp(options->output, "-") != 0;
+    return (camber_access){.remote = options->allow_remote,
+                           .vrt = options->allow_vrt,
+                           .root = options->root,
+                           .output = is_file ? options->output : NULL};
+}
 
 static camber_status prepare(camber_session *session) {
+    const camber_options *options = session->options;
+    const uint64_t asked = options->memory_bytes;
+    const camber_budget_desc budget = {.memory_bytes =
+                                           asked && asked < LEAST_BUDGET_BYTES ? LEAST_BUDGET_BYTES : asked};
+    camber_status status = session->budget ? CAMBER_OK : camber_budget_create(&budget, &session->budget);
+    if (status != CAMBER_OK || session->context)
+        return status;
     const camber_context_desc desc = {.log = camber_report_log,
                                       .log_user = session->report,
                                       .progress = camber_report_progress,
-                                      .progress_user = session->report};
-    return session->context ? CAMBER_OK : camber_context_create(&desc, &session->context);
+                                      .progress_user = session->report,
+                                      .budget = session->budget,
+                                      .access = access_of(options)};
+    return camber_context_create(&desc, &session->context);
 }
 
 /* ---- What draws ---- */
@@ -151,8 +172,11 @@ static void log_beside(void *user, camber_log_level level, const char *message) 
 
 static void *open_beside(void *user) {
     camber_opener *opener = user;
-    const camber_context_desc desc = {
-        .log = log_beside, .log_user = opener, .progress = camber_report_progress, .progress_user = &opener->report};
+    const camber_context_desc desc = {.log = log_beside,
+                                      .log_user = opener,
+                                      .progress = camber_report_progress,
+                                      .progress_user = &opener->report,
+                                      .budget = opener->session->budget};
     opener->status = camber_context_create(&desc, &opener->context);
     if (opener->status == CAMBER_OK)
         opener->status = open_drawing(opener->session, opener->context, &opener->report, CAMBER_NEEDS_RENDERER);
@@ -231,11 +255,13 @@ void camber_session_close(camber_session *session) {
     camber_context_destroy(session->context);
     if (session->opener)
         camber_context_destroy(session->opener->context);
+    camber_budget_destroy(session->budget);
     free(session->opener);
     session->renderer = NULL;
     session->device = NULL;
     session->surface = NULL;
     session->context = NULL;
+    session->budget = NULL;
     session->opener = NULL;
 }
 

@@ -25,6 +25,7 @@ typedef struct camber_session {
     const camber_options *options;
     camber_report *report;
     camber_guard *guard;
+    camber_budget *budget;
     camber_context *context;
     camber_surface *surface;
     camber_device *device;

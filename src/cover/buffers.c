@@ -23,8 +23,7 @@ void camber_cover_destroy(camber_cover *cover) {
     if (!cover)
         return;
     for (int i = 0; i < BUFFERS; i++)
-        if (cover->buffers[i])
-            clReleaseMemObject(cover->buffers[i]);
+        camber_release_buffer(cover->device, &cover->buffers[i]);
     camber_drawing_close(cover->device, &cover->memory);
     camber_free(cover->device->context, cover->items);
     camber_free(cover->device->context, cover->starts);
@@ -70,21 +69,16 @@ camber_status camber_cover_reserve(camber_cover *cover, int which, size_t size_b
         return camber_fail(device->context, CAMBER_ERROR_LIMIT,
                            "drawing takes a buffer of %zu bytes, and %s makes none above %llu; draw less at once",
                            size_bytes, device->info.name, (unsigned long long)device->info.largest_buffer_bytes);
-    if (cover->buffers[which])
-        clReleaseMemObject(cover->buffers[which]);
-    cover->buffers[which] = NULL;
+    camber_release_buffer(device, &cover->buffers[which]);
     cover->capacities[which] = 0;
     count_buffers(cover);
     const size_t more = size_bytes + size_bytes / 4;
     const bool is_roomy = !cover->memory.allowed_bytes && more < device->info.largest_buffer_bytes;
     const size_t room = is_roomy ? more : size_bytes;
     const cl_mem_flags flags = CL_MEM_READ_WRITE | (which == BUFFER_PIXELS ? CL_MEM_ALLOC_HOST_PTR : 0);
-    cl_int code;
-    cover->buffers[which] = clCreateBuffer(device->cl, flags, room, NULL, &code);
-    if (code != CL_SUCCESS) {
-        cover->buffers[which] = NULL;
-        return camber_fail_cl(device->context, "clCreateBuffer", code);
-    }
+    const camber_status status = camber_make_buffer(device, flags, room, NULL, &cover->buffers[which]);
+    if (status != CAMBER_OK)
+        return status;
     cover->capacities[which] = room;
     count_buffers(cover);
     return CAMBER_OK;

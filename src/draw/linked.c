@@ -61,7 +61,6 @@ bool camber_linked_load(camber_renderer *renderer, uint64_t key, GLuint program)
 
 void camber_linked_save(camber_renderer *renderer, uint64_t key, GLuint program) {
     camber_context *context = renderer->share.device->context;
-    const camber_context_desc *host = &context->desc;
     const camber_gl *gl = &renderer->share.surface->gl;
     GLint size = 0;
     GLsizei written = 0;
@@ -69,8 +68,8 @@ void camber_linked_save(camber_renderer *renderer, uint64_t key, GLuint program)
     if (!keeps_programs(gl) || !camber_cache_is_on(context))
         return;
     gl->GetProgramiv(program, GL_PROGRAM_BINARY_LENGTH, &size);
-    /* Past camber_alloc, which logs: a file that is not saved fails nothing. */
-    char *bytes = size > 0 ? host->reallocate(host->allocator_user, NULL, sizeof head + (size_t)size) : NULL;
+    /* A file that is not saved fails nothing. */
+    char *bytes = size > 0 ? camber_resize_quietly(context, NULL, sizeof head + (size_t)size) : NULL;
     if (bytes) {
         gl->GetProgramBinary(program, size, &written, &head.format, bytes + sizeof head);
         if (written > 0) {

@@ -33,8 +33,7 @@ static void on_warning(png_structp png, png_const_charp message) {
 /* zlib's memory too. libpng does without some of what it does not get; a writer does not. */
 static png_voidp on_allocate(png_structp png, png_alloc_size_t size_bytes) {
     camber_png *writer = png_get_mem_ptr(png);
-    const camber_context_desc *host = &writer->context->desc;
-    void *block = host->reallocate(host->allocator_user, NULL, size_bytes);
+    void *block = camber_resize_quietly(writer->context, NULL, size_bytes);
     if (!block && writer->failed == CAMBER_OK)
         writer->failed = camber_fail(writer->context, CAMBER_ERROR_MEMORY,
                                      "PNG: out of memory: %zu bytes; write a smaller picture", (size_t)size_bytes);

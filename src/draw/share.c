@@ -15,8 +15,7 @@ const char *camber_sharing_name(camber_sharing sharing) {
 
 void camber_share_release(void *user, camber_buffer *buffer) {
     const camber_share *share = user;
-    if (buffer->mem)
-        clReleaseMemObject(buffer->mem);
+    camber_release_buffer(share->device, &buffer->mem);
     if (buffer->gl_name)
         share->surface->gl.DeleteBuffers(1, &buffer->gl_name);
     *buffer = (camber_buffer){0};

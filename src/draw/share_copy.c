@@ -12,17 +12,14 @@ static camber_status reserve(void *user, camber_buffer *buffer, size_t size_byte
     if (size_bytes <= buffer->capacity_bytes)
         return CAMBER_OK;
     camber_share_release(user, buffer);
-    cl_int code;
-    buffer->mem = clCreateBuffer(share->device->cl, CL_MEM_READ_WRITE, size_bytes, NULL, &code);
-    if (code != CL_SUCCESS) {
-        buffer->mem = NULL;
-        return camber_fail_cl(share->device->context, "clCreateBuffer", code);
-    }
+    camber_status status = camber_make_buffer(share->device, CL_MEM_READ_WRITE, size_bytes, NULL, &buffer->mem);
+    if (status != CAMBER_OK)
+        return status;
     gl->GenBuffers(1, &buffer->gl_name);
     gl->BindBuffer(GL_ARRAY_BUFFER, buffer->gl_name);
     gl->BufferData(GL_ARRAY_BUFFER, (GLsizeiptr)size_bytes, NULL, GL_DYNAMIC_DRAW);
     gl->BindBuffer(GL_ARRAY_BUFFER, 0);
-    const camber_status status = camber_share_check(share, size_bytes);
+    status = camber_share_check(share, size_bytes);
     if (status == CAMBER_OK)
         buffer->capacity_bytes = size_bytes;
     return status;

@@ -18,21 +18,17 @@ static camber_status reserve(void *user, camber_buffer *buffer, size_t size_byte
     gl->BufferStorage(GL_ARRAY_BUFFER, (GLsizeiptr)size_bytes, NULL, flags);
     buffer->map = gl->MapBufferRange(GL_ARRAY_BUFFER, 0, (GLsizeiptr)size_bytes, flags);
     gl->BindBuffer(GL_ARRAY_BUFFER, 0);
-    const camber_status status = camber_share_check(share, size_bytes);
+    camber_status status = camber_share_check(share, size_bytes);
     if (status != CAMBER_OK)
         return status;
     if (!buffer->map)
         return camber_fail(share->device->context, CAMBER_ERROR_MEMORY,
                            "a GL buffer of %zu bytes cannot be mapped; draw less at once", size_bytes);
-    cl_int code;
-    buffer->mem =
-        clCreateBuffer(share->device->cl, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, size_bytes, buffer->map, &code);
-    if (code != CL_SUCCESS) {
-        buffer->mem = NULL;
-        return camber_fail_cl(share->device->context, "clCreateBuffer on a GL map", code);
-    }
-    buffer->capacity_bytes = size_bytes;
-    return CAMBER_OK;
+    status = camber_make_buffer(share->device, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, size_bytes, buffer->map,
+                                &buffer->mem);
+    if (status == CAMBER_OK)
+        buffer->capacity_bytes = size_bytes;
+    return status;
 }
 
 static camber_status begin(void *user, camber_buffer *buffers, size_t count) {

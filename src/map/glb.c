@@ -361,8 +361,7 @@ static char *make_json(const writer *w, uint64_t vertex_bytes) {
     if (w->index_count)
         describe_mesh(root, w, vertex_bytes, &ok);
     const size_t size = root && ok ? json_dumpb(root, NULL, 0, JSON_COMPACT) : 0;
-    const camber_context_desc *host = &w->context->desc;
-    char *text = size ? host->reallocate(host->allocator_user, NULL, size + 1) : NULL;
+    char *text = size ? camber_resize_quietly(w->context, NULL, size + 1) : NULL;
     if (text)
         text[size] = 0;
     if (text && json_dumpb(root, text, size, JSON_COMPACT) != size) {

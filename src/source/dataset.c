@@ -2,6 +2,7 @@
 #define _LARGEFILE64_SOURCE
 
 #include "base/embedded.h"
+#include "source/database.h"
 #include "source/source.h"
 
 #include <cpl_conv.h>
@@ -12,6 +13,24 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+
+/* What GDAL quotes may be of any file that somebody named. */
+static void leave_out_quotes(char *message) {
+    char *out = message;
+    for (const char *at = message; *at; at++) {
+        const char *end = strchr("'\"`", *at) ? strchr(at + 1, *at == '`' ? '\'' : *at) : NULL;
+        const bool opens = end && (at == message || !isalnum((unsigned char)at[-1]));
+        *out++ = *at;
+        if (!opens)
+            continue;
+        for (int i = 0; i < 3 && out < end; i++)
+            *out++ = '.';
+        *out++ = *end;
+        at = end;
+    }
+    *out = 0;
+}
 
 void CPL_STDCALL camber_gdal_collect(CPLErr level, CPLErrorNum number, const char *message) {
     camber_gdal_errors *errors = CPLGetErrorHandlerUserData();
@@ -20,6 +39,7 @@ void CPL_STDCALL camber_gdal_collect(CPLErr level, CPLErrorNum number, const cha
     if (errors->failures++ == 0) {
         errors->number = number;
         snprintf(errors->message, sizeof errors->message, "%s", message);
+        leave_out_quotes(errors->message);
         /* It stands within a sentence of ours. */
         size_t length = strlen(errors->message);
         while (length && strchr(". \n", errors->message[length - 1]))
@@ -157,27 +177,60 @@ static bool ends_with(const char *text, const char *end) {
     return length >= end_length && EQUAL(text + length - end_length, end);
 }
 
-/* "PG:dbname=x", "https://...", standard input: not a path of the file system, and only its driver knows whether it
- * is there. */
+/* "PG:dbname=x", standard input: not a path of the file system, and only its driver knows whether it is there. */
 static bool is_connection(const char *path) {
     const char *colon = strchr(path, ':'), *slash = strchr(path, '/');
     return STARTS_WITH(path, "/vsistdin") || (colon && (!slash || colon < slash));
 }
 
+/* The file that GDAL's own file systems go by: /vsizip//a/b.zip/c.shp has /a/b.zip/c.shp. */
+static const char *skip_file_systems(const char *path) {
+    while (STARTS_WITH(path, "/vsi")) {
+        const char *slash = strchr(path + 1, '/');
+        if (!slash)
+            break;
+        path = slash + 1;
+    }
+    return path;
+}
+
 static camber_status check_exists(camber_context *context, const char *path, bool *directory) {
     VSIStatBufL about;
+    uint64_t size_bytes;
     *directory = false;
+    if (!context->desc.access.remote && camber_gdal_is_remote(path))
+        return camber_fail(context, CAMBER_ERROR_INPUT,
+                           "%s: is on the network, which nothing is fetched from; download it, or allow it "
+                           "(--allow-remote)",
+                           path);
+    /* Devices and pipes end nowhere. */
+    const char *file = skip_file_systems(path);
+    if (stat(file, &(struct stat){0}) == 0 && VSIStatL(file, &about) == 0 && !VSI_ISDIR(about.st_mode) &&
+        !STARTS_WITH(path, "/vsistdin")) {
+        const camber_status status = camber_file_check(context, file, CAMBER_NAMED_BY_CALLER, &size_bytes);
+        if (status != CAMBER_OK)
+            return status;
+    }
     if (VSIStatL(path, &about) == 0) {
         *directory = VSI_ISDIR(about.st_mode);
         return CAMBER_OK;
     }
     const int cause = errno;
-    if (cause == EACCES)
-        return camber_fail(context, CAMBER_ERROR_IO, "%s: cannot be read: %s; check its permissions", path,
-                           strerror(cause));
+    if (cause == EACCES || cause == EMFILE || cause == ENFILE)
+        return camber_file_fail(context, path, cause);
     if (strcmp(path, "-") == 0 || is_connection(path))
         return CAMBER_OK;
     return camber_fail(context, CAMBER_ERROR_NOT_FOUND, "%s: no such file; check the path", path);
+}
+
+/* A format that is known, but that reaches beyond its file. */
+static camber_status fail_driver(const camber_dataset *dataset, const char *driver) {
+    const bool describes = camber_gdal_describes(driver);
+    return camber_fail(dataset->context, CAMBER_ERROR_INPUT,
+                       describes ? "%s: is %s, which names other files; allow it (--allow-vrt) if you trust it"
+                                 : "%s: is %s, which reaches servers or programs; allow it (--allow-remote) if you "
+                                   "trust it",
+                       dataset->desc->path, driver);
 }
 
 static camber_status fail_open(const camber_dataset *dataset, bool directory) {
@@ -186,6 +239,9 @@ static camber_status fail_open(const camber_dataset *dataset, bool directory) {
     if (directory)
         return camber_fail(dataset->context, CAMBER_ERROR_INPUT,
                            "%s: a directory without data that GDAL reads; name a file in it", path);
+    const char *driver = camber_gdal_refused(dataset->context, path);
+    if (driver)
+        return fail_driver(dataset, driver);
     const bool there = VSIStatL(path, &about) == 0;
     if (!there && strstr(said, "No such file"))
         return camber_fail(dataset->context, CAMBER_ERROR_NOT_FOUND, "%s: no such file; check the path", path);
@@ -229,12 +285,19 @@ static char *gdal_path(camber_context *context, const char *path, bool directory
     return made;
 }
 
+camber_status camber_dataset_fail_srs(camber_context *context, const char *name) {
+    return camber_fail(context, CAMBER_ERROR_INPUT,
+                       "%s: its coordinate system leads to another file; convert the file to EPSG:4326", name);
+}
+
 camber_status camber_dataset_open(camber_context *context, const camber_source_desc *desc, const camber_style *style,
                                   bool unsorted, camber_dataset *dataset) {
     *dataset = (camber_dataset){.context = context, .desc = desc, .zoom = -1};
     bool directory;
-    char *path = NULL, **options = NULL;
+    char *path = NULL, **options = NULL, **drivers = NULL;
     camber_status status = check_exists(context, desc->path, &directory);
+    if (status == CAMBER_OK && camber_gdal_projects_by_path(desc->path))
+        status = camber_dataset_fail_srs(context, desc->path);
     if (status == CAMBER_OK)
         status = write_conf(dataset, style);
     if (status != CAMBER_OK)
@@ -248,10 +311,15 @@ camber_status camber_dataset_open(camber_context *context, const camber_source_d
         options = CSLSetNameValue(options, "USE_CUSTOM_INDEXING", "NO");
     /* We clip exactly where the pieces are joined, which needs the buffer. */
     options = CSLSetNameValue(options, "CLIP", "NO");
+    /* Nothing is left beside the file. */
+    options = CSLSetNameValue(options, "WRITE_GFS", "NO");
+    if (camber_database_look(desc->path) == CAMBER_DATABASE_AT_REST)
+        options = CSLSetNameValue(options, "IMMUTABLE", "YES");
+    drivers = camber_gdal_drivers(context);
     CPLPushErrorHandlerEx(camber_gdal_collect, &dataset->errors);
     /* A driver warns of options that it does not know, and that is collected: warnings are dropped. */
-    dataset->handle = GDALOpenEx(path, GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, NULL,
-                                 (const char *const *)options, NULL);
+    dataset->handle = GDALOpenEx(path, GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
+                                 (const char *const *)drivers, (const char *const *)options, NULL);
     CPLPopErrorHandler();
     if (!dataset->handle) {
         status = fail_open(dataset, directory);
@@ -261,6 +329,7 @@ camber_status camber_dataset_open(camber_context *context, const camber_source_d
     dataset->zoom = zoom_of(dataset);
     status = CAMBER_OK;
 done:
+    CSLDestroy(drivers);
     CSLDestroy(options);
     camber_free(context, path);
     if (status != CAMBER_OK)

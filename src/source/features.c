@@ -44,6 +44,7 @@ camber_status camber_features_create(camber_context *context, const camber_style
     made->style = style;
     made->source = CAMBER_NO_SOURCE;
     made->interned = set;
+    camber_budget_begin(context);
     if (!(set->strings = camber_alloc_zero(context, FIRST_SLOTS, sizeof *set->strings)) ||
         !(set->classes = camber_alloc_zero(context, FIRST_SLOTS, sizeof *set->classes)))
         goto failed;

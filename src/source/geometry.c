@@ -1,6 +1,7 @@
 #include "source/mercator.h"
 #include "source/source.h"
 
+#include <cpl_conv.h>
 #include <math.h>
 #include <string.h>
 
@@ -42,6 +43,15 @@ static bool is_wgs84(OGRSpatialReferenceH srs) {
     return same;
 }
 
+static bool names_path(OGRSpatialReferenceH srs) {
+    static const char *const options[] = {"FORMAT=WKT1_GDAL", NULL};
+    char *text = NULL;
+    (void)OSRExportToWktEx(srs, &text, options);
+    const bool found = text && camber_gdal_names_path(text);
+    CPLFree(text);
+    return found;
+}
+
 static camber_status transform_to_degrees(camber_parts *parts, OGRSpatialReferenceH srs, const char *name) {
     OGRSpatialReferenceH degrees = OSRNewSpatialReference(NULL);
     OSRImportFromEPSG(degrees, 4326);
@@ -64,6 +74,8 @@ camber_status camber_parts_set_srs(camber_parts *parts, OGRSpatialReferenceH srs
     parts->latitude_first = false;
     if (!srs)
         return CAMBER_OK;
+    if (names_path(srs))
+        return camber_dataset_fail_srs(parts->context, name);
     int count = 0;
     const int *mapping = OSRGetDataAxisToSRSAxisMapping(srs, &count);
     if (OSRIsProjected(srs) && is_code(srs, "3857") && mapping && count >= 2 && mapping[0] == 1 && mapping[1] == 2) {

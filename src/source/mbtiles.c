@@ -1,46 +1,75 @@
-/* MBTiles: a SQLite database with a table (or view) of tiles, rows from the south, and one of metadata. */
+/* MBTiles: a SQLite database with a table of tiles, rows from the south, and one of metadata. Either may be a view, and
+ * a view is a program: only what joins and picks is run, and only so many steps of it. */
+#include "source/database.h"
 #include "source/tile_set.h"
 
-#include <errno.h>
 #include <sqlite3.h>
-#include <sys/stat.h>
+#include <stdlib.h>
 
-/* A view can take for ever: so many millions of steps of SQLite's machine a query, some seconds; the metadata is small.
- */
-enum { STEPS_A_CALL = 1 << 20, MOST_CALLS = 400, MOST_METADATA_CALLS = 8 };
-static const int LARGEST_BLOB_BYTES = 64 << 20;
+enum { STEPS_A_CALL = 4096, LARGEST_BLOB_BYTES = 16 << 20 };
 
 typedef struct database {
     sqlite3 *handle;
     sqlite3_stmt *get;
-    int calls, most_calls; /* since the query began */
+    camber_context *context;
+    bool computes; /* a view of it wants what is not allowed */
 } database;
 
 static int count_steps(void *user) {
+    const database *self = user;
+    return !camber_budget_take_steps(self->context, STEPS_A_CALL);
+}
+
+/* Functions take any time over their text, and recursion makes rows of nothing. */
+static int authorize(void *user, int action, const char *first, const char *second, const char *base,
+                     const char *view) {
+    static const char *const functions[] = {"abs", "coalesce", "count", "ifnull", "iif",   "length", "max",
+                                            "min", "nullif",   "round", "sum",    "total", "typeof"};
     database *self = user;
-    return ++self->calls > self->most_calls;
+    (void)first;
+    (void)base;
+    (void)view;
+    if (action == SQLITE_SELECT || action == SQLITE_READ)
+        return SQLITE_OK;
+    for (size_t i = 0; action == SQLITE_FUNCTION && i < sizeof functions / sizeof *functions; i++)
+        if (sqlite3_stricmp(second, functions[i]) == 0)
+            return SQLITE_OK;
+    self->computes = true;
+    return SQLITE_DENY;
+}
+
+static camber_status fail_interrupted(const camber_tile_set *set) {
+    return camber_fail(set->context, CAMBER_ERROR_INPUT,
+                       "%s: who wrote to it last was interrupted; open it once with what may write (sqlite3 FILE "
+                       ".tables), which puts it right",
+                       set->name);
 }
 
 static camber_status fail(const camber_tile_set *set) {
     const database *self = set->self;
-    const int code = self->handle ? sqlite3_errcode(self->handle) : SQLITE_NOMEM;
+    const int code = self->handle ? sqlite3_extended_errcode(self->handle) : SQLITE_NOMEM;
     const char *said = self->handle ? sqlite3_errmsg(self->handle) : "out of memory";
-    switch (code) {
+    if (self->computes)
+        return camber_fail(set->context, CAMBER_ERROR_INPUT,
+                           "%s: a view of it computes what tables of tiles do not: recursion, or functions; copy its "
+                           "rows to tables",
+                           set->name);
+    switch (code & 0xff) {
     case SQLITE_NOMEM: return camber_fail(set->context, CAMBER_ERROR_MEMORY, "%s: SQLite is out of memory", set->name);
     case SQLITE_CANTOPEN:
     case SQLITE_PERM:
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
         return camber_fail(set->context, CAMBER_ERROR_IO,
-                           "%s: cannot be read: %s; check its permissions, and who writes "
-                           "to it",
-                           set->name, said);
+                           "%s: cannot be read: %s; check its permissions, and who writes to it", set->name, said);
+    case SQLITE_READONLY: return fail_interrupted(set);
     case SQLITE_NOTADB:
         return camber_fail(set->context, CAMBER_ERROR_INPUT, "%s: no MBTiles: %s; name such a file, or get it again",
                            set->name, said);
     case SQLITE_INTERRUPT:
-        return camber_fail(set->context, CAMBER_ERROR_INPUT,
-                           "%s: a query takes too long; make an index on tiles (zoom_level, tile_column, tile_row)",
+        return camber_fail(set->context, CAMBER_ERROR_LIMIT,
+                           "%s: its queries take too many steps; make an index on tiles (zoom_level, tile_column, "
+                           "tile_row)",
                            set->name);
     default:
         return camber_fail(set->context, CAMBER_ERROR_INPUT, "%s: damaged or cut off: %s; get the file again",
@@ -49,16 +78,26 @@ static camber_status fail(const camber_tile_set *set) {
 }
 
 static camber_status prepare(camber_tile_set *set, const char *sql, sqlite3_stmt **statement) {
-    database *self = set->self;
-    self->calls = 0;
+    const database *self = set->self;
     return sqlite3_prepare_v2(self->handle, sql, -1, statement, NULL) == SQLITE_OK ? CAMBER_OK : fail(set);
 }
 
 /* ---- What it tells of itself ---- */
 
+static bool is_wanted(const char *name) {
+    static const char *const names[] = {"format", "bounds", "minzoom", "maxzoom", "attribution", "json"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (strcmp(name, names[i]) == 0)
+            return true;
+    return false;
+}
+
 static void take_row(json_t *about, sqlite3_stmt *row) {
-    const char *name = (const char *)sqlite3_column_text(row, 0), *value = (const char *)sqlite3_column_text(row, 1);
-    if (!name || !value)
+    const char *name = (const char *)sqlite3_column_text(row, 0);
+    if (!name || !is_wanted(name))
+        return;
+    const char *value = (const char *)sqlite3_column_text(row, 1);
+    if (!value)
         return;
     json_object_set_new(about, name, json_string(value));
     if (strcmp(name, "json") != 0)
@@ -75,16 +114,13 @@ static camber_status read_metadata(camber_tile_set *set) {
     database *self = set->self;
     sqlite3_stmt *rows = NULL;
     if (sqlite3_prepare_v2(self->handle, "SELECT name, value FROM metadata", -1, &rows, NULL) != SQLITE_OK)
-        return sqlite3_errcode(self->handle) == SQLITE_ERROR ? CAMBER_OK : fail(set);
-    self->calls = 0;
-    self->most_calls = MOST_METADATA_CALLS;
+        return sqlite3_errcode(self->handle) == SQLITE_ERROR && !self->computes ? CAMBER_OK : fail(set);
     json_t *about = json_object();
     int step;
     while ((step = sqlite3_step(rows)) == SQLITE_ROW)
         take_row(about, rows);
     camber_status status = step == SQLITE_DONE ? CAMBER_OK : fail(set);
     sqlite3_finalize(rows);
-    self->most_calls = MOST_CALLS;
     if (status == CAMBER_OK)
         status = camber_tile_set_describe(set, about);
     const char *format = json_string_value(json_object_get(about, "format"));
@@ -120,8 +156,7 @@ static camber_status find_zooms(camber_tile_set *set) {
 static camber_status get_tile(camber_tile_set *set, int zoom, camber_tile_place place, camber_bytes *bytes,
                               const char **why) {
     (void)why;
-    database *self = set->self;
-    self->calls = 0;
+    const database *self = set->self;
     bytes->size_bytes = 0;
     sqlite3_bind_int(self->get, 1, zoom);
     sqlite3_bind_int64(self->get, 2, place.column);
@@ -142,40 +177,55 @@ static camber_status get_tile(camber_tile_set *set, int zoom, camber_tile_place 
     return status;
 }
 
+static int compare_places(const void *left, const void *right) {
+    const camber_tile_place *a = left, *b = right;
+    if (a->column != b->column)
+        return a->column < b->column ? -1 : 1;
+    return a->row < b->row ? -1 : a->row > b->row;
+}
+
+/* In order, each once. */
+static size_t sort_places(camber_tile_place *places, size_t count) {
+    size_t kept = 0;
+    if (count)
+        qsort(places, count, sizeof *places, compare_places);
+    for (size_t i = 0; i < count; i++)
+        if (kept == 0 || compare_places(places + kept - 1, places + i) != 0)
+            places[kept++] = places[i];
+    return kept;
+}
+
+static camber_status take_place(camber_tile_set *set, sqlite3_stmt *at, int zoom, camber_tile_place **places,
+                                size_t *count, size_t *capacity) {
+    const int64_t side = INT64_C(1) << zoom;
+    const int64_t column = sqlite3_column_int64(at, 0), row = side - 1 - sqlite3_column_int64(at, 1);
+    const camber_status status = camber_budget_take_tiles(set->context, set->name, 1);
+    if (status != CAMBER_OK || column < 0 || column >= side || row < 0 || row >= side)
+        return status;
+    if (!camber_grow(set->context, places, capacity, *count + 1, sizeof **places))
+        return CAMBER_ERROR_MEMORY;
+    (*places)[(*count)++] = (camber_tile_place){(uint32_t)column, (uint32_t)row};
+    return CAMBER_OK;
+}
+
 static camber_status list_tiles(camber_tile_set *set, int zoom, camber_tile_place **places, size_t *count) {
     sqlite3_stmt *rows = NULL;
     camber_tile_place *made = NULL;
     size_t found = 0, capacity = 0;
-    const int64_t side = INT64_C(1) << zoom;
-    camber_status status = prepare(set,
-                                   "SELECT tile_column, tile_row FROM tiles WHERE zoom_level = ? "
-                                   "ORDER BY tile_column, tile_row",
-                                   &rows);
+    camber_status status = prepare(set, "SELECT tile_column, tile_row FROM tiles WHERE zoom_level = ?", &rows);
     if (status != CAMBER_OK)
         return status;
     sqlite3_bind_int(rows, 1, zoom);
     int step;
-    while (status == CAMBER_OK && (step = sqlite3_step(rows)) != SQLITE_DONE) {
-        if (step != SQLITE_ROW) {
-            status = fail(set);
-            break;
-        }
-        const int64_t column = sqlite3_column_int64(rows, 0), row = side - 1 - sqlite3_column_int64(rows, 1);
-        if (column < 0 || column >= side || row < 0 || row >= side ||
-            (found && made[found - 1].column == column && made[found - 1].row == row))
-            continue;
-        if (!camber_grow(set->context, &made, &capacity, found + 1, sizeof *made))
-            status = CAMBER_ERROR_MEMORY;
-        else
-            made[found++] = (camber_tile_place){(uint32_t)column, (uint32_t)row};
-    }
+    while (status == CAMBER_OK && (step = sqlite3_step(rows)) != SQLITE_DONE)
+        status = step == SQLITE_ROW ? take_place(set, rows, zoom, &made, &found, &capacity) : fail(set);
     sqlite3_finalize(rows);
     if (status != CAMBER_OK) {
         camber_free(set->context, made);
         return status;
     }
+    *count = sort_places(made, found);
     *places = made;
-    *count = found;
     return CAMBER_OK;
 }
 
@@ -188,31 +238,58 @@ static void close_database(camber_tile_set *set) {
 
 static const camber_tile_set_calls database_calls = {get_tile, list_tiles, close_database};
 
-static camber_status check_file(const camber_tile_set *set, const char *path) {
-    struct stat about;
-    if (stat(path, &about) != 0) {
-        const int cause = errno;
-        return camber_fail(set->context, cause == ENOENT || cause == ENOTDIR ? CAMBER_ERROR_NOT_FOUND : CAMBER_ERROR_IO,
-                           "%s: cannot be read: %s; check the path and its permissions", set->name, strerror(cause));
-    }
-    if (about.st_size == 0)
-        return camber_fail(set->context, CAMBER_ERROR_INPUT, "%s: the file is empty; get it again", set->name);
-    return CAMBER_OK;
+/* ---- Opening ---- */
+
+/* A path as SQLite's URI has it. */
+static char *immutable_uri(camber_context *context, const char *path) {
+    static const char tail[] = "?immutable=1";
+    char *uri = camber_alloc(context, 3 * strlen(path) + sizeof "file:" + sizeof tail, 1);
+    if (!uri)
+        return NULL;
+    char *out = uri + sprintf(uri, "file:");
+    for (; *path; path++)
+        out += sprintf(out, strchr("%?#", *path) ? "%%%02X" : "%c", (unsigned char)*path);
+    memcpy(out, tail, sizeof tail);
+    return uri;
+}
+
+/* SQLite makes files beside a database whose writers keep a log, and leaves them there. */
+static camber_status open_handle(camber_tile_set *set, const char *path) {
+    database *self = set->self;
+    const int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_NOMUTEX;
+    const camber_database_kind kind = camber_database_look(path);
+    if (kind == CAMBER_DATABASE_INTERRUPTED)
+        return fail_interrupted(set);
+    if (kind != CAMBER_DATABASE_AT_REST)
+        return sqlite3_open_v2(path, &self->handle, flags, NULL) == SQLITE_OK ? CAMBER_OK : fail(set);
+    char *uri = immutable_uri(set->context, path);
+    if (!uri)
+        return CAMBER_ERROR_MEMORY;
+    const int code = sqlite3_open_v2(uri, &self->handle, flags | SQLITE_OPEN_URI, NULL);
+    camber_free(set->context, uri);
+    return code == SQLITE_OK ? CAMBER_OK : fail(set);
 }
 
 camber_status camber_mbtiles_open(camber_tile_set *set, const char *path) {
-    camber_status status = check_file(set, path);
+    uint64_t size_bytes;
+    camber_status status = camber_file_check(set->context, path, set->naming, &size_bytes);
+    if (status == CAMBER_OK && size_bytes == 0)
+        status = camber_fail(set->context, CAMBER_ERROR_INPUT, "%s: the file is empty; get it again", set->name);
     database *self = status == CAMBER_OK ? camber_alloc_zero(set->context, 1, sizeof *self) : NULL;
     if (!self)
         return status == CAMBER_OK ? CAMBER_ERROR_MEMORY : status;
+    camber_budget_open(set->context, size_bytes);
+    self->context = set->context;
     set->self = self;
     set->calls = &database_calls;
     set->min_zoom = set->max_zoom = -1;
-    if (sqlite3_open_v2(path, &self->handle, SQLITE_OPEN_READONLY | SQLITE_OPEN_NOMUTEX, NULL) != SQLITE_OK)
-        return fail(set);
+    status = open_handle(set, path);
+    if (status != CAMBER_OK)
+        return status;
     sqlite3_progress_handler(self->handle, STEPS_A_CALL, count_steps, self);
     sqlite3_limit(self->handle, SQLITE_LIMIT_LENGTH, LARGEST_BLOB_BYTES);
     sqlite3_db_config(self->handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, NULL);
+    sqlite3_set_authorizer(self->handle, authorize, self);
     status = read_metadata(set);
     if (status == CAMBER_OK)
         status = prepare(set, "SELECT tile_data FROM tiles WHERE zoom_level = ? AND tile_column = ? AND tile_row = ?",

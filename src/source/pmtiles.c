@@ -6,17 +6,15 @@
 #include "source/tile_set.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <stdlib.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 enum { HEADER_BYTES = 127, DEEPEST = 4, NO_COMPRESSION = 1, GZIP = 2, VECTOR_TILES = 1 };
 
 /* Real directories take some hundred kilobytes. */
 static const size_t LARGEST_DIRECTORY_BYTES = (size_t)16 << 20, LARGEST_BYTES = (size_t)64 << 20;
-/* Entries looked at to list a zoom's tiles, and what reading a directory counts for. */
-static const uint64_t MOST_LISTED = UINT64_C(1) << 24, DIRECTORY_COSTS = 1024;
+/* Steps of the budget that reading a directory counts for. */
+static const uint64_t DIRECTORY_STEPS = 4096;
 
 typedef struct range {
     uint64_t offset, size;
@@ -184,15 +182,11 @@ static camber_status read_range(camber_tile_set *set, range at, size_t limit_byt
 static camber_status read_packed(camber_tile_set *set, range at, const char *what, const camber_bytes **bytes) {
     archive *self = set->self;
     const char *why = NULL;
-    bool no_memory = false;
     camber_status status = read_range(set, at, LARGEST_DIRECTORY_BYTES, &self->packed, &why);
+    if (status == CAMBER_OK && !why && self->directory_compression == GZIP)
+        status = camber_tile_set_gunzip(set, &self->packed, LARGEST_DIRECTORY_BYTES, &self->unpacked, &why);
     if (status != CAMBER_OK)
         return status;
-    if (!why && self->directory_compression == GZIP)
-        why = camber_gunzip(self->packed.data, self->packed.size_bytes, LARGEST_DIRECTORY_BYTES, &self->unpacked,
-                            &no_memory);
-    if (no_memory)
-        return CAMBER_ERROR_MEMORY;
     *bytes = self->directory_compression == GZIP ? &self->unpacked : &self->packed;
     if (!why)
         return CAMBER_OK;
@@ -268,7 +262,6 @@ typedef struct listing {
     uint64_t first, end; /* numbers of the zoom */
     camber_tile_place *places;
     size_t count, capacity;
-    uint64_t cost;
 } listing;
 
 static camber_status list_run(listing *list, const camber_pmtiles_entry *entry) {
@@ -277,11 +270,9 @@ static camber_status list_run(listing *list, const camber_pmtiles_entry *entry) 
         return CAMBER_OK;
     const uint64_t from = entry->number > list->first ? entry->number : list->first;
     const uint64_t end = last < list->end ? last + 1 : list->end;
-    if (end - from > MOST_LISTED - (list->cost < MOST_LISTED ? list->cost : MOST_LISTED))
-        return camber_fail(list->set->context, CAMBER_ERROR_LIMIT,
-                           "%s: more than %llu tiles; draw it through a style that names it as a source",
-                           list->set->name, (unsigned long long)MOST_LISTED);
-    list->cost += end - from;
+    const camber_status status = camber_budget_take_tiles(list->set->context, list->set->name, end - from);
+    if (status != CAMBER_OK)
+        return status;
     for (uint64_t number = from; number < end; number++) {
         if (!camber_grow(list->set->context, &list->places, &list->capacity, list->count + 1, sizeof *list->places))
             return CAMBER_ERROR_MEMORY;
@@ -304,12 +295,10 @@ static camber_status list_directory(listing *list, const directory *in, int dept
             entry->number >= list->end || (i + 1 < in->count && in->entries[i + 1].number <= list->first);
         if (beyond)
             continue;
-        list->cost += DIRECTORY_COSTS;
         directory leaf = {0};
-        if (depth >= DEEPEST || list->cost > MOST_LISTED)
+        if (depth >= DEEPEST || !camber_budget_take_steps(list->set->context, DIRECTORY_STEPS))
             return fail(list->set, "its directories go round in circles");
         status = read_directory(list->set, leaf_of(self, entry), &leaf);
-        list->cost += leaf.count;
         if (status == CAMBER_OK)
             status = list_directory(list, &leaf, depth + 1);
         camber_free(list->set->context, leaf.entries);
@@ -426,20 +415,17 @@ static camber_status read_metadata(camber_tile_set *set) {
 
 camber_status camber_pmtiles_open(camber_tile_set *set, const char *path) {
     archive *self = camber_alloc_zero(set->context, 1, sizeof *self);
-    struct stat about;
     if (!self)
         return CAMBER_ERROR_MEMORY;
+    self->file = -1;
     set->self = self;
     set->calls = &archive_calls;
     self->packed.context = self->unpacked.context = set->context;
-    self->file = open(path, O_RDONLY | O_CLOEXEC);
-    if (self->file < 0 || fstat(self->file, &about) != 0) {
-        const int cause = errno;
-        return camber_fail(set->context, cause == ENOENT || cause == ENOTDIR ? CAMBER_ERROR_NOT_FOUND : CAMBER_ERROR_IO,
-                           "%s: cannot be read: %s; check the path and its permissions", set->name, strerror(cause));
-    }
-    self->size_bytes = about.st_size > 0 ? (uint64_t)about.st_size : 0;
-    camber_status status = read_header(set);
+    camber_status status = camber_file_open(set->context, path, set->naming, &self->file, &self->size_bytes);
+    if (status != CAMBER_OK)
+        return status;
+    camber_budget_open(set->context, self->size_bytes);
+    status = read_header(set);
     if (status == CAMBER_OK)
         status = read_directory(set, self->root, &self->parsed_root);
     if (status == CAMBER_OK)

@@ -158,6 +158,18 @@ static void show_progress(reader *self, double fraction) {
     camber_progress(self->context, "reading", fraction);
 }
 
+/* While OpenStreetMap's nodes are read, which are no features. */
+static int CPL_STDCALL beat(double fraction, const char *message, void *user) {
+    reader *self = user;
+    (void)message;
+    const double now = camber_now_ms();
+    if (now - self->shown_ms >= PROGRESS_MS) {
+        self->shown_ms = now;
+        camber_progress(self->context, "reading", fraction);
+    }
+    return TRUE;
+}
+
 static OGRFeatureH next_feature(reader *self, double *fraction) {
     if (self->dataset.errors.failures) {
         self->dataset.errors = (camber_gdal_errors){0};
@@ -166,7 +178,7 @@ static OGRFeatureH next_feature(reader *self, double *fraction) {
     if (!self->dataset.osm)
         return OGR_L_GetNextFeature(self->layer);
     OGRLayerH layer = NULL;
-    return GDALDatasetGetNextFeature(self->dataset.handle, &layer, fraction, NULL, NULL);
+    return GDALDatasetGetNextFeature(self->dataset.handle, &layer, fraction, beat, self);
 }
 
 /* expected: features that the layer announces, below 0 where it does not know. *unsorted: start again with nodes in
@@ -406,20 +418,22 @@ static camber_status read_once(camber_features *features, const camber_source_de
 }
 
 static camber_status read_file(camber_features *features, const camber_source_desc *desc) {
-    static const char option[] = "CPL_VSIL_GZIP_WRITE_PROPERTIES";
+    camber_gdal_confined confined;
     GDALAllRegister();
-    /* Or GDAL writes a .properties file beside a .gz. */
-    const char *old = CPLGetThreadLocalConfigOption(option, NULL);
-    char *kept = old ? camber_copy_string(features->context, old) : NULL;
-    if (old && !kept)
-        return CAMBER_ERROR_MEMORY;
-    CPLSetThreadLocalConfigOption(option, "NO");
+    camber_status status = camber_gdal_confine(features->context, &confined);
+    if (status != CAMBER_OK)
+        return status;
     bool unsorted = false;
-    camber_status status = read_once(features, desc, &unsorted);
+    status = read_once(features, desc, &unsorted);
     if (status != CAMBER_OK && unsorted)
         status = read_once(features, desc, &unsorted);
-    CPLSetThreadLocalConfigOption(option, kept);
-    camber_free(features->context, kept);
+    camber_gdal_release(features->context, &confined);
+    if (status == CAMBER_OK && confined.refused)
+        camber_log(
+            features->context, CAMBER_LOG_WARNING,
+            "%s: leads to the network, which nothing is fetched from; what it wants from there is left out: allow "
+            "it (--allow-remote) if you trust it",
+            desc->path);
     return status;
 }
 

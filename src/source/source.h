@@ -51,6 +51,9 @@ void camber_parts_free(camber_parts *parts);
 
 /* ---- dataset.c: an open file ---- */
 
+/* CAMBER_ERROR_INPUT: a coordinate system leads to another file. */
+camber_status camber_dataset_fail_srs(camber_context *context, const char *name);
+
 /* What GDAL said since the last reset. */
 typedef struct camber_gdal_errors {
     size_t failures;
@@ -79,6 +82,32 @@ const char *camber_dataset_attribution(const camber_dataset *dataset);
 camber_status camber_dataset_layers(camber_dataset *dataset, bool wants_polygons, int **layers, size_t *count);
 /* CPLErrorHandler whose user data is a camber_gdal_errors. */
 void CPL_STDCALL camber_gdal_collect(CPLErr level, CPLErrorNum number, const char *message);
+
+/* ---- confine.c: what GDAL may reach ---- */
+
+/* Until the end nothing is fetched on this thread, unless the context's access has it, and nothing is written beside
+ * files. */
+typedef struct camber_gdal_confined {
+    char *kept[2]; /* of the thread's options, what they were */
+    bool http;
+    size_t refused; /* fetches */
+} camber_gdal_confined;
+camber_status camber_gdal_confine(camber_context *context, camber_gdal_confined *confined);
+void camber_gdal_release(camber_context *context, camber_gdal_confined *confined);
+/* Names of the drivers that the context's access has, for GDALOpenEx; freed with CSLDestroy. */
+char **camber_gdal_drivers(const camber_context *context);
+bool camber_gdal_has_driver(const camber_context *context, const char *name);
+/* The driver of a file, where it is none of these. NULL: it is, or none knows the file. */
+const char *camber_gdal_refused(const camber_context *context, const char *path);
+/* Whether a driver reads descriptions of what lies in other files. */
+bool camber_gdal_describes(const char *driver);
+/* Whether the text of a coordinate system leads to another file: PROJ opens the grids that it names, by their names
+ * among its own, by a path anywhere. */
+bool camber_gdal_names_path(const char *srs);
+/* The same of the .prj that stands beside a shapefile, which GDAL follows before it tells of it. */
+bool camber_gdal_projects_by_path(const char *path);
+/* Whether a path leads to the network. */
+bool camber_gdal_is_remote(const char *path);
 
 /* ---- where.c: attribute filters ---- */
 

@@ -42,7 +42,7 @@ static camber_status load_json(camber_context *context, const char *what, const 
     char *text;
     size_t size;
     json_error_t error;
-    const camber_status status = camber_read_file(context, path, &text, &size);
+    const camber_status status = camber_read_file(context, path, CAMBER_NAMED_BY_STYLE, &text, &size);
     if (status != CAMBER_OK)
         return status;
     *root = json_loadb(text, size, JSON_DECODE_INT_AS_REAL | JSON_ALLOW_NUL, &error);
@@ -114,7 +114,7 @@ static camber_status open_archive(camber_sources *sources, source *one, const ca
     if (there != CAMBER_OK)
         return there;
     if (url->kind == CAMBER_URL_FILE || camber_tile_set_knows(url->path))
-        return camber_tile_set_open(sources->context, url->path, &one->set);
+        return camber_tile_set_open(sources->context, url->path, CAMBER_NAMED_BY_STYLE, &one->set);
     return camber_fail(sources->context, CAMBER_ERROR_INPUT,
                        "%s: %s ends neither in .mbtiles nor in .pmtiles; rename it", one->what, url->path);
 }
@@ -348,6 +348,8 @@ static camber_status read_tiles(camber_sources *sources, const source *one, cons
     if (names)
         status = camber_cover_tiles(sources->context, cover, zoom, one->is_bounded ? one->bounds : NULL, &places,
                                     &reading.place_count);
+    if (status == CAMBER_OK)
+        status = camber_budget_take_tiles(sources->context, one->what, reading.place_count);
     if (status == CAMBER_OK) {
         reading.places = places;
         reading.mvt = (camber_mvt_desc){.features = sources->features,

@@ -45,7 +45,7 @@ static camber_status load_sheet(camber_context *context, const char *path, cambe
     png_image image = {.version = PNG_IMAGE_VERSION};
     char *bytes = NULL;
     size_t size_bytes;
-    camber_status status = camber_read_file(context, path, &bytes, &size_bytes);
+    camber_status status = camber_read_file(context, path, CAMBER_NAMED_BY_STYLE, &bytes, &size_bytes);
     if (status != CAMBER_OK)
         return status;
     if (png_image_begin_read_from_memory(&image, bytes, size_bytes))
@@ -112,7 +112,7 @@ static camber_status load_index(index_reader *r) {
     size_t size_bytes;
     json_t *root = NULL, *value;
     const char *name;
-    camber_status status = camber_read_file(context, r->path, &bytes, &size_bytes);
+    camber_status status = camber_read_file(context, r->path, CAMBER_NAMED_BY_STYLE, &bytes, &size_bytes);
     if (status == CAMBER_OK)
         status = camber_json_read(context, bytes, size_bytes, r->path, &root);
     if (status == CAMBER_OK && !json_is_object(root))

@@ -267,7 +267,7 @@ static bool wants_plain(const camber_style *style) {
 
 static camber_status read_input(input *self, camber_tile_result *result) {
     const camber_style *style = self->features->style;
-    camber_status status = camber_tile_set_open(self->context, self->desc->path, &self->set);
+    camber_status status = camber_tile_set_open(self->context, self->desc->path, CAMBER_NAMED_BY_CALLER, &self->set);
     if (status == CAMBER_OK)
         status = list_places(self);
     if (status == CAMBER_OK)

@@ -1,7 +1,9 @@
 #include "source/tile_set.h"
 
+#include <errno.h>
 #include <math.h>
 #include <strings.h>
+#include <unistd.h>
 #include <zlib.h>
 
 /* Tiles of real maps stay below a megabyte or few; a bomb does not. */
@@ -22,16 +24,18 @@ bool camber_bytes_resize(camber_bytes *bytes, size_t size_bytes) {
 
 /* ---- Decompression ---- */
 
-static const char *inflate_all(z_stream *stream, size_t limit_bytes, camber_bytes *out, bool *no_memory) {
+static const char TOO_MUCH[] = "it decompresses to too much";
+
+static const char *inflate_all(z_stream *stream, size_t limit_bytes, camber_bytes *out, camber_status *status) {
     size_t done = 0;
     for (;;) {
         if (done == out->size_bytes) {
             if (done >= limit_bytes)
-                return "it decompresses to too much";
+                return TOO_MUCH;
             const size_t wanted = done ? 2 * done : 65536;
             if (!camber_bytes_resize(out, wanted < limit_bytes ? wanted : limit_bytes)) {
-                *no_memory = true;
-                return "out of memory";
+                *status = CAMBER_ERROR_MEMORY;
+                return NULL;
             }
         }
         stream->next_out = out->data + done;
@@ -51,11 +55,9 @@ static const char *inflate_all(z_stream *stream, size_t limit_bytes, camber_byte
     return NULL;
 }
 
-const char *camber_gunzip(const void *bytes, size_t size_bytes, size_t limit_bytes, camber_bytes *out,
-                          bool *no_memory) {
-    z_stream stream = {.next_in = (Bytef *)(uintptr_t)bytes, .avail_in = (uInt)size_bytes};
-    *no_memory = false;
-    if (size_bytes > UINT32_MAX / 2)
+static const char *gunzip(const camber_bytes *packed, size_t limit_bytes, camber_bytes *out, camber_status *status) {
+    z_stream stream = {.next_in = packed->data, .avail_in = (uInt)packed->size_bytes};
+    if (packed->size_bytes > UINT32_MAX / 2)
         return "it is larger than 2 GB";
     /* 32: the header tells gzip from zlib. */
     if (inflateInit2(&stream, 15 + 32) != Z_OK)
@@ -63,9 +65,21 @@ const char *camber_gunzip(const void *bytes, size_t size_bytes, size_t limit_byt
     out->size_bytes = 0;
     if (out->capacity > 1)
         out->size_bytes = out->capacity - 1 < limit_bytes ? out->capacity - 1 : limit_bytes;
-    const char *why = inflate_all(&stream, limit_bytes, out, no_memory);
+    const char *why = inflate_all(&stream, limit_bytes, out, status);
     inflateEnd(&stream);
     return why;
+}
+
+camber_status camber_tile_set_gunzip(camber_tile_set *set, const camber_bytes *packed, size_t limit_bytes,
+                                     camber_bytes *out, const char **why) {
+    const uint64_t left = camber_budget_unfolds(set->context);
+    camber_status status = CAMBER_OK;
+    *why = gunzip(packed, left < limit_bytes ? (size_t)left : limit_bytes, out, &status);
+    if (*why == TOO_MUCH && left < limit_bytes)
+        return camber_budget_unfold(set->context, set->name, left + 1);
+    if (status == CAMBER_OK && !*why)
+        status = camber_budget_unfold(set->context, set->name, out->size_bytes);
+    return status;
 }
 
 static bool is_compressed(const camber_bytes *bytes) {
@@ -199,28 +213,42 @@ static char *path_of(camber_tile_set *set, int zoom, camber_tile_place place) {
     return (char *)path.data;
 }
 
+static camber_status read_tile(int file, camber_bytes *bytes, const char *name) {
+    while (bytes->size_bytes <= LARGEST_TILE_BYTES) {
+        const size_t before = bytes->size_bytes;
+        if (!camber_bytes_resize(bytes, before + 65536))
+            return CAMBER_ERROR_MEMORY;
+        const ssize_t got = read(file, bytes->data + before, 65536);
+        bytes->size_bytes = before + (got > 0 ? (size_t)got : 0);
+        if (got < 0 && errno != EINTR)
+            return camber_file_fail(bytes->context, name, errno);
+        if (got == 0)
+            break;
+    }
+    return CAMBER_OK;
+}
+
+/* A tile that is not there is empty. */
 static camber_status get_file(camber_tile_set *set, int zoom, camber_tile_place place, camber_bytes *bytes,
                               const char **why) {
     (void)why;
     char *path = path_of(set, zoom, place);
+    int file;
+    uint64_t size_bytes;
     if (!path)
         return CAMBER_ERROR_MEMORY;
-    camber_status status = CAMBER_OK;
     bytes->size_bytes = 0;
-    FILE *file = fopen(path, "rb");
-    camber_free(set->context, path);
-    if (!file)
-        return CAMBER_OK;
-    for (size_t got = 1; got && status == CAMBER_OK && bytes->size_bytes <= LARGEST_TILE_BYTES;) {
-        const size_t before = bytes->size_bytes;
-        if (!camber_bytes_resize(bytes, before + 65536)) {
-            status = CAMBER_ERROR_MEMORY;
-            break;
-        }
-        got = fread(bytes->data + before, 1, 65536, file);
-        bytes->size_bytes = before + got;
+    camber_status status = CAMBER_OK;
+    if (access(path, F_OK) == 0 || errno == EACCES)
+        status = camber_file_open(set->context, path, set->naming, &file, &size_bytes);
+    else
+        size_bytes = UINT64_MAX;
+    if (status == CAMBER_OK && size_bytes != UINT64_MAX) {
+        camber_budget_open(set->context, size_bytes);
+        status = read_tile(file, bytes, path);
+        close(file);
     }
-    fclose(file);
+    camber_free(set->context, path);
     return status;
 }
 
@@ -266,6 +294,7 @@ camber_status camber_tile_set_of_files(camber_context *context, const camber_til
     *self = (file_set){path, files->south_first, files->high_resolution};
     made->self = self;
     made->calls = &file_calls;
+    made->naming = CAMBER_NAMED_BY_STYLE;
     *set = made;
     return CAMBER_OK;
 }
@@ -279,10 +308,12 @@ bool camber_tile_set_knows(const char *path) {
     return ends_with(path, ".mbtiles") || ends_with(path, ".pmtiles");
 }
 
-camber_status camber_tile_set_open(camber_context *context, const char *path, camber_tile_set **set) {
+camber_status camber_tile_set_open(camber_context *context, const char *path, camber_file_naming naming,
+                                   camber_tile_set **set) {
     camber_tile_set *made;
     if (make(context, path, &made) != CAMBER_OK)
         return CAMBER_ERROR_MEMORY;
+    made->naming = naming;
     const camber_status status =
         ends_with(path, ".pmtiles") ? camber_pmtiles_open(made, path) : camber_mbtiles_open(made, path);
     if (status != CAMBER_OK) {
@@ -300,11 +331,8 @@ camber_status camber_tile_set_get(camber_tile_set *set, int zoom, camber_tile_pl
     const camber_status status = set->calls->get(set, zoom, place, &set->raw, why);
     if (status != CAMBER_OK || *why)
         return status;
-    if (is_compressed(&set->raw)) {
-        bool no_memory;
-        *why = camber_gunzip(set->raw.data, set->raw.size_bytes, LARGEST_TILE_BYTES, bytes, &no_memory);
-        return no_memory ? CAMBER_ERROR_MEMORY : CAMBER_OK;
-    }
+    if (is_compressed(&set->raw))
+        return camber_tile_set_gunzip(set, &set->raw, LARGEST_TILE_BYTES, bytes, why);
     if (set->raw.size_bytes > LARGEST_TILE_BYTES) {
         *why = "it is larger than 64 MB";
         return CAMBER_OK;
@@ -312,7 +340,7 @@ camber_status camber_tile_set_get(camber_tile_set *set, int zoom, camber_tile_pl
     const camber_bytes swapped = *bytes;
     *bytes = set->raw;
     set->raw = swapped;
-    return CAMBER_OK;
+    return camber_budget_unfold(set->context, set->name, bytes->size_bytes);
 }
 
 camber_status camber_tile_set_list(camber_tile_set *set, int zoom, camber_tile_place **places, size_t *count) {

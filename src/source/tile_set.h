@@ -38,7 +38,8 @@ typedef struct camber_tile_set_calls {
 struct camber_tile_set {
     const camber_tile_set_calls *calls;
     camber_context *context;
-    char *name; /* in messages */
+    char *name;                /* in messages */
+    camber_file_naming naming; /* of its files */
     int min_zoom, max_zoom;
     double bounds[4]; /* west, south, east, north, degrees; the whole world where nothing is said */
     bool has_bounds;
@@ -48,9 +49,10 @@ struct camber_tile_set {
     camber_bytes raw;
 };
 
-/* A file by its ending, .mbtiles or .pmtiles. Returns CAMBER_ERROR_NOT_FOUND, CAMBER_ERROR_IO, CAMBER_ERROR_INPUT
- * (another format, tiles that are pictures), CAMBER_ERROR_MEMORY. */
-camber_status camber_tile_set_open(camber_context *context, const char *path, camber_tile_set **set);
+/* A file by its ending, .mbtiles or .pmtiles. Returns what camber_file_open does, CAMBER_ERROR_INPUT (another format,
+ * tiles that are pictures), CAMBER_ERROR_MEMORY. */
+camber_status camber_tile_set_open(camber_context *context, const char *path, camber_file_naming naming,
+                                   camber_tile_set **set);
 /* Whether the path ends as such a file. */
 bool camber_tile_set_knows(const char *path);
 
@@ -69,9 +71,11 @@ camber_status camber_tile_set_of_files(camber_context *context, const camber_til
 camber_status camber_tile_set_describe(camber_tile_set *set, const json_t *about);
 
 /* The tile's bytes, decompressed; size 0 where there is none. *why: NULL, or what is wrong with this one tile. Returns
- * CAMBER_ERROR_INPUT where the set itself is damaged, CAMBER_ERROR_IO, CAMBER_ERROR_MEMORY. */
+ * CAMBER_ERROR_INPUT where the set itself is damaged, CAMBER_ERROR_IO, CAMBER_ERROR_LIMIT (the budget),
+ * CAMBER_ERROR_MEMORY. */
 camber_status camber_tile_set_get(camber_tile_set *set, int zoom, camber_tile_place place, camber_bytes *bytes,
                                   const char **why);
+/* Of the budget's tiles, these are taken. */
 camber_status camber_tile_set_list(camber_tile_set *set, int zoom, camber_tile_place **places, size_t *count);
 void camber_tile_set_close(camber_tile_set *set);
 
@@ -80,7 +84,9 @@ void camber_tile_set_close(camber_tile_set *set);
 camber_status camber_mbtiles_open(camber_tile_set *set, const char *path);
 camber_status camber_pmtiles_open(camber_tile_set *set, const char *path);
 
-/* Decompresses gzip or zlib; limit_bytes is the most that comes out. NULL, or why not. *no_memory: that was logged. */
-const char *camber_gunzip(const void *bytes, size_t size_bytes, size_t limit_bytes, camber_bytes *out, bool *no_memory);
+/* Decompresses gzip or zlib, as far as the budget goes; limit_bytes is the most that comes out. *why: NULL, or why not.
+ * Returns CAMBER_ERROR_LIMIT (the budget), CAMBER_ERROR_MEMORY. */
+camber_status camber_tile_set_gunzip(camber_tile_set *set, const camber_bytes *packed, size_t limit_bytes,
+                                     camber_bytes *out, const char **why);
 
 #endif

@@ -7,8 +7,7 @@ static bool add_block(camber_arena *arena, size_t size_bytes) {
     size_t room = arena->used > BLOCK_SIZE / 2 ? 2 * arena->used : BLOCK_SIZE;
     if (room < size_bytes)
         room = size_bytes;
-    const camber_context_desc *desc = &arena->context->desc;
-    char *block = desc->reallocate(desc->allocator_user, NULL, room + ALIGNMENT);
+    char *block = camber_resize_quietly(arena->context, NULL, room + ALIGNMENT);
     if (!block)
         return false;
     memcpy(block, &arena->blocks, sizeof arena->blocks);
@@ -47,9 +46,8 @@ char *camber_arena_text(camber_arena *arena, const char *text, size_t length) {
 
 void camber_arena_free(camber_arena *arena) {
     while (arena->blocks) {
-        const camber_context_desc *desc = &arena->context->desc;
         void *block = arena->blocks;
         memcpy(&arena->blocks, block, sizeof arena->blocks);
-        desc->reallocate(desc->allocator_user, block, 0);
+        camber_free(arena->context, block);
     }
 }

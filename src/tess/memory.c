@@ -147,9 +147,15 @@ static bool drop_of_others(const camber_mesh *mesh) {
     return false;
 }
 
+/* The device's bound, or what the run may hold as a whole. */
+static bool lacks_room(const camber_device *device, uint64_t more_bytes) {
+    return device->held_bytes + more_bytes > device->memory_bytes ||
+           (device->host_memory && !camber_budget_has(device->context, more_bytes));
+}
+
 bool camber_mesh_has_room(camber_mesh *mesh, const camber_mesh_part *keep, uint64_t more_bytes, bool spare_made) {
     const camber_device *device = mesh->device;
-    while (device->memory_bytes && device->held_bytes + more_bytes > device->memory_bytes)
+    while (device->memory_bytes && lacks_room(device, more_bytes))
         if (!drop_part(mesh, keep, true) && !drop_of_others(mesh) && !drop_section(mesh, keep) &&
             (spare_made || !drop_part(mesh, keep, false)))
             return false;

@@ -9,17 +9,12 @@ static camber_status plain_reserve(void *user, camber_buffer *buffer, size_t siz
     const camber_device *device = user;
     if (size_bytes <= buffer->capacity_bytes)
         return CAMBER_OK;
-    if (buffer->mem)
-        clReleaseMemObject(buffer->mem);
-    cl_int code;
+    camber_release_buffer(device, &buffer->mem);
     buffer->capacity_bytes = 0;
-    buffer->mem = clCreateBuffer(device->cl, CL_MEM_READ_WRITE, size_bytes, NULL, &code);
-    if (code != CL_SUCCESS) {
-        buffer->mem = NULL;
-        return camber_fail_cl(device->context, "clCreateBuffer", code);
-    }
-    buffer->capacity_bytes = size_bytes;
-    return CAMBER_OK;
+    const camber_status status = camber_make_buffer(device, CL_MEM_READ_WRITE, size_bytes, NULL, &buffer->mem);
+    if (status == CAMBER_OK)
+        buffer->capacity_bytes = size_bytes;
+    return status;
 }
 
 static camber_status plain_begin(void *user, camber_buffer *buffers, size_t count) {
@@ -35,9 +30,7 @@ static camber_status plain_finish(void *user, camber_buffer *buffers, size_t cou
 }
 
 static void plain_release(void *user, camber_buffer *buffer) {
-    (void)user;
-    if (buffer->mem)
-        clReleaseMemObject(buffer->mem);
+    camber_release_buffer(user, &buffer->mem);
     *buffer = (camber_buffer){0};
 }
 
@@ -67,10 +60,8 @@ void camber_mesh_destroy(camber_mesh *mesh) {
     camber_context *context = mesh->device->context;
     camber_mesh_release_parts(mesh);
     camber_mesh_let_go(mesh);
-    if (mesh->rows)
-        clReleaseMemObject(mesh->rows);
-    if (mesh->shifts)
-        clReleaseMemObject(mesh->shifts);
+    camber_release_buffer(mesh->device, &mesh->rows);
+    camber_release_buffer(mesh->device, &mesh->shifts);
     camber_mesh **link = &mesh->device->meshes;
     while (*link != mesh)
         link = &(*link)->next;

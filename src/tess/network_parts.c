@@ -6,17 +6,11 @@
 
 /* ---- Upload ---- */
 
-static void release_mem(cl_mem *mem) {
-    if (*mem)
-        clReleaseMemObject(*mem);
-    *mem = NULL;
-}
-
 void camber_section_release(const camber_mesh *mesh, camber_section *section) {
     cl_mem *mems[] = {&section->x,          &section->y,       &section->importance, &section->runs,
                       &section->chunk_runs, &section->lengths, &section->totals};
     for (size_t i = 0; i < sizeof mems / sizeof *mems; i++)
-        release_mem(mems[i]);
+        camber_release_buffer(mesh->device, mems[i]);
     camber_section_count(mesh, section);
 }
 
@@ -30,8 +24,8 @@ void camber_mesh_let_go(camber_mesh *mesh) {
         return;
     for (size_t i = 0; i < held->section_count; i++)
         camber_section_release(mesh, held->sections + i);
-    release_mem(&held->counts);
-    release_mem(&held->bases);
+    camber_release_buffer(mesh->device, &held->counts);
+    camber_release_buffer(mesh->device, &held->bases);
     camber_free(mesh->device->context, held->sections);
     camber_network_destroy(held->network);
     camber_free(mesh->device->context, held);
@@ -44,13 +38,7 @@ void camber_mesh_let_go(camber_mesh *mesh) {
 static camber_status upload(const camber_device *device, const void *bytes, size_t size_bytes, bool is_kept,
                             cl_mem *mem) {
     const cl_mem_flags from = device->host_memory && is_kept ? CL_MEM_USE_HOST_PTR : CL_MEM_COPY_HOST_PTR;
-    cl_int code;
-    /* CL_MEM_USE_HOST_PTR wants a pointer to what may be written; nothing writes. */
-    cl_mem made = clCreateBuffer(device->cl, CL_MEM_READ_ONLY | from, size_bytes, (void *)(uintptr_t)bytes, &code);
-    if (code != CL_SUCCESS)
-        return camber_fail_cl(device->context, "clCreateBuffer", code);
-    *mem = made;
-    return CAMBER_OK;
+    return camber_make_buffer(device, CL_MEM_READ_ONLY | from, size_bytes, bytes, mem);
 }
 
 static size_t chunks_of(size_t points) {
@@ -304,12 +292,12 @@ static camber_status reserve_chunks(camber_mesh *mesh, camber_mesh_part *part, s
         return CAMBER_ERROR_MEMORY;
     if (chunks <= held->chunk_capacity)
         return CAMBER_OK;
-    release_mem(&held->counts);
-    release_mem(&held->bases);
+    camber_release_buffer(mesh->device, &held->counts);
+    camber_release_buffer(mesh->device, &held->bases);
     held->chunk_capacity = 0;
-    status = camber_make_buffer(mesh->device, 4 * chunks, &held->counts);
+    status = camber_make_buffer(mesh->device, CL_MEM_READ_WRITE, 4 * chunks, NULL, &held->counts);
     if (status == CAMBER_OK)
-        status = camber_make_buffer(mesh->device, 4 * (chunks + 1), &held->bases);
+        status = camber_make_buffer(mesh->device, CL_MEM_READ_WRITE, 4 * (chunks + 1), NULL, &held->bases);
     if (status == CAMBER_OK)
         held->chunk_capacity = chunks;
     camber_mesh_count(mesh);

@@ -36,9 +36,7 @@ static camber_status make_shifts(camber_context *context, const camber_tessellat
 }
 
 static void release_shifts(camber_mesh *mesh) {
-    if (mesh->shifts)
-        clReleaseMemObject(mesh->shifts);
-    mesh->shifts = NULL;
+    camber_release_buffer(mesh->device, &mesh->shifts);
     mesh->shift_capacity = 0;
 }
 
@@ -50,7 +48,7 @@ static camber_status upload_shifts(camber_mesh *mesh, const camber_tessellation_
         release_shifts(mesh);
         status = camber_mesh_make_room(mesh, NULL, size_bytes);
         if (status == CAMBER_OK)
-            status = camber_make_buffer(mesh->device, size_bytes, &mesh->shifts);
+            status = camber_make_buffer(mesh->device, CL_MEM_READ_WRITE, size_bytes, NULL, &mesh->shifts);
         mesh->shift_capacity = status == CAMBER_OK ? count : 0;
         camber_mesh_count(mesh);
     }
@@ -78,14 +76,11 @@ camber_status camber_mesh_set_offsets(camber_mesh *mesh, const camber_tessellati
 
 enum { COURSE_BUFFERS = 8 };
 
-void camber_course_release(camber_part_course *course) {
+void camber_course_release(const camber_device *device, camber_part_course *course) {
     cl_mem *mems[COURSE_BUFFERS] = {&course->x,      &course->y,      &course->info,    &course->spans,
                                     &course->counts, &course->places, &course->lengths, &course->measures};
-    for (size_t i = 0; i < COURSE_BUFFERS; i++) {
-        if (*mems[i])
-            clReleaseMemObject(*mems[i]);
-        *mems[i] = NULL;
-    }
+    for (size_t i = 0; i < COURSE_BUFFERS; i++)
+        camber_release_buffer(device, mems[i]);
     course->slot_capacity = 0;
 }
 
@@ -115,13 +110,13 @@ static camber_status make_course(const camber_device *device, bool measured, cam
     };
     const size_t count = measured ? COURSE_BUFFERS : COURSE_BUFFERS - 2;
     camber_status status = CAMBER_OK;
-    camber_course_release(course);
+    camber_course_release(device, course);
     for (size_t i = 0; i < count && status == CAMBER_OK; i++)
-        status = camber_make_buffer(device, wanted[i].size_bytes, wanted[i].mem);
+        status = camber_make_buffer(device, CL_MEM_READ_WRITE, wanted[i].size_bytes, NULL, wanted[i].mem);
     if (status == CAMBER_OK)
         course->slot_capacity = slots;
     else
-        camber_course_release(course);
+        camber_course_release(device, course);
     return status;
 }
 

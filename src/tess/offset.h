@@ -16,7 +16,7 @@ camber_status camber_mesh_set_offsets(camber_mesh *mesh, const camber_tessellati
 camber_status camber_part_check_course(const camber_mesh *mesh, const camber_mesh_part *part, uint64_t slots,
                                        bool *fits);
 camber_status camber_part_reserve_course(camber_mesh *mesh, camber_mesh_part *part, size_t slots);
-void camber_course_release(camber_part_course *course);
+void camber_course_release(const camber_device *device, camber_part_course *course);
 /* span, tell and shift: the part's slots from those of its course. *fits as that of camber_part_project. */
 camber_status camber_part_offset(camber_mesh *mesh, camber_mesh_part *part, bool *fits);
 

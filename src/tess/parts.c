@@ -7,13 +7,45 @@
 
 /* ---- OpenCL buffers ---- */
 
-camber_status camber_make_buffer(const camber_device *device, size_t size_bytes, cl_mem *mem) {
+/* A driver that makes memory when a kernel first wants it has no way left to say that there is none: PoCL ends the
+ * process. So it is asked for at once, where it is the host's. */
+camber_status camber_make_buffer(const camber_device *device, cl_mem_flags flags, size_t size_bytes,
+                                 const void *host_bytes, cl_mem *mem) {
+    camber_context *context = device->context;
+    const bool counts = device->host_memory && !(flags & CL_MEM_USE_HOST_PTR);
+    const cl_mem_flags at_once = counts ? CL_MEM_ALLOC_HOST_PTR : 0;
     cl_int code;
-    cl_mem made = clCreateBuffer(device->cl, CL_MEM_READ_WRITE, size_bytes, NULL, &code);
-    if (code != CL_SUCCESS)
-        return camber_fail_cl(device->context, "clCreateBuffer", code);
-    *mem = made;
-    return CAMBER_OK;
+    if (counts && !camber_budget_take(context, size_bytes))
+        return camber_budget_fail(context, size_bytes);
+    /* CL_MEM_USE_HOST_PTR wants a pointer to what may be written; what is named so is only read. */
+    cl_mem made = clCreateBuffer(device->cl, flags | at_once, size_bytes, (void *)(uintptr_t)host_bytes, &code);
+    if (code == CL_SUCCESS) {
+        *mem = made;
+        return CAMBER_OK;
+    }
+    if (counts)
+        camber_budget_give(context, size_bytes);
+    return camber_fail_cl(context, "clCreateBuffer", code);
+}
+
+/* What the budget has it for. */
+static size_t counted_bytes(const camber_device *device, cl_mem mem) {
+    cl_mem_flags flags = 0;
+    size_t size_bytes = 0;
+    if (!device->host_memory || clGetMemObjectInfo(mem, CL_MEM_FLAGS, sizeof flags, &flags, NULL) != CL_SUCCESS ||
+        (flags & CL_MEM_USE_HOST_PTR) ||
+        clGetMemObjectInfo(mem, CL_MEM_SIZE, sizeof size_bytes, &size_bytes, NULL) != CL_SUCCESS)
+        return 0;
+    return size_bytes;
+}
+
+void camber_release_buffer(const camber_device *device, cl_mem *mem) {
+    cl_mem held = *mem;
+    if (!held)
+        return;
+    *mem = NULL;
+    camber_budget_give(device->context, counted_bytes(device, held));
+    clReleaseMemObject(held);
 }
 
 camber_status camber_write_buffer(const camber_device *device, cl_mem mem, size_t offset_bytes, size_t size_bytes,
@@ -31,21 +63,18 @@ static void list_input(camber_mesh_part *part, cl_mem *mems[INPUTS]) {
     memcpy(mems, list, sizeof list);
 }
 
-static void release_slots(camber_mesh_part *part) {
+static void release_slots(const camber_device *device, camber_mesh_part *part) {
     cl_mem *mems[INPUTS];
     list_input(part, mems);
-    for (size_t i = 0; i < INPUTS; i++) {
-        if (*mems[i])
-            clReleaseMemObject(*mems[i]);
-        *mems[i] = NULL;
-    }
+    for (size_t i = 0; i < INPUTS; i++)
+        camber_release_buffer(device, mems[i]);
     part->slot_capacity = 0;
     part->uploaded = part->made = false;
 }
 
-static void release_input(camber_mesh_part *part) {
-    release_slots(part);
-    camber_course_release(&part->course);
+static void release_input(const camber_device *device, camber_mesh_part *part) {
+    release_slots(device, part);
+    camber_course_release(device, &part->course);
 }
 
 void camber_part_take(camber_mesh_part *part, camber_mesh_part *from) {
@@ -81,7 +110,7 @@ static camber_status reserve_input(const camber_device *device, bool measured, c
     if (has_input(part, measured, slots))
         return CAMBER_OK;
     const bool uploaded = part->uploaded && part->course.x; /* to the course, which stays */
-    release_slots(part);
+    release_slots(device, part);
     part->uploaded = uploaded;
     const size_t blocks = slots / device->block, words = slots + 2;
     camber_status status = CAMBER_OK;
@@ -101,9 +130,9 @@ static camber_status reserve_input(const camber_device *device, bool measured, c
     };
     const size_t count = measured ? INPUTS : INPUTS - 2;
     for (size_t i = 0; i < count && status == CAMBER_OK; i++)
-        status = camber_make_buffer(device, wanted[i].size_bytes, wanted[i].mem);
+        status = camber_make_buffer(device, CL_MEM_READ_WRITE, wanted[i].size_bytes, NULL, wanted[i].mem);
     if (status != CAMBER_OK) {
-        release_slots(part);
+        release_slots(device, part);
         return status;
     }
     part->slot_capacity = slots;
@@ -152,7 +181,7 @@ camber_status camber_part_reserve_output(camber_mesh *mesh, camber_mesh_part *pa
 void camber_part_empty(camber_mesh *mesh, camber_mesh_part *part) {
     for (int i = 0; i < 2; i++)
         mesh->ops->release(mesh->ops_user, part->buffers + i);
-    release_input(part);
+    release_input(mesh->device, part);
     camber_free(mesh->device->context, part->host_bases);
     camber_free(mesh->device->context, part->chunk_bases);
     part->host_bases = NULL;

@@ -134,9 +134,7 @@ static bool save(camber_device *device, const camber_program *program) {
     if (clGetProgramInfo(program->cl, CL_PROGRAM_BINARY_SIZES, sizeof size, &size, NULL) != CL_SUCCESS || size == 0)
         return false;
     uint64_t hash;
-    /* Past camber_alloc, which logs. */
-    const camber_context_desc *host = &device->context->desc;
-    unsigned char *bytes = host->reallocate(host->allocator_user, NULL, size + sizeof hash);
+    unsigned char *bytes = camber_resize_quietly(device->context, NULL, size + sizeof hash);
     if (!bytes)
         return false;
     unsigned char *binary = bytes + sizeof hash;
@@ -238,7 +236,7 @@ static camber_status make_current(camber_device *device, recipe *from, camber_pr
     static const char *const files[] = {"kernels.cl", "network.cl", "measure.cl", "offset.cl", "cover.cl"};
     char path[CAMBER_FOLDER_SIZE], *text = NULL;
     snprintf(path, sizeof path, "%s/%s", CAMBER_KERNEL_FOLDER, files[from->kind]);
-    camber_status status = camber_read_file(device->context, path, &text, &from->source_size);
+    camber_status status = camber_read_file(device->context, path, CAMBER_NAMED_BY_CALLER, &text, &from->source_size);
     from->source = text;
     if (status == CAMBER_OK)
         status = make_program(device, from, program);

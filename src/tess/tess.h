@@ -314,7 +314,10 @@ void camber_part_adopt(camber_mesh *mesh, camber_mesh_part *part, uint64_t wante
 camber_status camber_part_finish(const camber_mesh *mesh, camber_mesh_part *part, bool written, camber_status status);
 
 /* OpenCL calls that log. camber_make_buffer leaves *mem alone on failure. */
-camber_status camber_make_buffer(const camber_device *device, size_t size_bytes, cl_mem *mem);
+camber_status camber_make_buffer(const camber_device *device, cl_mem_flags flags, size_t size_bytes,
+                                 const void *host_bytes, cl_mem *mem);
+/* Leaves NULL. */
+void camber_release_buffer(const camber_device *device, cl_mem *mem);
 camber_status camber_write_buffer(const camber_device *device, cl_mem mem, size_t offset_bytes, size_t size_bytes,
                                   const void *bytes);
 

@@ -153,11 +153,10 @@ static camber_status reserve_rows(camber_mesh *mesh, size_t count) {
         return CAMBER_ERROR_MEMORY;
     if (count <= mesh->row_capacity)
         return CAMBER_OK;
-    if (mesh->rows)
-        clReleaseMemObject(mesh->rows);
-    mesh->rows = NULL;
+    camber_release_buffer(mesh->device, &mesh->rows);
     mesh->row_capacity = 0;
-    const camber_status status = camber_make_buffer(mesh->device, count * row_bytes, &mesh->rows);
+    const camber_status status =
+        camber_make_buffer(mesh->device, CL_MEM_READ_WRITE, count * row_bytes, NULL, &mesh->rows);
     if (status == CAMBER_OK)
         mesh->row_capacity = count;
     return status;

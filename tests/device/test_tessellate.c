@@ -430,7 +430,7 @@ static void test_real_lines(void **state) {
     char path[1024], *bytes = NULL;
     size_t size = 0;
     snprintf(path, sizeof path, "%s/data/pittsburgh/edges.shp", folder);
-    assert_int_equal(camber_read_file(b->context, path, &bytes, &size), CAMBER_OK);
+    assert_int_equal(camber_read_file(b->context, path, CAMBER_NAMED_BY_CALLER, &bytes, &size), CAMBER_OK);
     camber_stroke strokes[SCENE_ROWS];
     scene_strokes(strokes);
     scene s = {0};

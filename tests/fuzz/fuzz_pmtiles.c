@@ -42,7 +42,7 @@ static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
     FILE *file = fopen(path, "wb");
     REQUIRE(file && fwrite(bytes, 1, size, file) == size && fclose(file) == 0);
     camber_tile_set *set = NULL;
-    if (fuzz_done(run, camber_tile_set_open(run->context, path, &set)))
+    if (fuzz_done(run, camber_tile_set_open(run->context, path, CAMBER_NAMED_BY_CALLER, &set)))
         for (int zoom = set->min_zoom; zoom <= set->max_zoom && zoom < set->min_zoom + 3; zoom++)
             take_tiles(run, set, zoom);
     camber_tile_set_close(set);

@@ -208,7 +208,7 @@ static camber_status try_png(camber_context *context, void *user) {
 static camber_status try_read_file(camber_context *context, void *user) {
     char *bytes = user;
     size_t size = 77;
-    const camber_status status = camber_read_file(context, user, &bytes, &size);
+    const camber_status status = camber_read_file(context, user, CAMBER_NAMED_BY_CALLER, &bytes, &size);
     if (status == CAMBER_OK) {
         camber_free(context, bytes);
     } else {
@@ -300,10 +300,10 @@ static void test_read_file(void **state) {
     size_t size = 77;
     folder_make(folder);
     snprintf(path, sizeof path, "%s/file", folder);
-    assert_int_equal(camber_read_file(context, path, &bytes, &size), CAMBER_ERROR_NOT_FOUND);
+    assert_int_equal(camber_read_file(context, path, CAMBER_NAMED_BY_CALLER, &bytes, &size), CAMBER_ERROR_NOT_FOUND);
     assert_story(&h, path);
-    assert_int_equal(camber_read_file(context, folder, &bytes, &size), CAMBER_ERROR_INPUT);
-    assert_story(&h, "directory");
+    assert_int_equal(camber_read_file(context, folder, CAMBER_NAMED_BY_CALLER, &bytes, &size), CAMBER_ERROR_INPUT);
+    assert_story(&h, "folder");
     assert_true(bytes == (char *)&h && size == 77);
     static const size_t sizes[] = {0, 1, 65534, 65535, 65536, 65537, 131072, 300001};
     unsigned char *written = malloc(300001);
@@ -312,7 +312,7 @@ static void test_read_file(void **state) {
         written[i] = (unsigned char)(i * 7 + i / 251);
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
         write_file(path, written, sizes[i]);
-        assert_int_equal(camber_read_file(context, path, &bytes, &size), CAMBER_OK);
+        assert_int_equal(camber_read_file(context, path, CAMBER_NAMED_BY_CALLER, &bytes, &size), CAMBER_OK);
         assert_int_equal(size, sizes[i]);
         assert_memory_equal(bytes, written, size);
         assert_int_equal(bytes[size], 0);
@@ -320,7 +320,7 @@ static void test_read_file(void **state) {
     }
     each_allocation_fails(&h, try_read_file, context, path);
     snprintf(path, sizeof path, "%s/file/below", folder);
-    assert_int_equal(camber_read_file(context, path, &bytes, &size), CAMBER_ERROR_NOT_FOUND);
+    assert_int_equal(camber_read_file(context, path, CAMBER_NAMED_BY_CALLER, &bytes, &size), CAMBER_ERROR_NOT_FOUND);
     free(written);
     folder_remove(folder);
     host_done(&h, context);

@@ -83,7 +83,7 @@ static camber_status open_archive(fixture *it, const made_archive *a, camber_til
     assert_true(blob_write(&b, it->path));
     blob_free(&b);
     it->errors = 0;
-    return camber_tile_set_open(it->context, it->path, set);
+    return camber_tile_set_open(it->context, it->path, CAMBER_NAMED_BY_CALLER, set);
 }
 
 static void free_archive(made_archive *a) {
@@ -181,13 +181,17 @@ static void test_archive(void **state) {
 
 /* ---- Lies ---- */
 
-static void expect_refused(fixture *it, made_archive *a, const char *word) {
+static void expect_refused_by(fixture *it, made_archive *a, camber_status status, const char *word) {
     camber_tile_set *set = NULL;
-    assert_int_equal(open_archive(it, a, &set), CAMBER_ERROR_INPUT);
+    assert_int_equal(open_archive(it, a, &set), status);
     assert_int_equal(it->errors, 1);
     if (!strstr(it->error, word))
         fail_msg("%s: no word of %s", it->error, word);
     free_archive(a);
+}
+
+static void expect_refused(fixture *it, made_archive *a, const char *word) {
+    expect_refused_by(it, a, CAMBER_ERROR_INPUT, word);
 }
 
 static void test_refused(void **state) {
@@ -219,7 +223,7 @@ static void test_refused(void **state) {
     blob_free(&a.root);
     a.root = gzip_of(&zeros);
     blob_free(&zeros);
-    expect_refused(it, &a, "too much");
+    expect_refused_by(it, &a, CAMBER_ERROR_LIMIT, "32 times");
     blob text = {0};
     blob_put(&text,
              "PMTiles\2 and nothing else, but long enough for a header of one hundred and twenty-seven bytes, "
@@ -227,13 +231,13 @@ static void test_refused(void **state) {
              127);
     assert_true(blob_write(&text, it->path));
     camber_tile_set *set = NULL;
-    assert_int_equal(camber_tile_set_open(it->context, it->path, &set), CAMBER_ERROR_INPUT);
+    assert_int_equal(camber_tile_set_open(it->context, it->path, CAMBER_NAMED_BY_CALLER, &set), CAMBER_ERROR_INPUT);
     text.size = 50;
     assert_true(blob_write(&text, it->path));
-    assert_int_equal(camber_tile_set_open(it->context, it->path, &set), CAMBER_ERROR_INPUT);
+    assert_int_equal(camber_tile_set_open(it->context, it->path, CAMBER_NAMED_BY_CALLER, &set), CAMBER_ERROR_INPUT);
     blob_free(&text);
     unlink(it->path);
-    assert_int_equal(camber_tile_set_open(it->context, it->path, &set), CAMBER_ERROR_NOT_FOUND);
+    assert_int_equal(camber_tile_set_open(it->context, it->path, CAMBER_NAMED_BY_CALLER, &set), CAMBER_ERROR_NOT_FOUND);
 }
 
 /* A leaf that leads to itself, and a thousand entries of the root that all lead there. */
@@ -299,7 +303,7 @@ static void test_flipped(void **state) {
             b.bytes[i] = kept;
             camber_tile_set *set = NULL;
             it->errors = 0;
-            const camber_status status = camber_tile_set_open(it->context, it->path, &set);
+            const camber_status status = camber_tile_set_open(it->context, it->path, CAMBER_NAMED_BY_CALLER, &set);
             assert_int_equal(it->errors, status != CAMBER_OK);
             for (int zoom = 0; status == CAMBER_OK && zoom < 3; zoom++) {
                 camber_tile_place *places = NULL;

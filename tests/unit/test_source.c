@@ -595,7 +595,7 @@ static void test_cut_files(void **state) {
         char path[1024], *bytes;
         size_t size;
         snprintf(path, sizeof path, "%s/data/%s", data, names[i]);
-        assert_int_equal(camber_read_file(it->context, path, &bytes, &size), CAMBER_OK);
+        assert_int_equal(camber_read_file(it->context, path, CAMBER_NAMED_BY_CALLER, &bytes, &size), CAMBER_OK);
         for (size_t cut = 1; cut < 8; cut += 2) {
             start_again(it);
             const camber_status status = read_path(it, write_file(it, names[i], bytes, size / 8 * cut + 1));
@@ -636,7 +636,7 @@ static void test_cut_shapefile(void **state) {
         char path[1024], *bytes;
         size_t size;
         snprintf(path, sizeof path, "%s/data/pittsburgh/%s", data, names[i]);
-        assert_int_equal(camber_read_file(it->context, path, &bytes, &size), CAMBER_OK);
+        assert_int_equal(camber_read_file(it->context, path, CAMBER_NAMED_BY_CALLER, &bytes, &size), CAMBER_OK);
         write_file(it, names[i], bytes, i == 2 ? size / 3 : size);
         camber_free(it->context, bytes);
     }

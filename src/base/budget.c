@@ -1,0 +1,193 @@
+/* What files may make a run take: memory, tiles, steps of databases, bytes out of archives. Every bound stands here. */
+#define _GNU_SOURCE /* RLIMIT_AS */
+
+#include "base/base.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+static const uint64_t TILES = UINT64_C(1) << 18, STEPS = UINT64_C(1) << 26, STEPS_A_TILE = 4096;
+static const uint64_t UNFOLD = 32, UNFOLD_BYTES = 4 << 20;
+/* The machine is asked when a run holds so much: few ever do. */
+static const uint64_t UNASKED_BYTES = 64 << 20;
+
+void camber_budget_init(camber_budget *budget, const camber_budget_desc *desc) {
+    const camber_budget_desc zero = {0};
+    budget->desc = desc ? *desc : zero;
+    if (!budget->desc.tiles)
+        budget->desc.tiles = TILES;
+    if (!budget->desc.steps)
+        budget->desc.steps = STEPS;
+    if (!budget->desc.unfold)
+        budget->desc.unfold = UNFOLD;
+    atomic_init(&budget->held_bytes, 0);
+    atomic_init(&budget->most_bytes, budget->desc.memory_bytes ? budget->desc.memory_bytes : UINT64_MAX);
+}
+
+camber_status camber_budget_create(const camber_budget_desc *desc, camber_budget **budget) {
+    camber_budget *made = malloc(sizeof *made);
+    if (!made)
+        return CAMBER_ERROR_MEMORY;
+    camber_budget_init(made, desc);
+    *budget = made;
+    return CAMBER_OK;
+}
+
+void camber_budget_destroy(camber_budget *budget) {
+    free(budget);
+}
+
+uint64_t camber_budget_held_bytes(const camber_budget *budget) {
+    return atomic_load(&budget->held_bytes);
+}
+
+uint64_t camber_budget_most_bytes(const camber_budget *budget) {
+    return atomic_load(&budget->most_bytes);
+}
+
+/* ---- What the process can still have ---- */
+
+/* The first number in a file, or behind a word in it. */
+static bool read_number(const char *path, const char *word, uint64_t *number) {
+    char line[256];
+    FILE *file = fopen(path, "re");
+    bool found = false;
+    while (file && !found && fgets(line, sizeof line, file)) {
+        const size_t length = strlen(word);
+        found = strncmp(line, word, length) == 0 && sscanf(line + length, " %" SCNu64, number) == 1;
+    }
+    if (file)
+        fclose(file);
+    return found;
+}
+
+static uint64_t smaller(uint64_t left, uint64_t right) {
+    return left < right ? left : right;
+}
+
+/* A control group of version 2 and those above it. */
+static uint64_t group_free_bytes(void) {
+    char group[2048] = "", path[4096];
+    uint64_t least = UINT64_MAX;
+    FILE *file = fopen("/proc/self/cgroup", "re");
+    while (file && fgets(group, sizeof group, file) && strncmp(group, "0::", 3) != 0)
+        group[0] = 0;
+    if (file)
+        fclose(file);
+    group[strcspn(group, "\n")] = 0;
+    for (char *end = group + strlen(group); group[0] && end; end = strrchr(group + 3, '/')) {
+        uint64_t most, held = 0;
+        *end = 0;
+        snprintf(path, sizeof path, "/sys/fs/cgroup%s/memory.max", group + 3);
+        if (!read_number(path, "", &most))
+            continue;
+        snprintf(path, sizeof path, "/sys/fs/cgroup%s/memory.current", group + 3);
+        (void)read_number(path, "", &held);
+        least = smaller(least, most > held ? most - held : 0);
+    }
+    return least;
+}
+
+static uint64_t limit_free_bytes(void) {
+    struct rlimit limit;
+    uint64_t pages = 0;
+    if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+        return UINT64_MAX;
+    (void)read_number("/proc/self/statm", "", &pages);
+    const uint64_t used = pages * (uint64_t)sysconf(_SC_PAGESIZE);
+    return limit.rlim_cur > used ? limit.rlim_cur - used : 0;
+}
+
+/* Of a system that does not tell, half of its memory. */
+static uint64_t machine_free_bytes(void) {
+    uint64_t kilobytes;
+    if (read_number("/proc/meminfo", "MemAvailable:", &kilobytes))
+        return 1024 * kilobytes;
+    const long pages = sysconf(_SC_PHYS_PAGES), size = sysconf(_SC_PAGESIZE);
+    return pages > 0 && size > 0 ? (uint64_t)pages * (uint64_t)size / 2 : UINT64_MAX / 2;
+}
+
+static void look_up(camber_budget *budget, uint64_t held_bytes) {
+    const uint64_t free_bytes = smaller(machine_free_bytes(), smaller(group_free_bytes(), limit_free_bytes()));
+    uint64_t unknown = UINT64_MAX;
+    atomic_compare_exchange_strong(&budget->most_bytes, &unknown, held_bytes + free_bytes / 4 * 3);
+}
+
+/* ---- Memory ---- */
+
+bool camber_budget_take(camber_context *context, uint64_t size_bytes) {
+    camber_budget *budget = context->budget;
+    const uint64_t held = atomic_fetch_add(&budget->held_bytes, size_bytes);
+    if (held + size_bytes > UNASKED_BYTES && atomic_load(&budget->most_bytes) == UINT64_MAX)
+        look_up(budget, held);
+    const uint64_t most = atomic_load(&budget->most_bytes);
+    if (size_bytes <= most && held <= most - size_bytes)
+        return true;
+    atomic_fetch_sub(&budget->held_bytes, size_bytes);
+    return false;
+}
+
+camber_status camber_budget_fail(camber_context *context, uint64_t size_bytes) {
+    const camber_budget *budget = context->budget;
+    return camber_fail(context, CAMBER_ERROR_MEMORY,
+                       "memory: %.1f MB are held, %.1f MB more are needed, and %.1f MB are allowed; give it less data, "
+                       "or allow more memory",
+                       (double)camber_budget_held_bytes(budget) / 1e6, (double)size_bytes / 1e6,
+                       (double)camber_budget_most_bytes(budget) / 1e6);
+}
+
+void camber_budget_give(camber_context *context, uint64_t size_bytes) {
+    atomic_fetch_sub(&context->budget->held_bytes, size_bytes);
+}
+
+bool camber_budget_has(const camber_context *context, uint64_t size_bytes) {
+    const uint64_t held = camber_budget_held_bytes(context->budget), most = camber_budget_most_bytes(context->budget);
+    return size_bytes <= most && held <= most - size_bytes;
+}
+
+/* ---- What one set of features reads ---- */
+
+void camber_budget_begin(camber_context *context) {
+    context->spent = (camber_spent){0};
+}
+
+camber_status camber_budget_take_tiles(camber_context *context, const char *name, uint64_t count) {
+    const uint64_t most = context->budget->desc.tiles;
+    if (count > most || context->spent.tiles > most - count)
+        return camber_fail(context, CAMBER_ERROR_LIMIT,
+                           "%s: more than %" PRIu64 " tiles; draw less of it: a style that names it as a source reads "
+                           "what the view sees",
+                           name, most);
+    context->spent.tiles += count;
+    return CAMBER_OK;
+}
+
+bool camber_budget_take_steps(camber_context *context, uint64_t count) {
+    context->spent.steps += count;
+    return context->spent.steps <= context->budget->desc.steps + STEPS_A_TILE * context->spent.tiles;
+}
+
+void camber_budget_open(camber_context *context, uint64_t file_bytes) {
+    context->spent.file_bytes += file_bytes;
+}
+
+camber_status camber_budget_unfold(camber_context *context, const char *name, uint64_t size_bytes) {
+    camber_spent *spent = &context->spent;
+    spent->unfolded_bytes += size_bytes;
+    if (spent->unfolded_bytes <= UNFOLD_BYTES + context->budget->desc.unfold * spent->file_bytes)
+        return CAMBER_OK;
+    return camber_fail(context, CAMBER_ERROR_LIMIT,
+                       "%s: its tiles hold more than %.1f MB, %" PRIu32
+                       " times what the file has; get it from a source "
+                       "that you trust",
+                       name, (double)spent->unfolded_bytes / 1e6, context->budget->desc.unfold);
+}
+
+uint64_t camber_budget_unfolds(const camber_context *context) {
+    const camber_spent *spent = &context->spent;
+    const uint64_t most = UNFOLD_BYTES + context->budget->desc.unfold * spent->file_bytes;
+    return most > spent->unfolded_bytes ? most - spent->unfolded_bytes : 0;
+}

@@ -285,13 +285,6 @@ static void test_clock(void **state) {
 
 /* ---- Files ---- */
 
-static void write_file(const char *path, const void *bytes, size_t size_bytes) {
-    FILE *file = fopen(path, "wb");
-    assert_non_null(file);
-    assert_int_equal(fwrite(bytes, 1, size_bytes, file), size_bytes);
-    assert_int_equal(fclose(file), 0);
-}
-
 static void test_read_file(void **state) {
     (void)state;
     host h;
@@ -311,7 +304,7 @@ static void test_read_file(void **state) {
     for (size_t i = 0; i < 300001; i++)
         written[i] = (unsigned char)(i * 7 + i / 251);
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
-        write_file(path, written, sizes[i]);
+        file_write(path, written, sizes[i]);
         assert_int_equal(camber_read_file(context, path, CAMBER_NAMED_BY_CALLER, &bytes, &size), CAMBER_OK);
         assert_int_equal(size, sizes[i]);
         assert_memory_equal(bytes, written, size);
@@ -409,7 +402,7 @@ static void test_unwritable_cache_is_a_miss(void **state) {
     folder_make(folder);
     snprintf(file, sizeof file, "%s/file", folder);
     snprintf(below, sizeof below, "%s/file/cache", folder);
-    write_file(file, "x", 1);
+    file_write(file, "x", 1);
     const char *const dirs[] = {below, file, "/proc/nowhere", ""};
     for (size_t i = 0; i < sizeof dirs / sizeof *dirs; i++) {
         camber_context *context = cached_context(&h, dirs[i]);
@@ -437,7 +430,7 @@ static void test_torn_cache_file_is_a_miss(void **state) {
     folder_make(folder);
     camber_context *context = cached_context(&h, folder);
     snprintf(path, sizeof path, "%s/x.bin.Ab12Cd", folder);
-    write_file(path, "hal", 3);
+    file_write(path, "hal", 3);
     assert_miss(context, &h, "x.bin");
     camber_cache_save(context, "x.bin", "whole", 5);
     assert_hit(context, "x.bin", "whole", 5);

@@ -6,6 +6,7 @@
 #include <cpl_string.h>
 #include <limits.h>
 #include <math.h>
+#include <pthread.h>
 #include <string.h>
 
 static const double PROGRESS_MS = 50;
@@ -405,9 +406,16 @@ static camber_status read_once(camber_features *features, const camber_source_de
     return status;
 }
 
+/* Once for the whole process, as the list of drivers is the process's: GDAL is not safe where two threads register at
+ * once, and says so. */
+static void register_drivers(void) {
+    static pthread_once_t registered = PTHREAD_ONCE_INIT;
+    pthread_once(&registered, GDALAllRegister);
+}
+
 static camber_status read_file(camber_features *features, const camber_source_desc *desc) {
     static const char option[] = "CPL_VSIL_GZIP_WRITE_PROPERTIES";
-    GDALAllRegister();
+    register_drivers();
     /* Or GDAL writes a .properties file beside a .gz. */
     const char *old = CPLGetThreadLocalConfigOption(option, NULL);
     char *kept = old ? camber_copy_string(features->context, old) : NULL;
@@ -426,8 +434,7 @@ static camber_status read_file(camber_features *features, const camber_source_de
 /* ---- What GDAL can do ---- */
 
 static const char *format_name(size_t n) {
-    if (GDALGetDriverCount() == 0)
-        GDALAllRegister();
+    register_drivers();
     const int count = GDALGetDriverCount();
     for (int i = 0; i < count; i++) {
         GDALDriverH driver = GDALGetDriver(i);

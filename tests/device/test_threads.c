@@ -203,9 +203,9 @@ static void test_osmesa(void **state) {
 
 static void test_everywhere(void **state) {
     stage *s = *state;
-    place places[PLACES];
-    size_t count = 0;
-    for (int i = 0; i < PLACES; i++)
+    place places[PLACES] = {IN_CL};
+    size_t count = 1;
+    for (int i = 1; i < PLACES; i++)
         if (s->alone[i].status == CAMBER_OK)
             places[count++] = (place)i;
     run_round(s, 2, places, count, false);

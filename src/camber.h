@@ -15,9 +15,13 @@
  *
  * Descriptions. Every desc and params struct is valid when zeroed; each field says what zero means.
  *
- * Threads. There is no global state. A context and all that was made from it may be used by one thread
- * at a time; different contexts are independent. A surface's GL context is made current on the calling
- * thread by each call that needs it, and stays so until camber_surface_release.
+ * Threads. A context and all that was made from it may be used by one thread at a time; different
+ * contexts are independent, and threads may make and use them, and all that is made from them, at once.
+ * There is no global state but that of drivers and GDAL, whose first set-up camber guards by a lock; a
+ * host that asks them itself makes sure that it does not do so beside camber's first call. PoCL sets
+ * HWLOC_PLUGINS_PATH when devices are first looked for: set it before other threads read the environment.
+ * A surface's GL context is made current on the calling thread by each call that needs it, and stays so
+ * until camber_surface_release.
  *
  * Units. Pixels are device pixels, x to the right, y down; pixel centres lie at .5.
  */

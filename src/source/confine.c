@@ -32,13 +32,17 @@ static bool is_in(const char *name, const char *const *list, size_t count) {
     return false;
 }
 
+bool camber_gdal_reads_file(const char *driver) {
+    return is_in(driver, file_drivers, sizeof file_drivers / sizeof *file_drivers);
+}
+
 bool camber_gdal_describes(const char *driver) {
     return is_in(driver, describing_drivers, sizeof describing_drivers / sizeof *describing_drivers);
 }
 
 bool camber_gdal_has_driver(const camber_context *context, const char *name) {
     const camber_access *access = &context->desc.access;
-    if (is_in(name, file_drivers, sizeof file_drivers / sizeof *file_drivers))
+    if (camber_gdal_reads_file(name))
         return true;
     return camber_gdal_describes(name) ? access->vrt : access->remote;
 }

@@ -6,6 +6,7 @@
 #include <cpl_string.h>
 #include <limits.h>
 #include <math.h>
+#include <pthread.h>
 #include <string.h>
 
 static const double PROGRESS_MS = 50;
@@ -417,9 +418,16 @@ static camber_status read_once(camber_features *features, const camber_source_de
     return status;
 }
 
+/* Once for the whole process, as the list of drivers is the process's: GDAL is not safe where two threads register at
+ * once, and says so. */
+static void register_drivers(void) {
+    static pthread_once_t registered = PTHREAD_ONCE_INIT;
+    pthread_once(&registered, GDALAllRegister);
+}
+
 static camber_status read_file(camber_features *features, const camber_source_desc *desc) {
     camber_gdal_confined confined;
-    GDALAllRegister();
+    register_drivers();
     camber_status status = camber_gdal_confine(features->context, &confined);
     if (status != CAMBER_OK)
         return status;
@@ -440,14 +448,14 @@ static camber_status read_file(camber_features *features, const camber_source_de
 /* ---- What GDAL can do ---- */
 
 static const char *format_name(size_t n) {
-    if (GDALGetDriverCount() == 0)
-        GDALAllRegister();
+    register_drivers();
     const int count = GDALGetDriverCount();
     for (int i = 0; i < count; i++) {
         GDALDriverH driver = GDALGetDriver(i);
+        const char *name = GDALGetDriverShortName(driver);
         if (GDALGetMetadataItem(driver, GDAL_DCAP_VECTOR, NULL) && GDALGetMetadataItem(driver, GDAL_DCAP_OPEN, NULL) &&
-            n-- == 0)
-            return GDALGetDriverShortName(driver);
+            camber_gdal_reads_file(name) && n-- == 0)
+            return name;
     }
     return NULL;
 }

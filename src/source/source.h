@@ -99,6 +99,8 @@ char **camber_gdal_drivers(const camber_context *context);
 bool camber_gdal_has_driver(const camber_context *context, const char *name);
 /* The driver of a file, where it is none of these. NULL: it is, or none knows the file. */
 const char *camber_gdal_refused(const camber_context *context, const char *path);
+/* Whether a driver reads files that have their data in themselves. */
+bool camber_gdal_reads_file(const char *driver);
 /* Whether a driver reads descriptions of what lies in other files. */
 bool camber_gdal_describes(const char *driver);
 /* Whether the text of a coordinate system leads to another file: PROJ opens the grids that it names, by their names

@@ -3,6 +3,7 @@
 
 #include <CL/cl_gl.h>
 #include <ctype.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -122,8 +123,7 @@ static size_t find_on_platform(cl_platform_id platform, found_device *found, siz
     return count;
 }
 
-/* failed takes what kept a device from being found, if anything did. */
-static size_t find_devices(found_device found[DEVICES_MAX], failed_call *failed) {
+static size_t ask_platforms(found_device found[DEVICES_MAX], failed_call *failed) {
     cl_platform_id platforms[PLATFORMS_MAX];
     cl_uint platform_count = 0;
     size_t count = 0;
@@ -136,6 +136,19 @@ static size_t find_devices(found_device found[DEVICES_MAX], failed_call *failed)
     }
     for (cl_uint i = 0; i < platform_count && i < PLATFORMS_MAX; i++)
         count += find_on_platform(platforms[i], found + count, DEVICES_MAX - count, failed);
+    return count;
+}
+
+/* The one lock of the whole process, as what it guards is the process's: a loader and drivers that set themselves up
+ * when they are first asked. PoCL (3.1 and 6.0) tells another thread meanwhile that all is done, and gives it devices
+ * without a name. Whatever else camber wants of OpenCL, it has been here before. */
+static pthread_mutex_t asking = PTHREAD_MUTEX_INITIALIZER;
+
+/* failed takes what kept a device from being found, if anything did. */
+static size_t find_devices(found_device found[DEVICES_MAX], failed_call *failed) {
+    pthread_mutex_lock(&asking);
+    const size_t count = ask_platforms(found, failed);
+    pthread_mutex_unlock(&asking);
     return count;
 }
 

@@ -785,6 +785,32 @@ expect 0 "a style with its own source" render --style "$tmp/in/own.json" -o a.pn
 has "$tmp/stdout" '"features": 1'
 is_png a.png 64 64
 rm -f a.png
+# Lines that lie in one place: a dot where caps are round, nothing where they are butt, at any zoom.
+place='{"type":"LineString","coordinates":[[5,5],[5,5]]}'
+echo "$place" >"$tmp/in/place.geojson"
+echo "${place/\[\[5,5\],\[5,5\]\]/[[0,90],[0,89]]}" >"$tmp/in/pole.geojson"
+for cap in butt round; do
+    echo '{"version": 8, "sources": {}, "layers": [{"id": "l", "type": "line", "layout": {"line-cap": "'$cap'"},
+        "paint": {"line-width": 9}}]}' >"$tmp/in/$cap.json"
+done
+for at in "" "--center 5,5 --zoom 22" "--center 5,5 --zoom 24"; do
+    for cap in butt round; do
+        expect 0 "a place, $cap, ${at:-fitted}" render "$tmp/in/place.geojson" --style "$tmp/in/$cap.json" -qfo $cap.png \
+            --size 64x64 $at
+    done
+    cmp -s butt.png round.png && fail "no dot"
+    expect 0 "a place without a dot, ${at:-fitted}" render "$tmp/in/line.geojson" --style "$tmp/in/butt.json" -qfo none.png \
+        --size 64x64 --center 50,50 --zoom 22
+    cmp -s butt.png none.png || fail "a dot with butt caps"
+done
+expect 0 "a line beyond the pole" render "$tmp/in/pole.geojson" --style "$tmp/in/round.json" -qfo pole.png --size 64x64
+cmp -s round.png pole.png || fail "no dot"
+expect 0 "a place, tessellated" tessellate "$tmp/in/place.geojson" -qfo a.glb
+for verb in compare validate bench; do
+    expect 0 "a place: $verb" $verb "$tmp/in/place.geojson" -q
+done
+rm -f ./*.png ./*.glb
+
 sed 's/line.geojson/none.geojson/' "$tmp/in/own.json" >"$tmp/in/gone.json"
 expect 66 "a style whose source is not there" render --style "$tmp/in/gone.json" -o a.png
 says '/gone.json: /sources/s: .*/none.geojson: no such file; check the path in the style'

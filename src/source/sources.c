@@ -76,8 +76,14 @@ static void warn(const camber_sources *sources, const char *what, size_t damaged
         camber_log(sources->context, CAMBER_LOG_INFO, "%s: left out what is no line of %zu features", what, skipped);
 }
 
+static camber_status fail_damaged(const camber_sources *sources, const char *what, const char *damage) {
+    return camber_fail(sources->context, CAMBER_ERROR_INPUT,
+                       "%s: no feature can be read: %s; correct it, or get the file again", what, damage);
+}
+
 static camber_status read_geojson(camber_sources *sources, source *one) {
     camber_context *context = sources->context;
+    const size_t features_before = sources->features->feature_count;
     const json_t *data = json_object_get(one->style->json, "data");
     json_t *loaded = NULL;
     camber_status status = CAMBER_OK;
@@ -98,6 +104,8 @@ static camber_status read_geojson(camber_sources *sources, source *one) {
     if (status == CAMBER_OK)
         status = camber_geojson_read(sources->features, &desc, &stats);
     json_decref(loaded);
+    if (status == CAMBER_OK && stats.damaged_features && sources->features->feature_count == features_before)
+        status = fail_damaged(sources, one->what, stats.damage);
     if (status != CAMBER_OK)
         return status;
     memcpy(one->bounds, stats.bounds, sizeof one->bounds);
@@ -319,6 +327,8 @@ static camber_status read_places(camber_sources *sources, const source *one, con
     const size_t first_polyline = features->polyline_count;
     features->source = one->index;
     camber_status status = camber_tiles_read(features, reading, &result);
+    if (status == CAMBER_OK && result.found > 0 && result.lost == result.found)
+        status = fail_damaged(sources, one->what, result.stats.damage);
     if (status == CAMBER_OK)
         status = finish(features, first_polyline);
     if (status == CAMBER_OK)

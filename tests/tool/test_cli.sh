@@ -817,6 +817,25 @@ says '/gone.json: /sources/s: .*/none.geojson: no such file; check the path in t
 sed 's/line.geojson/text/' "$tmp/in/own.json" >"$tmp/in/passwd.json"
 expect 65 "a style whose source is text" render --style "$tmp/in/passwd.json" -o a.png
 lacks "$tmp/stderr" root
+# Nothing of a source reads: that is bad input whatever the source is, and not silenced by -q.
+sed 's/line.geojson/words.geojson/' "$tmp/in/own.json" >"$tmp/in/words.json"
+expect 65 "a style whose GeoJSON has no feature that reads" render --style "$tmp/in/words.json" -qo a.png
+says 'source "s": no feature can be read: /features/0: '
+echo '<html>404</html>' >"$tmp/in/0-0-0.mvt"
+echo '{"version": 8, "sources": {"s": {"type": "vector", "maxzoom": 0, "tiles": ["{z}-{x}-{y}.mvt"]}}, "layers": [{"id": "a",
+    "type": "line", "source": "s", "source-layer": "a"}]}' >"$tmp/in/html.json"
+expect 65 "a style whose tiles are none" render --style "$tmp/in/html.json" -qo a.png
+says 'source "s": no feature can be read: tile 0/0/0: '
+if python3 -c 'import sqlite3' 2>/dev/null; then
+    python3 -c 'import sqlite3, sys
+d = sqlite3.connect(sys.argv[1])
+d.execute("create table metadata (name text, value text)")
+d.execute("create table tiles (zoom_level integer, tile_column integer, tile_row integer, tile_data blob)")
+d.execute("insert into tiles values (0, 0, 0, ?)", (b"<html>404</html>",))
+d.commit()' "$tmp/in/html.mbtiles"
+    expect 65 "MBTiles whose tiles are none" render "$tmp/in/html.mbtiles" -qo a.png
+    says 'html.mbtiles: no feature can be read: tile 0/0/0: '
+fi
 sed 's|line.geojson|https://example.org/a.geojson|' "$tmp/in/own.json" >"$tmp/in/url.json"
 expect 65 "a style whose source is elsewhere" render --style "$tmp/in/url.json" -o a.png
 says '/url.json: /sources/s: https://example.org'

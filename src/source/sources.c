@@ -3,6 +3,7 @@
 #include "source/mercator.h"
 #include "source/tile_reader.h"
 #include "source/url.h"
+#include "style/json.h"
 
 #include <errno.h>
 #include <math.h>
@@ -42,19 +43,21 @@ static camber_status load_json(camber_context *context, const char *what, const 
     char *text;
     size_t size;
     json_error_t error;
-    const camber_status status = camber_read_file(context, path, &text, &size);
+    camber_status status = camber_read_file(context, path, &text, &size);
     if (status != CAMBER_OK)
         return status;
-    *root = json_loadb(text, size, JSON_DECODE_INT_AS_REAL | JSON_ALLOW_NUL, &error);
+    status = camber_json_load(context, text, size, JSON_DECODE_INT_AS_REAL | JSON_ALLOW_NUL, true, root, &error);
     camber_free(context, text);
-    if (*root)
-        return CAMBER_OK;
+    if (status != CAMBER_ERROR_INPUT)
+        return status;
     /* Not what it quotes: a style may name any file. */
     char *quoted = strstr(error.text, " near '");
     if (quoted)
         *quoted = 0;
-    return camber_fail(context, CAMBER_ERROR_INPUT, "%s: %s: no JSON at line %d, column %d: %s; get the file again",
-                       what, path, error.line, error.column, error.text);
+    return camber_fail(context, CAMBER_ERROR_INPUT, "%s: %s: no JSON at line %d, column %d: %s; %s", what, path,
+                       error.line, error.column, error.text,
+                       json_error_code(&error) == json_error_invalid_utf8 ? camber_json_cure(&error)
+                                                                          : "get the file again");
 }
 
 /* The style says what to do, or it is a matter of its paths. */
@@ -67,6 +70,12 @@ static camber_status check_there(const camber_sources *sources, const source *on
 }
 
 /* ---- GeoJSON ---- */
+
+static void warn_invalid(const camber_sources *sources, const char *what, size_t points) {
+    if (points)
+        camber_log(sources->context, CAMBER_LOG_WARNING,
+                   "%s: %zu points are not numbers and are left out; their lines are split there", what, points);
+}
 
 static void warn(const camber_sources *sources, const char *what, size_t damaged, const char *damage, size_t skipped) {
     if (damaged)
@@ -111,7 +120,9 @@ static camber_status read_geojson(camber_sources *sources, source *one) {
     memcpy(one->bounds, stats.bounds, sizeof one->bounds);
     sources->features->stats.skipped_features += stats.skipped_features;
     sources->features->stats.damaged_features += stats.damaged_features;
+    sources->features->stats.invalid_points += stats.invalid_points;
     warn(sources, one->what, stats.damaged_features, stats.damage, stats.skipped_features);
+    warn_invalid(sources, one->what, stats.invalid_points);
     return camber_features_sign(sources->features, json_string_value(json_object_get(one->style->json, "attribution")));
 }
 

@@ -836,6 +836,19 @@ d.commit()' "$tmp/in/html.mbtiles"
     expect 65 "MBTiles whose tiles are none" render "$tmp/in/html.mbtiles" -qo a.png
     says 'html.mbtiles: no feature can be read: tile 0/0/0: '
 fi
+# What JSON has no word for, and a byte order mark: INPUT and a style's source read the same of them.
+for odd in 2 NaN Infinity -Infinity 1e400; do
+    { printf '\357\273\277'; sed "s/\[2,2\]/[1.5,$odd],[2,2],[3,1]/" "$tmp/in/line.geojson"; } >"$tmp/in/odd.geojson"
+    sed 's/line.geojson/odd.geojson/' "$tmp/in/own.json" >"$tmp/in/odd.json"
+    expect 0 "a style's source with $odd" render --style "$tmp/in/odd.json" -fo a.png --size 64x64 --bbox 0,0,4,4
+    [ "$odd" = 2 ] || says 'warning: .*1 points are not numbers'
+    expect 0 "INPUT with $odd" render "$tmp/in/odd.geojson" --style "$tmp/in/odd.json" -fo b.png --size 64x64 --bbox 0,0,4,4
+    [ "$odd" = 2 ] || says 'warning: .*1 points are not numbers'
+    cmp -s a.png b.png || fail "two pictures"
+done
+rm -f a.png b.png
+{ printf '\357\273\277'; cat "$tmp/in/own.json"; } >"$tmp/in/mark.json"
+expect 0 "a style with a byte order mark" style check "$tmp/in/mark.json"
 sed 's|line.geojson|https://example.org/a.geojson|' "$tmp/in/own.json" >"$tmp/in/url.json"
 expect 65 "a style whose source is elsewhere" render --style "$tmp/in/url.json" -o a.png
 says '/url.json: /sources/s: https://example.org'

@@ -660,6 +660,58 @@ static void test_geojson_options(void **state) {
     assert_int_equal(it->features->polyline_count, 8);
 }
 
+/* What JSON has no word for, as other programs write it: the point is left out and its line split there, and texts that
+ * look like it stay. */
+static void test_no_numbers(void **state) {
+    fixture *it = *state;
+    static const char source[] = "\"s\": {\"type\": \"geojson\", \"data\": \"odd.json\"}";
+    static const char *const odd[] = {
+        "NaN",    "nan",    "Infinity", "-Infinity", "1e400",
+        "-1e400", "1E+999", "null",     "-12.5e309", "1797693134862315708145274237317e278"};
+    const camber_view_desc view = {.kind = CAMBER_VIEW_FIT};
+    char text[1024];
+    for (size_t i = 0; i < 2 * sizeof odd / sizeof *odd; i++) {
+        snprintf(text, sizeof text,
+                 "\xef\xbb\xbf{\"type\": \"FeatureCollection\", \"features\": [" FEATURE(
+                     "", "\"a\": \"NaN \\\" 1e400, Infinity\", \"n\": NaN, \"name\": %s",
+                     "{\"type\": \"LineString\", \"coordinates\": [[0, 0], [1, 1], [%s, %s], [3,\n 3]]}") "]}",
+                 i % 2 ? "1e400" : "-Infinity", i % 2 ? "2" : odd[i / 2], i % 2 ? odd[i / 2] : "2");
+        write_text(it, "odd.json", text);
+        expect_ok(it, read_view(it, source, READS_ALL, &view));
+        const camber_features *set = it->features;
+        assert_int_equal(set->polyline_count, 2);
+        assert_int_equal(set->point_count, 3);
+        assert_int_equal(set->stats.invalid_points, 1);
+        assert_int_equal(set->stats.damaged_features, 0);
+        assert_int_equal(it->warnings, 1);
+        assert_non_null(strstr(it->warning, "source \"s\": 1 points are not numbers and are left out"));
+        assert_string_equal(value_of(it, 0, "a")->string, "NaN \" 1e400, Infinity");
+        assert_int_equal(value_of(it, 0, "n")->type, CAMBER_VALUE_NULL);
+        assert_true(value_of(it, 0, "name")->number == (i % 2 ? 1e308 : -1e308));
+    }
+    /* A ring is split there as well, and has no area of its own. */
+    write_text(it, "odd.json",
+               "{\"type\": \"Polygon\", \"coordinates\": [[[0, 0], [9, 0], [NaN, 9], [0, 9], [0, 0]]]}");
+    expect_ok(it, read_view(it, source, LINES, &view));
+    assert_int_equal(it->features->polyline_count, 2);
+    assert_int_equal(it->features->stats.damaged_features, 0);
+    /* What is wrong besides is said, with its place. */
+    write_text(it, "odd.json", "{\"type\": \"LineString\",\n \"coordinates\": [[1e400, NaN], oops]}");
+    expect_error(it, CAMBER_ERROR_INPUT, source, ": invalid token; get the file again");
+    write_text(it, "odd.json", "\xff\xfe{");
+    expect_error(it, CAMBER_ERROR_INPUT, source, "save it as UTF-8");
+    /* TileJSON is read so too; a style is not, but for the mark. */
+    write_text(it, "odd.json", "\xef\xbb\xbf{\"tiles\": [\"none-{z}-{x}-{y}\"], \"fillzoom\": NaN}");
+    expect_ok(it, read_view(it, "\"s\": {\"type\": \"vector\", \"url\": \"odd.json\"}", ROADS, &view));
+    static const char style[] = "\xef\xbb\xbf{\"version\": 8, \"zoom\": 1, \"sources\": {}, \"layers\": []}",
+                      bad[] = "{\"version\": 8, \"zoom\": NaN, \"sources\": {}, \"layers\": []}";
+    camber_style *parsed;
+    assert_int_equal(camber_style_parse(it->context, style, strlen(style), "style", &parsed), CAMBER_OK);
+    camber_style_destroy(parsed);
+    assert_int_equal(camber_style_parse(it->context, bad, strlen(bad), "style", &parsed), CAMBER_ERROR_INPUT);
+    assert_non_null(strstr(it->error, "near 'NaN'; correct the JSON there"));
+}
+
 /* ---- Seams ---- */
 
 /* The bent line from four tiles and from GeoJSON: the same points, so the same picture. */
@@ -743,6 +795,7 @@ int main(void) {
         TEST(test_errors),     TEST(test_endless_database), TEST(test_geojson),
         TEST(test_winding),    TEST(test_geojson_options),  TEST(test_seams),
         TEST(test_fit),        TEST(test_straight_on),      TEST(test_all_tiles_damaged),
+        TEST(test_no_numbers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

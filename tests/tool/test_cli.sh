@@ -647,6 +647,18 @@ if grep -q '^ok .* EGL # SKIP .' "$tmp/stdout"; then
     verify 69
 fi
 
+# One segment: few pixels, all alike, a diagonal among them, and what is no number.
+segment() { # X Y X Y, floats as little-endian bytes
+    printf 'PLYL\1\0\0\0\2\0\0\0\0\0\0\0\2\0\0\0%b' "$1$2$3$4" >"$tmp/in/segment.lines"
+}
+three='\0\0\0100\0100' four='\0\0\0200\0100' fifty='\0\0\0110\0102' nan='\0\0\0300\0177' far='\0231\0166\0226\0176'
+for ends in "three three three four" "three three four four" "three three fifty fifty" "nan nan nan nan" "far three far far" \
+    "three three far far"; do
+    read -r x0 y0 x1 y1 <<<"$ends"
+    segment "${!x0}" "${!y0}" "${!x1}" "${!y1}"
+    expect 0 "one segment: $ends" validate --polylines "$tmp/in/segment.lines" --method strip -q
+done
+
 # ---- Bad input ----
 
 touch "$tmp/in/empty.geojson" "$tmp/in/empty.osm.pbf" "$tmp/in/empty"

@@ -89,6 +89,9 @@ uint64_t camber_budget_unfolds(const camber_context *context);
 
 /* ---- Files ---- */
 
+/* Whether a style may name it: it lies within the context's root, or would. What lies beyond, is there or not, is told
+ * of in one way only. */
+bool camber_file_is_reached(const camber_context *context, const char *path);
 /* Opens a file to read, and tells its size. Returns CAMBER_ERROR_NOT_FOUND, CAMBER_ERROR_INPUT (a folder, a device or
  * a pipe; one that lies beyond the root), CAMBER_ERROR_ARGUMENT (the output), CAMBER_ERROR_IO. */
 camber_status camber_file_open(camber_context *context, const char *path, camber_file_naming naming, int *file,

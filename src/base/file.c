@@ -30,18 +30,25 @@ static camber_status check_kind(camber_context *context, const char *path, const
     return camber_fail(context, CAMBER_ERROR_INPUT, "%s: is a device or a pipe; copy what it gives to a file", path);
 }
 
-/* As it is without links. Of a file that is not there its folder counts. */
+/* As it is without links; of a file that is not there the first folder above it that is. */
 static bool resolve(const char *path, char found[PATH_MAX]) {
-    const char *slash = strrchr(path, '/');
-    char folder[PATH_MAX];
-    if (realpath(path, found))
-        return true;
-    const int length = snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path) + 1 : 1, slash ? path : ".");
-    return errno == ENOENT && length > 0 && length < PATH_MAX && realpath(folder, found);
+    char above[PATH_MAX];
+    if (snprintf(above, sizeof above, "%s%s", path[0] == '/' ? "" : "./", path) >= (int)sizeof above)
+        return false;
+    while (!realpath(above, found)) {
+        char *slash = strrchr(above, '/');
+        if ((errno != ENOENT && errno != ENOTDIR) || !slash || slash == above || strcmp(slash, "/..") == 0)
+            return false;
+        *slash = 0;
+    }
+    return true;
 }
 
-static bool lies_in(const char *path, const char *folder) {
+bool camber_file_is_reached(const camber_context *context, const char *path) {
+    const char *folder = context->desc.access.root;
     char found[PATH_MAX], root[PATH_MAX];
+    if (!folder)
+        return true;
     if (!realpath(folder, root) || !resolve(path, found))
         return false;
     const size_t length = strcmp(root, "/") == 0 ? 0 : strlen(root);
@@ -61,11 +68,11 @@ static camber_status check_access(camber_context *context, const char *path, con
 
 /* Before it is known whether there is such a file: beyond the root nobody is told. */
 static camber_status check_root(camber_context *context, const char *path, camber_file_naming naming) {
-    const char *root = context->desc.access.root;
-    if (naming == CAMBER_NAMED_BY_CALLER || !root || lies_in(path, root))
+    if (naming == CAMBER_NAMED_BY_CALLER || camber_file_is_reached(context, path))
         return CAMBER_OK;
     return camber_fail(context, CAMBER_ERROR_INPUT,
-                       "%s: is no file in %s, beyond which a style may name none; put it there", path, root);
+                       "%s: is no file in %s, beyond which a style may name none; put it there", path,
+                       context->desc.access.root);
 }
 
 camber_status camber_file_check(camber_context *context, const char *path, camber_file_naming naming,

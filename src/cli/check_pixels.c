@@ -20,24 +20,6 @@ typedef struct job {
     uint8_t *first, *own, *other; /* of the first back end, of this one, of another path to it */
 } job;
 
-/* Which of the bounds is passed first; false: none. */
-static bool is_past(const camber_pixel_bounds *is, const camber_pixel_bounds *most, camber_finding *finding) {
-    const struct {
-        const char *name;
-        double got, most;
-    } values[] = {{"mean", is->mean, most->mean},
-                  {"past_16", is->past_16, most->past_16},
-                  {"past_64", is->past_64, most->past_64}};
-    for (size_t i = 0; i < sizeof values / sizeof *values; i++)
-        if (!(values[i].got <= values[i].most)) {
-            finding->field = values[i].name;
-            finding->got = values[i].got;
-            finding->expected = values[i].most;
-            return true;
-        }
-    return false;
-}
-
 /* A few straight edges of a ramp can be off by more than many; what a camera sees does not depend on it. */
 static camber_coverage coverage_of(const job *j) {
     return j->s->network ? CAMBER_COVERAGE_EXACT : (camber_coverage)j->v->session->options->coverage;
@@ -71,7 +53,9 @@ static int check_truth(job *j, camber_check *check, camber_truth_kind kind, cons
     check->has_error = true;
     check->most = kind == CAMBER_TRUTH_OVER ? j->bounds : camber_bounds_of_united(j->s->scene, j->bounds);
     camber_samples_compare(&j->samples, kind, levels, j->s->width, &check->error, &worst);
-    if (is_past(&check->error.of, &check->most, finding)) {
+    if (!j->s->scene)
+        check->most = camber_bounds_of_few(check->most, &check->error);
+    if (camber_bounds_are_passed(&check->error.of, &check->most, finding)) {
         const camber_sample *sample = &j->samples.list[worst];
         check->verdict = CAMBER_VERDICT_FAILED;
         finding->stage = "pixels";
@@ -183,7 +167,7 @@ static int check_drawer(job *j, const camber_easel *easel) {
     int status = camber_report_status(
         j->v->session->report, camber_pictures_compare(j->first, j->own, j->s->width, j->s->height, &check.error));
     camber_finding past = {0};
-    if (status == CAMBER_EXIT_DONE && is_past(&check.error.of, &check.most, &past)) {
+    if (status == CAMBER_EXIT_DONE && camber_bounds_are_passed(&check.error.of, &check.most, &past)) {
         check.verdict = CAMBER_VERDICT_FAILED;
         check.finding.stage = "back ends";
         if (first_pixel(j, j->first, j->own, &check.finding, &pixel))

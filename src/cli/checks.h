@@ -105,8 +105,12 @@ bool camber_bounds_of_pixels(const char *scene, double tight_share, camber_cover
 camber_pixel_bounds camber_bounds_of_united(const char *scene, camber_pixel_bounds over);
 /* And for lines that a camera leaves points of out. */
 camber_pixel_bounds camber_bounds_of_simplified(camber_pixel_bounds whole);
+/* And for what is nowhere farther from the oracle than that may be from the truth. */
+camber_pixel_bounds camber_bounds_of_few(camber_pixel_bounds most, const camber_pixel_error *error);
 /* Of one picture against another: of two GL back ends, or of GL and OpenCL. */
 camber_pixel_bounds camber_bounds_of_drawers(bool alike);
+/* Which of the bounds is passed first; false: none. */
+bool camber_bounds_are_passed(const camber_pixel_bounds *is, const camber_pixel_bounds *most, camber_finding *finding);
 
 /* ---- Drawing: drawing.c ---- */
 

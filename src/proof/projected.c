@@ -50,7 +50,7 @@ static size_t measure(projector *p) {
         }
     }
     const double extent = fmax(x1 - p->x0, y1 - p->y0);
-    p->step = extent > 0 ? extent / 2147483646.0 : 1;
+    p->step = fmax(extent, 1e-30) / 2147483646.0;
     return longest;
 }
 

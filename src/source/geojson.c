@@ -1,5 +1,6 @@
 #include "source/geojson.h"
 #include "source/mercator.h"
+#include "style/json.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -110,8 +111,18 @@ static camber_status find_class(reader *self, const json_t *feature, camber_geom
 
 /* ---- Geometry ---- */
 
+/* A number that JSON has no word for: NaN and null, an infinity and what is beyond a double. */
+static bool is_no_number(const json_t *json) {
+    return json_is_null(json) || fabs(json_number_value(json)) >= CAMBER_JSON_INFINITE;
+}
+
+/* An invalid point, as in INPUT, is a pair of NaN. false: no position. */
 static bool read_position(const json_t *json, double position[2]) {
     const json_t *longitude = json_array_get(json, 0), *latitude = json_array_get(json, 1);
+    if (is_no_number(longitude) || is_no_number(latitude)) {
+        position[0] = position[1] = NAN;
+        return true;
+    }
     if (!json_is_number(longitude) || !json_is_number(latitude))
         return false;
     const double lon = json_number_value(longitude), lat = json_number_value(latitude);
@@ -135,21 +146,38 @@ static void add_bounds(double bounds[4], const double *points, size_t count) {
 }
 
 /* A feature with several lines is one feature. */
-static camber_status add_line(reader *self, size_t count) {
+static camber_status add_line(reader *self, const double *points, size_t count) {
     camber_status status = CAMBER_OK;
     if (!self->added)
         status = camber_features_add_feature(self->features, self->class_index);
     self->added = true;
-    add_bounds(self->stats->bounds, self->points, count);
-    return status == CAMBER_OK ? camber_features_add_polyline(self->features, self->points, count) : status;
+    add_bounds(self->stats->bounds, points, count);
+    return status == CAMBER_OK ? camber_features_add_polyline(self->features, points, count) : status;
+}
+
+/* The line read, split where points are invalid. */
+static camber_status add_parts(reader *self, size_t count) {
+    camber_status status = CAMBER_OK;
+    size_t first = 0;
+    for (size_t i = 0; i <= count && status == CAMBER_OK; i++) {
+        if (i < count && !isnan(self->points[2 * i]))
+            continue;
+        if (i > first)
+            status = add_line(self, self->points + 2 * first, i - first);
+        self->stats->invalid_points += i < count;
+        first = i + 1;
+    }
+    return status;
 }
 
 /* An outline goes clockwise as seen, so that what lies to its right is inside, and that of a hole the other way. */
 static void wind(double *points, size_t count, bool hole) {
     double area = 0.0;
-    for (size_t i = 0; i + 1 < count; i++)
-        area += (points[2 * i] - points[0]) * (points[2 * i + 3] - points[1]) -
-                (points[2 * i + 1] - points[1]) * (points[2 * i + 2] - points[0]);
+    for (size_t i = 0; i + 1 < count; i++) {
+        const double part = (points[2 * i] - points[0]) * (points[2 * i + 3] - points[1]) -
+                            (points[2 * i + 1] - points[1]) * (points[2 * i + 2] - points[0]);
+        area += isnan(part) ? 0.0 : part;
+    }
     if ((area < 0.0) == hole)
         return;
     for (size_t i = 0; i < count / 2; i++)
@@ -176,13 +204,13 @@ static camber_status read_line(reader *self, const json_t *json, bool ring, bool
         return CAMBER_OK;
     }
     const double *last = self->points + 2 * (count - 1);
-    if (ring && (last[0] != self->points[0] || last[1] != self->points[1])) {
+    if (ring && (fabs(last[0] - self->points[0]) > 0 || fabs(last[1] - self->points[1]) > 0)) { /* both are valid */
         spoil(self, "a ring that is not closed");
         memcpy(self->points + 2 * count++, self->points, 2 * sizeof *self->points);
     }
     if (ring && self->features->style->directed)
         wind(self->points, count, hole);
-    return add_line(self, count);
+    return add_parts(self, count);
 }
 
 /* depth: of lines in the coordinates. hole: of a polygon the lines are not the first. */

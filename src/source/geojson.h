@@ -12,6 +12,7 @@ typedef struct camber_geojson_desc {
 
 typedef struct camber_geojson_stats {
     size_t skipped_features;
+    size_t invalid_points;   /* no numbers; their lines are split there */
     size_t damaged_features; /* what of them reads is kept */
     char damage[160];        /* the first: its JSON pointer and the cause */
     double bounds[4];        /* x0, y0, x1, y1 of the lines, world coordinates; x0 > x1: none */

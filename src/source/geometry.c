@@ -201,8 +201,10 @@ static bool fetch(camber_parts *parts, OGRGeometryH geometry, size_t count) {
 static bool goes_clockwise(const camber_parts *parts, size_t count) {
     const double *x = parts->raw, *y = parts->raw + count;
     double area = 0.0;
-    for (size_t i = 0; i + 1 < count; i++)
-        area += (x[i] - x[0]) * (y[i + 1] - y[0]) - (x[i + 1] - x[0]) * (y[i] - y[0]);
+    for (size_t i = 0; i + 1 < count; i++) {
+        const double part = (x[i] - x[0]) * (y[i + 1] - y[0]) - (x[i + 1] - x[0]) * (y[i] - y[0]);
+        area += isfinite(part) ? part : 0.0;
+    }
     return (area < 0.0) != parts->latitude_first;
 }
 

@@ -323,6 +323,7 @@ static camber_status read_feature(camber_mvt *mvt, ProtobufCBinaryData bytes) {
     const camber_geometry_kind kind = polygon ? CAMBER_GEOMETRY_POLYGON : CAMBER_GEOMETRY_LINE;
     camber_status status = read_geometry(mvt, feature, kind);
     const char *damage = mvt->geometry.damage;
+    mvt->stats.kept_features += mvt->geometry.part_count > 0;
     if (status == CAMBER_OK && mvt->geometry.part_count)
         status = keep(mvt, feature, kind, &damage);
     if (damage)

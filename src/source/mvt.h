@@ -30,6 +30,7 @@ typedef struct camber_mvt_stats {
     size_t damaged_features; /* what of them reads is kept; a tile or a layer that does not parse counts as one */
     char damage[256];        /* the first: tile, layer, cause */
     size_t features;         /* of the wanted layers */
+    size_t kept_features;    /* of these, those that gave any points */
     bool names_property;     /* a wanted layer has a key that the style names */
 } camber_mvt_stats;
 

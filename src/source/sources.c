@@ -3,11 +3,14 @@
 #include "source/mercator.h"
 #include "source/tile_reader.h"
 #include "source/url.h"
+#include "style/json.h"
 
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <sys/stat.h>
+
+enum { JSON_BYTES_A_BYTE = 8 };
 
 typedef struct source {
     const camber_style_source *style;
@@ -42,31 +45,45 @@ static camber_status load_json(camber_context *context, const char *what, const 
     char *text;
     size_t size;
     json_error_t error;
-    const camber_status status = camber_read_file(context, path, CAMBER_NAMED_BY_STYLE, &text, &size);
+    camber_status status = camber_read_file(context, path, CAMBER_NAMED_BY_STYLE, &text, &size);
     if (status != CAMBER_OK)
         return status;
-    *root = json_loadb(text, size, JSON_DECODE_INT_AS_REAL | JSON_ALLOW_NUL, &error);
+    /* jansson's memory is not the context's: what it makes of coordinates takes some seven times their text. */
+    if (!camber_budget_has(context, JSON_BYTES_A_BYTE * (uint64_t)size)) {
+        camber_free(context, text);
+        return camber_budget_fail(context, JSON_BYTES_A_BYTE * (uint64_t)size);
+    }
+    status = camber_json_load(context, text, size, JSON_DECODE_INT_AS_REAL | JSON_ALLOW_NUL, true, root, &error);
     camber_free(context, text);
-    if (*root)
-        return CAMBER_OK;
+    if (status != CAMBER_ERROR_INPUT)
+        return status;
     /* Not what it quotes: a style may name any file. */
     char *quoted = strstr(error.text, " near '");
     if (quoted)
         *quoted = 0;
-    return camber_fail(context, CAMBER_ERROR_INPUT, "%s: %s: no JSON at line %d, column %d: %s; get the file again",
-                       what, path, error.line, error.column, error.text);
+    return camber_fail(context, CAMBER_ERROR_INPUT, "%s: %s: no JSON at line %d, column %d: %s; %s", what, path,
+                       error.line, error.column, error.text,
+                       json_error_code(&error) == json_error_invalid_utf8 ? camber_json_cure(&error)
+                                                                          : "get the file again");
 }
 
 /* The style says what to do, or it is a matter of its paths. */
 static camber_status check_there(const camber_sources *sources, const source *one, const char *path) {
     struct stat about;
-    if (stat(path, &about) == 0 || (errno != ENOENT && errno != ENOTDIR))
+    if (!camber_file_is_reached(sources->context, path) || stat(path, &about) == 0 ||
+        (errno != ENOENT && errno != ENOTDIR))
         return CAMBER_OK;
     return camber_fail(sources->context, CAMBER_ERROR_NOT_FOUND, "%s: %s: no such file; %s", one->place, path,
                        one->style->missing ? one->style->missing : "check the path in the style");
 }
 
 /* ---- GeoJSON ---- */
+
+static void warn_invalid(const camber_sources *sources, const char *what, size_t points) {
+    if (points)
+        camber_log(sources->context, CAMBER_LOG_WARNING,
+                   "%s: %zu points are not numbers and are left out; their lines are split there", what, points);
+}
 
 static void warn(const camber_sources *sources, const char *what, size_t damaged, const char *damage, size_t skipped) {
     if (damaged)
@@ -76,8 +93,14 @@ static void warn(const camber_sources *sources, const char *what, size_t damaged
         camber_log(sources->context, CAMBER_LOG_INFO, "%s: left out what is no line of %zu features", what, skipped);
 }
 
+static camber_status fail_damaged(const camber_sources *sources, const char *what, const char *damage) {
+    return camber_fail(sources->context, CAMBER_ERROR_INPUT,
+                       "%s: no feature can be read: %s; correct it, or get the file again", what, damage);
+}
+
 static camber_status read_geojson(camber_sources *sources, source *one) {
     camber_context *context = sources->context;
+    const size_t features_before = sources->features->feature_count;
     const json_t *data = json_object_get(one->style->json, "data");
     json_t *loaded = NULL;
     camber_status status = CAMBER_OK;
@@ -98,12 +121,16 @@ static camber_status read_geojson(camber_sources *sources, source *one) {
     if (status == CAMBER_OK)
         status = camber_geojson_read(sources->features, &desc, &stats);
     json_decref(loaded);
+    if (status == CAMBER_OK && stats.damaged_features && sources->features->feature_count == features_before)
+        status = fail_damaged(sources, one->what, stats.damage);
     if (status != CAMBER_OK)
         return status;
     memcpy(one->bounds, stats.bounds, sizeof one->bounds);
     sources->features->stats.skipped_features += stats.skipped_features;
     sources->features->stats.damaged_features += stats.damaged_features;
+    sources->features->stats.invalid_points += stats.invalid_points;
     warn(sources, one->what, stats.damaged_features, stats.damage, stats.skipped_features);
+    warn_invalid(sources, one->what, stats.invalid_points);
     return camber_features_sign(sources->features, json_string_value(json_object_get(one->style->json, "attribution")));
 }
 
@@ -319,6 +346,8 @@ static camber_status read_places(camber_sources *sources, const source *one, con
     const size_t first_polyline = features->polyline_count;
     features->source = one->index;
     camber_status status = camber_tiles_read(features, reading, &result);
+    if (status == CAMBER_OK && result.found > 0 && result.lost == result.found)
+        status = fail_damaged(sources, one->what, result.stats.damage);
     if (status == CAMBER_OK)
         status = finish(features, first_polyline);
     if (status == CAMBER_OK)

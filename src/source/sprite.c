@@ -161,7 +161,8 @@ static camber_status find_file(camber_context *context, const char *path, const 
     if (!whole)
         return CAMBER_ERROR_MEMORY;
     struct stat about;
-    *found = stat(whole, &about) == 0 || (errno != ENOENT && errno != ENOTDIR); /* what else is wrong is told later */
+    *found = !camber_file_is_reached(context, whole) || stat(whole, &about) == 0 ||
+             (errno != ENOENT && errno != ENOTDIR); /* what else is wrong is told later */
     camber_free(context, whole);
     return CAMBER_OK;
 }

@@ -26,7 +26,7 @@ typedef struct reader {
     const camber_tile_reading *reading;
     camber_mvt *mvt;
     camber_bytes bytes;
-    size_t found;
+    size_t found, lost;
     double shown_ms;
 } reader;
 
@@ -57,7 +57,9 @@ static camber_status read_places(reader *self, bool *restart) {
     for (size_t i = 0; i < self->reading->place_count && status == CAMBER_OK; i++) {
         const size_t before = stats->features;
         const bool named = stats->names_property;
+        const size_t damaged = stats->damaged_features, given = stats->kept_features + stats->skipped_features;
         status = read_place(self, &self->reading->places[i]);
+        self->lost += stats->damaged_features > damaged && stats->kept_features + stats->skipped_features == given;
         if (self->reading->mvt.plain && !named && stats->names_property && before) {
             *restart = true;
             return CAMBER_OK;
@@ -80,7 +82,7 @@ static camber_status read_once(camber_features *features, const camber_tile_read
     if (status == CAMBER_OK && !*restart)
         status = camber_tiles_finish(desc.tiles, features);
     if (status == CAMBER_OK)
-        *result = (camber_tile_result){*camber_mvt_get_stats(self.mvt), self.found};
+        *result = (camber_tile_result){*camber_mvt_get_stats(self.mvt), self.found, self.lost};
     camber_bytes_free(&self.bytes);
     camber_mvt_destroy(self.mvt);
     camber_tiles_destroy(desc.tiles);
@@ -139,6 +141,11 @@ static const char *layer_name(const input *self, size_t i) {
     return json_string_value(json_object_get(json_array_get(self->set->layers, i), "id"));
 }
 
+static camber_status fail_damaged(const input *self, const camber_mvt_stats *stats) {
+    return camber_fail(self->context, CAMBER_ERROR_INPUT, "%s: no feature can be read: %s; get the file again",
+                       self->desc->path, stats->damage);
+}
+
 /* What tiles do not tell of themselves is looked for in all of them. */
 static camber_status look_for_layers(input *self) {
     camber_context *context = self->context;
@@ -153,6 +160,9 @@ static camber_status look_for_layers(input *self) {
     status = read_places(&look, &restart);
     size_t count;
     const camber_mvt_layer *layers = camber_mvt_layers(look.mvt, &count);
+    const camber_mvt_stats *stats = camber_mvt_get_stats(look.mvt);
+    if (status == CAMBER_OK && count == 0 && stats->damaged_features)
+        status = fail_damaged(self, stats);
     json_t *found = json_array();
     for (int lines = 1; lines >= 0 && status == CAMBER_OK; lines--)
         for (size_t i = 0; i < count; i++)
@@ -288,7 +298,11 @@ static camber_status read_input(input *self, camber_tile_result *result) {
 
 /* What it gave, looked at as a whole. */
 static camber_status judge(const input *self, const camber_mvt_stats *stats, const camber_features_mark *before) {
-    if (self->features->feature_count > before->feature_count || stats->skipped_features == 0)
+    if (self->features->feature_count > before->feature_count)
+        return CAMBER_OK;
+    if (stats->damaged_features)
+        return fail_damaged(self, stats);
+    if (stats->skipped_features == 0)
         return CAMBER_OK;
     return camber_fail(self->context, CAMBER_ERROR_INPUT,
                        "%s: no lines: %zu features have other geometry (points, areas, nothing); name another "

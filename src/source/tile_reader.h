@@ -16,6 +16,7 @@ typedef struct camber_tile_reading {
 typedef struct camber_tile_result {
     camber_mvt_stats stats;
     size_t found; /* tiles that are there */
+    size_t lost;  /* of these, those that are damaged and give nothing */
 } camber_tile_result;
 
 /* Adds features and their polylines, of features->source. Where it fails the caller takes them out again. */

@@ -239,7 +239,7 @@ static camber_status get_file(camber_tile_set *set, int zoom, camber_tile_place 
         return CAMBER_ERROR_MEMORY;
     bytes->size_bytes = 0;
     camber_status status = CAMBER_OK;
-    if (access(path, F_OK) == 0 || errno == EACCES)
+    if (!camber_file_is_reached(set->context, path) || access(path, F_OK) == 0 || errno == EACCES)
         status = camber_file_open(set->context, path, set->naming, &file, &size_bytes);
     else
         size_bytes = UINT64_MAX;

@@ -300,20 +300,17 @@ static bool fail_json(camber_document *d, const json_error_t *error) {
     camber_compiler *c = &d->compiler;
     /* jansson takes what it has no memory for to be a wrong character, mostly. */
     if (json_error_code(error) != json_error_out_of_memory && errno != ENOMEM)
-        return camber_compiler_fail(c, "line %d, column %d: %s; correct the JSON there", error->line, error->column,
-                                    error->text);
+        return camber_compiler_fail(c, "line %d, column %d: %s; %s", error->line, error->column, error->text,
+                                    camber_json_cure(error));
     c->status = camber_fail(c->context, CAMBER_ERROR_MEMORY, "%s: out of memory; make the document shorter", c->name);
     return false;
 }
 
 camber_status camber_document_read(camber_document *d, const char *json, size_t size_bytes) {
     json_error_t error;
-    if (size_bytes >= 3 && memcmp(json, "\xef\xbb\xbf", 3) == 0) {
-        json += 3;
-        size_bytes -= 3;
-    }
     errno = 0;
-    d->root = json_loadb(json, size_bytes, JSON_DECODE_ANY | JSON_DECODE_INT_AS_REAL, &error);
+    camber_json_load(d->compiler.context, json, size_bytes, JSON_DECODE_ANY | JSON_DECODE_INT_AS_REAL, false, &d->root,
+                     &error);
     const bool done = d->root ? read_document(d) : fail_json(d, &error);
     (void)(done || camber_document_goes_on(d, 0));
     return d->compiler.status;

@@ -2,26 +2,107 @@
 
 #include <errno.h>
 #include <stdlib.h>
+#include <strings.h>
+
+/* ---- Parsing ---- */
+
+/* What GDAL takes for numbers, and jansson does not. */
+static const struct {
+    const char *word, *instead;
+} words[] = {{"NaN", "null"}, {"Infinity", "1e308   "}, {"-Infinity", "-1e308   "}};
+
+static bool is_beyond(const char *number, size_t size) {
+    json_error_t error;
+    /* Short ones without an exponent are not: most are looked at no further. */
+    if (size < 300 && !memchr(number, 'e', size) && !memchr(number, 'E', size))
+        return false;
+    json_t *json = json_loadb(number, size, JSON_DECODE_ANY | JSON_DECODE_INT_AS_REAL, &error);
+    json_decref(json);
+    return !json && json_error_code(&error) == json_error_numeric_overflow;
+}
+
+/* Copies a token that is no string, or a character of it, as what jansson reads. Returns its size; that of the copy
+ * goes to *copied. */
+static size_t copy_token(char *to, const char *from, size_t size, size_t *copied) {
+    size_t length = 0;
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+        length = strlen(words[i].word);
+        if (size < length || strncasecmp(from, words[i].word, length) != 0)
+            continue;
+        *copied = strlen(words[i].instead);
+        memcpy(to, words[i].instead, *copied);
+        return length;
+    }
+    for (length = 0; length < size && from[length] && strchr("+-.0123456789eE", from[length]);)
+        length++;
+    length = length ? length : 1;
+    *copied = length;
+    memcpy(to, from, length);
+    if (is_beyond(from, length)) {
+        const char *instead = *from == '-' ? "-1e308" : "1e308";
+        memset(to, ' ', length);
+        memcpy(to, instead, strlen(instead));
+    }
+    return length;
+}
+
+/* Copies a document with what jansson refuses replaced; lines and columns stay, but behind a NaN. */
+static size_t mend(char *to, const char *from, size_t size) {
+    size_t written = 0, copied;
+    bool in_string = false;
+    for (size_t at = 0; at < size; written += copied) {
+        if (!in_string && from[at] != '"') {
+            at += copy_token(to + written, from + at, size - at, &copied);
+            continue;
+        }
+        copied = in_string && from[at] == '\\' && at + 1 < size ? 2 : 1;
+        in_string = !in_string || from[at] != '"';
+        memcpy(to + written, from + at, copied);
+        at += copied;
+    }
+    return written;
+}
+
+camber_status camber_json_load(camber_context *context, const char *bytes, size_t size_bytes, size_t flags,
+                               bool is_data, json_t **json, json_error_t *error) {
+    if (size_bytes >= 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0) {
+        bytes += 3;
+        size_bytes -= 3;
+    }
+    *json = json_loadb(bytes, size_bytes, flags, error);
+    const enum json_error_code code = *json ? json_error_unknown : json_error_code(error);
+    if (is_data && (code == json_error_numeric_overflow || code == json_error_invalid_syntax)) {
+        char *mended = camber_alloc(context, size_bytes + size_bytes / 3 + 1, 1); /* null is longer than NaN */
+        if (!mended)
+            return CAMBER_ERROR_MEMORY;
+        *json = json_loadb(mended, mend(mended, bytes, size_bytes), flags, error);
+        camber_free(context, mended);
+    }
+    return *json ? CAMBER_OK : CAMBER_ERROR_INPUT;
+}
+
+const char *camber_json_cure(const json_error_t *error) {
+    return json_error_code(error) == json_error_invalid_utf8 ? "save it as UTF-8" : "correct the JSON there";
+}
 
 static camber_status fail(camber_context *context, const char *name, const json_error_t *error) {
     /* jansson takes what it has no memory for to be a wrong character, mostly. */
     if (json_error_code(error) == json_error_out_of_memory || errno == ENOMEM)
         return camber_fail(context, CAMBER_ERROR_MEMORY, "%s: out of memory; make the document shorter", name);
-    return camber_fail(context, CAMBER_ERROR_INPUT, "%s: line %d, column %d: %s; correct the JSON there", name,
-                       error->line, error->column, error->text);
+    return camber_fail(context, CAMBER_ERROR_INPUT, "%s: line %d, column %d: %s; %s", name, error->line, error->column,
+                       error->text, camber_json_cure(error));
 }
 
 camber_status camber_json_read(camber_context *context, const char *bytes, size_t size_bytes, const char *name,
                                json_t **json) {
     json_error_t error;
-    if (size_bytes >= 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0) {
-        bytes += 3;
-        size_bytes -= 3;
-    }
     errno = 0;
-    *json = json_loadb(bytes, size_bytes, JSON_DECODE_ANY | JSON_DECODE_INT_AS_REAL, &error);
-    return *json ? CAMBER_OK : fail(context, name, &error);
+    const camber_status status =
+        camber_json_load(context, bytes, size_bytes, JSON_DECODE_ANY | JSON_DECODE_INT_AS_REAL, false, json, &error);
+    return status == CAMBER_ERROR_INPUT ? fail(context, name, &error) : status;
 }
+
+/* ---- Values ---- */
 
 const char *camber_json_name(const json_t *json) {
     if (!json)

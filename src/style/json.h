@@ -10,6 +10,16 @@
 /* Deepest nesting of a value: jansson reads no deeper documents. */
 #define CAMBER_VALUE_DEPTH 2048
 
+/* JSON has no infinity: of data, what stands for it and for what is beyond a double. */
+#define CAMBER_JSON_INFINITE 1e308
+
+/* Parses with jansson's flags, after a byte order mark. is_data: not written for camber, and read as GDAL reads it: NaN
+ * is null, and numbers beyond a double are +-CAMBER_JSON_INFINITE. Returns CAMBER_ERROR_INPUT (*error says why, and
+ * nothing is logged), CAMBER_ERROR_MEMORY. */
+camber_status camber_json_load(camber_context *context, const char *bytes, size_t size_bytes, size_t flags,
+                               bool is_data, json_t **json, json_error_t *error);
+/* What to do about an error in a document that the user writes. */
+const char *camber_json_cure(const json_error_t *error);
 /* Reads a document, all of whose numbers are doubles. Returns CAMBER_ERROR_INPUT (line and column are said),
  * CAMBER_ERROR_MEMORY. */
 camber_status camber_json_read(camber_context *context, const char *bytes, size_t size_bytes, const char *name,

@@ -9,6 +9,9 @@
 
 /* Steps over the longer side of the box: differences of two of them are 32-bit numbers. */
 static const double STEPS = 2147483646.0;
+/* Where all points lie in one place, or nearly so, a step still has a size: far below a pixel at any
+ * zoom, and still a normal float in px at zoom 0, where a world is 512 px. */
+static const double LEAST_EXTENT = 1e-30;
 /* No difference of two coordinates is infinite. */
 static const double FARTHEST = 1e300;
 /* Of slots a point: its own, a ring's ghost, and the end of a piece. */
@@ -88,7 +91,7 @@ static camber_status measure(camber_network *n, const camber_network_desc *desc)
     const double extent = fmax(box.x1 - box.x0, box.y1 - box.y0);
     n->x0 = box.x0;
     n->y0 = box.y0;
-    n->step = extent > 0.0 ? extent / STEPS : 1.0;
+    n->step = fmax(extent, LEAST_EXTENT) / STEPS;
     return CAMBER_OK;
 }
 

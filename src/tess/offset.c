@@ -198,7 +198,8 @@ camber_status camber_part_offset(camber_mesh *mesh, camber_mesh_part *part, bool
     cl_event events[3] = {NULL, NULL, NULL};
     camber_program *program = NULL;
     uint64_t slots = 0;
-    part->slot_count = 0;
+    /* What the part had before is gone, though nothing may come of it now. */
+    part->slot_count = part->record_count = part->vertex_count = part->index_count = 0;
     part->course.made_count = 0;
     camber_status status = camber_device_offsets(mesh->device, mesh->mesh_info.measured, &program);
     if (status == CAMBER_OK)

@@ -5,6 +5,7 @@
 typedef struct arrays {
     float *x, *y;
     cl_uint *info, *joins;
+    cl_uint *places; /* NULL where the mesh has no offsets */
     camber_offsets offsets;
 } arrays;
 
@@ -25,6 +26,15 @@ static void unmap(const camber_mesh *mesh, cl_mem mem, void *bytes) {
         clEnqueueUnmapMemObject(mesh->device->queue, mem, bytes, 0, NULL, NULL);
 }
 
+/* camber_part_slot, of which each call asks the device. */
+static size_t slot_of(const camber_mesh *mesh, const camber_mesh_part *part, const arrays *a, size_t polyline) {
+    const size_t given = camber_part_given_slot(mesh, part, polyline);
+    if (!a->places)
+        return given;
+    const bool is_behind = given >= part->given_count || polyline >= part->first_polyline + part->polyline_count;
+    return is_behind ? part->course.made_count : a->places[given];
+}
+
 /* The points of a part, behind those that stages holds. Where a device has counted wrongly, slots of polylines may lie
  * past the part's or before those of others: none is read twice. */
 static camber_status append_points(const camber_mesh *mesh, const camber_mesh_part *part, arrays *a,
@@ -38,12 +48,7 @@ static camber_status append_points(const camber_mesh *mesh, const camber_mesh_pa
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0, slot = 0; i < part->polyline_count; i++) {
         const size_t polyline = part->first_polyline + i;
-        size_t begin = 0, wanted = 0;
-        camber_status status = camber_part_slot(mesh, part, polyline, &begin);
-        if (status == CAMBER_OK)
-            status = camber_part_slot(mesh, part, polyline + 1, &wanted);
-        if (status != CAMBER_OK)
-            return status;
+        const size_t begin = slot_of(mesh, part, a, polyline), wanted = slot_of(mesh, part, a, polyline + 1);
         const size_t end = wanted < part->slot_count ? wanted : part->slot_count;
         uint32_t point = 0;
         for (slot = begin > slot ? begin : slot; slot < end; slot++) {
@@ -81,6 +86,8 @@ camber_status camber_mesh_read_stages(camber_mesh *mesh, camber_stages *stages) 
             .info = map(mesh, part->info, words, &status),
             .joins = map(mesh, part->joins, words, &status),
         };
+        if (mesh->offsets)
+            seen.places = map(mesh, part->course.places, part->given_count, &status);
         if (status == CAMBER_OK)
             status = camber_offsets_map(mesh, part, 0, part->slot_count, &seen.offsets);
         if (seen.offsets.offsets) {
@@ -91,6 +98,7 @@ camber_status camber_mesh_read_stages(camber_mesh *mesh, camber_stages *stages) 
         unmap(mesh, part->y, seen.y);
         unmap(mesh, part->info, seen.info);
         unmap(mesh, part->joins, seen.joins);
+        unmap(mesh, part->course.places, seen.places);
     }
     if (status != CAMBER_OK) {
         camber_stages_free(mesh->device->context, &made);

@@ -219,6 +219,39 @@ static void test_device_equals_twin(void **state) {
     }
 }
 
+/* All points in one place, or nearer to each other than a double tells, are a dot in any view. */
+static void test_draws_a_dot(void **state) {
+    bench *b = *state;
+    static const double apart[] = {0, 4.9e-324, 1e-310, 1e-200, 1e-31, 1e-20},
+                        scales[] = {1, 512, 2147483648.0, 5.5e11};
+    const camber_stroke stroke = {.width_px = 8, .cap = CAMBER_CAP_ROUND};
+    const camber_tessellation_desc desc = {&stroke, 1, CAMBER_METHOD_STRIP, 0, false};
+    const size_t offsets[] = {0, 2};
+    for (size_t i = 0; i < sizeof apart / sizeof *apart; i++) {
+        const double points[] = {0, 0, apart[i], -apart[i]};
+        camber_network *network =
+            network_make(b, &(camber_network_desc){.points = points, .offsets = offsets, .polyline_count = 1});
+        for (size_t k = 0; k < sizeof scales / sizeof *scales; k++) {
+            const camber_camera camera = {
+                .scale_px = scales[k], .width = 64, .height = 32, .pitch_deg = k % 2 ? 60 : 0};
+            camber_lines lines;
+            uint32_t *entries;
+            assert_int_equal(camber_network_lines(network, &camera, &desc, &lines, &entries), CAMBER_OK);
+            assert_int_equal(lines.polyline_count, 1);
+            for (size_t n = 0; n < lines.point_count; n++) {
+                assert_true(fabsf(lines.points[2 * n] - 32) < 0.01f);
+                assert_true(fabsf(lines.points[2 * n + 1] - 16) < 0.01f);
+            }
+            camber_lines_free(b->context, &lines);
+            camber_entries_free(b->context, entries);
+            assert_true(compare(b, k % 3, network, &camera, &desc) > 0);
+            assert_int_equal(camber_tessellate_network(b->meshes[0], network, &camera, &desc), CAMBER_OK);
+            assert_true(camber_mesh_get_info(b->meshes[0]).triangle_count > 0);
+        }
+        camber_network_destroy(network);
+    }
+}
+
 /* Sections, parts cut in two for their slots and parts split for their output. */
 static void test_parts_equal_twin(void **state) {
     bench *b = *state;
@@ -522,13 +555,10 @@ int main(void) {
         return 77;
     }
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_device_equals_twin),
-        cmocka_unit_test(test_parts_equal_twin),
-        cmocka_unit_test(test_sees_all_in_the_picture),
-        cmocka_unit_test(test_keeps_everything),
-        cmocka_unit_test(test_drops_by_importance),
-        cmocka_unit_test(test_allocations_fail),
-        cmocka_unit_test(test_wrong_input),
+        cmocka_unit_test(test_device_equals_twin), cmocka_unit_test(test_draws_a_dot),
+        cmocka_unit_test(test_parts_equal_twin),   cmocka_unit_test(test_sees_all_in_the_picture),
+        cmocka_unit_test(test_keeps_everything),   cmocka_unit_test(test_drops_by_importance),
+        cmocka_unit_test(test_allocations_fail),   cmocka_unit_test(test_wrong_input),
     };
     const int failed = cmocka_run_group_tests(tests, set_up, tear_down);
     return failed;

@@ -429,6 +429,26 @@ static void test_in_turn(void **state) {
     scene_free(&s);
 }
 
+/* Nothing is left of a line that lies inside a small bend: nothing is drawn, whatever the mesh had before. */
+static void test_vanishes(void **state) {
+    bench *b = *state;
+    line l = {0};
+    add(&l, 13.49f, 93.51f);
+    add(&l, 18.53f, 88.48f);
+    add(&l, 23.56f, 93.51f);
+    add(&l, 18.53f, 98.55f);
+    camber_polylines *polylines = polylines_of(b, &l);
+    size_t vanished = 0;
+    for (int i = 0; i < 12; i++) {
+        const camber_stroke stroke = {.width_px = 5, .offset_px = i % 3 ? (i % 3 == 1 ? 6 : -6) : 0};
+        const camber_tessellation_desc desc = {&stroke, 1, (camber_method)(i / 4), 0, false};
+        compare(b, b->mesh, polylines, &desc);
+        vanished += camber_mesh_get_info(b->mesh).record_count == 0;
+    }
+    assert_true(vanished > 0);
+    camber_polylines_destroy(polylines);
+}
+
 /* ---- Networks ---- */
 
 typedef struct world {
@@ -643,6 +663,7 @@ int main(void) {
         cmocka_unit_test(test_parts),        cmocka_unit_test(test_in_turn),
         cmocka_unit_test(test_windows),      cmocka_unit_test(test_cut_rings),
         cmocka_unit_test(test_measures),     cmocka_unit_test(test_arguments),
+        cmocka_unit_test(test_vanishes),
     };
     return cmocka_run_group_tests(tests, bench_set_up, bench_tear_down);
 }

@@ -647,6 +647,18 @@ if grep -q '^ok .* EGL # SKIP .' "$tmp/stdout"; then
     verify 69
 fi
 
+# One segment: few pixels, all alike, a diagonal among them, and what is no number.
+segment() { # X Y X Y, floats as little-endian bytes
+    printf 'PLYL\1\0\0\0\2\0\0\0\0\0\0\0\2\0\0\0%b' "$1$2$3$4" >"$tmp/in/segment.lines"
+}
+three='\0\0\0100\0100' four='\0\0\0200\0100' fifty='\0\0\0110\0102' nan='\0\0\0300\0177' far='\0231\0166\0226\0176'
+for ends in "three three three four" "three three four four" "three three fifty fifty" "nan nan nan nan" "far three far far" \
+    "three three far far"; do
+    read -r x0 y0 x1 y1 <<<"$ends"
+    segment "${!x0}" "${!y0}" "${!x1}" "${!y1}"
+    expect 0 "one segment: $ends" validate --polylines "$tmp/in/segment.lines" --method strip -q
+done
+
 # ---- Bad input ----
 
 touch "$tmp/in/empty.geojson" "$tmp/in/empty.osm.pbf" "$tmp/in/empty"
@@ -785,12 +797,70 @@ expect 0 "a style with its own source" render --style "$tmp/in/own.json" -o a.pn
 has "$tmp/stdout" '"features": 1'
 is_png a.png 64 64
 rm -f a.png
+# Lines that lie in one place: a dot where caps are round, nothing where they are butt, at any zoom.
+place='{"type":"LineString","coordinates":[[5,5],[5,5]]}'
+echo "$place" >"$tmp/in/place.geojson"
+echo "${place/\[\[5,5\],\[5,5\]\]/[[0,90],[0,89]]}" >"$tmp/in/pole.geojson"
+for cap in butt round; do
+    echo '{"version": 8, "sources": {}, "layers": [{"id": "l", "type": "line", "layout": {"line-cap": "'$cap'"},
+        "paint": {"line-width": 9}}]}' >"$tmp/in/$cap.json"
+done
+for at in "" "--center 5,5 --zoom 22" "--center 5,5 --zoom 24"; do
+    for cap in butt round; do
+        expect 0 "a place, $cap, ${at:-fitted}" render "$tmp/in/place.geojson" --style "$tmp/in/$cap.json" -qfo $cap.png \
+            --size 64x64 $at
+    done
+    cmp -s butt.png round.png && fail "no dot"
+    expect 0 "a place without a dot, ${at:-fitted}" render "$tmp/in/line.geojson" --style "$tmp/in/butt.json" -qfo none.png \
+        --size 64x64 --center 50,50 --zoom 22
+    cmp -s butt.png none.png || fail "a dot with butt caps"
+done
+expect 0 "a line beyond the pole" render "$tmp/in/pole.geojson" --style "$tmp/in/round.json" -qfo pole.png --size 64x64
+cmp -s round.png pole.png || fail "no dot"
+expect 0 "a place, tessellated" tessellate "$tmp/in/place.geojson" -qfo a.glb
+for verb in compare validate bench; do
+    expect 0 "a place: $verb" $verb "$tmp/in/place.geojson" -q
+done
+rm -f ./*.png ./*.glb
+
 sed 's/line.geojson/none.geojson/' "$tmp/in/own.json" >"$tmp/in/gone.json"
 expect 66 "a style whose source is not there" render --style "$tmp/in/gone.json" -o a.png
 says '/gone.json: /sources/s: .*/none.geojson: no such file; check the path in the style'
 sed 's/line.geojson/text/' "$tmp/in/own.json" >"$tmp/in/passwd.json"
 expect 65 "a style whose source is text" render --style "$tmp/in/passwd.json" -o a.png
 lacks "$tmp/stderr" root
+# Nothing of a source reads: that is bad input whatever the source is, and not silenced by -q.
+sed 's/line.geojson/words.geojson/' "$tmp/in/own.json" >"$tmp/in/words.json"
+expect 65 "a style whose GeoJSON has no feature that reads" render --style "$tmp/in/words.json" -qo a.png
+says 'source "s": no feature can be read: /features/0: '
+echo '<html>404</html>' >"$tmp/in/0-0-0.mvt"
+echo '{"version": 8, "sources": {"s": {"type": "vector", "maxzoom": 0, "tiles": ["{z}-{x}-{y}.mvt"]}}, "layers": [{"id": "a",
+    "type": "line", "source": "s", "source-layer": "a"}]}' >"$tmp/in/html.json"
+expect 65 "a style whose tiles are none" render --style "$tmp/in/html.json" -qo a.png
+says 'source "s": no feature can be read: tile 0/0/0: '
+if python3 -c 'import sqlite3' 2>/dev/null; then
+    python3 -c 'import sqlite3, sys
+d = sqlite3.connect(sys.argv[1])
+d.execute("create table metadata (name text, value text)")
+d.execute("create table tiles (zoom_level integer, tile_column integer, tile_row integer, tile_data blob)")
+d.execute("insert into tiles values (0, 0, 0, ?)", (b"<html>404</html>",))
+d.commit()' "$tmp/in/html.mbtiles"
+    expect 65 "MBTiles whose tiles are none" render "$tmp/in/html.mbtiles" -qo a.png
+    says 'html.mbtiles: no feature can be read: tile 0/0/0: '
+fi
+# What JSON has no word for, and a byte order mark: INPUT and a style's source read the same of them.
+for odd in 2 NaN Infinity -Infinity 1e400; do
+    { printf '\357\273\277'; sed "s/\[2,2\]/[1.5,$odd],[2,2],[3,1]/" "$tmp/in/line.geojson"; } >"$tmp/in/odd.geojson"
+    sed 's/line.geojson/odd.geojson/' "$tmp/in/own.json" >"$tmp/in/odd.json"
+    expect 0 "a style's source with $odd" render --style "$tmp/in/odd.json" -fo a.png --size 64x64 --bbox 0,0,4,4
+    [ "$odd" = 2 ] || says 'warning: .*1 points are not numbers'
+    expect 0 "INPUT with $odd" render "$tmp/in/odd.geojson" --style "$tmp/in/odd.json" -fo b.png --size 64x64 --bbox 0,0,4,4
+    [ "$odd" = 2 ] || says 'warning: .*1 points are not numbers'
+    cmp -s a.png b.png || fail "two pictures"
+done
+rm -f a.png b.png
+{ printf '\357\273\277'; cat "$tmp/in/own.json"; } >"$tmp/in/mark.json"
+expect 0 "a style with a byte order mark" style check "$tmp/in/mark.json"
 sed 's|line.geojson|https://example.org/a.geojson|' "$tmp/in/own.json" >"$tmp/in/url.json"
 expect 65 "a style whose source is elsewhere" render --style "$tmp/in/url.json" -o a.png
 says '/url.json: /sources/s: https://example.org'

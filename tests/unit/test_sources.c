@@ -368,6 +368,85 @@ static void test_damaged_tiles(void **state) {
     assert_int_equal(it->features->stats.damaged_features, 1);
 }
 
+/* Four tiles of zoom 1: so many are cut off, the others whole. As MBTiles, as PMTiles and as files. */
+static void write_some_damaged(const fixture *it, int damaged, const char *metadata) {
+    made_tile tiles[4];
+    made_entry entries[4];
+    made_archive archive = {.directory_compression = 1, .tile_compression = 2, .type = 1, .min_zoom = 1, .max_zoom = 1};
+    static const uint32_t numbers[4][2] = {{0, 0}, {0, 1}, {1, 1}, {1, 0}};
+    char path[256], name[32];
+    for (int i = 0; i < 4; i++) {
+        blob tile = tile_of(numbers[i][0], numbers[i][1], 5, BENT, 4);
+        tiles[i] = (made_tile){1, numbers[i][0], numbers[i][1], gzip_of(&tile)};
+        tiles[i].content.size -= i < damaged ? 12 : 0;
+        blob_free(&tile);
+        entries[i] = (made_entry){(uint64_t)i + 1, 1, archive.tiles.size, tiles[i].content.size};
+        blob_put(&archive.tiles, tiles[i].content.bytes, tiles[i].content.size);
+    }
+    unlink(in_folder(it, "d.mbtiles", path));
+    assert_true(write_mbtiles(path, tiles, 4, metadata));
+    archive.root = directory_of(entries, 4);
+    blob whole = archive_of(&archive);
+    write_blob(it, "d.pmtiles", &whole);
+    blob_free(&archive.root);
+    blob_free(&archive.tiles);
+    for (int i = 0; i < 4; i++) {
+        snprintf(name, sizeof name, "d-1-%u-%u.mvt", numbers[i][0], numbers[i][1]);
+        write_blob(it, name, &tiles[i].content);
+    }
+}
+
+static camber_status read_input(fixture *it, const char *name) {
+    char path[256];
+    forget(it);
+    assert_int_equal(camber_style_builtin(it->context, CAMBER_THEME_LIGHT, &it->style), CAMBER_OK);
+    assert_int_equal(camber_features_create(it->context, it->style, &it->features), CAMBER_OK);
+    it->warnings = 0;
+    return camber_features_read(it->features, &(camber_source_desc){.path = in_folder(it, name, path)});
+}
+
+static void expect_damage(const fixture *it, camber_status status) {
+    if (status != CAMBER_ERROR_INPUT || it->errors != 1 || it->warnings ||
+        !strstr(it->error, ": no feature can be read: tile 1/") || !strstr(it->error, "its compression is cut off; "))
+        fail_msg("%s: %zu errors: %s, %zu warnings", camber_status_name(status), it->errors, it->error, it->warnings);
+    assert_int_equal(it->features->feature_count, 0);
+    assert_int_equal(it->features->stats.damaged_features, 0);
+}
+
+/* Where every tile is damaged nothing was read, whatever the tiles lie in; one whole tile in view makes it a warning.
+ */
+static void test_all_tiles_damaged(void **state) {
+    fixture *it = *state;
+    static const char *const names[] = {"d.mbtiles", "d.pmtiles", "d-{z}-{x}-{y}.mvt"};
+    static const char *const metadata[] = {NULL, "INSERT INTO metadata VALUES ('minzoom', '1'), ('maxzoom', '1'), "
+                                                 "('json', '{\"vector_layers\": [{\"id\": \"road\"}]}')"};
+    const camber_view_desc all = view_at(1.0, 1.0, 1.0, 1, 300, 300), corner = view_at(1.0, 0.1, 0.1, 1, 20, 20);
+    for (int i = 0; i < 4; i++) {
+        const bool are_all = i < 2;
+        write_some_damaged(it, are_all ? 4 : 3, metadata[i % 2]);
+        for (int k = 0; k < 3; k++) {
+            char source[256];
+            snprintf(source, sizeof source,
+                     "\"s\": {\"type\": \"vector\", \"minzoom\": 1, \"maxzoom\": 1, \"%s\": %s\"%s\"%s}",
+                     k < 2 ? "url" : "tiles", k < 2 ? "" : "[", names[k], k < 2 ? "" : "]");
+            const camber_status seen = read_view(it, source, ROADS, &all);
+            if (are_all)
+                expect_damage(it, seen);
+            else
+                expect_ok(it, seen);
+            assert_int_equal(it->warnings, !are_all);
+            expect_damage(it, read_view(it, source, ROADS, &corner));
+            if (k == 2)
+                continue;
+            const camber_status read = read_input(it, names[k]);
+            if (are_all)
+                expect_damage(it, read);
+            else
+                expect_ok(it, read);
+        }
+    }
+}
+
 /* ---- Errors ---- */
 
 static void expect_error(fixture *it, camber_status expected, const char *source, const char *word) {
@@ -401,6 +480,11 @@ static void test_errors(void **state) {
                  "network");
     write_text(it, "bad.json", "{\"type\": \"FeatureCollection\",\n \"features\": [}");
     expect_error(it, CAMBER_ERROR_INPUT, "\"s\": {\"type\": \"geojson\", \"data\": \"bad.json\"}", "line 2");
+    expect_error(it, CAMBER_ERROR_INPUT,
+                 "\"s\": {\"type\": \"geojson\", \"data\": {\"type\": \"FeatureCollection\", \"features\": "
+                 "[{\"geometry\": {\"type\": \"Point\", \"coordinates\": [1, 1]}}, "
+                 "{\"geometry\": {\"type\": \"LineString\", \"coordinates\": \"none\"}}]}}",
+                 "no feature can be read: /features/1: coordinates that are no array");
     write_text(it, "lone.json", "{\"tilejson\": \"3.0.0\"}");
     /* Files that are not there, or no sets of tiles, are named. */
     const camber_view_desc view = view_at(1.0, 1.0, 1.0, 1, 64, 64);
@@ -582,6 +666,58 @@ static void test_geojson_options(void **state) {
     assert_int_equal(it->features->polyline_count, 8);
 }
 
+/* What JSON has no word for, as other programs write it: the point is left out and its line split there, and texts that
+ * look like it stay. */
+static void test_no_numbers(void **state) {
+    fixture *it = *state;
+    static const char source[] = "\"s\": {\"type\": \"geojson\", \"data\": \"odd.json\"}";
+    static const char *const odd[] = {
+        "NaN",    "nan",    "Infinity", "-Infinity", "1e400",
+        "-1e400", "1E+999", "null",     "-12.5e309", "1797693134862315708145274237317e278"};
+    const camber_view_desc view = {.kind = CAMBER_VIEW_FIT};
+    char text[1024];
+    for (size_t i = 0; i < 2 * sizeof odd / sizeof *odd; i++) {
+        snprintf(text, sizeof text,
+                 "\xef\xbb\xbf{\"type\": \"FeatureCollection\", \"features\": [" FEATURE(
+                     "", "\"a\": \"NaN \\\" 1e400, Infinity\", \"n\": NaN, \"name\": %s",
+                     "{\"type\": \"LineString\", \"coordinates\": [[0, 0], [1, 1], [%s, %s], [3,\n 3]]}") "]}",
+                 i % 2 ? "1e400" : "-Infinity", i % 2 ? "2" : odd[i / 2], i % 2 ? odd[i / 2] : "2");
+        write_text(it, "odd.json", text);
+        expect_ok(it, read_view(it, source, READS_ALL, &view));
+        const camber_features *set = it->features;
+        assert_int_equal(set->polyline_count, 2);
+        assert_int_equal(set->point_count, 3);
+        assert_int_equal(set->stats.invalid_points, 1);
+        assert_int_equal(set->stats.damaged_features, 0);
+        assert_int_equal(it->warnings, 1);
+        assert_non_null(strstr(it->warning, "source \"s\": 1 points are not numbers and are left out"));
+        assert_string_equal(value_of(it, 0, "a")->string, "NaN \" 1e400, Infinity");
+        assert_int_equal(value_of(it, 0, "n")->type, CAMBER_VALUE_NULL);
+        assert_true(value_of(it, 0, "name")->number == (i % 2 ? 1e308 : -1e308));
+    }
+    /* A ring is split there as well, and has no area of its own. */
+    write_text(it, "odd.json",
+               "{\"type\": \"Polygon\", \"coordinates\": [[[0, 0], [9, 0], [NaN, 9], [0, 9], [0, 0]]]}");
+    expect_ok(it, read_view(it, source, LINES, &view));
+    assert_int_equal(it->features->polyline_count, 2);
+    assert_int_equal(it->features->stats.damaged_features, 0);
+    /* What is wrong besides is said, with its place. */
+    write_text(it, "odd.json", "{\"type\": \"LineString\",\n \"coordinates\": [[1e400, NaN], oops]}");
+    expect_error(it, CAMBER_ERROR_INPUT, source, ": invalid token; get the file again");
+    write_text(it, "odd.json", "\xff\xfe{");
+    expect_error(it, CAMBER_ERROR_INPUT, source, "save it as UTF-8");
+    /* TileJSON is read so too; a style is not, but for the mark. */
+    write_text(it, "odd.json", "\xef\xbb\xbf{\"tiles\": [\"none-{z}-{x}-{y}\"], \"fillzoom\": NaN}");
+    expect_ok(it, read_view(it, "\"s\": {\"type\": \"vector\", \"url\": \"odd.json\"}", ROADS, &view));
+    static const char style[] = "\xef\xbb\xbf{\"version\": 8, \"zoom\": 1, \"sources\": {}, \"layers\": []}",
+                      bad[] = "{\"version\": 8, \"zoom\": NaN, \"sources\": {}, \"layers\": []}";
+    camber_style *parsed;
+    assert_int_equal(camber_style_parse(it->context, style, strlen(style), "style", &parsed), CAMBER_OK);
+    camber_style_destroy(parsed);
+    assert_int_equal(camber_style_parse(it->context, bad, strlen(bad), "style", &parsed), CAMBER_ERROR_INPUT);
+    assert_non_null(strstr(it->error, "near 'NaN'; correct the JSON there"));
+}
+
 /* ---- Seams ---- */
 
 /* The bent line from four tiles and from GeoJSON: the same points, so the same picture. */
@@ -660,10 +796,12 @@ static void test_fit(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        TEST(test_templates),    TEST(test_archives),      TEST(test_zooms),           TEST(test_seen_tiles),
-        TEST(test_antimeridian), TEST(test_damaged_tiles), TEST(test_errors),          TEST(test_endless_database),
-        TEST(test_geojson),      TEST(test_winding),       TEST(test_geojson_options), TEST(test_seams),
-        TEST(test_fit),          TEST(test_straight_on),
+        TEST(test_templates),  TEST(test_archives),         TEST(test_zooms),
+        TEST(test_seen_tiles), TEST(test_antimeridian),     TEST(test_damaged_tiles),
+        TEST(test_errors),     TEST(test_endless_database), TEST(test_geojson),
+        TEST(test_winding),    TEST(test_geojson_options),  TEST(test_seams),
+        TEST(test_fit),        TEST(test_straight_on),      TEST(test_all_tiles_damaged),
+        TEST(test_no_numbers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

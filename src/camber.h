@@ -227,7 +227,8 @@ typedef struct camber_device_info {
     bool gl_sharing;               /* cl_khr_gl_sharing */
 } camber_device_info;
 
-/* Fills up to capacity infos and sets *count to the number of devices present, which may be larger and may
+/* Returns CAMBER_ERROR_MEMORY where the process may have too little address space for drivers (ulimit -v).
+ * Fills up to capacity infos and sets *count to the number of devices present, which may be larger and may
  * be 0. infos may be NULL where capacity is 0. */
 CAMBER_API camber_status camber_device_list(camber_context *context, size_t capacity, camber_device_info *infos,
                                             size_t *count);

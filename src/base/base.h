@@ -75,6 +75,8 @@ bool camber_budget_take(camber_context *context, uint64_t size_bytes);
 void camber_budget_give(camber_context *context, uint64_t size_bytes);
 bool camber_budget_has(const camber_context *context, uint64_t size_bytes);
 camber_status camber_budget_fail(camber_context *context, uint64_t size_bytes);
+/* Whether the process may have what drivers need. Returns CAMBER_ERROR_MEMORY. */
+camber_status camber_budget_check_drivers(camber_context *context);
 /* A set of features begins. */
 void camber_budget_begin(camber_context *context);
 /* name stands in messages. */

@@ -58,6 +58,9 @@ camber_status camber_gdal_load(camber_context *context) {
         context->gdal = load(&why);
     if (context->gdal)
         return CAMBER_OK;
+    const camber_status status = camber_budget_check_drivers(context);
+    if (status != CAMBER_OK)
+        return status;
     return camber_fail(context, CAMBER_ERROR_IO, "GDAL cannot be loaded: %s; install camber and GDAL again",
                        why ? why : "no reason given");
 }

@@ -153,7 +153,9 @@ static size_t find_devices(found_device found[DEVICES_MAX], failed_call *failed)
 }
 
 camber_status camber_device_list(camber_context *context, size_t capacity, camber_device_info *infos, size_t *count) {
-    (void)context;
+    const camber_status status = camber_budget_check_drivers(context);
+    if (status != CAMBER_OK)
+        return status;
     found_device found[DEVICES_MAX];
     failed_call failed;
     *count = find_devices(found, &failed);
@@ -301,7 +303,9 @@ camber_status camber_device_create(camber_context *context, const camber_device_
         return CAMBER_ERROR_MEMORY;
     made->context = context;
     const camber_device_desc full = desc ? *desc : (camber_device_desc){0};
-    camber_status status = choose(made, full.match, full.number);
+    camber_status status = camber_budget_check_drivers(context);
+    if (status == CAMBER_OK)
+        status = choose(made, full.match, full.number);
     if (status == CAMBER_OK)
         status = bound(made, &full, surface);
     if (status == CAMBER_OK)

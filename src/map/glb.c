@@ -400,6 +400,20 @@ static void put_chunk_head(writer *w, uint64_t size_bytes, uint32_t type) {
     put_u32(w, type);
 }
 
+/* JSON has numbers that are finite alone. */
+static camber_status check_desc(camber_context *context, const camber_glb_desc *desc) {
+    if (desc->copyright && !is_utf8(desc->copyright))
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "GLB: the copyright is not UTF-8; convert it");
+    for (size_t i = 0; desc->paints && i < desc->stroke_count; i++) {
+        const camber_paint *paint = desc->paints + i;
+        const camber_color c = paint->color;
+        if (!isfinite(paint->width_px) || !isfinite(c.r) || !isfinite(c.g) || !isfinite(c.b) || !isfinite(c.a))
+            return camber_fail(context, CAMBER_ERROR_ARGUMENT,
+                               "GLB: the width or the colour of paint %zu is no finite number; give one", i);
+    }
+    return CAMBER_OK;
+}
+
 static camber_status check_size(camber_context *context, uint64_t size_bytes) {
     if (size_bytes <= UINT32_MAX)
         return CAMBER_OK;
@@ -434,11 +448,12 @@ static camber_status write_file(writer *w, const char *json, const uint16_t *col
 camber_status camber_glb_write(camber_context *context, const camber_mesh_data *mesh, const camber_glb_desc *desc,
                                camber_sink sink) {
     writer w = {.context = context, .mesh = mesh, .desc = desc, .sink = sink};
-    camber_status status = CAMBER_ERROR_MEMORY;
     uint16_t *colors = NULL;
     char *json = NULL;
-    if (desc->copyright && !is_utf8(desc->copyright))
-        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "GLB: the copyright is not UTF-8; convert it");
+    camber_status status = check_desc(context, desc);
+    if (status != CAMBER_OK)
+        return status;
+    status = CAMBER_ERROR_MEMORY;
     w.block = camber_alloc(context, BLOCK_BYTES, 1);
     if (!w.block)
         return status;

@@ -33,7 +33,8 @@ static const char *skip_tag(const char *at) {
     return NULL;
 }
 
-/* Without tags, entities and blanks that do not part words. plain has as much room as text. Returns its length. */
+/* Without tags, entities, control characters and blanks that do not part words. plain has as much room as text. Returns
+ * its length. */
 static size_t make_plain(const char *text, char *plain) {
     size_t size = 0;
     while (*text) {
@@ -46,7 +47,7 @@ static size_t make_plain(const char *text, char *plain) {
             continue;
         }
         text += named ? strlen(named->name) : 1;
-        if (isspace((unsigned char)*put)) {
+        if ((unsigned char)*put <= ' ' || *put == 0x7f) {
             count = size && plain[size - 1] != ' ';
             put = " ";
         }

@@ -1,9 +1,10 @@
 #!/bin/bash
 # Faults from outside: kernel caches that cannot be used or hold garbage, two processes filling one, runs that are killed
-# while they write. test_faults.sh TOOL
+# while they write; threads that cannot be had. test_faults.sh TOOL [thread_fault.so]
 # Prints what failed and exits 1 if anything did. Signals that the tool handles are test_cli.sh's.
 set -u
 tool=$(realpath "$1")
+thread_fault=${2:+$(realpath "$2")}
 tmp=$(mktemp -d) || exit 1
 trap 'umount "$tmp"/mount.* 2>/dev/null; rm -rf "$tmp"' EXIT
 export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_leaks=0}
@@ -158,6 +159,48 @@ else
     echo "skipped: kernels of another user's: not root, no setpriv, or $tool lies where others cannot go"
 fi
 said "folders"
+
+# ---- Threads that cannot be had ----
+
+# Who watches for signals and who opens the device beside reading are threads; a run does without either. Each call is
+# refused in turn, and then all.
+refuse() { # FUNCTION:N
+    rm -f "$tmp/refused"
+    LD_PRELOAD=$thread_fault CAMBER_FAULT=$1 CAMBER_FAULT_TOLD=$tmp/refused draws "$1"
+    rm -f a.png
+    [ -z "$(ls -A)" ] || fail "left behind: $(ls -A)"
+    [ -e "$tmp/refused" ]
+}
+
+if [ -n "$thread_fault" ]; then
+    for call in create join mutex_init mutex_lock mutex_unlock mutex_destroy; do
+        n=1
+        while refuse "pthread_$call:$n" && [ $n -lt 100 ]; do
+            n=$((n + 1))
+        done
+        [ $n -gt 1 ] || fail "the tool does not call it"
+        refuse "pthread_$call:1+" || fail "nothing was refused"
+        refused="${refused:-}, $call $((n - 1))"
+    done
+    # Without the thread that waits for them, signals end a run as they end any.
+    name="a signal without its watch"
+    mkfifo "$tmp/wait"
+    LD_PRELOAD=$thread_fault CAMBER_FAULT=pthread_create:1+ "$tool" render - -qo a.png <"$tmp/wait" 2>/dev/null &
+    exec 3>"$tmp/wait"
+    sleep 0.5
+    kill -TERM $!
+    wait $!
+    status=$?
+    [ $status = 143 ] || fail "exit status $status after SIGTERM"
+    exec 3>&-
+    rm -f "$tmp/wait"
+    draws "after the one that a signal ended"
+    rm -f a.png
+    [ -z "$(ls -A)" ] || fail "left behind: $(ls -A)"
+    said "threads${refused:-}"
+else
+    echo "skipped: threads that cannot be had: no library for it"
+fi
 
 # ---- Garbage in the folder ----
 

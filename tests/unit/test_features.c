@@ -179,6 +179,10 @@ static void test_attribution(void **state) {
     assert_string_equal(camber_features_attribution(set), "\xc2\xa9 A 1 < 2, B");
     camber_features_unsign(set, size);
     assert_string_equal(camber_features_attribution(set), "\xc2\xa9 A 1 < 2");
+    /* It goes to terminals and into files. */
+    camber_features_unsign(set, 0);
+    assert_int_equal(camber_features_sign(set, "\x01 C\x1b[2J\x7f\x08 D\a"), CAMBER_OK);
+    assert_string_equal(camber_features_attribution(set), "C [2J D");
 }
 
 static void *reallocate_some(void *user, void *block, size_t size) {

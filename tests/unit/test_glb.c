@@ -448,12 +448,16 @@ static void test_failures(void **state) {
     const camber_glb_desc latin = {.strokes = &stroke, .stroke_count = 1, .copyright = "\xa9 someone"};
     assert_int_equal(camber_glb_write(f->context, &mesh, &latin, sink_of(&whole)), CAMBER_ERROR_ARGUMENT);
     assert_int_equal(f->errors, 1);
+    const camber_paint endless = {.width_px = 1, .color = {0, INFINITY, 0, 1}};
+    const camber_glb_desc bright = {.strokes = &stroke, .stroke_count = 1, .paints = &endless};
+    assert_int_equal(camber_glb_write(f->context, &mesh, &bright, sink_of(&whole)), CAMBER_ERROR_ARGUMENT);
+    assert_int_equal(f->errors, 2);
 
     camber_mesh_data huge = mesh;
     huge.info.vertex_count = (size_t)1 << 27;
     const size_t before = whole.size;
     assert_int_equal(camber_glb_write(f->context, &huge, &desc, sink_of(&whole)), CAMBER_ERROR_LIMIT);
-    assert_int_equal(f->errors, 2);
+    assert_int_equal(f->errors, 3);
     assert_int_equal(whole.size, before);
     free(whole.bytes);
     free(refused.bytes);

@@ -1,0 +1,65 @@
+#include "fuzz_tile_file.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const char input_style[] =
+    "{\"version\": 8, \"layers\": [{\"id\": \"all\", \"type\": \"line\", \"paint\": {\"line-width\": 2}}]}";
+static const char source_style[] =
+    "{\"version\": 8, \"sources\": {\"s\": {\"type\": \"vector\", \"url\": \"%s://%s\"}}, \"layers\": [{\"id\": "
+    "\"all\", \"type\": \"line\", \"source\": \"s\", \"source-layer\": \"roads\", \"paint\": {\"line-width\": 2}}]}";
+
+void fuzz_write_file(const char *path, const void *bytes, size_t size) {
+    FILE *file = fopen(path, "wb");
+    REQUIRE(file && fwrite(bytes, 1, size, file) == size && fclose(file) == 0);
+}
+
+static void check(const camber_features *features) {
+    const camber_features_stats stats = camber_features_get_stats(features);
+    const char *attribution = camber_features_attribution(features);
+    for (const char *c = attribution; c && *c; c++)
+        REQUIRE((unsigned char)*c >= ' ' && *c != 0x7f);
+    REQUIRE(stats.points >= stats.polylines);
+}
+
+static camber_features *open_features(fuzz_run *run, const char *text, camber_style **style) {
+    camber_features *features = NULL;
+    if (!fuzz_done(run, camber_style_parse(run->context, text, strlen(text), "fuzz", style)) ||
+        !fuzz_done(run, camber_features_create(run->context, *style, &features)))
+        return NULL;
+    return features;
+}
+
+static void read_input(fuzz_run *run, const char *path) {
+    camber_style *style = NULL;
+    camber_features *features = open_features(run, input_style, &style);
+    const camber_source_desc desc = {.path = path, .layer = run->hash >> 8 & 3 ? NULL : "roads"};
+    if (features && fuzz_done(run, camber_features_read(features, &desc))) {
+        check(features);
+        fuzz_scene(run, features, &(camber_scene_desc){.view = {.width = 200, .height = 100}});
+    } else if (features) {
+        REQUIRE(camber_features_get_stats(features).points == 0);
+    }
+    camber_features_destroy(features);
+    camber_style_destroy(style);
+}
+
+static void read_source(fuzz_run *run, const char *path, const char *scheme) {
+    char text[512];
+    const camber_view_desc view = {
+        .kind = CAMBER_VIEW_CENTER, .width = 200, .height = 100, .zoom = (double)(run->hash >> 12 & 3)};
+    camber_style *style = NULL;
+    snprintf(text, sizeof text, source_style, scheme, path);
+    camber_features *features = open_features(run, text, &style);
+    if (features && fuzz_done(run, camber_features_read_sources(features, &view, NULL))) {
+        check(features);
+        fuzz_scene(run, features, &(camber_scene_desc){.view = view});
+    }
+    camber_features_destroy(features);
+    camber_style_destroy(style);
+}
+
+void fuzz_read_tiles(fuzz_run *run, const char *path, const char *scheme) {
+    read_input(run, path);
+    read_source(run, path, scheme);
+}

@@ -22,7 +22,7 @@ check_fields() {
     done
     grep -q "^FROM gcr.io/oss-fuzz-base/base-builder:$(sed -n 's/^base_os_version: *//p' "$project/project.yaml")\$" \
         "$project/Dockerfile" || fail "the Dockerfile begins from another system than project.yaml says"
-    grep -l TODO-OWNER "$project"/* | sed 's/$/: has a line that waits for the owner/'
+    grep -l example.org "$project"/* | sed 's/$/: the address of the repository is still to be filled in/'
 }
 
 # Each package is one that dev installs, or that this system's lists have.

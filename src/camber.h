@@ -72,7 +72,7 @@ CAMBER_API const char *camber_version(void);
 typedef struct camber_budget_desc {
     /* Held at once by all contexts of the budget: blocks of the allocator, and OpenCL buffers in the host's memory.
      * Libraries' own memory is not counted. 0: three quarters of what this process can still have, by what the machine
-     * has free and what its control group and its limits allow, when it holds 64 MB for the first time. */
+     * has free and what its control group and its limits allow, when it holds 64 MB for the first time or is asked. */
     uint64_t memory_bytes;
     /* Of one set of features: */
     uint64_t tiles;  /* vector tiles looked for. 0: 262144 */
@@ -86,9 +86,9 @@ typedef struct camber_budget camber_budget;
  * Returns CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_budget_create(const camber_budget_desc *desc, camber_budget **budget);
 CAMBER_API void camber_budget_destroy(camber_budget *budget);
-/* What is held now, and what may be held: UINT64_MAX as long as that is not looked up. */
+/* What is held now, and what may be held. */
 CAMBER_API uint64_t camber_budget_held_bytes(const camber_budget *budget);
-CAMBER_API uint64_t camber_budget_most_bytes(const camber_budget *budget);
+CAMBER_API uint64_t camber_budget_most_bytes(camber_budget *budget);
 
 /* ---- Access: what files may reach ------------------------------------------------------------------ */
 

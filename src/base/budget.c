@@ -44,10 +44,6 @@ uint64_t camber_budget_held_bytes(const camber_budget *budget) {
     return atomic_load(&budget->held_bytes);
 }
 
-uint64_t camber_budget_most_bytes(const camber_budget *budget) {
-    return atomic_load(&budget->most_bytes);
-}
-
 /* ---- What the process can still have ---- */
 
 /* The first number in a file, or behind a word in it. */
@@ -116,14 +112,19 @@ static void look_up(camber_budget *budget, uint64_t held_bytes) {
     atomic_compare_exchange_strong(&budget->most_bytes, &unknown, held_bytes + free_bytes / 4 * 3);
 }
 
+uint64_t camber_budget_most_bytes(camber_budget *budget) {
+    if (atomic_load(&budget->most_bytes) == UINT64_MAX)
+        look_up(budget, camber_budget_held_bytes(budget));
+    return atomic_load(&budget->most_bytes);
+}
+
 /* ---- Memory ---- */
 
 bool camber_budget_take(camber_context *context, uint64_t size_bytes) {
     camber_budget *budget = context->budget;
     const uint64_t held = atomic_fetch_add(&budget->held_bytes, size_bytes);
-    if (held + size_bytes > UNASKED_BYTES && atomic_load(&budget->most_bytes) == UINT64_MAX)
-        look_up(budget, held);
-    const uint64_t most = atomic_load(&budget->most_bytes);
+    const uint64_t most =
+        held + size_bytes > UNASKED_BYTES ? camber_budget_most_bytes(budget) : atomic_load(&budget->most_bytes);
     if (size_bytes <= most && held <= most - size_bytes)
         return true;
     atomic_fetch_sub(&budget->held_bytes, size_bytes);
@@ -131,7 +132,7 @@ bool camber_budget_take(camber_context *context, uint64_t size_bytes) {
 }
 
 camber_status camber_budget_fail(camber_context *context, uint64_t size_bytes) {
-    const camber_budget *budget = context->budget;
+    camber_budget *budget = context->budget;
     return camber_fail(context, CAMBER_ERROR_MEMORY,
                        "memory: %.1f MB are held, %.1f MB more are needed, and %.1f MB are allowed; give it less data, "
                        "or allow more memory",

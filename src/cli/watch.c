@@ -1,0 +1,115 @@
+#define _GNU_SOURCE /* pthread_getcpuclockid */
+
+#include "cli/watch.h"
+
+#include <stdio.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* OpenCL's compiler, GDAL and what they keep. */
+static const uint64_t LIBRARIES_BYTES = 512 << 20;
+/* Parsers make a gigabyte of GeoJSON in half a minute, without a word until they are done. */
+static const double READING_S = 6, READING_S_A_MB = 1;
+
+/* What both threads look at is theirs in turn by the guard's lock. */
+static void lock(camber_watch *watch) {
+    camber_guard_lock(watch->guard);
+}
+
+static void unlock(camber_watch *watch) {
+    camber_guard_unlock(watch->guard);
+}
+
+void camber_watch_start(camber_watch *watch, camber_guard *guard, camber_report *report, camber_budget *budget) {
+    camber_guard_lock(guard);
+    *watch = (camber_watch){.guard = guard, .report = report, .budget = budget};
+    camber_guard_unlock(guard);
+}
+
+void camber_watch_stop(camber_watch *watch) {
+    if (!watch->guard)
+        return;
+    lock(watch);
+    watch->budget = NULL;
+    unlock(watch);
+}
+
+static double clock_s(clockid_t clock) {
+    struct timespec now;
+    return clock_gettime(clock, &now) == 0 ? (double)now.tv_sec + (double)now.tv_nsec * 1e-9 : 0;
+}
+
+void camber_watch_begin(camber_watch *watch, const char *path) {
+    struct stat about;
+    clockid_t clock;
+    if (!watch->guard || pthread_getcpuclockid(pthread_self(), &clock) != 0)
+        return;
+    const double size_mb = stat(path, &about) == 0 ? (double)about.st_size / 1e6 : 0;
+    lock(watch);
+    watch->path = path;
+    watch->clock = clock;
+    watch->allowed_s = READING_S + READING_S_A_MB * size_mb;
+    watch->beat_s = clock_s(clock);
+    unlock(watch);
+}
+
+void camber_watch_beat(camber_watch *watch) {
+    if (!watch->guard)
+        return;
+    lock(watch);
+    if (watch->path)
+        watch->beat_s = clock_s(watch->clock);
+    unlock(watch);
+}
+
+void camber_watch_end(camber_watch *watch) {
+    if (!watch->guard)
+        return;
+    lock(watch);
+    watch->path = NULL;
+    unlock(watch);
+}
+
+/* ---- Looking ---- */
+
+static uint64_t resident_bytes(void) {
+    unsigned long long all, resident = 0;
+    FILE *file = fopen("/proc/self/statm", "re");
+    if (file && fscanf(file, "%llu %llu", &all, &resident) != 2)
+        resident = 0;
+    if (file)
+        fclose(file);
+    return resident * (uint64_t)sysconf(_SC_PAGESIZE);
+}
+
+static void look_at_memory(const camber_watch *watch) {
+    const uint64_t held = resident_bytes();
+    if (held <= LIBRARIES_BYTES)
+        return;
+    const uint64_t most = camber_budget_most_bytes(watch->budget);
+    if (held - LIBRARIES_BYTES <= most)
+        return;
+    camber_guard_end(watch->guard,
+                     camber_report_fail(watch->report, CAMBER_EXIT_INTERNAL,
+                                        "memory: %.1f MB are held with what libraries take, and %.1f MB are allowed "
+                                        "besides those; give it less data, or allow more (--memory)",
+                                        (double)held / 1e6, (double)most / 1e6));
+}
+
+static void look_at_reading(const camber_watch *watch) {
+    if (!watch->path || clock_s(watch->clock) - watch->beat_s <= watch->allowed_s)
+        return;
+    camber_guard_end(watch->guard,
+                     camber_report_fail(watch->report, CAMBER_EXIT_DATA,
+                                        "%s: its reader has worked for %.0f s and has no more of it; get the file from "
+                                        "a source that you trust, or convert it (ogr2ogr)",
+                                        watch->path, watch->allowed_s));
+}
+
+void camber_watch_look(void *watch) {
+    const camber_watch *self = watch;
+    if (!self->budget)
+        return;
+    look_at_memory(self);
+    look_at_reading(self);
+}

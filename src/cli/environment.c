@@ -3,10 +3,15 @@
 
 #include "cli/environment.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <sched.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
+
+/* PoCL 3.1 aborts where it compiles with fewer than 13. */
+enum { LEAST_DESCRIPTORS = 16 };
 
 /* The names of PoCL, of 4.0 and later and of before. */
 static const char *const POCL_THREADS[] = {"POCL_CPU_MAX_CU_COUNT", "POCL_MAX_PTHREAD_COUNT"};
@@ -41,8 +46,22 @@ static bool may_pin(void) {
 #endif
 }
 
+/* A relative folder counts as none, as the XDG rules say: PoCL and Mesa would make it wherever the tool is run. */
+static bool forget_relative(const char *name) {
+    const char *folder = getenv(name);
+    return !folder || folder[0] == '/' || unsetenv(name) == 0;
+}
+
+const char *camber_environment_temporary(void) {
+    const char *folder = getenv("TMPDIR");
+    return folder && *folder ? folder : "/tmp";
+}
+
 bool camber_environment_set(const camber_options *options) {
     bool set = !options->threads || set_threads(options->threads);
+    set = forget_relative("XDG_CACHE_HOME") && forget_relative("HOME") && set;
+    /* GDAL would fill the working folder. */
+    set = setenv("CPL_TMPDIR", camber_environment_temporary(), 0) == 0 && set;
     /* Mesa's own warnings about missing GPUs would stand among the errors. */
     set = setenv("EGL_LOG_LEVEL", "fatal", 0) == 0 && set;
     /* A core for each of PoCL's threads: left to themselves two of them often share one. */
@@ -53,4 +72,22 @@ bool camber_environment_set(const camber_options *options) {
     /* PoCL sets it while it looks for devices. A variable that is new then moves the environment, under a getenv of
      * GDAL's on another thread; one that is there stays where it is. */
     return setenv("HWLOC_PLUGINS_PATH", "/dev/null", 0) == 0 && set;
+}
+
+/* A driver that cannot open its files says that it is not here, if anything: so it is asked beforehand. */
+bool camber_environment_has_descriptors(void) {
+    int copies[LEAST_DESCRIPTORS], count = 0;
+    while (count < LEAST_DESCRIPTORS && (copies[count] = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0)) >= 0)
+        count++;
+    const bool enough = count == LEAST_DESCRIPTORS || errno != EMFILE;
+    while (count > 0)
+        close(copies[--count]);
+    return enough;
+}
+
+void camber_environment_fill_streams(void) {
+    const int streams[] = {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO};
+    for (int i = 0; i < 3; i++)
+        if (fcntl(streams[i], F_GETFD) < 0 && errno == EBADF)
+            (void)!open("/dev/null", streams[i] == STDIN_FILENO ? O_WRONLY : O_RDONLY);
 }

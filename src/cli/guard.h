@@ -1,35 +1,47 @@
-/* Files that a signal must not leave behind. */
+/* Files that no end of the process may leave behind. */
 #ifndef CAMBER_CLI_GUARD_H
 #define CAMBER_CLI_GUARD_H
 
 #include <pthread.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <stdbool.h>
 
 #define CAMBER_GUARD_FILES 8
 
-/* SIGINT and SIGTERM are blocked in every thread, and one thread waits for them: it removes the files and ends
- * the process with 130 or 143. So nothing has to be global, and a signal also ends a long call of a library. */
+/* Signals that come from outside to end the process (SIGHUP, SIGINT, SIGTERM and their like) are blocked in every
+ * thread, and one thread waits for them: it removes the files and ends the process with 128 + the signal's number. So
+ * a signal also ends a long call of a library. Faults within the process (SIGSEGV, a driver's abort and their like)
+ * meet a handler in the thread that they stop: it removes the files and lets the fault end the process. */
+typedef void camber_guard_handler(int number);
+
 typedef struct camber_guard {
     pthread_mutex_t mutex;
+    atomic_bool locked; /* the mutex, as a handler may look at it */
     sigset_t signals, ignored, before;
     pthread_t thread;
     bool stopping;
-    bool erase_bar;                  /* a progress bar may stand on standard error */
-    char *paths[CAMBER_GUARD_FILES]; /* NULL: free */
+    _Atomic(camber_guard_handler *) after_abort; /* of a library's, called after the guard's own. NULL: none */
+    bool erase_bar;                              /* a progress bar may stand on standard error */
+    _Atomic(char *) paths[CAMBER_GUARD_FILES];   /* NULL: free */
 } camber_guard;
 
-/* Before other threads start. false where no thread can be made, and then signals end the process as they do by
- * default. */
+/* Before other threads start; one guard at a time. false where no thread can be made, and then signals end the
+ * process as they do by default. */
 bool camber_guard_start(camber_guard *guard, bool erase_bar);
 /* After a start that returned true. */
 void camber_guard_stop(camber_guard *guard);
 
-/* Between these two, no signal ends the process. */
+/* Puts the guard's handler of aborts before one that a driver has installed: called now and then anyway, and where a
+ * driver is known to be open. From any thread. */
+void camber_guard_go_first(camber_guard *guard);
+
+/* Between these two, no signal from outside ends the process. */
 void camber_guard_lock(camber_guard *guard);
 void camber_guard_unlock(camber_guard *guard);
 
-/* With the guard locked. add keeps the pointer; false where CAMBER_GUARD_FILES are there already. */
+/* With the guard locked. add keeps the pointer, to be freed once remove has been called and the guard is unlocked;
+ * false where CAMBER_GUARD_FILES are there already. */
 bool camber_guard_add(camber_guard *guard, char *path);
 void camber_guard_remove(camber_guard *guard, const char *path);
 

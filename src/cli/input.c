@@ -15,7 +15,7 @@ int camber_input_read_all(camber_report *report, const char *path, char **bytes,
     FILE *file = standard ? stdin : fopen(path, "rb");
     if (!file)
         return camber_report_fail(report, errno == ENOENT || errno == ENOTDIR ? CAMBER_EXIT_NO_INPUT : CAMBER_EXIT_IO,
-                                  "%s: %s; check the name", path, strerror(errno));
+                                  "%s: %s; %s", path, strerror(errno), camber_report_cure(errno, "check the name"));
     char *block = NULL;
     size_t size = 0, capacity = 0, read = 0;
     bool held = true;
@@ -40,6 +40,8 @@ int camber_input_read_all(camber_report *report, const char *path, char **bytes,
     if (!held)
         return camber_report_fail(report, CAMBER_EXIT_INTERNAL, "%s: too large for the memory; give it a smaller file",
                                   path);
+    if (standard)
+        return camber_report_input(report, cause);
     if (cause == EISDIR)
         return camber_report_fail(report, CAMBER_EXIT_DATA, "%s: is a folder; name a file", path);
     return camber_report_fail(report, CAMBER_EXIT_IO, "%s: %s; copy it elsewhere and try again", path, strerror(cause));
@@ -189,18 +191,18 @@ static int read_sources(camber_input *input) {
 
 static int read_file(camber_input *input, const char *path) {
     camber_session *session = input->session;
-    char *copy = NULL;
+    camber_spool copy = {0};
     if (strcmp(path, "-") == 0) {
         const int status = camber_spool_input(session->report, session->guard, &copy);
         if (status != CAMBER_EXIT_DONE)
             return status;
     }
     const camber_source_desc desc = {
-        .path = copy ? copy : path, .layer = session->options->layer, .where = session->options->where};
-    session->report->spool = copy;
+        .path = copy.path ? copy.path : path, .layer = session->options->layer, .where = session->options->where};
+    session->report->spool = copy.path;
     const camber_status status = camber_features_read(input->features, &desc);
     session->report->spool = NULL;
-    camber_spool_remove(session->guard, copy);
+    camber_spool_remove(session->guard, &copy);
     return camber_report_status(session->report, status);
 }
 
@@ -366,6 +368,7 @@ bool camber_input_opaque(const camber_input *input) {
 
 camber_status camber_input_tessellate(const camber_input *input, camber_mesh *mesh) {
     camber_tessellation_desc desc = {.method = camber_session_method(input->session)};
+    camber_guard_go_first(input->session->guard);
 #ifdef CAMBER_MAP
     /* What is drawn is made on the device; what proves something, of the polylines that it is held against. */
     const camber_verb verb = input->session->options->verb;

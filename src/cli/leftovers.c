@@ -23,10 +23,17 @@ static const char *skip_number(const char *text) {
 
 static bool is_ours(const char *name) {
     static const char head[] = ".camber-";
+    static const char *const endings[] = {".tmp", ".in", ".in.gz", ".in.gpkg", ".in.mbtiles"};
     if (strncmp(name, head, sizeof head - 1) != 0)
         return false;
     name = skip_number(name + sizeof head - 1);
-    return *name == '-' && strcmp(skip_number(name + 1), ".tmp") == 0;
+    if (*name != '-' || name[1] < '0' || name[1] > '9')
+        return false;
+    name = skip_number(name + 1);
+    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
+        if (strcmp(name, endings[i]) == 0)
+            return true;
+    return false;
 }
 
 static void remove_one(int folder, const char *name) {

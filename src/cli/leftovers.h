@@ -9,7 +9,8 @@
 bool camber_leftovers_spare(int descriptor);
 
 /* Removes the leftovers in the folder of path: files of this user's that are named as camber's are, .camber-PID-N.tmp,
- * and that no run has marked. A process's number would not do: it is another's in another container. */
+ * or .in and the like where they are copies of standard input, and that no run has marked. A process's number would not
+ * do: it is another's in another container. */
 void camber_leftovers_remove(const char *path);
 
 #endif

@@ -1,5 +1,8 @@
 /* The tool `camber`. */
+#define _XOPEN_SOURCE 700 /* SIGXFSZ */
+
 #include "cli/environment.h"
+#include "cli/stack.h"
 #include "cli/verbs.h"
 
 #include <signal.h>
@@ -24,10 +27,13 @@ static int run(camber_session *session) {
     return CAMBER_EXIT_INTERNAL;
 }
 
-static int run_guarded(camber_session *session) {
+static int run_guarded(void *user) {
+    camber_session *session = user;
     camber_guard guard;
     if (!camber_environment_set(session->options))
         return camber_report_status(session->report, CAMBER_ERROR_MEMORY);
+    if (session->options->verb != CAMBER_VERB_STYLE && !camber_environment_has_descriptors())
+        return camber_report_fail(session->report, CAMBER_EXIT_IO, "too many open files; raise ulimit -n");
     const bool guarded = camber_guard_start(&guard, session->report->bars);
     session->guard = &guard;
     const int status = run(session);
@@ -43,10 +49,12 @@ int main(int argc, char **argv) {
     camber_options options;
     camber_report report;
     char message[4096];
+    camber_environment_fill_streams();
     int status = camber_options_parse(argc, argv, &options, message, sizeof message);
     camber_report_open(&report, &options);
-    /* A reader that has gone shows as a failed write, which is told of like any other. */
+    /* A reader that has gone and a file that may grow no further show as failed writes, told of like any other. */
     signal(SIGPIPE, SIG_IGN);
+    signal(SIGXFSZ, SIG_IGN);
     if (status != CAMBER_EXIT_DONE) {
         status = camber_report_fail(&report, status, "%s", message);
     } else if (options.help) {
@@ -57,7 +65,7 @@ int main(int argc, char **argv) {
         status = camber_report_flush(&report);
     } else {
         camber_session session = {.options = &options, .report = &report, .start_ms = start_ms};
-        status = run_guarded(&session);
+        status = camber_stack_run(run_guarded, &session);
     }
     camber_options_free(&options);
     return status;

@@ -62,8 +62,8 @@ static camber_status read_features(camber_networks *networks, const char *where,
     for (size_t i = 0; i < options->input_count && status == CAMBER_OK; i++) {
         const bool standard = strcmp(options->inputs[i], "-") == 0;
         const camber_source_desc desc = {
-            .path = standard ? networks->copy : options->inputs[i], .layer = options->layer, .where = where};
-        networks->session->report->spool = networks->copy;
+            .path = standard ? networks->copy.path : options->inputs[i], .layer = options->layer, .where = where};
+        networks->session->report->spool = networks->copy.path;
         status = camber_features_read(*features, &desc);
         networks->session->report->spool = NULL;
     }
@@ -193,7 +193,7 @@ void camber_networks_close(camber_networks *networks) {
         camber_features_destroy(networks->features[i]);
     free(networks->features);
     camber_style_destroy(networks->style);
-    camber_spool_remove(session->guard, networks->copy);
+    camber_spool_remove(session->guard, &networks->copy);
 #endif
     camber_polylines_destroy(networks->polylines);
     if (session->context)

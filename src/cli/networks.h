@@ -16,7 +16,7 @@ typedef struct camber_networks {
     camber_polylines *polylines;
 
     /* A map. */
-    char *copy; /* of standard input; NULL: not an input */
+    camber_spool copy; /* of standard input */
     camber_style *style;
     camber_features **features; /* count */
     camber_view_desc view;

@@ -251,7 +251,7 @@ void camber_options_help(camber_verb verb, FILE *file) {
     fputs("\nOptions of the verbs (`camber VERB --help` lists a verb's own):\n", file);
     print_options(TALKING, file);
     fputs("\nExit status: 0 done, 1 a check failed, 2 usage, 65 bad data, 66 no such input, 69 no device,\n"
-          "70 internal error, 73 OUT exists or cannot be created, 74 input or output error, 130 SIGINT, 143 SIGTERM.\n",
+          "70 internal error, 73 OUT exists or cannot be created, 74 input or output error, 128 + N signal N.\n",
           file);
 }
 

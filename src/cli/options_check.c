@@ -1,5 +1,6 @@
 #include "cli/input.h"
 #include "cli/options.h"
+#include "cli/options_files.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -180,5 +181,7 @@ int camber_options_check(camber_options *options, const char *verb, char *messag
         return usage(p, "--junit -: standard output is the report's; name a file");
     if (status == CAMBER_EXIT_DONE && options->dump && strcmp(options->dump, "-") == 0 && options->json)
         return usage(p, "--json and --dump -: both want standard output; give one of them");
+    if (status == CAMBER_EXIT_DONE && camber_options_clash(options, message, message_size))
+        return CAMBER_EXIT_USAGE;
     return status;
 }

@@ -2,6 +2,7 @@
 
 #include "cli/output.h"
 
+#include "cli/environment.h"
 #include "cli/leftovers.h"
 
 #include <errno.h>
@@ -9,7 +10,6 @@
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 /* Beside path, hidden, and short enough wherever path itself is. */
@@ -66,8 +66,9 @@ static int create_beside(camber_guard *guard, const char *path, const char *suff
     return -1;
 }
 
-static bool disk_refuses(int cause) {
-    return cause == ENOSPC || cause == EDQUOT || cause == EIO;
+/* No other name would help. */
+static bool system_refuses(int cause) {
+    return cause == ENOSPC || cause == EDQUOT || cause == EIO || cause == EMFILE || cause == ENFILE || cause == EFBIG;
 }
 
 static int cannot_create(camber_output *output, int cause) {
@@ -76,10 +77,9 @@ static int cannot_create(camber_output *output, int cause) {
         cure = "make its folder first";
     else if (cause == EACCES || cause == EPERM || cause == EROFS)
         cure = "name a folder that you may write to";
-    else if (disk_refuses(cause))
-        cure = "free some space or write elsewhere";
-    return camber_report_fail(output->report, disk_refuses(cause) ? CAMBER_EXIT_IO : CAMBER_EXIT_CREATE,
-                              "%s: cannot be created (%s); %s", output->path, strerror(cause), cure);
+    return camber_report_fail(output->report, system_refuses(cause) ? CAMBER_EXIT_IO : CAMBER_EXIT_CREATE,
+                              "%s: cannot be created (%s); %s", output->path, strerror(cause),
+                              camber_report_cure(cause, cure));
 }
 
 static int open_stream(camber_output *output, int descriptor) {
@@ -148,6 +148,13 @@ int camber_output_open(camber_output *output, camber_report *report, camber_guar
     return open_stream(output, descriptor);
 }
 
+bool camber_output_is(const camber_output *output, const struct stat *info) {
+    struct stat own;
+    const bool found =
+        output->target ? stat(output->target, &own) == 0 : output->file && fstat(fileno(output->file), &own) == 0;
+    return found && S_ISREG(own.st_mode) && own.st_dev == info->st_dev && own.st_ino == info->st_ino;
+}
+
 static bool write_bytes(void *user, const void *bytes, size_t size_bytes) {
     camber_output *output = user;
     output->size_bytes += size_bytes;
@@ -163,17 +170,14 @@ camber_sink camber_output_sink(camber_output *output) {
 int camber_output_status(camber_output *output, camber_status status) {
     if (output->error == 0)
         return camber_report_status(output->report, status);
-    const char *cure = disk_refuses(output->error) ? "free some space or write elsewhere"
-                       : output->error == EPIPE    ? "its reader has gone; keep it running"
-                                                   : "write elsewhere";
     return camber_report_fail(output->report, CAMBER_EXIT_IO, "%s: %s; %s", output->path, strerror(output->error),
-                              cure);
+                              camber_report_cure(output->error, "write elsewhere"));
 }
 
-static void remove_mark(camber_output *output) {
-    if (output->mark > 0)
-        close(output->mark);
-    output->mark = 0;
+static void close_mark(int *mark) {
+    if (*mark > 0)
+        close(*mark);
+    *mark = 0;
 }
 
 /* Gives the temporary file its name. Without force a file that has appeared meanwhile stays: link refuses it. */
@@ -184,7 +188,7 @@ static int give_name(camber_output *output) {
         unlink(output->temporary);
         return 0;
     }
-    if (errno == EEXIST || disk_refuses(errno))
+    if (errno == EEXIST || system_refuses(errno))
         return errno;
     /* A file system without hard links: the gap between the look and the rename is all that can be had. */
     if (access(output->target, F_OK) == 0)
@@ -219,7 +223,7 @@ int camber_output_publish(camber_output *output) {
         return cannot_create(output, cause);
     free(output->temporary);
     output->temporary = NULL;
-    remove_mark(output);
+    close_mark(&output->mark);
     return CAMBER_EXIT_DONE;
 }
 
@@ -228,7 +232,7 @@ void camber_output_discard(camber_output *output) {
         fclose(output->file);
     if (output->temporary)
         remove_temporary(output->guard, output->temporary);
-    remove_mark(output);
+    close_mark(&output->mark);
     free(output->target);
     *output = (camber_output){0};
 }
@@ -238,45 +242,58 @@ void camber_output_discard(camber_output *output) {
 /* Drivers of OGR that go by the extension: SQLite files are tiles, or a GeoPackage with its mark at 68. */
 static const char *suffix_of(const char *head, size_t size) {
     if (size >= 2 && memcmp(head, "\x1f\x8b", 2) == 0)
-        return ".gz";
+        return ".in.gz";
     if (size < 72 || memcmp(head, "SQLite format 3", 16) != 0)
-        return "";
-    return memcmp(head + 68, "GP", 2) == 0 ? ".gpkg" : ".mbtiles";
+        return ".in";
+    return memcmp(head + 68, "GP", 2) == 0 ? ".in.gpkg" : ".in.mbtiles";
 }
 
-int camber_spool_input(camber_report *report, camber_guard *guard, char **path) {
-    char block[65536];
-    size_t size = fread(block, 1, sizeof block, stdin);
-    const char *folder = getenv("TMPDIR");
-    char beside[PATH_MAX];
-    snprintf(beside, sizeof beside, "%s/", folder && *folder ? folder : "/tmp");
-    char *made = NULL;
-    const int descriptor = create_beside(guard, beside, suffix_of(block, size), 0600, &made);
+static int cannot_spool(camber_report *report, const char *folder, int cause) {
+    return camber_report_fail(report, CAMBER_EXIT_IO, "standard input: no copy in %s (%s); %s", folder, strerror(cause),
+                              cause == ENOSPC || cause == EDQUOT
+                                  ? "set TMPDIR to a larger folder"
+                                  : camber_report_cure(cause, "set TMPDIR to a folder that you may write to"));
+}
+
+/* Copies what is left of standard input behind the block of its beginning. Errnos, 0: nothing has failed. */
+static void copy_input(FILE *file, char *block, size_t size, size_t capacity, int *unread, int *unwritten) {
+    *unread = *unwritten = 0;
+    while (size > 0 && !*unwritten) {
+        if (fwrite(block, 1, size, file) != size)
+            *unwritten = errno;
+        size = fread(block, 1, capacity, stdin);
+        if (size < capacity && ferror(stdin))
+            *unread = errno;
+    }
+    if (fclose(file) != 0 && !*unwritten)
+        *unwritten = errno;
+}
+
+int camber_spool_input(camber_report *report, camber_guard *guard, camber_spool *spool) {
+    char block[8192], beside[PATH_MAX];
+    *spool = (camber_spool){0};
+    const size_t size = fread(block, 1, sizeof block, stdin);
+    if (ferror(stdin))
+        return camber_report_input(report, errno);
+    snprintf(beside, sizeof beside, "%s/", camber_environment_temporary());
+    camber_leftovers_remove(beside);
+    const int descriptor = create_beside(guard, beside, suffix_of(block, size), 0600, &spool->path);
     FILE *file = descriptor < 0 ? NULL : fdopen(descriptor, "wb");
-    if (!file) {
-        const int cause = errno;
-        if (made) {
-            close(descriptor);
-            remove_temporary(guard, made);
-        }
-        return camber_report_fail(report, CAMBER_EXIT_IO, "standard input: no copy in %s (%s); set TMPDIR", beside,
-                                  strerror(cause));
-    }
-    bool written = true;
-    for (; size > 0 && written; size = fread(block, 1, sizeof block, stdin))
-        written = fwrite(block, 1, size, file) == size;
-    const bool closed = fclose(file) == 0;
-    if (written && closed && !ferror(stdin)) {
-        *path = made;
+    int unread = 0, unwritten = file ? 0 : errno;
+    spool->mark = file ? fcntl(descriptor, F_DUPFD_CLOEXEC, STDERR_FILENO + 1) : 0;
+    if (file)
+        copy_input(file, block, size, sizeof block, &unread, &unwritten);
+    else if (spool->path)
+        close(descriptor);
+    if (!unread && !unwritten)
         return CAMBER_EXIT_DONE;
-    }
-    const int cause = errno;
-    remove_temporary(guard, made);
-    return camber_report_fail(report, CAMBER_EXIT_IO, "standard input: copy to %s: %s; set TMPDIR to a larger folder",
-                              beside, strerror(cause));
+    camber_spool_remove(guard, spool);
+    return unwritten ? cannot_spool(report, beside, unwritten) : camber_report_input(report, unread);
 }
 
-void camber_spool_remove(camber_guard *guard, char *path) {
-    if (path)
-        remove_temporary(guard, path);
+void camber_spool_remove(camber_guard *guard, camber_spool *spool) {
+    if (spool->path)
+        remove_temporary(guard, spool->path);
+    close_mark(&spool->mark);
+    spool->path = NULL;
 }

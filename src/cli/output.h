@@ -5,6 +5,8 @@
 #include "cli/guard.h"
 #include "cli/report.h"
 
+#include <sys/stat.h>
+
 typedef struct camber_output {
     const char *path; /* as the user gave it */
     camber_report *report;
@@ -22,6 +24,8 @@ typedef struct camber_output {
  * are written beside and appear with camber_output_publish. Returns an exit status, its line printed; the output
  * can be discarded in any case. */
 int camber_output_open(camber_output *output, camber_report *report, camber_guard *guard, const char *path, bool force);
+/* Whether info is of the file that this one is written to or will replace, which must not be read as well. */
+bool camber_output_is(const camber_output *output, const struct stat *info);
 camber_sink camber_output_sink(camber_output *output);
 /* The story of a failed call that wrote here: the file's, if writing is what failed, else status's. */
 int camber_output_status(camber_output *output, camber_status status);
@@ -29,9 +33,15 @@ int camber_output_publish(camber_output *output);
 /* Removes what was written, unless published; also frees the output. */
 void camber_output_discard(camber_output *output);
 
-/* Copies standard input into a file that camber_spool_remove removes, as OGR wants to seek in what it reads. *path
- * is freed by that too. */
-int camber_spool_input(camber_report *report, camber_guard *guard, char **path);
-void camber_spool_remove(camber_guard *guard, char *path);
+/* A copy of standard input, as OGR wants to seek in what it reads. */
+typedef struct camber_spool {
+    char *path; /* NULL: there is none */
+    int mark;   /* a descriptor of it that stays open as long as it is there; 0: none */
+} camber_spool;
+
+/* Makes it, to be removed by the other. Returns an exit status, its line printed; there is no copy where it is not 0.
+ */
+int camber_spool_input(camber_report *report, camber_guard *guard, camber_spool *spool);
+void camber_spool_remove(camber_guard *guard, camber_spool *spool);
 
 #endif

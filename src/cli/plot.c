@@ -31,10 +31,11 @@ static int spawn(char *const *arguments, int output, child *made) {
     int input[2] = {-1, -1}, errors[2] = {-1, -1};
     posix_spawn_file_actions_t files;
     posix_spawnattr_t attributes;
-    sigset_t none, pipe_signal;
+    sigset_t none, ignored;
     sigemptyset(&none);
-    sigemptyset(&pipe_signal);
-    sigaddset(&pipe_signal, SIGPIPE);
+    sigemptyset(&ignored);
+    sigaddset(&ignored, SIGPIPE);
+    sigaddset(&ignored, SIGXFSZ);
     posix_spawn_file_actions_init(&files);
     posix_spawnattr_init(&attributes);
     int cause = open_pipe(input) && open_pipe(errors) ? 0 : errno;
@@ -43,7 +44,7 @@ static int spawn(char *const *arguments, int output, child *made) {
         posix_spawn_file_actions_adddup2(&files, output, STDOUT_FILENO);
         posix_spawn_file_actions_adddup2(&files, errors[1], STDERR_FILENO);
         posix_spawnattr_setsigmask(&attributes, &none);
-        posix_spawnattr_setsigdefault(&attributes, &pipe_signal);
+        posix_spawnattr_setsigdefault(&attributes, &ignored);
         posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
         cause = posix_spawnp(&made->process, arguments[0], &files, &attributes, arguments, environ);
     }
@@ -103,8 +104,8 @@ int camber_plot_check(camber_report *report) {
     if (nowhere >= 0)
         close(nowhere);
     if (cause)
-        return camber_report_fail(report, CAMBER_EXIT_UNAVAILABLE,
-                                  "gnuplot: %s, and --plot draws with it; apt install gnuplot-nox", strerror(cause));
+        return camber_report_fail(report, CAMBER_EXIT_UNAVAILABLE, "gnuplot: %s, and --plot draws with it; %s",
+                                  strerror(cause), camber_report_cure(cause, "apt install gnuplot-nox"));
     if (status != 0)
         return camber_report_fail(report, CAMBER_EXIT_UNAVAILABLE,
                                   "gnuplot: does not run (%s), and --plot draws with it; apt install gnuplot-nox",

@@ -99,6 +99,44 @@ int camber_report_fail(camber_report *report, int exit_status, const char *forma
     return exit_status;
 }
 
+const char *camber_report_cure(int cause, const char *otherwise) {
+    switch (cause) {
+    case EMFILE: return "raise ulimit -n";
+    case ENFILE: return "end other programs, or raise the system's limit (fs.file-max)";
+    case EFBIG: return "raise the limit of a file's size (ulimit -f), or make it smaller";
+    case ENOSPC:
+    case EDQUOT:
+    case EIO: return "free some space or write elsewhere";
+    case EPIPE: return "its reader has gone; keep it running";
+    default: return otherwise;
+    }
+}
+
+int camber_report_input(camber_report *report, int cause) {
+    if (cause == EBADF)
+        return camber_report_fail(report, CAMBER_EXIT_IO, "standard input: is closed; give it a file or a pipe");
+    if (cause == EISDIR)
+        return camber_report_fail(report, CAMBER_EXIT_DATA, "standard input: is a folder; give it a file or a pipe");
+    return camber_report_fail(report, CAMBER_EXIT_IO, "standard input: %s; copy it to a file and name that",
+                              strerror(cause));
+}
+
+/* Drivers that cannot have memory or write their files do not say so: they are not there, or do not compile. */
+static void add_limits(char *text, size_t size) {
+    static const struct {
+        rlim_t small;
+        int resource;
+        char option;
+    } limits[] = {{4ull << 30, RLIMIT_AS, 'v'}, {16 << 20, RLIMIT_FSIZE, 'f'}};
+    for (size_t i = 0; i < sizeof limits / sizeof *limits; i++) {
+        struct rlimit limit;
+        const size_t used = strlen(text);
+        if (getrlimit(limits[i].resource, &limit) == 0 && limit.rlim_cur < limits[i].small)
+            snprintf(text + used, size - used, "; or raise ulimit -%c: drivers may need more than its %llu KB",
+                     limits[i].option, (unsigned long long)limit.rlim_cur >> 10);
+    }
+}
+
 int camber_report_status(camber_report *report, camber_status status) {
     int exit_status = CAMBER_EXIT_INTERNAL;
     switch (status) {
@@ -111,6 +149,8 @@ int camber_report_status(camber_report *report, camber_status status) {
     case CAMBER_ERROR_IO: exit_status = CAMBER_EXIT_IO; break;
     case CAMBER_ERROR_MEMORY: break;
     }
+    if (status == CAMBER_ERROR_DEVICE)
+        add_limits(report->error, sizeof report->error);
     return camber_report_fail(report, exit_status, "%s", report->error[0] ? report->error : camber_status_name(status));
 }
 
@@ -176,8 +216,9 @@ int camber_report_json(camber_report *report, json_t *object) {
 int camber_report_flush(camber_report *report) {
     if (fflush(stdout) == 0 && !ferror(stdout))
         return CAMBER_EXIT_DONE;
-    return camber_report_fail(report, CAMBER_EXIT_IO, "standard output: %s; write to a file or a pipe that takes it",
-                              strerror(errno));
+    const int cause = errno;
+    return camber_report_fail(report, CAMBER_EXIT_IO, "standard output: %s; %s", strerror(cause),
+                              camber_report_cure(cause, "write to a file or a pipe that takes it"));
 }
 
 double camber_clock_ms(void) {

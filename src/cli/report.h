@@ -36,6 +36,10 @@ void camber_report_erase_bar(camber_report *report);
 int camber_report_fail(camber_report *report, int exit_status, const char *format, ...) CAMBER_PRINTF(3, 4);
 /* Tells the story of a status; returns its exit status, 0 for CAMBER_OK. */
 int camber_report_status(camber_report *report, camber_status status);
+/* Standard input cannot be read, for the reason that errno gave. Returns the exit status, its line printed. */
+int camber_report_input(camber_report *report, int cause);
+/* What helps against an errno of the system's own limits; otherwise: against any other. */
+const char *camber_report_cure(int cause, const char *otherwise);
 void camber_report_warn(camber_report *report, const char *format, ...) CAMBER_PRINTF(2, 3);
 
 /* A line of people's text on standard error, unless quiet. */

@@ -1,8 +1,10 @@
 #!/bin/bash
-# The tool's contract: exit statuses, one line an error, nothing left behind. test_cli.sh TOOL
+# The tool's contract: exit statuses, one line an error, nothing left behind. test_cli.sh TOOL [FAULT]
+# FAULT: the library fault_cl, which lets the tool's drivers fail.
 # Prints what failed and exits 1 if anything did.
 set -u
 tool=$1
+faulty=${2:-}
 here=$(cd "$(dirname "$0")/.." && pwd)
 osm=$here/data/santa_cruz/osm.mbtiles
 tiger=$here/data/santa_cruz/tiger.mbtiles
@@ -931,6 +933,134 @@ status=${PIPESTATUS[0]}
 [ "$status" = 74 ] || fail "exit status $status, not 74"
 [ "$(wc -l <"$tmp/stderr")" = 1 ] || fail "$(wc -l <"$tmp/stderr") lines"
 
+# A file that is read is not written, by whatever name.
+cp "$tmp/in/line.geojson" both.geojson
+cp "$tmp/in/own.json" both.json
+cp "$tmp/in/lines.bin" both.bin
+gzip -c both.geojson >both.geojson.gz
+ln -s both.geojson link.png
+ln both.geojson hard.png
+ln -s "$tmp/out" "$tmp/in/out"
+intact() { # WHAT ARGUMENT...: status 2 with and without -f
+    local what=$1 force
+    shift
+    for force in -q -f; do
+        expect 2 "$what is both, $force" "$@" $force
+        says ': is both .* and .*; name another '
+    done
+    cmp -s both.geojson "$tmp/in/line.geojson" || fail "the input has changed"
+}
+intact INPUT render both.geojson -o both.geojson --format png
+intact "INPUT by a link" render both.geojson -o link.png
+intact "INPUT by a hard link" render both.geojson -o hard.png
+intact "INPUT by another folder" tessellate "$tmp/in/out/both.geojson" -o both.geojson --format glb
+intact "the second INPUT" render "$tiger" link.png -o both.geojson --format png
+intact "an archive's file" render "/vsigzip/$PWD/both.geojson.gz" -o both.geojson.gz --format png
+intact "a style" render "$tiger" --style both.json -o both.json --format png
+intact "polylines" bench --polylines both.bin -o both.bin --format png
+intact "polylines and their dump" bench --polylines both.bin --dump both.bin
+intact "polylines and JUnit" validate --polylines both.bin --junit both.bin
+intact "one file for two outputs" bench --polylines "$tmp/in/lines.bin" -o two.png --dump ./two.png
+cp both.geojson check-0001.png
+intact "an INPUT among pictures" validate check-0001.png --pictures .
+rm check-0001.png
+for part in shx dbf prj DBF; do
+    cp both.geojson roads.shp
+    cp both.geojson roads.$part
+    intact "a part of a Shapefile, $part," render roads.shp -o roads.$part --format png
+    rm roads.$part
+done
+expect 0 "a picture beside INPUT" render roads.shp -qo roads.png --size 64x64
+rm roads.shp roads.png
+name="standard input is OUT"
+run sh -c "'$tool' render - -fo link.png <both.geojson"
+verify 2
+name="standard output is INPUT"
+run sh -c "'$tool' render both.geojson -o - 1<>both.geojson"
+verify 2
+cmp -s both.geojson "$tmp/in/line.geojson" || fail "the input has changed"
+rm -f both.* link.png hard.png "$tmp/in/out"
+
+# ---- The system's limits ----
+
+limited() { # LIMIT ARGUMENT...: under ulimit LIMIT, without descriptors of whoever runs this test
+    run bash -c 'exec 3>&- 4>&- 5>&- 6>&- 7>&- 8>&- 9>&-; ulimit -c 0 && ulimit '"$1"' && exec "$@"' - "$tool" "${@:2}"
+}
+for size in 64 100 200 1024; do
+    for verb in info "render $osm -fo small.png --size 64x64"; do
+        name="a stack of $size KB: $verb"
+        # shellcheck disable=SC2086
+        limited "-s $size" $verb
+        verify 0
+    done
+done
+rm -f small.png
+for count in 4 5 6 7 12; do
+    for verb in info "render $osm -o a.png" "bench $osm"; do
+        name="$count descriptors: $verb"
+        # shellcheck disable=SC2086
+        limited "-n $count" $verb
+        verify 74
+        says 'too many open files; raise ulimit -n$'
+    done
+done
+name="7 descriptors without a driver"
+limited "-n 7" style check roads
+verify 0
+for verb in "render $osm -o a.png" "render $osm -o - --size 900x900" "tessellate $osm -o a.glb"; do
+    name="files of 10 KB: $verb"
+    # shellcheck disable=SC2086
+    limited "-f 10" $verb
+    verify 74
+    says ': File too large; raise the limit of a file.s size (ulimit -f)'
+done
+name="a copy of 10 KB"
+run bash -c "ulimit -f 10; '$tool' render - -o a.png <'$osm'"
+verify 74
+says '^camber: standard input: no copy in .*File too large.*ulimit -f'
+name="100 MB of memory"
+limited "-v 100000" render "$osm" -o a.png
+verify 69
+says 'raise ulimit -v: '
+for verb in "render - -o a.png" "tessellate - -o a.glb" "compare -" "bench --polylines -" "style check -" "style eval -" \
+    "render $tiger --style - -o a.png"; do
+    name="standard input is closed: $verb"
+    run sh -c "'$tool' $verb <&-"
+    verify 74
+    says '^camber: standard input: is closed; '
+    name="standard input is a folder: $verb"
+    run sh -c "'$tool' $verb <'$tmp'"
+    verify 65
+    says '^camber: standard input: is a folder; '
+done
+name="standard output is closed"
+run sh -c "'$tool' render '$tiger' -o closed.png --size 64x64 --json >&-"
+[ "$status" = 74 ] || fail "exit status $status, not 74"
+is_png closed.png 64 64
+rm closed.png
+
+# Drivers keep their files out of the folder that the tool is run in.
+mkdir "$tmp/bare"
+for folders in "XDG_CACHE_HOME=rel HOME=$tmp/home" "XDG_CACHE_HOME= HOME=rel" "-u XDG_CACHE_HOME -u HOME"; do
+    for draw in cl gl; do
+        # shellcheck disable=SC2086
+        run env -C "$tmp/bare" -u POCL_CACHE_DIR $folders "$tool" render "$tmp/in/line.geojson" -qo - --size 64x64 --draw $draw
+        name="a cache of $folders, $draw"
+        verify 0
+        [ -z "$(ls -A "$tmp/bare")" ] || fail "left in the working folder: $(ls -A "$tmp/bare")"
+        rm -rf "$tmp/bare" && mkdir "$tmp/bare"
+    done
+done
+# GDAL's nodes, more than it holds in memory: in a folder where nothing can be made it would have nowhere to put them.
+awk 'BEGIN { print "<osm version=\"0.6\">"
+    for (i = 1; i <= 8000; i++) printf "<node id=\"%d\" lat=\"%.4f\" lon=\"1\"/>\n", i * 1000, 1 + i / 10000
+    print "<way id=\"1\"><nd ref=\"1000\"/><nd ref=\"2000\"/><tag k=\"highway\" v=\"primary\"/></way></osm>" }' >"$tmp/in/nodes.osm"
+run env -C /proc -u TMPDIR OSM_MAX_TMPFILE_SIZE=1 "$tool" render "$tmp/in/nodes.osm" -o "$tmp/out/nodes.png" --size 64x64
+name="no TMPDIR"
+verify 0
+says '^1 feature, '
+rm -f nodes.png
+
 # ---- Devices ----
 
 expect 69 "an unknown device" render "$osm" -o a.png --device 'no such device'
@@ -945,10 +1075,11 @@ done
 
 # Job control: without it a shell starts background jobs with SIGINT ignored.
 set -m
+ulimit -c 0
 mkfifo "$tmp/in/fifo"
-for signal in INT:130 TERM:143; do
-    name="SIG${signal%:*} while it reads"
-    "$tool" render - -o a.png <"$tmp/in/fifo" 2>"$tmp/stderr" &
+# Starts the tool on standard input that does not end: OUT and the copy have been begun. job is its number.
+begin() { # COMMAND...
+    "$@" "$tool" render - -o a.png <"$tmp/in/fifo" 2>"$tmp/stderr" &
     job=$!
     exec 3>"$tmp/in/fifo"
     head -c 200000 "$osm" >&3
@@ -957,13 +1088,73 @@ for signal in INT:130 TERM:143; do
         sleep 0.1
     done
     [ -n "$(ls -A "$tmp/out")" ] || fail "no output was begun"
-    kill -"${signal%:*}" $job
-    wait $job
+}
+ended() { # STATUS
+    wait $job 2>/dev/null
     status=$?
     exec 3>&-
-    [ "$status" = "${signal#*:}" ] || fail "exit status $status, not ${signal#*:}"
+    checks=$((checks + 1))
+    [ "$status" = "$1" ] || fail "exit status $status, not $1"
     [ -z "$(ls -A "$tmp/out")$(ls -A "$TMPDIR")" ] || fail "left behind: $(ls -A "$tmp/out" "$TMPDIR")"
+    rm -rf -- .camber-* "$TMPDIR"/.camber-*
+}
+for signal in HUP INT QUIT USR1 USR2 ALRM TERM VTALRM PROF XCPU PWR; do
+    name="SIG$signal while it reads"
+    begin env
+    kill -$signal $job
+    ended $((128 + $(kill -l $signal)))
 done
+# LLVM's own handler, where it has just been installed, drops one that does not come from abort().
+name="SIGABRT while it reads"
+begin env
+for _ in $(seq 10); do
+    kill -ABRT $job 2>/dev/null || break
+    sleep 0.2
+done
+ended 134
+name="SIGHUP under nohup"
+begin nohup
+kill -HUP $job
+sleep 0.2
+kill -0 $job 2>/dev/null || fail "has ended"
+kill -TERM $job
+ended 143
+for delay in 0 0.02 0.05 0.1 0.2; do
+    name="SIGHUP after $delay s"
+    "$tool" render - -o a.png <"$tmp/in/fifo" 2>"$tmp/stderr" &
+    job=$!
+    exec 3>"$tmp/in/fifo"
+    sleep $delay
+    kill -HUP $job
+    ended 129
+done
+name="a limit of CPU time"
+run bash -c "ulimit -S -t 1; exec '$tool' render '$osm' -o a.png --size 20000x20000 --threads 1"
+[ "$status" = 152 ] || fail "exit status $status, not 152"
+[ -z "$(ls -A)" ] || fail "left behind: $(ls -A)"
+name="a killed run's copy"
+begin env
+kill -KILL $job
+wait $job 2>/dev/null
+exec 3>&-
+rm -f -- .camber-*
+[ -n "$(ls -A "$TMPDIR")" ] || fail "it has none"
+begin env
+[ "$(ls -A "$TMPDIR" | wc -l)" = 1 ] || fail "the next run leaves it: $(ls -A "$TMPDIR")"
+# A run beside leaves a copy that is in use.
+"$tool" render - -o /dev/null --format png -fq --size 64x64 <"$osm" || fail "exit status $? beside"
+[ "$(ls -A "$TMPDIR" | wc -l)" = 1 ] || fail "another run takes it: $(ls -A "$TMPDIR")"
+kill -TERM $job
+ended 143
+if [ -n "$faulty" ]; then
+    for fault in abort:134 segv:139; do
+        name="a driver's ${fault%:*}"
+        run env LD_PRELOAD="$faulty${LD_PRELOAD:+:$LD_PRELOAD}" CAMBER_FAULT="${fault%:*}" "$tool" render "$osm" -o a.png --size 64x64
+        [ "$status" = "${fault#*:}" ] || fail "exit status $status, not ${fault#*:}"
+        [ -z "$(ls -A)" ] || fail "left behind: $(ls -A)"
+        rm -rf -- .camber-*
+    done
+fi
 name="SIGINT in the middle"
 for delay in 0.02 0.05 0.1 0.15 0.2 0.3 0.5; do
     "$tool" render "$osm" -o a.png --size 4000x4000 2>"$tmp/stderr" &

@@ -105,14 +105,16 @@ static void *wait_for_signal(void *user) {
     for (bool stopping = false; !stopping;) {
         const int number = sigtimedwait(&guard->signals, NULL, &pause);
         camber_guard_go_first(guard);
-        if (number < 0)
-            continue;
         camber_guard_lock(guard);
-        stopping = guard->stopping && number == SIGTERM;
-        if (!stopping && !sigismember(&guard->ignored, number)) {
-            remove_files(guard);
-            _exit(128 + number);
+        if (guard->look)
+            guard->look(guard->look_user);
+        if (number < 0) {
+            camber_guard_unlock(guard);
+            continue;
         }
+        stopping = guard->stopping && number == SIGTERM;
+        if (!stopping && !sigismember(&guard->ignored, number))
+            camber_guard_end(guard, 128 + number);
         camber_guard_unlock(guard);
     }
     return NULL;
@@ -171,6 +173,11 @@ void camber_guard_lock(camber_guard *guard) {
 void camber_guard_unlock(camber_guard *guard) {
     atomic_store(&guard->locked, false);
     pthread_mutex_unlock(&guard->mutex);
+}
+
+void camber_guard_end(camber_guard *guard, int exit_status) {
+    remove_files(guard);
+    _exit(exit_status);
 }
 
 bool camber_guard_add(camber_guard *guard, char *path) {

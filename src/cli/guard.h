@@ -21,6 +21,8 @@ typedef struct camber_guard {
     sigset_t signals, ignored, before;
     pthread_t thread;
     bool stopping;
+    void (*look)(void *user); /* called by the thread now and then, with the guard locked. NULL: nothing */
+    void *look_user;
     _Atomic(camber_guard_handler *) after_abort; /* of a library's, called after the guard's own. NULL: none */
     bool erase_bar;                              /* a progress bar may stand on standard error */
     _Atomic(char *) paths[CAMBER_GUARD_FILES];   /* NULL: free */
@@ -40,6 +42,8 @@ void camber_guard_go_first(camber_guard *guard);
 void camber_guard_lock(camber_guard *guard);
 void camber_guard_unlock(camber_guard *guard);
 
+/* With the guard locked: removes the files and ends the process. */
+void camber_guard_end(camber_guard *guard, int exit_status);
 /* With the guard locked. add keeps the pointer, to be freed once remove has been called and the guard is unlocked;
  * false where CAMBER_GUARD_FILES are there already. */
 bool camber_guard_add(camber_guard *guard, char *path);

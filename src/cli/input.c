@@ -1,18 +1,38 @@
 #include "cli/input.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #define WIDTH_PX 2.0 /* of --polylines without --width-px */
 
 /* ---- Polylines in pixels ---- */
 
+/* Opening a pipe without a writer does not wait, and a device has no end. NULL with errno, 0 where it is no file. */
+static FILE *open_regular(const char *path) {
+    struct stat about;
+    const int opened = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+    if (opened < 0)
+        return NULL;
+    if (fstat(opened, &about) == 0 && (S_ISREG(about.st_mode) || S_ISDIR(about.st_mode)))
+        return fdopen(opened, "rb");
+    close(opened);
+    errno = 0;
+    return NULL;
+}
+
 int camber_input_read_all(camber_report *report, const char *path, char **bytes, size_t *size_bytes) {
     const bool standard = strcmp(path, "-") == 0;
-    FILE *file = standard ? stdin : fopen(path, "rb");
+    FILE *file = standard ? stdin : open_regular(path);
+    if (!file && errno == 0)
+        return camber_report_fail(report, CAMBER_EXIT_DATA,
+                                  "%s: is a device or a pipe; copy what it gives to a file, or name - for standard "
+                                  "input",
+                                  path);
     if (!file)
         return camber_report_fail(report, errno == ENOENT || errno == ENOTDIR ? CAMBER_EXIT_NO_INPUT : CAMBER_EXIT_IO,
                                   "%s: %s; %s", path, strerror(errno), camber_report_cure(errno, "check the name"));
@@ -200,7 +220,9 @@ static int read_file(camber_input *input, const char *path) {
     const camber_source_desc desc = {
         .path = copy.path ? copy.path : path, .layer = session->options->layer, .where = session->options->where};
     session->report->spool = copy.path;
+    camber_watch_begin(&session->watch, desc.path);
     const camber_status status = camber_features_read(input->features, &desc);
+    camber_watch_end(&session->watch);
     session->report->spool = NULL;
     camber_spool_remove(session->guard, &copy);
     return camber_report_status(session->report, status);

@@ -20,18 +20,27 @@ static camber_access access_of(const camber_options *options) {
                            .output = is_file ? options->output : NULL};
 }
 
+static void show_progress(void *user, const char *stage, double fraction) {
+    camber_session *session = user;
+    camber_watch_beat(&session->watch);
+    camber_report_progress(session->report, stage, fraction);
+}
+
 static camber_status prepare(camber_session *session) {
     const camber_options *options = session->options;
     const uint64_t asked = options->memory_bytes;
     const camber_budget_desc budget = {.memory_bytes =
                                            asked && asked < LEAST_BUDGET_BYTES ? LEAST_BUDGET_BYTES : asked};
-    camber_status status = session->budget ? CAMBER_OK : camber_budget_create(&budget, &session->budget);
-    if (status != CAMBER_OK || session->context)
+    if (session->context)
+        return CAMBER_OK;
+    const camber_status status = camber_budget_create(&budget, &session->budget);
+    if (status != CAMBER_OK)
         return status;
+    camber_watch_start(&session->watch, session->guard, session->report, session->budget);
     const camber_context_desc desc = {.log = camber_report_log,
                                       .log_user = session->report,
-                                      .progress = camber_report_progress,
-                                      .progress_user = session->report,
+                                      .progress = show_progress,
+                                      .progress_user = session,
                                       .budget = session->budget,
                                       .access = access_of(options)};
     return camber_context_create(&desc, &session->context);
@@ -255,6 +264,7 @@ void camber_session_close(camber_session *session) {
     camber_context_destroy(session->context);
     if (session->opener)
         camber_context_destroy(session->opener->context);
+    camber_watch_stop(&session->watch);
     camber_budget_destroy(session->budget);
     free(session->opener);
     session->renderer = NULL;

@@ -3,6 +3,7 @@
 #define CAMBER_CLI_SESSION_H
 
 #include "cli/output.h"
+#include "cli/watch.h"
 
 typedef enum camber_needs {
     CAMBER_NEEDS_CONTEXT,
@@ -26,6 +27,7 @@ typedef struct camber_session {
     camber_report *report;
     camber_guard *guard;
     camber_budget *budget;
+    camber_watch watch;
     camber_context *context;
     camber_surface *surface;
     camber_device *device;

@@ -9,7 +9,7 @@
 /* OpenCL's compiler, GDAL and what they keep. */
 static const uint64_t LIBRARIES_BYTES = 512 << 20;
 /* Parsers make a gigabyte of GeoJSON in half a minute, without a word until they are done. */
-static const double READING_S = 6, READING_S_A_MB = 1;
+static const double READING_S = 6, READING_S_A_MB = 1, READING_S_UNKNOWN = 60;
 
 /* What both threads look at is theirs in turn by the guard's lock. */
 static void lock(camber_watch *watch) {
@@ -20,57 +20,12 @@ static void unlock(camber_watch *watch) {
     camber_guard_unlock(watch->guard);
 }
 
-void camber_watch_start(camber_watch *watch, camber_guard *guard, camber_report *report, camber_budget *budget) {
-    camber_guard_lock(guard);
-    *watch = (camber_watch){.guard = guard, .report = report, .budget = budget};
-    camber_guard_unlock(guard);
-}
-
-void camber_watch_stop(camber_watch *watch) {
-    if (!watch->guard)
-        return;
-    lock(watch);
-    watch->budget = NULL;
-    unlock(watch);
-}
+/* ---- Looking ---- */
 
 static double clock_s(clockid_t clock) {
     struct timespec now;
     return clock_gettime(clock, &now) == 0 ? (double)now.tv_sec + (double)now.tv_nsec * 1e-9 : 0;
 }
-
-void camber_watch_begin(camber_watch *watch, const char *path) {
-    struct stat about;
-    clockid_t clock;
-    if (!watch->guard || pthread_getcpuclockid(pthread_self(), &clock) != 0)
-        return;
-    const double size_mb = stat(path, &about) == 0 ? (double)about.st_size / 1e6 : 0;
-    lock(watch);
-    watch->path = path;
-    watch->clock = clock;
-    watch->allowed_s = READING_S + READING_S_A_MB * size_mb;
-    watch->beat_s = clock_s(clock);
-    unlock(watch);
-}
-
-void camber_watch_beat(camber_watch *watch) {
-    if (!watch->guard)
-        return;
-    lock(watch);
-    if (watch->path)
-        watch->beat_s = clock_s(watch->clock);
-    unlock(watch);
-}
-
-void camber_watch_end(camber_watch *watch) {
-    if (!watch->guard)
-        return;
-    lock(watch);
-    watch->path = NULL;
-    unlock(watch);
-}
-
-/* ---- Looking ---- */
 
 static uint64_t resident_bytes(void) {
     unsigned long long all, resident = 0;
@@ -106,10 +61,57 @@ static void look_at_reading(const camber_watch *watch) {
                                         watch->path, watch->allowed_s));
 }
 
-void camber_watch_look(void *watch) {
+static void look(void *watch) {
     const camber_watch *self = watch;
-    if (!self->budget)
-        return;
     look_at_memory(self);
     look_at_reading(self);
+}
+
+/* ---- What is watched ---- */
+
+void camber_watch_start(camber_watch *watch, camber_guard *guard, camber_report *report, camber_budget *budget) {
+    camber_guard_lock(guard);
+    *watch = (camber_watch){.guard = guard, .report = report, .budget = budget};
+    guard->look = look;
+    guard->look_user = watch;
+    camber_guard_unlock(guard);
+}
+
+void camber_watch_stop(camber_watch *watch) {
+    if (!watch->guard)
+        return;
+    lock(watch);
+    watch->guard->look = NULL;
+    unlock(watch);
+}
+
+void camber_watch_begin(camber_watch *watch, const char *path) {
+    struct stat about;
+    clockid_t clock;
+    if (!watch->guard || pthread_getcpuclockid(pthread_self(), &clock) != 0)
+        return;
+    const bool is_known = stat(path, &about) == 0 && S_ISREG(about.st_mode);
+    lock(watch);
+    watch->path = path;
+    watch->clock = clock;
+    watch->allowed_s = is_known ? READING_S + READING_S_A_MB * (double)about.st_size / 1e6 : READING_S_UNKNOWN;
+    watch->beat_s = clock_s(clock);
+    unlock(watch);
+}
+
+void camber_watch_beat(camber_watch *watch) {
+    if (!watch->guard)
+        return;
+    lock(watch);
+    if (watch->path)
+        watch->beat_s = clock_s(watch->clock);
+    unlock(watch);
+}
+
+void camber_watch_end(camber_watch *watch) {
+    if (!watch->guard)
+        return;
+    lock(watch);
+    watch->path = NULL;
+    unlock(watch);
 }

@@ -10,9 +10,9 @@
 typedef struct camber_watch {
     camber_guard *guard;
     camber_report *report;
-    camber_budget *budget; /* NULL: not started */
-    const char *path;      /* that is read. NULL: nothing is */
-    clockid_t clock;       /* of the thread that reads */
+    camber_budget *budget;
+    const char *path; /* that is read. NULL: nothing is */
+    clockid_t clock;  /* of the thread that reads */
     double allowed_s, beat_s;
 } camber_watch;
 
@@ -23,7 +23,4 @@ void camber_watch_stop(camber_watch *watch);
 void camber_watch_begin(camber_watch *watch, const char *path);
 void camber_watch_beat(camber_watch *watch);
 void camber_watch_end(camber_watch *watch);
-/* Called now and then, with the guard locked. */
-void camber_watch_look(void *watch);
-
 #endif

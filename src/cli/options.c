@@ -412,7 +412,7 @@ static int parse_value(const parser *p, const option_spec *spec, const char *tex
     }
     case KIND_BYTES:
         if (!parse_bytes(text, spec->least, spec->most, (uint64_t *)(void *)field))
-            return usage(p, "--%s %s: no such size; give bytes from 64K to 1024G, as in 100000000, 512M or 2G",
+            return usage(p, "--%s %s: no such size; give bytes from 256K to 1024G, as in 100000000, 512M or 2G",
                          spec->name, text);
         return CAMBER_EXIT_DONE;
     case KIND_CHOICE: return parse_choice(p, spec, text, (int *)(void *)field);

@@ -15,23 +15,6 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* What GDAL quotes may be of any file that somebody named. */
-static void leave_out_quotes(char *message) {
-    char *out = message;
-    for (const char *at = message; *at; at++) {
-        const char *end = strchr("'\"`", *at) ? strchr(at + 1, *at == '`' ? '\'' : *at) : NULL;
-        const bool opens = end && (at == message || !isalnum((unsigned char)at[-1]));
-        *out++ = *at;
-        if (!opens)
-            continue;
-        for (int i = 0; i < 3 && out < end; i++)
-            *out++ = '.';
-        *out++ = *end;
-        at = end;
-    }
-    *out = 0;
-}
-
 void CPL_STDCALL camber_gdal_collect(CPLErr level, CPLErrorNum number, const char *message) {
     camber_gdal_errors *errors = CPLGetErrorHandlerUserData();
     if (level < CE_Failure)
@@ -39,7 +22,6 @@ void CPL_STDCALL camber_gdal_collect(CPLErr level, CPLErrorNum number, const cha
     if (errors->failures++ == 0) {
         errors->number = number;
         snprintf(errors->message, sizeof errors->message, "%s", message);
-        leave_out_quotes(errors->message);
         /* It stands within a sentence of ours. */
         size_t length = strlen(errors->message);
         while (length && strchr(". \n", errors->message[length - 1]))
@@ -233,7 +215,24 @@ static camber_status fail_driver(const camber_dataset *dataset, const char *driv
                        dataset->desc->path, driver);
 }
 
-static camber_status fail_open(const camber_dataset *dataset, bool directory) {
+/* What GDAL quotes may be of any file that somebody named. */
+static void leave_out_quotes(char *message) {
+    char *out = message;
+    for (const char *at = message; *at; at++) {
+        const char *end = strchr("'\"`", *at) ? strchr(at + 1, *at == '`' ? '\'' : *at) : NULL;
+        const bool opens = end && (at == message || !isalnum((unsigned char)at[-1]));
+        *out++ = *at;
+        if (!opens)
+            continue;
+        for (int i = 0; i < 3 && out < end; i++)
+            *out++ = '.';
+        *out++ = *end;
+        at = end;
+    }
+    *out = 0;
+}
+
+static camber_status fail_open(camber_dataset *dataset, bool directory) {
     const char *path = dataset->desc->path, *said = dataset->errors.message;
     VSIStatBufL about;
     if (directory)
@@ -254,6 +253,7 @@ static camber_status fail_open(const camber_dataset *dataset, bool directory) {
         return camber_fail(
             dataset->context, CAMBER_ERROR_INPUT,
             "%s: no map in a format that camber reads; name another file (camber info lists the formats)", path);
+    leave_out_quotes(dataset->errors.message);
     return camber_fail(dataset->context, CAMBER_ERROR_INPUT, "%s: damaged or cut off: %s; get the file again", path,
                        said);
 }

@@ -151,8 +151,8 @@ CAMBER_API bool camber_source_needs_gdal(const camber_source_desc *desc);
  * program that opens a device or a surface first may want it before. Returns CAMBER_ERROR_IO where GDAL or camber's
  * module for it is missing. Cost: 35 ms once a process; nothing in the static library, where GDAL is linked. */
 CAMBER_API camber_status camber_gdal_load(camber_context *context);
-/* "GPKG", ... the short name of OGR's n-th vector driver that reads files without an allowance (camber_access), NULL past
- * the last or where GDAL cannot be loaded. The string is OGR's. */
+/* "GPKG", ... the short name of OGR's n-th vector driver that reads files without an allowance (camber_access), NULL
+ * past the last or where GDAL cannot be loaded. The string is OGR's. */
 CAMBER_API const char *camber_format_name(size_t n);
 /* "GDAL 3.6.2, ...", NULL where GDAL cannot be loaded. */
 CAMBER_API const char *camber_gdal_version(void);

@@ -91,7 +91,7 @@ camber_status camber_file_check(camber_context *context, const char *path, cambe
 /* Opening a pipe without a writer does not wait, and the file that is looked at is the one that is read. */
 camber_status camber_file_open(camber_context *context, const char *path, camber_file_naming naming, int *file,
                                uint64_t *size_bytes) {
-    struct stat about;
+    struct stat about = {0};
     camber_status status = check_root(context, path, naming);
     if (status != CAMBER_OK)
         return status;

@@ -46,7 +46,7 @@ static bool find_archive(file *it) {
         rest = slash + 1;
     if (rest == it->path || strlen(rest) >= sizeof path)
         return false;
-    strcpy(path, rest);
+    memcpy(path, rest, strlen(rest) + 1);
     for (char *end = path + strlen(path); end && end > path; end = strrchr(path, '/')) {
         file outer = {.path = path};
         *end = 0;

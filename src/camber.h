@@ -99,8 +99,8 @@ typedef struct camber_access {
     bool vrt;    /* files named as input may name other files (VRT) */
     /* A folder beyond which no file lies that a style names: sources, TileJSON, tiles, sprites. NULL: anywhere. */
     const char *root;
-    /* A file that is about to be replaced, which nothing may read. NULL: none. */
-    const char *output;
+    /* Files that are about to be replaced, which nothing may read. NULL: none. */
+    const char *outputs[4];
 } camber_access;
 
 /* ---- Context: allocator, log, cache -------------------------------------------------------------- */

@@ -88,6 +88,8 @@ void camber_budget_open(camber_context *context, uint64_t file_bytes);
 /* So many bytes came out of a tile; and how many may still come. */
 camber_status camber_budget_unfold(camber_context *context, const char *name, uint64_t size_bytes);
 uint64_t camber_budget_unfolds(const camber_context *context);
+/* The same tiles once more. */
+void camber_budget_read_again(camber_context *context);
 
 /* ---- Files ---- */
 

@@ -10,7 +10,8 @@
 #include <unistd.h>
 
 static const uint64_t TILES = UINT64_C(1) << 18, STEPS = UINT64_C(1) << 26, STEPS_A_TILE = 4096;
-static const uint64_t UNFOLD = 32, UNFOLD_BYTES = 4 << 20;
+/* Archives keep what many tiles share once: of open water some 100 bytes a tile. */
+static const uint64_t UNFOLD = 32, UNFOLD_BYTES = 4 << 20, UNFOLD_BYTES_A_TILE = 128;
 /* The machine is asked when a run holds so much: few ever do. */
 static const uint64_t UNASKED_BYTES = 64 << 20;
 
@@ -82,6 +83,11 @@ static uint64_t group_free_bytes(void) {
             continue;
         snprintf(path, sizeof path, "/sys/fs/cgroup%s/memory.current", group + 3);
         (void)read_number(path, "", &held);
+        /* What is kept of files goes when it is wanted. */
+        uint64_t kept = 0;
+        snprintf(path, sizeof path, "/sys/fs/cgroup%s/memory.stat", group + 3);
+        (void)read_number(path, "inactive_file", &kept);
+        held = held > kept ? held - kept : 0;
         least = smaller(least, most > held ? most - held : 0);
     }
     return least;
@@ -152,8 +158,10 @@ bool camber_budget_has(const camber_context *context, uint64_t size_bytes) {
 /* PoCL and its compiler end the process where there is no address space for them: measured on two cores, cold, at
  * 0.8 GB. A thread has a stack of 8 MB and a heap of 64. */
 camber_status camber_budget_check_drivers(camber_context *context) {
-    const long threads = sysconf(_SC_NPROCESSORS_ONLN);
-    const uint64_t wanted = (UINT64_C(640) << 20) + (uint64_t)(threads > 0 ? threads : 1) * (72 << 20);
+    const char *asked = getenv("POCL_MAX_PTHREAD_COUNT");
+    const long threads = asked ? strtol(asked, NULL, 10) : sysconf(_SC_NPROCESSORS_ONLN);
+    const uint64_t wanted =
+        (UINT64_C(640) << 20) + (uint64_t)(threads > 0 && threads < 4096 ? threads : 1) * (72 << 20);
     const uint64_t left = limit_free_bytes();
     if (left >= wanted)
         return CAMBER_OK;
@@ -189,10 +197,15 @@ void camber_budget_open(camber_context *context, uint64_t file_bytes) {
     context->spent.file_bytes += file_bytes;
 }
 
+static uint64_t most_unfolded(const camber_context *context) {
+    const camber_spent *spent = &context->spent;
+    return UNFOLD_BYTES + UNFOLD_BYTES_A_TILE * spent->tiles + context->budget->desc.unfold * spent->file_bytes;
+}
+
 camber_status camber_budget_unfold(camber_context *context, const char *name, uint64_t size_bytes) {
     camber_spent *spent = &context->spent;
     spent->unfolded_bytes += size_bytes;
-    if (spent->unfolded_bytes <= UNFOLD_BYTES + context->budget->desc.unfold * spent->file_bytes)
+    if (spent->unfolded_bytes <= most_unfolded(context))
         return CAMBER_OK;
     return camber_fail(context, CAMBER_ERROR_LIMIT,
                        "%s: its tiles hold more than %.1f MB, %" PRIu32
@@ -202,7 +215,10 @@ camber_status camber_budget_unfold(camber_context *context, const char *name, ui
 }
 
 uint64_t camber_budget_unfolds(const camber_context *context) {
-    const camber_spent *spent = &context->spent;
-    const uint64_t most = UNFOLD_BYTES + context->budget->desc.unfold * spent->file_bytes;
-    return most > spent->unfolded_bytes ? most - spent->unfolded_bytes : 0;
+    const uint64_t most = most_unfolded(context), done = context->spent.unfolded_bytes;
+    return most > done ? most - done : 0;
+}
+
+void camber_budget_read_again(camber_context *context) {
+    context->spent.unfolded_bytes = 0;
 }

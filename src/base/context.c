@@ -30,10 +30,13 @@ camber_status camber_context_create(const camber_context_desc *desc, camber_cont
     *made = (camber_context){.desc = full, .next_serial = 1};
     made->budget = full.budget ? full.budget : &made->own_budget;
     camber_budget_init(&made->own_budget, NULL);
-    made->desc.cache_dir = made->desc.access.root = made->desc.access.output = NULL;
-    if (!copy_text(made, full.cache_dir, &made->desc.cache_dir) ||
-        !copy_text(made, full.access.root, &made->desc.access.root) ||
-        !copy_text(made, full.access.output, &made->desc.access.output)) {
+    made->desc.cache_dir = made->desc.access.root = NULL;
+    memset(made->desc.access.outputs, 0, sizeof made->desc.access.outputs);
+    bool copied = true;
+    for (size_t i = 0; i < sizeof full.access.outputs / sizeof *full.access.outputs; i++)
+        copied = copied && copy_text(made, full.access.outputs[i], &made->desc.access.outputs[i]);
+    if (!copied || !copy_text(made, full.cache_dir, &made->desc.cache_dir) ||
+        !copy_text(made, full.access.root, &made->desc.access.root)) {
         camber_context_destroy(made);
         return CAMBER_ERROR_MEMORY;
     }
@@ -45,9 +48,10 @@ void camber_context_destroy(camber_context *context) {
     if (!context)
         return;
     const camber_context_desc desc = context->desc;
-    const char *const texts[] = {desc.cache_dir, desc.access.root, desc.access.output};
-    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
-        camber_free(context, (char *)(uintptr_t)texts[i]);
+    camber_free(context, (char *)(uintptr_t)desc.cache_dir);
+    camber_free(context, (char *)(uintptr_t)desc.access.root);
+    for (size_t i = 0; i < sizeof desc.access.outputs / sizeof *desc.access.outputs; i++)
+        camber_free(context, (char *)(uintptr_t)desc.access.outputs[i]);
     desc.reallocate(desc.allocator_user, context, 0);
 }
 

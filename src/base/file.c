@@ -55,12 +55,20 @@ bool camber_file_is_reached(const camber_context *context, const char *path) {
     return strncmp(found, root, length) == 0 && (found[length] == '/' || found[length] == 0);
 }
 
+static bool is_output(const camber_context *context, const struct stat *about) {
+    const camber_access *access = &context->desc.access;
+    for (size_t i = 0; i < sizeof access->outputs / sizeof *access->outputs; i++) {
+        struct stat other;
+        if (access->outputs[i] && stat(access->outputs[i], &other) == 0 && other.st_dev == about->st_dev &&
+            other.st_ino == about->st_ino)
+            return true;
+    }
+    return false;
+}
+
 static camber_status check_access(camber_context *context, const char *path, const struct stat *about) {
-    const char *output = context->desc.access.output;
-    struct stat other;
     const camber_status status = check_kind(context, path, about);
-    if (status != CAMBER_OK || !output || stat(output, &other) != 0 || other.st_dev != about->st_dev ||
-        other.st_ino != about->st_ino)
+    if (status != CAMBER_OK || !is_output(context, about))
         return status;
     return camber_fail(context, CAMBER_ERROR_ARGUMENT, "%s: is read, and would be written to; write to another file",
                        path);

@@ -13,11 +13,11 @@
 static const uint64_t LEAST_BUDGET_BYTES = 128 << 20;
 
 static camber_access access_of(const camber_options *options) {
-    const bool is_file = options->output && strcmp(options->output, "-") != 0;
-    return (camber_access){.remote = options->allow_remote,
-                           .vrt = options->allow_vrt,
-                           .root = options->root,
-                           .output = is_file ? options->output : NULL};
+    const char *const outputs[] = {options->output, options->dump, options->plot, options->junit};
+    camber_access access = {.remote = options->allow_remote, .vrt = options->allow_vrt, .root = options->root};
+    for (size_t i = 0; i < sizeof outputs / sizeof *outputs; i++)
+        access.outputs[i] = outputs[i] && strcmp(outputs[i], "-") != 0 ? outputs[i] : NULL;
+    return access;
 }
 
 static void show_progress(void *user, const char *stage, double fraction) {

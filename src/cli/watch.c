@@ -9,7 +9,7 @@
 /* OpenCL's compiler, GDAL and what they keep. */
 static const uint64_t LIBRARIES_BYTES = 512 << 20;
 /* Parsers make a gigabyte of GeoJSON in half a minute, without a word until they are done. */
-static const double READING_S = 6, READING_S_A_MB = 1, READING_S_UNKNOWN = 60;
+static const double READING_S = 6, READING_S_A_MB = 1, READING_S_UNKNOWN = 600;
 
 /* What both threads look at is theirs in turn by the guard's lock. */
 static void lock(camber_watch *watch) {

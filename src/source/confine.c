@@ -6,22 +6,24 @@
 #include <cpl_http.h>
 #include <cpl_string.h>
 #include <cpl_vsi.h>
+#include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 
 /* Files, and no programs, servers or descriptions of other files. What is not listed is for who allows the network:
- * GDAL grows new drivers. */
+ * GDAL grows new drivers, and those that read by Xerces (NAS, Interlis) fetch what a DOCTYPE names. */
 static const char *const file_drivers[] = {
-    "OSM",       "GeoJSON",      "GeoJSONSeq", "ESRIJSON",   "TopoJSON",    "JSONFG",  "ESRI Shapefile",
-    "GPKG",      "SQLite",       "FlatGeobuf", "MBTiles",    "MVT",         "PMTiles", "GML",
-    "GPX",       "KML",          "LIBKML",     "CSV",        "Parquet",     "Arrow",   "OpenFileGDB",
-    "CAD",       "MapInfo File", "DXF",        "DGN",        "GeoRSS",      "OGR_GMT", "UK .NTF",
-    "S57",       "LVBAG",        "NAS",        "Interlis 1", "Interlis 2",  "WAsP",    "Geoconcept",
-    "VFK",       "EDIGEO",       "SVG",        "Idrisi",     "XLS",         "ODS",     "XLSX",
-    "SXF",       "Selafin",      "JML",        "VDV",        "MapML",       "TIGER",   "AVCBin",
-    "AVCE00",    "OGR_SDTS",     "SOSI",       "PDF",        "netCDF",      "GTFS",    "MiraMonVector",
-    "LIBERTIFF", "AIVector",     "PCIDSK",     "VICAR",      "JP2OpenJPEG", "BAG",     "FITS",
-    "Memory",
+    "OSM",    "GeoJSON",      "GeoJSONSeq", "ESRIJSON",      "TopoJSON",  "JSONFG",   "ESRI Shapefile",
+    "GPKG",   "SQLite",       "FlatGeobuf", "MBTiles",       "MVT",       "PMTiles",  "GML",
+    "GPX",    "KML",          "LIBKML",     "CSV",           "Parquet",   "Arrow",    "OpenFileGDB",
+    "CAD",    "MapInfo File", "DXF",        "DGN",           "GeoRSS",    "OGR_GMT",  "UK .NTF",
+    "S57",    "LVBAG",        "WAsP",       "Geoconcept",    "VFK",       "EDIGEO",   "SVG",
+    "Idrisi", "XLS",          "ODS",        "XLSX",          "SXF",       "Selafin",  "JML",
+    "VDV",    "MapML",        "TIGER",      "AVCBin",        "AVCE00",    "OGR_SDTS", "SOSI",
+    "PDF",    "netCDF",       "GTFS",       "MiraMonVector", "LIBERTIFF", "AIVector", "PCIDSK",
+    "VICAR",  "JP2OpenJPEG",  "BAG",        "FITS",          "Memory",
 };
+static const char *const databases[] = {"GPKG", "SQLite", "MBTiles"};
 /* Their files name others. */
 static const char *const describing_drivers[] = {"OGR_VRT", "VRT", "GDALG", "GTI", "GMLAS", "PDS4", "OGR_PDS"};
 
@@ -47,19 +49,24 @@ bool camber_gdal_has_driver(const camber_context *context, const char *name) {
     return camber_gdal_describes(name) ? access->vrt : access->remote;
 }
 
-char **camber_gdal_drivers(const camber_context *context) {
+char **camber_gdal_drivers(const camber_context *context, const char *path) {
     char **names = NULL;
     for (int i = 0; i < GDALGetDriverCount(); i++) {
         const char *name = GDALGetDriverShortName(GDALGetDriver(i));
-        if (camber_gdal_has_driver(context, name))
+        /* What a database within an archive names cannot be looked at before. */
+        const bool hidden = STARTS_WITH(path, "/vsi") && is_in(name, databases, sizeof databases / sizeof *databases);
+        if (camber_gdal_has_driver(context, name) && (!hidden || context->desc.access.vrt))
             names = CSLAddString(names, name);
     }
     return names;
 }
 
+/* GDAL asks a driver that cannot tell by the beginning of a file to open it: those that can are asked. */
 const char *camber_gdal_refused(const camber_context *context, const char *path) {
+    static const char *const asked[] = {"OGR_VRT",    "GMLAS", "PDS4",          "OGR_PDS", "WFS", "OAPIF",
+                                        "PostgreSQL", "MySQL", "Elasticsearch", "CSW",     NULL};
     CPLPushErrorHandler(CPLQuietErrorHandler);
-    GDALDriverH driver = GDALIdentifyDriverEx(path, GDAL_OF_VECTOR, NULL, NULL);
+    GDALDriverH driver = GDALIdentifyDriverEx(path, GDAL_OF_VECTOR, asked, NULL);
     CPLPopErrorHandler();
     const char *name = driver ? GDALGetDriverShortName(driver) : NULL;
     return name && !camber_gdal_has_driver(context, name) ? name : NULL;
@@ -74,27 +81,49 @@ bool camber_gdal_names_path(const char *srs) {
     return false;
 }
 
-bool camber_gdal_projects_by_path(const char *path) {
-    char text[8192] = "";
-    if (!EQUAL(CPLGetExtension(path), "shp"))
-        return false;
-    VSILFILE *file = VSIFOpenL(CPLResetExtension(path, "prj"), "rb");
-    if (!file)
-        file = VSIFOpenL(CPLResetExtension(path, "PRJ"), "rb");
-    if (!file)
-        return false;
-    text[VSIFReadL(text, 1, sizeof text - 1, file)] = 0;
-    VSIFCloseL(file);
-    return camber_gdal_names_path(text);
+static bool has_word(const char *text, const char *word) {
+    for (; *text; text++)
+        if (EQUALN(text, word, strlen(word)))
+            return true;
+    return false;
 }
 
+/* The beginning of a file beside path. */
+static bool read_beside(const char *path, const char *ending, char *text, size_t size) {
+    VSILFILE *file = VSIFOpenL(CPLResetExtension(path, ending), "rb");
+    if (!file)
+        return false;
+    text[VSIFReadL(text, 1, size - 1, file)] = 0;
+    VSIFCloseL(file);
+    return true;
+}
+
+bool camber_gdal_leads_elsewhere(const char *path) {
+    char text[8192] = "";
+    const char *ending = CPLGetExtension(path);
+    if (EQUAL(ending, "shp") &&
+        (read_beside(path, "prj", text, sizeof text) || read_beside(path, "PRJ", text, sizeof text)))
+        return camber_gdal_names_path(text);
+    char kept[8];
+    snprintf(kept, sizeof kept, "%s", ending);
+    if (EQUAL(kept, "tab") && read_beside(path, kept, text, sizeof text))
+        return has_word(text, "open table") || has_word(text, "isseamless");
+    return false;
+}
+
+/* Each of GDAL's file systems that a path goes through, as /vsizip//vsicurl/... does. */
 bool camber_gdal_is_remote(const char *path) {
-    static const char *const systems[] = {"/vsicurl", "/vsis3",    "/vsigs",   "/vsiaz",     "/vsiadls",
-                                          "/vsioss",  "/vsiswift", "/vsihdfs", "/vsiwebhdfs"};
-    for (size_t i = 0; i < sizeof systems / sizeof *systems; i++)
-        if (strstr(path, systems[i]))
-            return true;
-    return strstr(path, "://") != NULL && !STARTS_WITH_CI(path, "file://");
+    static const char *const systems[] = {"curl", "s3", "gs", "az", "adls", "oss", "swift", "hdfs", "webhdfs"};
+    const char *at = path;
+    for (const char *slash; STARTS_WITH(at, "/vsi") && (slash = strchr(at + 1, '/')) != NULL;
+         at = slash + (slash[1] == '/'))
+        for (size_t i = 0; i < sizeof systems / sizeof *systems; i++) {
+            const size_t length = strlen(systems[i]);
+            if (EQUALN(at + 4, systems[i], length) && strchr("/_?", at[4 + length]))
+                return true;
+        }
+    struct stat about;
+    return strstr(path, "://") && !STARTS_WITH_CI(path, "file://") && stat(path, &about) != 0;
 }
 
 /* ---- While a file is read ---- */
@@ -105,6 +134,8 @@ static const struct {
 } options[] = {
     /* Or GDAL writes a .properties file beside a .gz. */
     {"CPL_VSIL_GZIP_WRITE_PROPERTIES", "NO", false},
+    /* The other parser fetches what a DOCTYPE names. */
+    {"GML_PARSER", "EXPAT", false},
     /* Its file systems of the network have this one file, which nobody names. */
     {"CPL_VSIL_CURL_ALLOWED_FILENAME", "/vsicurl/none", true},
 };
@@ -132,7 +163,8 @@ camber_status camber_gdal_confine(camber_context *context, camber_gdal_confined 
     for (size_t i = 0; i < OPTIONS; i++) {
         const char *old = CPLGetThreadLocalConfigOption(options[i].name, NULL);
         if (old && !(confined->kept[i] = camber_copy_string(context, old))) {
-            camber_free(context, confined->kept[0]);
+            for (size_t k = 0; k < i; k++)
+                camber_free(context, confined->kept[k]);
             return CAMBER_ERROR_MEMORY;
         }
     }

@@ -1,7 +1,7 @@
 #include "source/database.h"
 
 #include <fcntl.h>
-#include <stdbool.h>
+#include <sqlite3.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -31,4 +31,31 @@ camber_database_kind camber_database_look(const char *path) {
     if (!has_beside(path, "-wal"))
         return CAMBER_DATABASE_AT_REST;
     return has_beside(path, "-shm") ? CAMBER_DATABASE_LOGGED : CAMBER_DATABASE_INTERRUPTED;
+}
+
+bool camber_database_uri(const char *path, char *uri, size_t size) {
+    size_t used = (size_t)snprintf(uri, size, "file:%s", path[0] == '/' ? "//" : "");
+    for (; *path && used + 16 < size; path++)
+        used += (size_t)snprintf(uri + used, size - used, strchr("%?#", *path) ? "%%%02X" : "%c", (unsigned char)*path);
+    if (*path)
+        return false;
+    snprintf(uri + used, size - used, "?immutable=1");
+    return true;
+}
+
+bool camber_database_is_virtual(const char *path) {
+    static const char sql[] =
+        "SELECT 1 FROM sqlite_master WHERE sql LIKE 'create%virtual%table%using%' AND sql NOT LIKE "
+        "'%using%rtree%(%' AND sql NOT LIKE '%using%fts%(%'";
+    char uri[3 * 4096];
+    sqlite3 *handle = NULL;
+    sqlite3_stmt *row = NULL;
+    if (!camber_database_uri(path, uri, sizeof uri))
+        return true;
+    const int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_URI;
+    const bool found = sqlite3_open_v2(uri, &handle, flags, NULL) == SQLITE_OK &&
+                       sqlite3_prepare_v2(handle, sql, -1, &row, NULL) == SQLITE_OK && sqlite3_step(row) == SQLITE_ROW;
+    sqlite3_finalize(row);
+    sqlite3_close(handle);
+    return found;
 }

@@ -2,6 +2,9 @@
 #ifndef CAMBER_DATABASE_H
 #define CAMBER_DATABASE_H
 
+#include <stdbool.h>
+#include <stddef.h>
+
 typedef enum camber_database_kind {
     CAMBER_DATABASE_PLAIN = 0,   /* reading makes no file; also what is no SQLite file at all */
     CAMBER_DATABASE_AT_REST,     /* writers keep a log beside it (WAL), and none is there: to be read as it stands */
@@ -10,5 +13,10 @@ typedef enum camber_database_kind {
 } camber_database_kind;
 
 camber_database_kind camber_database_look(const char *path);
+/* Whether tables of it are made by modules that may open other files; those of indices (R-trees, full text) are not.
+ * Only of one that is plain or at rest. */
+bool camber_database_is_virtual(const char *path);
+/* The path as a URI by which SQLite reads the file as it stands; false: too long. */
+bool camber_database_uri(const char *path, char *uri, size_t size);
 
 #endif

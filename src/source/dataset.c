@@ -71,12 +71,12 @@ static bool take_column(bool named[COLUMNS], const char *word, size_t length) {
     return false;
 }
 
-/* Every word of an attribute filter may be a key; SQL's own words do no harm as keys. */
 /* OGR's own names of every feature's parts, which are no keys. */
 static bool is_ogrs(const char *word, size_t length) {
     return (length == 3 && EQUALN(word, "FID", 3)) || (length > 4 && EQUALN(word, "OGR_", 4));
 }
 
+/* Every word of an attribute filter may be a key; SQL's own words do no harm as keys. */
 static bool add_where_keys(key_list *list, const char *where, bool named[COLUMNS]) {
     size_t length;
     const char *word;
@@ -165,15 +165,37 @@ static bool is_connection(const char *path) {
     return STARTS_WITH(path, "/vsistdin") || (colon && (!slash || colon < slash));
 }
 
-/* The file that GDAL's own file systems go by: /vsizip//a/b.zip/c.shp has /a/b.zip/c.shp. */
-static const char *skip_file_systems(const char *path) {
+/* The file that GDAL's own file systems and prefixes go by: /vsizip//a/b.zip/c.shp has /a/b.zip/c.shp,
+ * /vsisubfile/0_9,a has a, GeoJSON:a has a. Those that are within archives are not there. */
+static const char *find_file(const char *path) {
     while (STARTS_WITH(path, "/vsi")) {
         const char *slash = strchr(path + 1, '/');
         if (!slash)
             break;
-        path = slash + 1;
+        const char *comma = STARTS_WITH(path, "/vsisubfile") ? strchr(slash, ',') : NULL;
+        path = (comma ? comma : slash) + 1;
+        path += *path == '{';
     }
+    struct stat about;
+    const char *colon = strchr(path, ':');
+    if (colon && stat(path, &about) != 0 && stat(colon + 1, &about) == 0)
+        return colon + 1;
     return path;
+}
+
+/* GDAL merges a log into the file, and opens what virtual tables name. */
+static camber_status check_database(camber_context *context, const char *path) {
+    const camber_database_kind kind = camber_database_look(path);
+    if (kind == CAMBER_DATABASE_INTERRUPTED || kind == CAMBER_DATABASE_LOGGED)
+        return camber_fail(context, CAMBER_ERROR_INPUT,
+                           "%s: it has a log beside it: somebody writes, or was interrupted; close the one, or open it "
+                           "once with what may write (sqlite3 FILE .tables), which puts it right",
+                           path);
+    if (!context->desc.access.vrt && camber_database_is_virtual(path))
+        return camber_fail(
+            context, CAMBER_ERROR_INPUT,
+            "%s: it has virtual tables, which may name other files; allow it (--allow-vrt) if you trust it", path);
+    return CAMBER_OK;
 }
 
 static camber_status check_exists(camber_context *context, const char *path, bool *directory) {
@@ -186,10 +208,12 @@ static camber_status check_exists(camber_context *context, const char *path, boo
                            "(--allow-remote)",
                            path);
     /* Devices and pipes end nowhere. */
-    const char *file = skip_file_systems(path);
-    if (stat(file, &(struct stat){0}) == 0 && VSIStatL(file, &about) == 0 && !VSI_ISDIR(about.st_mode) &&
-        !STARTS_WITH(path, "/vsistdin")) {
-        const camber_status status = camber_file_check(context, file, CAMBER_NAMED_BY_CALLER, &size_bytes);
+    struct stat found;
+    const char *file = find_file(path);
+    if (!STARTS_WITH(path, "/vsistdin") && stat(file, &found) == 0 && !S_ISDIR(found.st_mode)) {
+        camber_status status = camber_file_check(context, file, CAMBER_NAMED_BY_CALLER, &size_bytes);
+        if (status == CAMBER_OK)
+            status = check_database(context, file);
         if (status != CAMBER_OK)
             return status;
     }
@@ -285,9 +309,10 @@ static char *gdal_path(camber_context *context, const char *path, bool directory
     return made;
 }
 
-camber_status camber_dataset_fail_srs(camber_context *context, const char *name) {
+camber_status camber_dataset_fail_elsewhere(camber_context *context, const char *name) {
     return camber_fail(context, CAMBER_ERROR_INPUT,
-                       "%s: its coordinate system leads to another file; convert the file to EPSG:4326", name);
+                       "%s: it or its coordinate system leads to another file; convert it to GeoJSON or GeoPackage",
+                       name);
 }
 
 camber_status camber_dataset_open(camber_context *context, const camber_source_desc *desc, const camber_style *style,
@@ -296,8 +321,8 @@ camber_status camber_dataset_open(camber_context *context, const camber_source_d
     bool directory;
     char *path = NULL, **options = NULL, **drivers = NULL;
     camber_status status = check_exists(context, desc->path, &directory);
-    if (status == CAMBER_OK && camber_gdal_projects_by_path(desc->path))
-        status = camber_dataset_fail_srs(context, desc->path);
+    if (status == CAMBER_OK && camber_gdal_leads_elsewhere(desc->path))
+        status = camber_dataset_fail_elsewhere(context, desc->path);
     if (status == CAMBER_OK)
         status = write_conf(dataset, style);
     if (status != CAMBER_OK)
@@ -315,7 +340,7 @@ camber_status camber_dataset_open(camber_context *context, const camber_source_d
     options = CSLSetNameValue(options, "WRITE_GFS", "NO");
     if (camber_database_look(desc->path) == CAMBER_DATABASE_AT_REST)
         options = CSLSetNameValue(options, "IMMUTABLE", "YES");
-    drivers = camber_gdal_drivers(context);
+    drivers = camber_gdal_drivers(context, path);
     CPLPushErrorHandlerEx(camber_gdal_collect, &dataset->errors);
     /* A driver warns of options that it does not know, and that is collected: warnings are dropped. */
     dataset->handle = GDALOpenEx(path, GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,

@@ -75,7 +75,7 @@ camber_status camber_parts_set_srs(camber_parts *parts, OGRSpatialReferenceH srs
     if (!srs)
         return CAMBER_OK;
     if (names_path(srs))
-        return camber_dataset_fail_srs(parts->context, name);
+        return camber_dataset_fail_elsewhere(parts->context, name);
     int count = 0;
     const int *mapping = OSRGetDataAxisToSRSAxisMapping(srs, &count);
     if (OSRIsProjected(srs) && is_code(srs, "3857") && mapping && count >= 2 && mapping[0] == 1 && mapping[1] == 2) {

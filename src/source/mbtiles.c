@@ -240,19 +240,6 @@ static const camber_tile_set_calls database_calls = {get_tile, list_tiles, close
 
 /* ---- Opening ---- */
 
-/* A path as SQLite's URI has it. */
-static char *immutable_uri(camber_context *context, const char *path) {
-    static const char tail[] = "?immutable=1";
-    char *uri = camber_alloc(context, 3 * strlen(path) + sizeof "file:" + sizeof tail, 1);
-    if (!uri)
-        return NULL;
-    char *out = uri + sprintf(uri, "file:");
-    for (; *path; path++)
-        out += sprintf(out, strchr("%?#", *path) ? "%%%02X" : "%c", (unsigned char)*path);
-    memcpy(out, tail, sizeof tail);
-    return uri;
-}
-
 /* SQLite makes files beside a database whose writers keep a log, and leaves them there. */
 static camber_status open_handle(camber_tile_set *set, const char *path) {
     database *self = set->self;
@@ -262,12 +249,10 @@ static camber_status open_handle(camber_tile_set *set, const char *path) {
         return fail_interrupted(set);
     if (kind != CAMBER_DATABASE_AT_REST)
         return sqlite3_open_v2(path, &self->handle, flags, NULL) == SQLITE_OK ? CAMBER_OK : fail(set);
-    char *uri = immutable_uri(set->context, path);
-    if (!uri)
-        return CAMBER_ERROR_MEMORY;
-    const int code = sqlite3_open_v2(uri, &self->handle, flags | SQLITE_OPEN_URI, NULL);
-    camber_free(set->context, uri);
-    return code == SQLITE_OK ? CAMBER_OK : fail(set);
+    char uri[3 * 4096];
+    if (!camber_database_uri(path, uri, sizeof uri))
+        return camber_fail(set->context, CAMBER_ERROR_IO, "%s: the path is too long; copy it elsewhere", set->name);
+    return sqlite3_open_v2(uri, &self->handle, flags | SQLITE_OPEN_URI, NULL) == SQLITE_OK ? CAMBER_OK : fail(set);
 }
 
 camber_status camber_mbtiles_open(camber_tile_set *set, const char *path) {

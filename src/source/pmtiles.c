@@ -296,8 +296,12 @@ static camber_status list_directory(listing *list, const directory *in, int dept
         if (beyond)
             continue;
         directory leaf = {0};
-        if (depth >= DEEPEST || !camber_budget_take_steps(list->set->context, DIRECTORY_STEPS))
+        if (depth >= DEEPEST)
             return fail(list->set, "its directories go round in circles");
+        if (!camber_budget_take_steps(list->set->context, DIRECTORY_STEPS))
+            return camber_fail(list->set->context, CAMBER_ERROR_LIMIT,
+                               "%s: its directories take too many steps, or go round in circles; get the file again",
+                               list->set->name);
         status = read_directory(list->set, leaf_of(self, entry), &leaf);
         if (status == CAMBER_OK)
             status = list_directory(list, &leaf, depth + 1);

@@ -51,8 +51,8 @@ void camber_parts_free(camber_parts *parts);
 
 /* ---- dataset.c: an open file ---- */
 
-/* CAMBER_ERROR_INPUT: a coordinate system leads to another file. */
-camber_status camber_dataset_fail_srs(camber_context *context, const char *name);
+/* CAMBER_ERROR_INPUT: a file, or its coordinate system, leads to another file. */
+camber_status camber_dataset_fail_elsewhere(camber_context *context, const char *name);
 
 /* What GDAL said since the last reset. */
 typedef struct camber_gdal_errors {
@@ -88,14 +88,14 @@ void CPL_STDCALL camber_gdal_collect(CPLErr level, CPLErrorNum number, const cha
 /* Until the end nothing is fetched on this thread, unless the context's access has it, and nothing is written beside
  * files. */
 typedef struct camber_gdal_confined {
-    char *kept[2]; /* of the thread's options, what they were */
+    char *kept[3]; /* of the thread's options, what they were */
     bool http;
     size_t refused; /* fetches */
 } camber_gdal_confined;
 camber_status camber_gdal_confine(camber_context *context, camber_gdal_confined *confined);
 void camber_gdal_release(camber_context *context, camber_gdal_confined *confined);
 /* Names of the drivers that the context's access has, for GDALOpenEx; freed with CSLDestroy. */
-char **camber_gdal_drivers(const camber_context *context);
+char **camber_gdal_drivers(const camber_context *context, const char *path);
 bool camber_gdal_has_driver(const camber_context *context, const char *name);
 /* The driver of a file, where it is none of these. NULL: it is, or none knows the file. */
 const char *camber_gdal_refused(const camber_context *context, const char *path);
@@ -106,8 +106,9 @@ bool camber_gdal_describes(const char *driver);
 /* Whether the text of a coordinate system leads to another file: PROJ opens the grids that it names, by their names
  * among its own, by a path anywhere. */
 bool camber_gdal_names_path(const char *srs);
-/* The same of the .prj that stands beside a shapefile, which GDAL follows before it tells of it. */
-bool camber_gdal_projects_by_path(const char *path);
+/* Whether GDAL would open other files before it tells of them: by the .prj beside a shapefile, as a MapInfo table of
+ * tables. */
+bool camber_gdal_leads_elsewhere(const char *path);
 /* Whether a path leads to the network. */
 bool camber_gdal_is_remote(const char *path);
 

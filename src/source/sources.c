@@ -57,10 +57,7 @@ static camber_status load_json(camber_context *context, const char *what, const 
     camber_free(context, text);
     if (status != CAMBER_ERROR_INPUT)
         return status;
-    /* Not what it quotes: a style may name any file. */
-    char *quoted = strstr(error.text, " near '");
-    if (quoted)
-        *quoted = 0;
+    camber_json_unquote(&error);
     return camber_fail(context, CAMBER_ERROR_INPUT, "%s: %s: no JSON at line %d, column %d: %s; %s", what, path,
                        error.line, error.column, error.text,
                        json_error_code(&error) == json_error_invalid_utf8 ? camber_json_cure(&error)

@@ -74,6 +74,7 @@ static camber_status read_once(camber_features *features, const camber_tile_read
     camber_context *context = features->context;
     reader self = {.context = context, .reading = reading, .bytes.context = context};
     camber_mvt_desc desc = reading->mvt;
+    camber_budget_read_again(context);
     camber_status status = camber_tiles_create(context, reading->zoom, &desc.tiles);
     if (status == CAMBER_OK)
         status = camber_mvt_create(context, &desc, &self.mvt);
@@ -153,6 +154,7 @@ static camber_status look_for_layers(input *self) {
     const camber_tile_reading reading = {
         .set = self->set, .places = self->places, .place_count = self->place_count, .mvt.features = self->features};
     bool restart = false;
+    camber_budget_read_again(context);
     look.reading = &reading;
     camber_status status = camber_mvt_create(context, &reading.mvt, &look.mvt);
     if (status != CAMBER_OK)

@@ -1,6 +1,7 @@
 #include "style/json.h"
 
 #include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <strings.h>
 
@@ -85,7 +86,16 @@ const char *camber_json_cure(const json_error_t *error) {
     return json_error_code(error) == json_error_invalid_utf8 ? "save it as UTF-8" : "correct the JSON there";
 }
 
-static camber_status fail(camber_context *context, const char *name, const json_error_t *error) {
+void camber_json_unquote(json_error_t *error) {
+    char *quoted = strstr(error->text, " near '");
+    if (json_error_code(error) == json_error_invalid_utf8)
+        snprintf(error->text, JSON_ERROR_TEXT_LENGTH - 1, "no UTF-8"); /* the last byte is the error's code */
+    else if (quoted)
+        *quoted = 0;
+}
+
+static camber_status fail(camber_context *context, const char *name, json_error_t *error) {
+    camber_json_unquote(error);
     /* jansson takes what it has no memory for to be a wrong character, mostly. */
     if (json_error_code(error) == json_error_out_of_memory || errno == ENOMEM)
         return camber_fail(context, CAMBER_ERROR_MEMORY, "%s: out of memory; make the document shorter", name);

@@ -156,6 +156,8 @@ def case(name, make, arguments, status, words="", kept=(), limits=None, stdin=su
         wrong.append("status %s, not %s" % (code, status))
     if code and (said.count("\n") != 1 or not said.startswith("camber: ")):
         wrong.append("not one line")
+    if "SECRET" in said:
+        wrong.append("quotes what it read")
     if words not in said:
         wrong.append("no word of '%s'" % words)
     if seconds > MOST_SECONDS:
@@ -255,6 +257,12 @@ def hot():
 refused("a log beside a database", logged, "", 0, "in.mbtiles")
 case("the same through GDAL", logged, [*RENDER, "--where", "a = 'b'", "in.mbtiles"], (0, 2, 65))
 refused("a log without its writer", interrupted, "was interrupted", 65, "in.mbtiles")
+for ending in ("gpkg", "sqlite", "mbtiles"):
+    case("a log without its writer, through GDAL, " + ending, lambda: (interrupted(), os.rename("in.mbtiles-wal", "in." + ending +
+         "-wal"), os.rename("in.mbtiles", "in." + ending)), [*RENDER, "in." + ending, "--where", "a = 'b'"], 65, "a log beside it")
+case("a virtual table", lambda: mbtiles("in.sqlite", "CREATE VIRTUAL TABLE v USING fts5(a)", "PRAGMA writable_schema = on",
+     "UPDATE sqlite_master SET sql = 'CREATE VIRTUAL TABLE v USING VirtualText(''x.csv'')' WHERE name = 'v'"),
+     [*RENDER, "in.sqlite"], 65, "virtual tables")
 refused("a hot journal", hot, "was interrupted", 65, "in.mbtiles")
 styled("a folder for a database", lambda: (os.mkdir("x.mbtiles"), write("style.json", style(
     '"type":"vector","url":"mbtiles://x.mbtiles"'))), "is a folder")
@@ -294,13 +302,16 @@ for name in ("/dev/zero", "pipe"):
 
 # ---- What a style may name ----
 
+subprocess.run([TOOL, "render", "-q", "--style", "-", "-o", "one.png", "--size", "1x1"], check=True,
+               input=style('"type":"geojson","data":' + LINE).encode())
 STYLE_OUTSIDE = style(DATA % "../secret.geojson")
-write("secret.geojson", "root:x:0:0:" + LINE)
+write("secret.geojson", "SECRET:x:0:0:" + LINE)
 styled("a file that is no map", lambda: write("style.json", STYLE_OUTSIDE), "no JSON at line 1")
-said_secret = "root"
 for name, path in (("there", "../secret.geojson"), ("not there", "../none"), ("a link", "link")):
     styled("beyond the root, " + name, lambda: (os.symlink("../secret.geojson", "link"), write(
         "style.json", style(DATA % path))), "beyond which a style may name none", options=("--root", "."))
+styled("a sprite's index that is no map", lambda: (write("s.json", "{SECRET"), shutil.copy("../one.png", "s.png"), write(
+    "style.json", style('"type":"geojson","data":' + LINE, root=',"sprite":"s"', paint=',"line-pattern":"x"'))), "line 1, column")
 styled("within the root", lambda: (write("a.geojson", LINE), write("style.json", style(DATA % "a.geojson"))), "", 0,
        options=("--root", "."))
 styled("tiles within the root that are not there", lambda: write("style.json", style(
@@ -316,6 +327,10 @@ for name, out in (("a source", "a.geojson"), ("a link to a source", "link")):
         2, "a.geojson")
 case("OUT is the style", lambda: write("style.json", style('"type":"geojson","data":' + LINE)),
      ["render", "-qf", "--style", "style.json", "-o", "style.json", "--format", "png"], 2, "style.json")
+case("OUT is the INPUT behind a prefix", lambda: write("in.geojson", LINE),
+     ["render", "-qf", "GeoJSON:in.geojson", "-o", "in.geojson", "--format", "png"], 2, "in.geojson")
+case("a dump is a source", lambda: (write("a.geojson", LINE), write("style.json", style(DATA % "a.geojson"))),
+     ["bench", "-q", "--style", "style.json", "--dump", "a.geojson", "-f"], 2, "a.geojson")
 case("OUT is the INPUT", lambda: write("in.geojson", LINE),
      ["render", "-qf", "in.geojson", "-o", "in.geojson", "--format", "png"], 2, "in.geojson")
 
@@ -333,6 +348,12 @@ refused("a server", lambda: write("in.xml", "<OGRWFSDataSource><URL>http://127.0
 refused("an address", lambda: None, "--allow-remote", 65, "http://127.0.0.1:9/a.geojson")
 refused("a database's address", lambda: None, "--allow-remote", 65, "PG:host=127.0.0.1 port=9")
 refused("a grid of a shapefile", lambda: shapefile("in", GRID), "leads to another file", 65, "in.shp")
+DOCTYPE = '<?xml version="1.0"?><!DOCTYPE TRANSFER SYSTEM "%s"><TRANSFER xmlns="http://www.interlis.ch/INTERLIS2.3"/>'
+for ending in ("xtf", "xml", "gml"):
+    refused("a DOCTYPE that is a pipe, " + ending, lambda: (os.mkfifo("pipe"), write("in." + ending, DOCTYPE % os.path.realpath(
+        "pipe"))), "", 65, "in." + ending)
+refused("a table of tables", lambda: write("in.tab", '!table\n!version 300\nDefinition Table\nopen table "b.tab"\n'),
+        "leads to another file", 65, "in.tab")
 refused("an ordinary shapefile", lambda: shapefile("in", GRID.replace(',EXTENSION["PROJ4_GRIDS","/etc/passwd"]', "")), "", 0,
         "in.shp")
 

@@ -92,7 +92,7 @@ static void test_reading(void **state) {
         assert_false(camber_budget_take_steps(context, 1));
         camber_budget_open(context, 1000000);
         const uint64_t left = camber_budget_unfolds(context);
-        assert_int_equal(left, (4 << 20) + 2 * 1000000);
+        assert_int_equal(left, (4 << 20) + 128 * 10 + 2 * 1000000);
         assert_int_equal(camber_budget_unfold(context, "x.mbtiles", left), CAMBER_OK);
         assert_int_equal(camber_budget_unfolds(context), 0);
         assert_int_equal(camber_budget_unfold(context, "x.mbtiles", 1), CAMBER_ERROR_LIMIT);
@@ -182,7 +182,7 @@ static void test_output(void **state) {
     snprintf(other, sizeof other, "%s/b", folder);
     file_write(path, "x", 1);
     file_write(other, "x", 1);
-    camber_context *context = context_of(&h, NULL, (camber_access){.output = path});
+    camber_context *context = context_of(&h, NULL, (camber_access){.outputs = {NULL, path}});
     assert_int_equal(read_one(context, other, CAMBER_NAMED_BY_STYLE), CAMBER_OK);
     assert_int_equal(read_one(context, path, CAMBER_NAMED_BY_STYLE), CAMBER_ERROR_ARGUMENT);
     assert_story(&h, "would be written to");

@@ -47,7 +47,7 @@ static camber_status fail_interrupted(const camber_tile_set *set) {
 
 static camber_status fail(const camber_tile_set *set) {
     const database *self = set->self;
-    const int code = self->handle ? sqlite3_extended_errcode(self->handle) : SQLITE_NOMEM;
+    const int code = self->handle ? sqlite3_errcode(self->handle) : SQLITE_NOMEM;
     const char *said = self->handle ? sqlite3_errmsg(self->handle) : "out of memory";
     if (self->computes)
         return camber_fail(set->context, CAMBER_ERROR_INPUT,
@@ -57,6 +57,7 @@ static camber_status fail(const camber_tile_set *set) {
     switch (code & 0xff) {
     case SQLITE_NOMEM: return camber_fail(set->context, CAMBER_ERROR_MEMORY, "%s: SQLite is out of memory", set->name);
     case SQLITE_CANTOPEN:
+    case SQLITE_IOERR:
     case SQLITE_PERM:
     case SQLITE_BUSY:
     case SQLITE_LOCKED:

@@ -18,9 +18,9 @@
  * nothing is logged), CAMBER_ERROR_MEMORY. */
 camber_status camber_json_load(camber_context *context, const char *bytes, size_t size_bytes, size_t flags,
                                bool is_data, json_t **json, json_error_t *error);
-/* What to do about an error in a document that the user writes. */
 /* Leaves out what jansson quotes: a style may name any file, and any file may be named as one. */
 void camber_json_unquote(json_error_t *error);
+/* What to do about an error in a document that the user writes. */
 const char *camber_json_cure(const json_error_t *error);
 /* Reads a document, all of whose numbers are doubles. Returns CAMBER_ERROR_INPUT (line and column are said),
  * CAMBER_ERROR_MEMORY. */

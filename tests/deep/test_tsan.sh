@@ -60,7 +60,8 @@ run_tool() {
 run() {
     local test status
     # A child that a test forks leaves without the check at the end, and so a race ends it at once.
-    export TSAN_OPTIONS=exitcode=99:halt_on_error=1:atexit_sleep_ms=0:suppressions=$source/tests/fixtures/tsan.supp:print_suppressions=0
+    # A run that a signal ends joins no thread.
+    export TSAN_OPTIONS=report_thread_leaks=0:exitcode=99:halt_on_error=1:atexit_sleep_ms=0:suppressions=$source/tests/fixtures/tsan.supp:print_suppressions=0
     begin
     for test in test_bands test_readers test_threads; do
         [ -e "$folder/tests/$test" ] || continue # no test_readers in a build without maps

@@ -182,10 +182,10 @@ static int compare_places(const void *left, const void *right) {
     const camber_tile_place *a = left, *b = right;
     if (a->column != b->column)
         return a->column < b->column ? -1 : 1;
-    return a->row < b->row ? -1 : a->row > b->row;
+    return a->row > b->row ? -1 : a->row < b->row;
 }
 
-/* In order, each once. */
+/* In the order of the table's own rows, from the south, each once: lines are drawn as they are read. */
 static size_t sort_places(camber_tile_place *places, size_t count) {
     size_t kept = 0;
     if (count)

@@ -11,7 +11,8 @@
 
 static const uint64_t TILES = UINT64_C(1) << 18, STEPS = UINT64_C(1) << 26, STEPS_A_TILE = 4096;
 /* Archives keep what many tiles share once: of open water some 100 bytes a tile. */
-static const uint64_t UNFOLD = 32, UNFOLD_BYTES = 4 << 20, UNFOLD_BYTES_A_TILE = 128;
+static const uint32_t UNFOLD = 32;
+static const uint64_t UNFOLD_BYTES = 4 << 20, UNFOLD_BYTES_A_TILE = 128;
 /* The machine is asked when a run holds so much: few ever do. */
 static const uint64_t UNASKED_BYTES = 64 << 20;
 

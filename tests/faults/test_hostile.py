@@ -16,6 +16,10 @@ import sys
 import tempfile
 import time
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "fixtures"))
+sys.dont_write_bytecode = True
+from made_files import shapefile, write  # noqa: E402
+
 TOOL = os.path.realpath(sys.argv[1])
 SANITIZED = b"__asan_init" in open(TOOL, "rb").read()
 MOST_SECONDS, MOST_BYTES = 10, 10**9
@@ -80,22 +84,6 @@ def pmtiles(name, zoom, entries, content):
     head += struct.pack("<QQQ", 1, 1, 1) + bytes([1, 1, 1, 1, zoom, zoom])
     with open(name, "wb") as file:
         file.write(head.ljust(127, b"\0") + directory + metadata + content)
-
-
-def write(name, content):
-    with open(name, "wb") as file:
-        file.write(content if isinstance(content, bytes) else content.encode())
-
-
-def shapefile(stem, projection):
-    box = struct.pack("<4d", 0, 0, 1, 1)
-    record = struct.pack("<i", 3) + box + struct.pack("<iii4d", 1, 2, 0, 0, 0, 1, 1)
-
-    def head(words):
-        return struct.pack(">7i", 9994, 0, 0, 0, 0, 0, words) + struct.pack("<ii", 1000, 3) + box + bytes(32)
-    write(stem + ".shp", head((108 + len(record)) // 2) + struct.pack(">ii", 1, len(record) // 2) + record)
-    write(stem + ".shx", head(54) + struct.pack(">ii", 50, len(record) // 2))
-    write(stem + ".prj", projection)
 
 
 def style(source, **more):

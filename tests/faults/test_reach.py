@@ -8,10 +8,13 @@ import os
 import re
 import shutil
 import sqlite3
-import struct
 import subprocess
 import sys
 import tempfile
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "fixtures"))
+sys.dont_write_bytecode = True
+from made_files import shapefile, write  # noqa: E402
 
 TOOL = os.path.realpath(sys.argv[1])
 TMP = tempfile.mkdtemp(prefix="camber-reach-")
@@ -29,26 +32,9 @@ os.mkdir(HOME)
 os.environ["HOME"] = HOME
 
 
-def write(name, content):
-    with open(name, "wb") as file:
-        file.write(content if isinstance(content, bytes) else content.encode())
-
-
 def style(source, **more):
     layer = '{"id":"a","type":"line","source":"s","paint":{"line-width":5%s}}' % more.get("paint", "")
     return '{"version":8,"center":[0,0],"zoom":0%s,"sources":{"s":{%s}},"layers":[%s]}' % (more.get("root", ""), source, layer)
-
-
-def shapefile(stem):
-    box = struct.pack("<4d", 0, 0, 1, 1)
-    record = struct.pack("<i", 3) + box + struct.pack("<iii4d", 1, 2, 0, 0, 0, 1, 1)
-
-    def head(words):
-        return struct.pack(">7i", 9994, 0, 0, 0, 0, 0, words) + struct.pack("<ii", 1000, 3) + box + bytes(32)
-    write(stem + ".shp", head((108 + len(record)) // 2) + struct.pack(">ii", 1, len(record) // 2) + record)
-    write(stem + ".shx", head(54) + struct.pack(">ii", 50, len(record) // 2))
-    write(stem + ".prj", 'GEOGCS["x",DATUM["D",SPHEROID["W",6378137,298.25],EXTENSION["PROJ4_GRIDS","%s"]],'
-          'PRIMEM["Greenwich",0],UNIT["Degree",0.0174532925199433]]' % os.path.join(TMP, "secret"))
 
 
 def logged(name):
@@ -117,6 +103,8 @@ def case(name, make, arguments, named, status=0):
         print("FAILED: %s: status %d: %s\n  %s" % (name, code, said, "\n  ".join(sorted(found))))
 
 
+GRID = ('GEOGCS["x",DATUM["D",SPHEROID["W",6378137,298.25],EXTENSION["PROJ4_GRIDS","%s"]],PRIMEM["Greenwich",0],'
+        'UNIT["Degree",0.0174532925199433]]' % os.path.join(TMP, "secret"))
 write(os.path.join(TMP, "secret"), "root:x:0:0:\n")
 if not shutil.which("strace") or subprocess.run(["strace", "-o", os.devnull, "true"], capture_output=True).returncode:
     print("skipped: no strace, or it may not look at processes")
@@ -135,7 +123,7 @@ case("a VRT of the network that is allowed", lambda: write("a.vrt", "<OGRVRTData
      ["a.vrt"], 65)
 case("a server", lambda: write("a.xml", "<OGRWFSDataSource><URL>http://127.0.0.1:9/</URL></OGRWFSDataSource>"), ["a.xml"],
      ["a.xml"], 65)
-case("a shapefile with a grid elsewhere", lambda: shapefile("a"), ["a.shp"], ["a.shp", "a.shx", "a.prj"], 65)
+case("a shapefile with a grid elsewhere", lambda: shapefile("a", GRID), ["a.shp"], ["a.shp", "a.shx", "a.prj"], 65)
 case("a database at rest", lambda: logged("a.mbtiles"), ["a.mbtiles", "--layer", "roads"], ["a.mbtiles"])
 case("a style", lambda: (write("a.geojson", LINE), write("s.json", style('"type":"geojson","data":"a.geojson"'))),
      ["--style", "s.json"], ["a.geojson", "s.json"])

@@ -3,7 +3,7 @@
 
 #include "base/base.h"
 #include "lines/importance.h"
-#include "proof/statistics.h"
+#include "validate/statistics.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 #include "bench.h"
 
 #include "base/base.h"
-#include "proof/statistics.h"
+#include "validate/statistics.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* Cities at several widths and zooms: what is seen of them, drawn by camber and by the first peer, in turn. */
 #include "bench.h"
 
-#include "proof/statistics.h"
+#include "validate/statistics.h"
 
 #include <math.h>
 #include <stdlib.h>

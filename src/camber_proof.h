@@ -1,7 +1,7 @@
 /* camber: meshes and stages in host memory, the CPU twin, and overdraw: what proofs and exporters need.
  *
  * The rules of camber.h hold here too. A mesh that is read back, or made by the twin, which needs no device, is the
- * same bytes: src/proof and `camber validate` hold one against the other.
+ * same bytes: src/validate and `camber validate` hold one against the other.
  */
 #ifndef CAMBER_PROOF_H
 #define CAMBER_PROOF_H
@@ -187,6 +187,23 @@ typedef struct camber_overdraw {
 /* Counts with the stencil and additive blending, two draw calls a range. Returns what camber_render returns. */
 CAMBER_API camber_status camber_overdraw_count(camber_renderer *renderer, const camber_overdraw_desc *desc,
                                                camber_overdraw *overdraw);
+
+/* ---- GLB ------------------------------------------------------------------------------------------- */
+
+typedef struct camber_glb_desc {
+    const camber_stroke *strokes; /* go to extras, with the paints */
+    const camber_paint *paints;   /* NULL: none; else stroke_count */
+    size_t stroke_count;
+    const char *copyright; /* asset.copyright. NULL: none */
+} camber_glb_desc;
+
+/* Writes a binary glTF 2.0 that any reader loads: triangles, or strips whose restarts are degenerate
+ * triangles; x right, y up, z 0, one unit a pixel. POSITION is the stroke's true outline at the strokes'
+ * widths; _CENTER, _SEGMENT, _EXTRUDE, _TURN, _FLAGS and _ROW are what camber's shaders draw from (docs in glb.c).
+ * Returns CAMBER_ERROR_ARGUMENT (a paint that is not finite, a copyright that is not UTF-8), CAMBER_ERROR_IO when the
+ * sink refuses, CAMBER_ERROR_LIMIT (4 GB or more), CAMBER_ERROR_MEMORY. */
+CAMBER_API camber_status camber_glb_write(camber_context *context, const camber_mesh_data *mesh,
+                                          const camber_glb_desc *desc, camber_sink sink);
 
 #ifdef __cplusplus
 }

@@ -1,6 +1,6 @@
 /* Lines that are two bands, fade, are dashed, drawn in part or change their colour: against samples. */
 #include "cli/checks.h"
-#include "proof/along.h"
+#include "validate/along.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -2,7 +2,7 @@
  * lines that are projected from the definition alone. */
 #include "cli/samples.h"
 
-#include "proof/projected.h"
+#include "validate/projected.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -4,7 +4,7 @@
 
 #include "camber_proof.h"
 #include "cli/rigs.h"
-#include "proof/truth.h"
+#include "validate/truth.h"
 
 /* Polylines and what they are checked with. */
 typedef struct camber_subject {

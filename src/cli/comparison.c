@@ -1,10 +1,10 @@
 #include "cli/comparison.h"
 #include "cli/levels.h"
-#include "proof/bands.h"
-#include "proof/batches.h"
-#include "proof/joins.h"
-#include "proof/statistics.h"
-#include "proof/turns.h"
+#include "validate/bands.h"
+#include "validate/batches.h"
+#include "validate/joins.h"
+#include "validate/statistics.h"
+#include "validate/turns.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 #include "cli/picture.h"
 #include "cli/verbs.h"
-#include "proof/statistics.h"
+#include "validate/statistics.h"
 
 #include <stdlib.h>
 #include <string.h>

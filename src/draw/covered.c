@@ -1,7 +1,7 @@
 /* Frames that kernels draw: passes become runs of polylines, tables of rows and inks, and the picture is drawn an area
  * after the other. */
 #include "base/perspective.h"
-#include "cover/cover.h"
+#include "raster/raster.h"
 #include "draw/renderer.h"
 
 #include <string.h>

@@ -1,6 +1,6 @@
 /* What the kernels that draw found, and their twin: for proofs. */
 #include "camber_proof.h"
-#include "cover/cover.h"
+#include "raster/raster.h"
 #include "draw/renderer.h"
 
 #include <assert.h>

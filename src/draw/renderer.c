@@ -1,6 +1,6 @@
 /* Renderers, and meshes that they draw. */
 #include "draw/renderer.h"
-#include "cover/cover.h"
+#include "raster/raster.h"
 
 #include <assert.h>
 

@@ -2,7 +2,7 @@
 #ifndef CAMBER_RENDERER_H
 #define CAMBER_RENDERER_H
 
-#include "draw/share.h"
+#include "gl/share.h"
 
 /* Variants of the stroke shader, as bits. */
 enum {

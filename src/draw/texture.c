@@ -1,6 +1,6 @@
 /* Frames into textures of the caller's. What GL draws and nothing lies below goes straight there; what kernels draw
  * comes through a buffer that GL shares. What lies over something, or upside down, is drawn beside and put onto it. */
-#include "cover/cover.h"
+#include "raster/raster.h"
 #include "draw/renderer.h"
 
 #include <assert.h>

@@ -2,7 +2,7 @@
 #ifndef CAMBER_SOURCES_H
 #define CAMBER_SOURCES_H
 
-#include "source/cover.h"
+#include "source/tile_cover.h"
 
 typedef struct camber_sources camber_sources;
 

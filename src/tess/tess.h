@@ -39,7 +39,7 @@ struct camber_device {
 typedef struct camber_gl_handles {
     cl_context_properties context, display, display_kind; /* kind: CL_EGL_DISPLAY_KHR */
 } camber_gl_handles;
-camber_gl_handles camber_surface_handles(const camber_surface *surface); /* src/draw/surface.c */
+camber_gl_handles camber_surface_handles(const camber_surface *surface); /* src/gl/surface.c */
 /* As much as its shaders can read. */
 uint64_t camber_surface_largest_buffer_bytes(const camber_surface *surface);
 
@@ -81,7 +81,7 @@ camber_status camber_device_offsets(camber_device *device, bool measured, camber
 camber_status camber_device_cover_program(camber_device *device, unsigned variant, camber_program **program);
 void camber_program_destroy(camber_context *context, camber_program *program);
 
-/* ---- Output buffers, which GL may share: src/draw/share_*.c ---- */
+/* ---- Output buffers, which GL may share: src/gl/share_*.c ---- */
 
 typedef struct camber_buffer {
     cl_mem mem;

@@ -3,7 +3,7 @@
  * and as kernels do. Then the same lines as a network whose camera leaves points out. Needs the extracts under
  * $CAMBER_DATA/data; ends in 77 without them. */
 #include "lines/importance.h"
-#include "proof/oracle.h"
+#include "validate/oracle.h"
 
 #include "camber_network.h"
 

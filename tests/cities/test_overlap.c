@@ -3,7 +3,7 @@
 #include "picture.h"
 
 #include "camber_map.h"
-#include "proof/joins.h"
+#include "validate/joins.h"
 
 enum { SIDE_PX = 1024 };
 

@@ -1,7 +1,7 @@
 /* Dashes: against each dash drawn by itself, as the oracle samples it. */
 #include "along.h"
 
-#include "proof/oracle.h"
+#include "validate/oracle.h"
 
 #include <stdio.h>
 

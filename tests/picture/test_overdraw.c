@@ -1,7 +1,7 @@
 /* Overdraw against counts by hand, against the oracle, and against itself in other ranges, pieces and back ends. */
 #include "picture.h"
 
-#include "proof/oracle.h"
+#include "validate/oracle.h"
 #include "tess/tess.h"
 
 /* ---- Counting ---- */

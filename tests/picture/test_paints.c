@@ -1,7 +1,7 @@
 /* What paints add to strokes: gaps, blurs and translations, and the opacity of a pass. */
 #include "picture.h"
 
-#include "proof/oracle.h"
+#include "validate/oracle.h"
 
 #include <stdio.h>
 

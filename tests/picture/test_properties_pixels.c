@@ -2,7 +2,7 @@
 #include "easel.h"
 
 #include "kernels/join.h"
-#include "proof/oracle.h"
+#include "validate/oracle.h"
 
 enum { SIDE = PROPERTY_SIDE_PX };
 

@@ -1,7 +1,7 @@
 /* Pictures held against the truth in bands: the sums are those of one window, however many threads there are. */
 #include "scene.h"
 
-#include "proof/bands.h"
+#include "validate/bands.h"
 
 enum { WIDTH = 90, HEIGHT = 101, PICTURES = 2 };
 

@@ -1,7 +1,7 @@
 /* Draw calls of a mesh with 16-bit indices, counted by hand and held against a batcher that copies vertices. */
 #include "scene.h"
 
-#include "proof/batches.h"
+#include "validate/batches.h"
 
 enum { R = -1 }; /* a restart */
 

@@ -1,6 +1,6 @@
 /* What pixels are held to: the oracle's own error, and what few pixels may be off by and may not. */
 #include "cli/checks.h"
-#include "proof/oracle.h"
+#include "validate/oracle.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -1,7 +1,7 @@
 /* What GL can be told by, before it is opened. */
 #include "core.h"
 
-#include "draw/surface.h"
+#include "gl/surface.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>

@@ -1,7 +1,7 @@
 /* The joins that proofs find in a mesh against those that its tessellation counted, and against joins by hand. */
 #include "scene.h"
 
-#include "proof/joins.h"
+#include "validate/joins.h"
 
 typedef struct found {
     camber_mesh_data mesh;

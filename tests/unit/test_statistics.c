@@ -1,4 +1,4 @@
-#include "proof/statistics.h"
+#include "validate/statistics.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

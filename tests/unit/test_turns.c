@@ -1,7 +1,7 @@
 /* Joins by how much they turn: known figures, and as many as the tessellation finds. */
 #include "scene.h"
 
-#include "proof/turns.h"
+#include "validate/turns.h"
 
 static camber_lines lines_of(const scene *s) {
     return (camber_lines){s->points, s->offsets, s->point_count, s->polyline_count};

@@ -1,0 +1,36 @@
+/* How OpenCL's output reaches GL: one file a path (share_gl.c, share_zero_copy.c, share_copy.c). */
+#ifndef CAMBER_SHARE_H
+#define CAMBER_SHARE_H
+
+#include "gl/surface.h"
+
+/* The user of camber_buffer_ops. */
+typedef struct camber_share {
+    camber_device *device;
+    camber_surface *surface;
+    uint64_t frames_begun, frames_done; /* numbers of the last of them */
+} camber_share;
+
+typedef struct camber_share_path {
+    camber_sharing sharing;
+    bool (*is_possible)(const camber_share *share);
+    camber_buffer_ops ops;
+} camber_share_path;
+
+extern const camber_share_path camber_share_gl;
+extern const camber_share_path camber_share_zero_copy;
+extern const camber_share_path camber_share_copy;
+
+/* Frees both sides of a buffer. */
+void camber_share_release(void *user, camber_buffer *buffer);
+
+/* Waits for GL where a frame in flight reads one of the buffers. */
+void camber_share_await(camber_share *share, const camber_buffer *buffers, size_t count);
+
+/* What GL says to a buffer of this size. */
+camber_status camber_share_check(const camber_share *share, size_t size_bytes);
+
+/* Chooses a path, the first that works for AUTO, by writing a buffer through it. */
+camber_status camber_share_choose(camber_share *share, camber_sharing wanted, const camber_share_path **path);
+
+#endif

@@ -1,0 +1,51 @@
+/* Surfaces: one file a back end (surface_egl.c, surface_osmesa.c), and nothing else knows that it exists. */
+#ifndef CAMBER_SURFACE_H
+#define CAMBER_SURFACE_H
+
+#include "gl/gl.h"
+#include "tess/tess.h"
+
+typedef struct camber_surface_ops {
+    camber_backend backend;
+    /* Loads the library and makes a context, current on this thread. Logs on failure. */
+    camber_status (*create)(camber_surface *surface);
+    bool (*make_current)(camber_surface *surface); /* false: the surface's lost tells whether for ever */
+    void (*release)(camber_surface *surface);      /* no context is current on this thread any more */
+    camber_function *(*load)(camber_surface *surface, const char *name);
+    camber_gl_handles (*handles)(const camber_surface *surface); /* NULL: none */
+    void (*destroy)(camber_surface *surface);
+} camber_surface_ops;
+
+extern const camber_surface_ops camber_surface_egl;
+extern const camber_surface_ops camber_surface_osmesa;
+
+struct camber_surface {
+    camber_context *context;
+    const camber_surface_ops *ops;
+    void *egl_context, *egl_display; /* of the caller, that the context shares objects with. NULL: none */
+    void *state;                     /* the back end's */
+    const char *name;                /* set by create: "EGL surfaceless", ... */
+    camber_gl gl;
+    camber_surface_info info;
+    bool half_float_targets; /* can be drawn into, with blending */
+    bool es_3_2;             /* or desktop GL that has as much */
+    uint32_t records_max;    /* of a texture buffer */
+    GLint largest_viewport[2];
+    bool lost; /* the GL context: nothing that is in it comes back */
+};
+
+/* hardware.c: whether a folder, /dev but in tests, has what a GPU's driver is reached through. */
+bool camber_hardware_in(const char *folder);
+
+/* Every public call that draws begins with it: the two libraries share one dispatch, and another surface may have
+ * been current. */
+camber_status camber_surface_make_current(camber_surface *surface);
+/* The same for what frees: nothing is logged. false: GL's objects went with the context, or go with it. */
+bool camber_surface_try_current(camber_surface *surface);
+
+/* What GL has reported since the last look, as a status, its story logged: what failed is named by what. */
+camber_status camber_surface_check(camber_surface *surface, const char *what);
+/* Leaves what GL has reported behind: after a failure that is told already. */
+void camber_surface_forget_errors(camber_surface *surface);
+
+#endif

@@ -1,0 +1,181 @@
+/* EGL without a display: Mesa's surfaceless platform, else the first device that gives a GLES 3 context. */
+#include "gl/surface.h"
+
+#include <CL/cl_gl.h>
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
+#include <dlfcn.h>
+#include <string.h>
+
+enum { DEVICES_MAX = 16 };
+
+#define EGL_FUNCTIONS(X)                                                                                               \
+    X(EGLBoolean, eglInitialize, (EGLDisplay, EGLint *, EGLint *))                                                     \
+    X(EGLBoolean, eglBindAPI, (EGLenum))                                                                               \
+    X(EGLBoolean, eglChooseConfig, (EGLDisplay, const EGLint *, EGLConfig *, EGLint, EGLint *))                        \
+    X(EGLContext, eglCreateContext, (EGLDisplay, EGLConfig, EGLContext, const EGLint *))                               \
+    X(EGLBoolean, eglDestroyContext, (EGLDisplay, EGLContext))                                                         \
+    X(EGLBoolean, eglMakeCurrent, (EGLDisplay, EGLSurface, EGLSurface, EGLContext))                                    \
+    X(EGLContext, eglGetCurrentContext, (void))                                                                        \
+    X(EGLint, eglGetError, (void))                                                                                     \
+    X(const char *, eglQueryString, (EGLDisplay, EGLint))                                                              \
+    X(camber_function *, eglGetProcAddress, (const char *))
+
+typedef struct egl_state {
+    void *library;
+    EGLDisplay display;
+    EGLContext context;
+#define MEMBER(result, name, parameters) result(*name) parameters;
+    EGL_FUNCTIONS(MEMBER)
+#undef MEMBER
+} egl_state;
+
+static bool load_library(egl_state *egl) {
+    egl->library = dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL);
+    if (!egl->library)
+        return false;
+    void *symbol;
+#define LOAD(result, name, parameters)                                                                                 \
+    symbol = dlsym(egl->library, #name);                                                                               \
+    if (!symbol)                                                                                                       \
+        return false;                                                                                                  \
+    memcpy(&egl->name, &symbol, sizeof symbol);
+    EGL_FUNCTIONS(LOAD)
+#undef LOAD
+    return true;
+}
+
+static camber_function *load(camber_surface *surface, const char *name) {
+    const egl_state *egl = surface->state;
+    return egl->eglGetProcAddress(name);
+}
+
+/* A GLES 3 context that tells of its loss, where there are such; else one that may draw garbage then, or end the
+ * process. */
+static EGLContext create_context(const egl_state *egl, EGLConfig config, EGLContext shared) {
+    static const EGLint telling[] = {EGL_CONTEXT_MAJOR_VERSION_KHR, 3,
+                                     EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT, EGL_LOSE_CONTEXT_ON_RESET_EXT,
+                                     EGL_NONE};
+    static const EGLint plain[] = {EGL_CONTEXT_MAJOR_VERSION_KHR, 3, EGL_NONE};
+    const char *extensions = egl->eglQueryString(egl->display, EGL_EXTENSIONS);
+    EGLContext made = EGL_NO_CONTEXT;
+    if (extensions && strstr(extensions, "EGL_EXT_create_context_robustness"))
+        made = egl->eglCreateContext(egl->display, config, shared, telling);
+    return made != EGL_NO_CONTEXT ? made : egl->eglCreateContext(egl->display, config, shared, plain);
+}
+
+/* A context on a display that is initialised; false leaves nothing behind but the display. */
+static bool make_context(egl_state *egl, EGLContext shared) {
+    static const EGLint config_wanted[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_ES3_BIT_KHR, EGL_SURFACE_TYPE, 0, EGL_NONE};
+    EGLConfig config = NULL;
+    EGLint count = 0;
+    if (!egl->eglBindAPI(EGL_OPENGL_ES_API))
+        return false;
+    if (!egl->eglChooseConfig(egl->display, config_wanted, &config, 1, &count) || count < 1)
+        config = NULL; /* EGL_NO_CONFIG_KHR: no surface is ever made */
+    egl->context = create_context(egl, config, shared);
+    if (egl->context == EGL_NO_CONTEXT)
+        return false;
+    if (egl->eglMakeCurrent(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, egl->context))
+        return true;
+    egl->eglDestroyContext(egl->display, egl->context);
+    egl->context = EGL_NO_CONTEXT;
+    return false;
+}
+
+static bool open_display(egl_state *egl, EGLDisplay display, EGLContext shared) {
+    if (display == EGL_NO_DISPLAY || !egl->eglInitialize(display, NULL, NULL))
+        return false;
+    egl->display = display;
+    if (make_context(egl, shared))
+        return true;
+    egl->display = EGL_NO_DISPLAY; /* not terminated: another surface may be on it */
+    return false;
+}
+
+static bool open_any(camber_surface *surface, egl_state *egl) {
+    PFNEGLGETPLATFORMDISPLAYEXTPROC get_display;
+    PFNEGLQUERYDEVICESEXTPROC query_devices;
+    camber_function *function = egl->eglGetProcAddress("eglGetPlatformDisplayEXT");
+    memcpy(&get_display, &function, sizeof function);
+    function = egl->eglGetProcAddress("eglQueryDevicesEXT");
+    memcpy(&query_devices, &function, sizeof function);
+    const char *client = egl->eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
+    if (!get_display || !client)
+        return false;
+    surface->name = "EGL surfaceless";
+    if (strstr(client, "EGL_MESA_platform_surfaceless") &&
+        open_display(egl, get_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL), EGL_NO_CONTEXT))
+        return true;
+    surface->name = "EGL device";
+    EGLDeviceEXT devices[DEVICES_MAX];
+    EGLint count = 0;
+    if (!query_devices || !query_devices(DEVICES_MAX, devices, &count))
+        return false;
+    for (EGLint i = 0; i < count; i++)
+        if (open_display(egl, get_display(EGL_PLATFORM_DEVICE_EXT, devices[i], NULL), EGL_NO_CONTEXT))
+            return true;
+    return false;
+}
+
+static camber_status create(camber_surface *surface) {
+    surface->name = "EGL";
+    egl_state *egl = camber_alloc_zero(surface->context, 1, sizeof *egl);
+    if (!egl)
+        return CAMBER_ERROR_MEMORY;
+    surface->state = egl;
+    if (!load_library(egl))
+        return camber_fail(surface->context, CAMBER_ERROR_DEVICE, "EGL: libEGL.so.1 cannot be loaded; install libegl1");
+    if (surface->egl_context) {
+        surface->name = "EGL shared";
+        if (!open_display(egl, surface->egl_display, surface->egl_context))
+            return camber_fail(surface->context, CAMBER_ERROR_DEVICE,
+                               "EGL: no GLES 3 context shares objects with the caller's; give a GLES context and its "
+                               "own display");
+        return CAMBER_OK;
+    }
+    if (!open_any(surface, egl))
+        return camber_fail(surface->context, CAMBER_ERROR_DEVICE,
+                           "EGL: neither the surfaceless nor a device platform gives a GLES 3 context; install "
+                           "libegl-mesa0 and libgl1-mesa-dri, or use OSMesa");
+    return CAMBER_OK;
+}
+
+static bool make_current(camber_surface *surface) {
+    const egl_state *egl = surface->state;
+    /* Always, not only where another is current: OSMesa replaces the dispatch behind EGL's back. */
+    if (egl->eglGetCurrentContext() == egl->context)
+        egl->eglMakeCurrent(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    egl->eglBindAPI(EGL_OPENGL_ES_API);
+    if (egl->eglMakeCurrent(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, egl->context))
+        return true;
+    surface->lost = egl->eglGetError() == EGL_CONTEXT_LOST;
+    return false;
+}
+
+static void release(camber_surface *surface) {
+    const egl_state *egl = surface->state;
+    egl->eglMakeCurrent(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+}
+
+static camber_gl_handles handles(const camber_surface *surface) {
+    const egl_state *egl = surface->state;
+    return (camber_gl_handles){(cl_context_properties)egl->context, (cl_context_properties)egl->display,
+                               CL_EGL_DISPLAY_KHR};
+}
+
+static void destroy(camber_surface *surface) {
+    egl_state *egl = surface->state;
+    if (!egl)
+        return;
+    if (egl->context != EGL_NO_CONTEXT) {
+        release(surface);
+        egl->eglDestroyContext(egl->display, egl->context);
+    }
+    /* The display is the process's, shared with every other surface on it, and the driver's library keeps threads: both
+     * stay, as EGL's own reference is not counted. */
+    camber_free(surface->context, egl);
+}
+
+const camber_surface_ops camber_surface_egl = {
+    CAMBER_BACKEND_EGL, create, make_current, release, load, handles, destroy};

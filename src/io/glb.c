@@ -1,0 +1,488 @@
+/* Binary glTF 2.0 of a mesh.
+ *
+ * One node, one mesh, one primitive: TRIANGLES, or a TRIANGLE_STRIP whose restarts became degenerate triangles
+ * (glTF has no restart index; as a list of triangles the indices would take three times the space). x points
+ * right, y up, z is 0, one unit is a device pixel, and the picture's top left is the origin: everything is
+ * camber_vertex mirrored at y = 0. The formulas of camber.h hold as they stand, in the mirrored frame.
+ *
+ * Attributes, interleaved:
+ *     POSITION  VEC3 float      the stroke's true outline: the formula of camber_vertex with g = half the stroke's
+ *                               width. Vertices at a butt end lie on the end point's normal: the limit that they
+ *                               carry is the pad of anti-aliasing, which an outline does not have. Round caps and
+ *                               joins are the boxes and kites that the arcs are drawn in.
+ *     _CENTER   VEC2 float      P, the segment's end that the vertex belongs to
+ *     _SEGMENT  VEC2 float      B - A; 0, 0 for a dot
+ *     _EXTRUDE  VEC3 float      along and across in units of g, and the limit of along * g in pixels (3e38: none)
+ *     _TURN     VEC2 short, normalised   tan(turn angle / 4) at A and at B, positive counter-clockwise as seen
+ *     _ROW      SCALAR float    of the style table; rows are below 2^24, so a float holds them exactly (glTF allows
+ *                               no 32-bit integers here)
+ *     _FLAGS    SCALAR unsigned short    camber_vertex.flags: bits 0-2 the end at A, 3-5 at B (camber_end), 6: P is B,
+ *                               7, 8: the line begins or ends one segment further
+ *     COLOR_0   VEC4 unsigned short, normalised   the row's paint, linear as glTF wants it; absent without paints
+ *
+ * In both modes the last (provoking) vertex of a triangle carries the segment that the triangle draws.
+ * mesh.extras.rows is the style table: {width, join, cap, miterLimit, paint: {width, color: straight sRGB RGBA}}.
+ * A mesh without vertices gives a file with an empty scene: glTF allows no empty accessors. */
+#include "base/base.h"
+#include "camber_proof.h"
+
+#include <assert.h>
+#include <float.h>
+#include <jansson.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* glTF's numbers, which are GL's. */
+enum {
+    GLTF_SHORT = 5122,
+    GLTF_UNSIGNED_SHORT = 5123,
+    GLTF_UNSIGNED_INT = 5125,
+    GLTF_FLOAT = 5126,
+    GLTF_ARRAY_BUFFER = 34962,
+    GLTF_ELEMENT_ARRAY_BUFFER = 34963,
+    GLTF_TRIANGLES = 4,
+    GLTF_TRIANGLE_STRIP = 5,
+};
+
+typedef struct attribute {
+    const char *name, *type;
+    int component, offset_bytes;
+    bool normalized;
+} attribute;
+
+static const attribute ATTRIBUTES[] = {
+    {"POSITION", "VEC3", GLTF_FLOAT, 0, false},
+    {"_CENTER", "VEC2", GLTF_FLOAT, 12, false},
+    {"_SEGMENT", "VEC2", GLTF_FLOAT, 20, false},
+    {"_EXTRUDE", "VEC3", GLTF_FLOAT, 28, false},
+    {"_TURN", "VEC2", GLTF_SHORT, 40, true},
+    {"_ROW", "SCALAR", GLTF_FLOAT, 44, false},
+    {"_FLAGS", "SCALAR", GLTF_UNSIGNED_SHORT, 48, false},
+    {"COLOR_0", "VEC4", GLTF_UNSIGNED_SHORT, 52, true},
+};
+#define ATTRIBUTE_COUNT (sizeof ATTRIBUTES / sizeof *ATTRIBUTES)
+#define PLAIN_STRIDE 52 /* without COLOR_0, the last */
+#define COLORED_STRIDE 60
+
+#define BLOCK_BYTES 65536
+#define AT_END 64u /* camber_vertex.flags */
+
+typedef struct writer {
+    camber_context *context;
+    const camber_mesh_data *mesh;
+    const camber_glb_desc *desc;
+    camber_sink sink;
+    unsigned char *block; /* BLOCK_BYTES */
+    size_t used;
+    uint64_t taken, total; /* bytes */
+    bool refused;
+    float low[3], high[3]; /* bounds of POSITION */
+    uint64_t index_count;  /* written, restarts replaced */
+} writer;
+
+/* ---- Bytes ---- */
+
+static void flush(writer *w) {
+    if (w->used && !w->refused)
+        w->refused = !w->sink.write(w->sink.user, w->block, w->used);
+    w->taken += w->used;
+    w->used = 0;
+    if (w->total)
+        camber_progress(w->context, "writing", (double)w->taken / (double)w->total);
+}
+
+/* Room for so many bytes: at most BLOCK_BYTES. */
+static void want(writer *w, size_t size_bytes) {
+    if (w->used + size_bytes > BLOCK_BYTES)
+        flush(w);
+}
+
+static void put_u16(writer *w, uint16_t value) {
+    w->block[w->used++] = (unsigned char)(value & 0xff);
+    w->block[w->used++] = (unsigned char)(value >> 8);
+}
+
+static void put_u32(writer *w, uint32_t value) {
+    put_u16(w, (uint16_t)(value & 0xffff));
+    put_u16(w, (uint16_t)(value >> 16));
+}
+
+static void put_f32(writer *w, float value) {
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    put_u32(w, bits);
+}
+
+/* ---- Vertices ---- */
+
+/* Mirrored, and never -0. */
+static float up(float y) {
+    return 0.0f - y;
+}
+
+static void position_of(const writer *w, const camber_vertex *v, float *position) {
+    assert(v->row < w->desc->stroke_count);
+    const double h = 0.5 * (double)w->desc->strokes[v->row].width_px;
+    const double length = hypot((double)v->dx, (double)v->dy);
+    const double ux = length > 0.0 ? (double)v->dx / length : 1.0, uy = length > 0.0 ? (double)v->dy / length : 0.0;
+    const double limit = (double)v->limit_px;
+    const unsigned end = (v->flags & AT_END ? v->flags >> 3 : v->flags) & 7u;
+    const double along = end == CAMBER_END_BUTT ? 0.0 : fmin(fmax((double)v->along * h, -limit), limit);
+    const double across = (double)v->across / 16384.0 * h;
+    position[0] = (float)((double)v->x + ux * along - uy * across);
+    position[1] = up((float)((double)v->y + uy * along + ux * across));
+    position[2] = 0.0f;
+}
+
+static void measure(writer *w) {
+    for (int k = 0; k < 3; k++) {
+        w->low[k] = FLT_MAX;
+        w->high[k] = -FLT_MAX;
+    }
+    for (size_t i = 0; i < w->mesh->info.vertex_count; i++) {
+        float position[3];
+        position_of(w, w->mesh->vertices + i, position);
+        for (int k = 0; k < 3; k++) {
+            w->low[k] = fminf(w->low[k], position[k]);
+            w->high[k] = fmaxf(w->high[k], position[k]);
+        }
+    }
+}
+
+/* sRGB's transfer function, IEC 61966-2-1. */
+static double linear_of(double c) {
+    return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4);
+}
+
+static uint16_t normalized_of(double c) {
+    return (uint16_t)(fmin(fmax(c, 0.0), 1.0) * 65535.0 + 0.5);
+}
+
+/* The paints as COLOR_0; NULL where memory is short. */
+static uint16_t *make_colors(const writer *w) {
+    uint16_t *colors = camber_alloc(w->context, w->desc->stroke_count, 4 * sizeof *colors);
+    for (size_t i = 0; colors && i < w->desc->stroke_count; i++) {
+        const camber_color c = w->desc->paints[i].color;
+        colors[4 * i] = normalized_of(linear_of((double)c.r));
+        colors[4 * i + 1] = normalized_of(linear_of((double)c.g));
+        colors[4 * i + 2] = normalized_of(linear_of((double)c.b));
+        colors[4 * i + 3] = normalized_of((double)c.a);
+    }
+    return colors;
+}
+
+static void put_vertices(writer *w, const uint16_t *colors) {
+    for (size_t i = 0; i < w->mesh->info.vertex_count && !w->refused; i++) {
+        const camber_vertex *v = w->mesh->vertices + i;
+        float position[3];
+        position_of(w, v, position);
+        want(w, COLORED_STRIDE);
+        for (int k = 0; k < 3; k++)
+            put_f32(w, position[k]);
+        put_f32(w, v->x);
+        put_f32(w, up(v->y));
+        put_f32(w, v->dx);
+        put_f32(w, up(v->dy));
+        put_f32(w, v->along);
+        put_f32(w, up((float)v->across / 16384.0f));
+        put_f32(w, v->limit_px);
+        put_u16(w, (uint16_t)-v->turn_a);
+        put_u16(w, (uint16_t)-v->turn_b);
+        put_f32(w, (float)v->row);
+        put_u16(w, v->flags);
+        put_u16(w, 0);
+        for (size_t k = 0; colors && k < 4; k++)
+            put_u16(w, colors[4 * v->row + k]);
+    }
+}
+
+/* ---- Indices ---- */
+
+static void put_index(writer *w, uint32_t index, bool count_only) {
+    w->index_count++;
+    if (count_only)
+        return;
+    want(w, 4);
+    put_u32(w, index);
+}
+
+/* The end of the strip that begins with an index: at a restart, or where a tight join's start follows its end. */
+static size_t strip_end(const camber_mesh_data *mesh, size_t first) {
+    const size_t count = mesh->info.index_count;
+    size_t end = first;
+    if (!mesh->info.strips)
+        return count;
+    for (; end < count && mesh->indices[end] != CAMBER_RESTART_INDEX; end++) {
+        const uint32_t *pair = mesh->indices + end;
+        const bool has_before = end % 2 == 0 && end >= first + 2;
+        if (has_before && (pair[-2] == pair[0] || (end + 1 < count && pair[-1] == pair[1])))
+            break;
+    }
+    return end;
+}
+
+/* Strips a, b with nothing drawn between become one: the last index of a and the first of b again, the latter twice
+ * where that keeps b's triangles at even places, so that each keeps its winding. */
+static void put_indices(writer *w, bool count_only) {
+    const uint32_t *indices = w->mesh->indices;
+    const size_t count = w->mesh->info.index_count;
+    uint32_t last = 0; /* written */
+    w->index_count = 0;
+    for (size_t first = 0, end; first < count && !w->refused; first = end) {
+        end = strip_end(w->mesh, first);
+        if (end == first)
+            end++;
+        if (end - first < 3)
+            continue;
+        if (w->index_count) {
+            put_index(w, last, count_only);
+            if (w->index_count % 2 == 0)
+                put_index(w, indices[first], count_only);
+            put_index(w, indices[first], count_only);
+        }
+        for (size_t i = first; i < end; i++)
+            put_index(w, indices[i], count_only);
+        last = indices[end - 1];
+    }
+}
+
+/* ---- JSON ---- */
+
+/* ok turns false where memory is short, for the value as well: jansson passes NULL on. */
+static void set(json_t *object, const char *key, json_t *value, bool *ok) {
+    *ok &= json_object_set_new(object, key, value) == 0;
+}
+
+static void append(json_t *array, json_t *value, bool *ok) {
+    *ok &= json_array_append_new(array, value) == 0;
+}
+
+static const char *join_name(camber_join join) {
+    return join == CAMBER_JOIN_MITER ? "miter" : join == CAMBER_JOIN_BEVEL ? "bevel" : "round";
+}
+
+static const char *cap_name(camber_cap cap) {
+    return cap == CAMBER_CAP_ROUND ? "round" : cap == CAMBER_CAP_SQUARE ? "square" : "butt";
+}
+
+static json_t *style_table(const camber_glb_desc *desc, bool *ok) {
+    json_t *rows = json_array();
+    for (size_t i = 0; i < desc->stroke_count; i++) {
+        const camber_stroke *stroke = desc->strokes + i;
+        /* JSON has no infinity. */
+        const double limit = stroke->miter_limit > 0.0f ? fmin((double)stroke->miter_limit, (double)FLT_MAX) : 2.0;
+        json_t *row = json_pack("{s:f, s:s, s:s, s:f}", "width", (double)stroke->width_px, "join",
+                                join_name(stroke->join), "cap", cap_name(stroke->cap), "miterLimit", limit);
+        if (row && stroke->round_limit > 0.0f)
+            set(row, "roundLimit", json_real(fmin((double)stroke->round_limit, (double)FLT_MAX)), ok);
+        if (desc->paints) {
+            const camber_color c = desc->paints[i].color;
+            set(row, "paint",
+                json_pack("{s:f, s:[f,f,f,f]}", "width", (double)desc->paints[i].width_px, "color", (double)c.r,
+                          (double)c.g, (double)c.b, (double)c.a),
+                ok);
+        }
+        append(rows, row, ok);
+    }
+    return rows;
+}
+
+/* Unlit, and seen from both sides. */
+static json_t *material(const camber_glb_desc *desc, bool *ok) {
+    json_t *pbr = json_pack("{s:f, s:f}", "metallicFactor", 0.0, "roughnessFactor", 1.0);
+    bool translucent = false;
+    for (size_t i = 0; desc->paints && i < desc->stroke_count; i++)
+        translucent |= desc->paints[i].color.a < 1.0f;
+    if (!desc->paints) /* grey is seen on a viewer's black and on its white */
+        set(pbr, "baseColorFactor", json_pack("[f,f,f,f]", 0.5, 0.5, 0.5, 1.0), ok);
+    return json_pack("{s:s, s:b, s:s, s:o, s:{s:{}}}", "name", "lines", "doubleSided", 1, "alphaMode",
+                     translucent ? "BLEND" : "OPAQUE", "pbrMetallicRoughness", pbr, "extensions",
+                     "KHR_materials_unlit");
+}
+
+static json_t *accessors(const writer *w, size_t attribute_count, bool *ok) {
+    json_t *list = json_array();
+    for (size_t i = 0; i < attribute_count; i++) {
+        const attribute *a = ATTRIBUTES + i;
+        json_t *accessor =
+            json_pack("{s:i, s:i, s:i, s:I, s:s}", "bufferView", 0, "byteOffset", a->offset_bytes, "componentType",
+                      a->component, "count", (json_int_t)w->mesh->info.vertex_count, "type", a->type);
+        if (a->normalized)
+            set(accessor, "normalized", json_true(), ok);
+        if (i == 0) {
+            set(accessor, "min", json_pack("[f,f,f]", (double)w->low[0], (double)w->low[1], (double)w->low[2]), ok);
+            set(accessor, "max", json_pack("[f,f,f]", (double)w->high[0], (double)w->high[1], (double)w->high[2]), ok);
+        }
+        append(list, accessor, ok);
+    }
+    append(list,
+           json_pack("{s:i, s:i, s:I, s:s}", "bufferView", 1, "componentType", GLTF_UNSIGNED_INT, "count",
+                     (json_int_t)w->index_count, "type", "SCALAR"),
+           ok);
+    return list;
+}
+
+static void describe_mesh(json_t *root, const writer *w, uint64_t vertex_bytes, bool *ok) {
+    const uint64_t index_bytes = 4 * w->index_count;
+    const size_t attribute_count = w->desc->paints ? ATTRIBUTE_COUNT : ATTRIBUTE_COUNT - 1;
+    json_t *attributes = json_object();
+    for (size_t i = 0; i < attribute_count; i++)
+        set(attributes, ATTRIBUTES[i].name, json_integer((json_int_t)i), ok);
+    set(root, "extensionsUsed", json_pack("[s]", "KHR_materials_unlit"), ok);
+    set(root, "nodes", json_pack("[{s:s, s:i}]", "name", "lines", "mesh", 0), ok);
+    set(root, "materials", json_pack("[o]", material(w->desc, ok)), ok);
+    set(root, "meshes",
+        json_pack("[{s:s, s:[{s:i, s:o, s:i, s:i}], s:{s:s, s:o}}]", "name", "lines", "primitives", "mode",
+                  w->mesh->info.strips ? GLTF_TRIANGLE_STRIP : GLTF_TRIANGLES, "attributes", attributes, "indices",
+                  (int)attribute_count, "material", 0, "extras", "method", camber_method_name(w->mesh->info.method),
+                  "rows", style_table(w->desc, ok)),
+        ok);
+    set(root, "accessors", accessors(w, attribute_count, ok), ok);
+    set(root, "bufferViews",
+        json_pack("[{s:i, s:i, s:I, s:i, s:i}, {s:i, s:I, s:I, s:i}]", "buffer", 0, "byteOffset", 0, "byteLength",
+                  (json_int_t)vertex_bytes, "byteStride", w->desc->paints ? COLORED_STRIDE : PLAIN_STRIDE, "target",
+                  GLTF_ARRAY_BUFFER, "buffer", 0, "byteOffset", (json_int_t)vertex_bytes, "byteLength",
+                  (json_int_t)index_bytes, "target", GLTF_ELEMENT_ARRAY_BUFFER),
+        ok);
+    set(root, "buffers", json_pack("[{s:I}]", "byteLength", (json_int_t)(vertex_bytes + index_bytes)), ok);
+}
+
+/* The JSON chunk's text; freed with camber_free. NULL where memory is short, and then nothing is logged. */
+static char *make_json(const writer *w, uint64_t vertex_bytes) {
+    bool ok = true;
+    char generator[32];
+    snprintf(generator, sizeof generator, "camber %s", camber_version());
+    json_t *asset = json_pack("{s:s, s:s}", "version", "2.0", "generator", generator);
+    if (w->desc->copyright) /* what is optional to json_pack is left out where memory is short */
+        set(asset, "copyright", json_string(w->desc->copyright), &ok);
+    json_t *scene = w->index_count ? json_pack("{s:[i]}", "nodes", 0) : json_object();
+    json_t *root = json_pack("{s:o, s:i, s:[o]}", "asset", asset, "scene", 0, "scenes", scene);
+    if (w->index_count)
+        describe_mesh(root, w, vertex_bytes, &ok);
+    const size_t size = root && ok ? json_dumpb(root, NULL, 0, JSON_COMPACT) : 0;
+    char *text = size ? camber_resize_quietly(w->context, NULL, size + 1) : NULL;
+    if (text)
+        text[size] = 0;
+    if (text && json_dumpb(root, text, size, JSON_COMPACT) != size) {
+        camber_free(w->context, text);
+        text = NULL;
+    }
+    json_decref(root);
+    return text;
+}
+
+/* RFC 3629: no longer than needed, no surrogates, up to U+10FFFF. */
+static bool is_utf8(const char *text) {
+    static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
+    for (const unsigned char *c = (const unsigned char *)text; *c;) {
+        const int length = *c < 0x80 ? 1 : *c >> 5 == 6 ? 2 : *c >> 4 == 14 ? 3 : *c >> 3 == 30 ? 4 : 0;
+        if (length == 0)
+            return false;
+        uint32_t point = length == 1 ? *c : *c & (0x7fu >> length);
+        for (int i = 1; i < length; i++) {
+            if (c[i] >> 6 != 2)
+                return false;
+            point = point << 6 | (c[i] & 0x3fu);
+        }
+        if (point < least[length] || point > 0x10ffff || point >> 11 == 0x1b)
+            return false;
+        c += length;
+    }
+    return true;
+}
+
+/* ---- The file ---- */
+
+static void put_chunk_head(writer *w, uint64_t size_bytes, uint32_t type) {
+    want(w, 8);
+    put_u32(w, (uint32_t)size_bytes);
+    put_u32(w, type);
+}
+
+/* JSON has numbers that are finite alone. */
+static camber_status check_desc(camber_context *context, const camber_glb_desc *desc) {
+    if (desc->copyright && !is_utf8(desc->copyright))
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "GLB: the copyright is not UTF-8; convert it");
+    for (size_t i = 0; desc->paints && i < desc->stroke_count; i++) {
+        const camber_paint *paint = desc->paints + i;
+        const camber_color c = paint->color;
+        if (!isfinite(paint->width_px) || !isfinite(c.r) || !isfinite(c.g) || !isfinite(c.b) || !isfinite(c.a))
+            return camber_fail(context, CAMBER_ERROR_ARGUMENT,
+                               "GLB: the width or the colour of paint %zu is no finite number; give one", i);
+    }
+    return CAMBER_OK;
+}
+
+static camber_status check_size(camber_context *context, uint64_t size_bytes) {
+    if (size_bytes <= UINT32_MAX)
+        return CAMBER_OK;
+    return camber_fail(context, CAMBER_ERROR_LIMIT,
+                       "GLB: %llu bytes do not fit its 32-bit length; draw a smaller part or simplify more",
+                       (unsigned long long)size_bytes);
+}
+
+static camber_status write_file(writer *w, const char *json, const uint16_t *colors, uint64_t binary_bytes) {
+    const size_t length = strlen(json), padded = (length + 3) / 4 * 4;
+    w->total = 12 + 8 + padded + (binary_bytes ? 8 + binary_bytes : 0);
+    const camber_status status = check_size(w->context, w->total);
+    if (status != CAMBER_OK)
+        return status;
+    put_u32(w, 0x46546c67u); /* glTF */
+    put_u32(w, 2);
+    put_u32(w, (uint32_t)w->total);
+    put_chunk_head(w, padded, 0x4e4f534au); /* JSON */
+    for (size_t i = 0; i < padded && !w->refused; i++) {
+        want(w, 1);
+        w->block[w->used++] = i < length ? (unsigned char)json[i] : ' ';
+    }
+    if (binary_bytes) {
+        put_chunk_head(w, binary_bytes, 0x004e4942u); /* BIN */
+        put_vertices(w, colors);
+        put_indices(w, false);
+    }
+    flush(w);
+    return w->refused ? CAMBER_ERROR_IO : CAMBER_OK;
+}
+
+camber_status camber_glb_write(camber_context *context, const camber_mesh_data *mesh, const camber_glb_desc *desc,
+                               camber_sink sink) {
+    writer w = {.context = context, .mesh = mesh, .desc = desc, .sink = sink};
+    uint16_t *colors = NULL;
+    char *json = NULL;
+    camber_status status = check_desc(context, desc);
+    if (status != CAMBER_OK)
+        return status;
+    status = CAMBER_ERROR_MEMORY;
+    w.block = camber_alloc(context, BLOCK_BYTES, 1);
+    if (!w.block)
+        return status;
+    put_indices(&w, true);
+    uint64_t vertex_bytes = 0, index_bytes = 0;
+    if (w.index_count) {
+        vertex_bytes = (uint64_t)mesh->info.vertex_count * (desc->paints ? COLORED_STRIDE : PLAIN_STRIDE);
+        index_bytes = w.index_count * 4;
+        status = check_size(context, vertex_bytes + index_bytes); /* before the work */
+        if (status != CAMBER_OK)
+            goto done;
+        status = CAMBER_ERROR_MEMORY;
+        measure(&w);
+        if (desc->paints) {
+            colors = make_colors(&w);
+            if (!colors)
+                goto done;
+        }
+    }
+    json = make_json(&w, vertex_bytes);
+    if (json)
+        status = write_file(&w, json, colors, vertex_bytes + index_bytes);
+    else
+        status = camber_fail(context, CAMBER_ERROR_MEMORY,
+                             "GLB: no memory for the style table of %zu rows; give it fewer rows or more memory",
+                             desc->stroke_count);
+done:
+    camber_free(context, json);
+    camber_free(context, colors);
+    camber_free(context, w.block);
+    return status;
+}

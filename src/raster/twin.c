@@ -1,0 +1,213 @@
+/* The CPU twin of what draws: the same shapes, boxes, lists and pixels, a segment, a tile and a pixel at a time, with
+ * neither chunks nor sums. */
+#include "raster/twin.h"
+
+#include "camber_proof.h"
+#include "kernels/join.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- Shapes ---- */
+
+/* Of a part, as the device has them: padding is ghosts. */
+typedef struct part_records {
+    camber_record *records;
+    camber_measure *measures; /* NULL: not measured */
+} part_records;
+
+/* A record's number, or that of the nearest there is. */
+static size_t place_of(int64_t i, const camber_shape_range *r) {
+    const int64_t last = (int64_t)r->record_count - 1;
+    return (size_t)(i < 0 ? 0 : i > last ? last : i);
+}
+
+static float as_float(uint32_t word) {
+    float value;
+    memcpy(&value, &word, sizeof value);
+    return value;
+}
+
+static bool ends_segment(const camber_record *b, const camber_shape_range *r) {
+    const uint32_t starts = CAMBER_POINT_FIRST | CAMBER_RECORD_BREAK | CAMBER_RECORD_START;
+    const uint32_t kind = camber_join_kind(b->join);
+    if (!(b->last & CAMBER_POINT_REAL) || kind == CAMBER_KIND_GHOST)
+        return false;
+    return r->strips ? !(b->last & starts) : !(b->last & CAMBER_POINT_FIRST) || kind == CAMBER_KIND_DOT;
+}
+
+/* How far along its line a segment lies: from one record to another. */
+static void put_measure(const camber_measure *measures, size_t from, size_t to, const camber_shape *s,
+                        float measure[CAMBER_SHAPE_MEASURES]) {
+    memset(measure, 0, CAMBER_SHAPE_MEASURES * sizeof *measure);
+    if (!measures)
+        return;
+    measure[0] = measures[from].along_px;
+    measure[1] = camber_shape_rate(s, measures[from].along_px, measures[to].along_px);
+    measure[2] = measures[from].total_px;
+}
+
+static void put_words(const camber_shape *s, float ink, float *made) {
+    const float words[CAMBER_SHAPE_WORDS] = {s->ax,    s->ay,    s->bx,  s->by,  s->ux,         s->uy,
+                                             s->nax,   s->nay,   s->nbx, s->nby, s->half_width, s->reach,
+                                             s->slope, s->curve, 0,      ink};
+    memcpy(made, words, sizeof words);
+    made[CAMBER_SHAPE_FLAGS] = as_float(s->flags);
+}
+
+static void put_plane(const camber_shape *s, const camber_plane *p, float *made) {
+    const float words[] = {
+        s->ax,       s->ay,       s->bx,         s->by,       s->ux,       s->uy,       s->nax,      s->nay,
+        s->nbx,      s->nby,      s->half_width, p->own_a,    p->own_b,    p->cut_a[0], p->cut_a[1], p->cut_a[2],
+        p->cut_a[3], p->cut_b[0], p->cut_b[1],   p->cut_b[2], p->cut_b[3], p->ends,     p->margin,   p->left[0],
+        p->left[1],  p->left[2],  p->right[0],   p->right[1], p->right[2], 0,           0,           0};
+    _Static_assert(sizeof words == 4 * CAMBER_PLANE_WORDS, "all words of a plane");
+    memcpy(made, words, sizeof words);
+}
+
+/* The words of the segment that ends with a record; the box says whether there is one. */
+static void put_shape(const camber_twin *t, const part_records *part, const camber_shape_range *r, int64_t i,
+                      size_t shape) {
+    const camber_record *records = part->records ? part->records : camber_fill_records;
+    const camber_record b = records[place_of(i, r)], before = records[place_of(i - 1, r)];
+    const bool is_dot = camber_join_kind(b.join) == CAMBER_KIND_DOT;
+    const bool ends = i < r->end && ends_segment(&b, r);
+    const camber_record a = is_dot ? b : before;
+    const bool again = before.last & CAMBER_RECORD_START && camber_join_kind(before.join) == CAMBER_KIND_TIGHT;
+    const camber_record p = records[place_of(again ? i - 3 : i - 2, r)];
+    const float *row =
+        t->scene->rows + CAMBER_COVER_ROW_WORDS * (r->first_row + (ends ? b.last >> CAMBER_POINT_ROW_SHIFT : 0));
+    const float x = row[1] - r->eye.x, y = row[2] - r->eye.y; /* 0 where there is no pitch */
+    camber_shape s =
+        camber_shape_of(p.x + x, p.y + y, a.x + x, a.y + y, b.x + x, b.y + y, a.join, b.join, row[0], r->linear);
+    bool drawn = ends && row[0] >= 0.0f;
+    if (t->stages->measures)
+        put_measure(part->measures, place_of(is_dot ? i : i - 1, r), place_of(i, r), &s,
+                    t->stages->measures + CAMBER_SHAPE_MEASURES * shape);
+    if (t->stages->planes) {
+        camber_shape band;
+        camber_plane plane;
+        drawn = drawn && camber_pitch_shape_of(r->eye, r->horizon, &s, &band, &plane);
+        if (drawn) {
+            put_plane(&s, &plane, t->stages->planes + CAMBER_PLANE_WORDS * shape);
+            s = band;
+        }
+    }
+    put_words(&s, row[3], t->stages->shapes + CAMBER_SHAPE_WORDS * shape);
+    t->stages->boxes[shape] = camber_shape_box(&s, drawn, r->left, r->top, r->columns, r->rows);
+}
+
+static void free_part(camber_context *context, part_records *part) {
+    camber_free(context, part->records);
+    camber_free(context, part->measures);
+}
+
+/* The records of a part, read as the device has them. */
+static camber_status read_part(camber_mesh *mesh, size_t which, part_records *part) {
+    camber_context *context = mesh->device->context;
+    camber_mesh_data data;
+    const camber_status status = camber_mesh_read(mesh, &data);
+    if (status != CAMBER_OK)
+        return status;
+    const camber_mesh_part *from = mesh->parts + which;
+    const size_t count = mesh->mesh_info.strips ? from->record_count : from->slot_count;
+    const size_t kept = from->record_count < count ? from->record_count : count;
+    const bool measured = mesh->mesh_info.measured;
+    part_records made = {camber_alloc_zero(context, count, sizeof *made.records),
+                         measured ? camber_alloc_zero(context, count, sizeof *made.measures) : NULL};
+    if (made.records)
+        memcpy(made.records, data.records + from->first_record, kept * sizeof *made.records);
+    if (made.measures)
+        memcpy(made.measures, data.measures + from->first_record, kept * sizeof *made.measures);
+    camber_mesh_data_free(context, &data);
+    *part = made;
+    return made.records && (made.measures || !measured) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+}
+
+static camber_status make_shapes(const camber_twin *t, const camber_cover_piece *pieces, size_t piece_count) {
+    camber_status status = CAMBER_OK;
+    for (size_t p = 0; p < piece_count && status == CAMBER_OK; p++) {
+        const camber_shape_range r = camber_cover_range(t->scene, pieces + p, t->area);
+        part_records part = {0};
+        status = pieces[p].mesh ? read_part(pieces[p].mesh, pieces[p].part, &part) : CAMBER_OK;
+        const size_t count = (pieces[p].end - pieces[p].first + 15) / 16 * 16;
+        for (size_t i = 0; i < count && status == CAMBER_OK; i++)
+            put_shape(t, &part, &r, (int64_t)(pieces[p].first + i), pieces[p].base + i);
+        free_part(t->context, &part);
+    }
+    return status;
+}
+
+/* ---- Lists ---- */
+
+/* Calls put for each tile that a shape meets, from the first to the last. */
+static void each_tile(const camber_twin *t, size_t shape, uint32_t *counts, bool fill) {
+    const uint32_t box = t->stages->boxes[shape];
+    const uint32_t x0 = box & 255u, y0 = box >> 8 & 255u, x1 = box >> 16 & 255u, y1 = box >> 24;
+    const camber_tiles of = {(float)t->area->x, (float)t->area->y, t->columns, t->rows};
+    for (uint32_t y = y0; x0 <= x1 && y <= y1; y++) {
+        const uint32_t span = camber_tile_span(t->stages->shapes + CAMBER_SHAPE_WORDS * shape, box, y, &of);
+        for (uint32_t x = span & 255u; x <= span >> 8; x++) {
+            uint32_t *count = counts + y * t->columns + x;
+            if (fill)
+                t->stages->lists[*count] = (uint32_t)shape;
+            ++*count;
+        }
+    }
+}
+
+static camber_status make_lists(const camber_twin *t) {
+    camber_cover_stages *stages = t->stages;
+    uint32_t *next = camber_alloc_zero(t->context, stages->tile_count, sizeof *next);
+    if (!next)
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < stages->shape_count; i++)
+        each_tile(t, i, next, false);
+    stages->starts[0] = 0;
+    for (size_t i = 0; i < stages->tile_count; i++) {
+        stages->starts[i + 1] = stages->starts[i] + next[i];
+        next[i] = stages->starts[i];
+    }
+    stages->lists = camber_alloc(t->context, stages->starts[stages->tile_count], sizeof *stages->lists);
+    for (size_t i = 0; i < stages->shape_count && stages->lists; i++)
+        each_tile(t, i, next, true);
+    camber_free(t->context, next);
+    return stages->lists ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+}
+
+camber_status camber_cover_on_host(camber_context *context, const camber_cover_scene *scene,
+                                   const camber_cover_area *area, camber_cover_stages *stages) {
+    camber_cover_stages made = {0};
+    camber_cover_piece *pieces = NULL;
+    size_t piece_count = 0;
+    const camber_twin t = {
+        context, scene, area, &made, camber_cover_tiles(area->width), camber_cover_tiles(area->height)};
+    made.tile_count = (size_t)t.columns * t.rows;
+    camber_status status = camber_cover_list_pieces(context, scene, &pieces, &piece_count, &made.shape_count);
+    if (status != CAMBER_OK)
+        return status;
+    made.shapes = camber_alloc(context, made.shape_count, CAMBER_SHAPE_WORDS * sizeof *made.shapes);
+    made.boxes = camber_alloc(context, made.shape_count, sizeof *made.boxes);
+    if (scene->more)
+        made.measures = camber_alloc(context, made.shape_count, CAMBER_SHAPE_MEASURES * sizeof *made.measures);
+    if (scene->pitched)
+        made.planes = camber_alloc(context, made.shape_count, CAMBER_PLANE_WORDS * sizeof *made.planes);
+    made.starts = camber_alloc(context, made.tile_count + 1, sizeof *made.starts);
+    made.rgba = camber_alloc(context, 4 * (size_t)area->width, area->height);
+    if (!made.shapes || !made.boxes || (scene->more && !made.measures) || (scene->pitched && !made.planes) ||
+        !made.starts || !made.rgba)
+        status = CAMBER_ERROR_MEMORY;
+    if (status == CAMBER_OK)
+        status = make_shapes(&t, pieces, piece_count);
+    if (status == CAMBER_OK)
+        status = make_lists(&t);
+    if (status == CAMBER_OK)
+        status = camber_twin_draw(&t);
+    camber_free(context, pieces);
+    if (status != CAMBER_OK) {
+        camber_cover_stages_free(context, &made);
+        return status;
+    }
+    *stages = made;
+    return CAMBER_OK;
+}

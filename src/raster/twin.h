@@ -1,0 +1,26 @@
+/* What the parts of the CPU twin share. */
+#ifndef CAMBER_TWIN_H
+#define CAMBER_TWIN_H
+
+#include "raster/raster.h"
+
+#include <string.h>
+
+typedef struct camber_twin {
+    camber_context *context;
+    const camber_cover_scene *scene;
+    const camber_cover_area *area;
+    camber_cover_stages *stages;
+    uint32_t columns, rows; /* tiles */
+} camber_twin;
+
+static inline uint32_t camber_as_word(float value) {
+    uint32_t word;
+    memcpy(&word, &value, sizeof word);
+    return word;
+}
+
+/* Draws the area's tiles from the lists. */
+camber_status camber_twin_draw(const camber_twin *twin);
+
+#endif

@@ -1,0 +1,209 @@
+#include "validate/oracle.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SIDE = 16, PLANES_MAX = 4 };
+
+/* Every part of a stroke is an intersection of half-planes a x + b y <= c, and of a disc where radius > 0. */
+typedef struct shape {
+    double planes[PLANES_MAX][3];
+    int plane_count;
+    double x, y, radius;             /* of the disc */
+    double left, top, right, bottom; /* bounds */
+} shape;
+
+typedef struct vec {
+    double x, y;
+} vec;
+
+bool camber_oracle_open(camber_oracle_window *window, int x0, int y0, int width, int height) {
+    *window = (camber_oracle_window){x0, y0, width, height, NULL};
+    window->pixels = calloc((size_t)width * (size_t)height, sizeof *window->pixels);
+    return window->pixels != NULL;
+}
+
+void camber_oracle_clear(camber_oracle_window *window) {
+    memset(window->pixels, 0, (size_t)window->width * (size_t)window->height * sizeof *window->pixels);
+}
+
+void camber_oracle_close(camber_oracle_window *window) {
+    free(window->pixels);
+    window->pixels = NULL;
+}
+
+double camber_oracle_coverage(const camber_oracle_window *window, int column, int row) {
+    const camber_oracle_sample_set *set = window->pixels + (size_t)row * (size_t)window->width + (size_t)column;
+    int count = 0;
+    for (int i = 0; i < 4; i++)
+        for (uint64_t bits = set->bits[i]; bits; bits &= bits - 1)
+            count++;
+    return count / (double)(SIDE * SIDE);
+}
+
+/* Sample (i, j) of a pixel lies in cell (i, j) of 16 x 16, at a place that differs from cell to cell, so that edges
+ * along an axis are met by 256 levels and not by 16: j with its bits reversed, in 16ths of the cell. */
+static double sample_at(int i, int j) {
+    static const double reversed[SIDE] = {0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15};
+    return (i + (reversed[j] + 0.5) / SIDE) / SIDE;
+}
+
+static bool is_inside(const shape *s, double x, double y) {
+    for (int i = 0; i < s->plane_count; i++)
+        if (s->planes[i][0] * x + s->planes[i][1] * y > s->planes[i][2])
+            return false;
+    const double dx = x - s->x, dy = y - s->y;
+    return s->radius <= 0 || dx * dx + dy * dy <= s->radius * s->radius;
+}
+
+/* -1: the pixel about x, y lies outside, +1: inside, 0: perhaps neither. Saves the samples of most pixels. */
+static int pixel_side(const shape *s, double x, double y) {
+    int side = 1;
+    for (int i = 0; i < s->plane_count; i++) {
+        const double *p = s->planes[i];
+        const double value = p[0] * x + p[1] * y - p[2], reach = 0.5 * (fabs(p[0]) + fabs(p[1]));
+        if (value > reach)
+            return -1;
+        if (value > -reach)
+            side = 0;
+    }
+    if (s->radius > 0) {
+        const double d = hypot(x - s->x, y - s->y);
+        if (d > s->radius + 0.7072)
+            return -1;
+        if (d > s->radius - 0.7072)
+            side = 0;
+    }
+    return side;
+}
+
+/* In a dense network most pixels are, long before the last line. */
+static bool is_full(const camber_oracle_sample_set *set) {
+    return (set->bits[0] & set->bits[1] & set->bits[2] & set->bits[3]) == UINT64_MAX;
+}
+
+static void cover(camber_oracle_window *w, const shape *s) {
+    const double left = fmax(s->left - w->x0, 0), right = fmin(s->right - w->x0, w->width);
+    const double top = fmax(s->top - w->y0, 0), bottom = fmin(s->bottom - w->y0, w->height);
+    for (int row = (int)floor(top); row < bottom; row++)
+        for (int column = (int)floor(left); column < right; column++) {
+            camber_oracle_sample_set *set = w->pixels + (size_t)row * (size_t)w->width + (size_t)column;
+            const double x = w->x0 + column, y = w->y0 + row;
+            if (is_full(set))
+                continue;
+            const int side = pixel_side(s, x + 0.5, y + 0.5);
+            if (side > 0)
+                memset(set, 0xff, sizeof *set);
+            for (int k = 0; side == 0 && k < SIDE * SIDE; k++)
+                if (is_inside(s, x + sample_at(k % SIDE, k / SIDE), y + sample_at(k / SIDE, k % SIDE)))
+                    set->bits[k / 64] |= (uint64_t)1 << k % 64;
+        }
+}
+
+/* A convex polygon, in either order. */
+static void cover_polygon(camber_oracle_window *w, const vec *corners, int count) {
+    shape s = {.plane_count = count, .left = INFINITY, .top = INFINITY, .right = -INFINITY, .bottom = -INFINITY};
+    double area = 0;
+    for (int i = 0; i < count; i++) {
+        const vec p = corners[i], q = corners[(i + 1) % count];
+        area += p.x * q.y - q.x * p.y;
+        s.left = fmin(s.left, p.x), s.right = fmax(s.right, p.x);
+        s.top = fmin(s.top, p.y), s.bottom = fmax(s.bottom, p.y);
+    }
+    for (int i = 0; i < count; i++) {
+        const vec p = corners[i], q = corners[(i + 1) % count];
+        const double sign = area < 0 ? -1 : 1;
+        s.planes[i][0] = sign * (q.y - p.y);
+        s.planes[i][1] = sign * (p.x - q.x);
+        s.planes[i][2] = s.planes[i][0] * p.x + s.planes[i][1] * p.y;
+    }
+    if (area != 0)
+        cover(w, &s);
+}
+
+/* The part of a disc where (p - centre) . a <= 0 and (p - centre) . b <= 0. */
+static void cover_sector(camber_oracle_window *w, vec centre, double radius, vec a, vec b) {
+    const shape s = {
+        .planes = {{a.x, a.y, a.x * centre.x + a.y * centre.y}, {b.x, b.y, b.x * centre.x + b.y * centre.y}},
+        .plane_count = 2,
+        .x = centre.x,
+        .y = centre.y,
+        .radius = radius,
+        .left = centre.x - radius,
+        .top = centre.y - radius,
+        .right = centre.x + radius,
+        .bottom = centre.y + radius};
+    cover(w, &s);
+}
+
+static vec step(vec p, vec direction, double length) {
+    return (vec){p.x + direction.x * length, p.y + direction.y * length};
+}
+
+static vec direction_of(vec p, vec q) {
+    const double length = hypot(q.x - p.x, q.y - p.y);
+    return (vec){(q.x - p.x) / length, (q.y - p.y) / length};
+}
+
+/* Past the end of a segment that comes in direction u. */
+static void cover_cap(camber_oracle_window *w, vec end, vec u, const camber_oracle_style *style) {
+    const double h = style->width_px / 2;
+    const vec normal = {-u.y, u.x}, back = {-u.x, -u.y};
+    if (style->cap == CAMBER_CAP_ROUND) {
+        cover_sector(w, end, h, back, back);
+    } else if (style->cap == CAMBER_CAP_SQUARE) {
+        const vec l = step(end, normal, h), r = step(end, normal, -h);
+        cover_polygon(w, (vec[]){l, step(l, u, h), step(r, u, h), r}, 4);
+    }
+}
+
+static void cover_join(camber_oracle_window *w, vec point, vec u, vec v, const camber_oracle_style *style) {
+    const double h = style->width_px / 2, turn = atan2(u.x * v.y - u.y * v.x, u.x * v.x + u.y * v.y);
+    /* y points down: a positive turn is to the right, and its outer side the left, -normal. */
+    const double outer = turn > 0 ? -h : h;
+    const vec in = step(point, (vec){-u.y, u.x}, outer), out = step(point, (vec){-v.y, v.x}, outer);
+    if (turn == 0)
+        return;
+    const bool is_round = style->join == CAMBER_JOIN_ROUND && style->round_limit * cos(turn / 2) <= 1;
+    if (is_round)
+        cover_sector(w, point, h, (vec){-u.x, -u.y}, v);
+    else if (style->join != CAMBER_JOIN_BEVEL && 1 <= style->miter_limit * cos(turn / 2))
+        cover_polygon(w, (vec[]){point, in, step(in, u, h * tan(fabs(turn) / 2)), out}, 4);
+    else
+        cover_polygon(w, (vec[]){point, in, out}, 3);
+}
+
+static void cover_segment(camber_oracle_window *w, vec a, vec b, double h) {
+    const vec u = direction_of(a, b), normal = {-u.y, u.x};
+    cover_polygon(w, (vec[]){step(a, normal, h), step(b, normal, h), step(b, normal, -h), step(a, normal, -h)}, 4);
+}
+
+bool camber_oracle_stroke(camber_oracle_window *window, const float *points, size_t count,
+                          const camber_oracle_style *style) {
+    vec *p = malloc((count + 1) * sizeof *p);
+    size_t n = 0;
+    if (!p)
+        return false;
+    for (size_t i = 0; i < count; i++) {
+        const vec q = {points[2 * i], points[2 * i + 1]};
+        if (n == 0 || q.x != p[n - 1].x || q.y != p[n - 1].y)
+            p[n++] = q;
+    }
+    const bool closed = style->closed && n > 2 && p[0].x == p[n - 1].x && p[0].y == p[n - 1].y;
+    for (size_t i = 0; i + 1 < n; i++)
+        cover_segment(window, p[i], p[i + 1], style->width_px / 2);
+    for (size_t i = 1; i + 1 < n; i++)
+        cover_join(window, p[i], direction_of(p[i - 1], p[i]), direction_of(p[i], p[i + 1]), style);
+    if (n == 1) {
+        cover_cap(window, p[0], (vec){1, 0}, style);
+        cover_cap(window, p[0], (vec){-1, 0}, style);
+    } else if (closed) {
+        cover_join(window, p[0], direction_of(p[n - 2], p[n - 1]), direction_of(p[0], p[1]), style);
+    } else if (n > 1) {
+        cover_cap(window, p[0], direction_of(p[1], p[0]), style);
+        cover_cap(window, p[n - 1], direction_of(p[n - 2], p[n - 1]), style);
+    }
+    free(p);
+    return true;
+}

@@ -14,7 +14,7 @@
 
 enum { BENCH_SCENES_MAX = 8, BENCH_RUNS_MAX = 16 };
 
-/* What a frame leaves out by default: detail that it cannot show. */
+/* Simplified frames leave out detail that they cannot show: points this close to the line without them. */
 #define BENCH_SIMPLIFY_PX 0.1
 
 typedef enum bench_size {
@@ -100,7 +100,7 @@ double bench_series_median(const bench_series *series);
  * threads as the kernels run on. 0 where it cannot be measured. */
 double bench_copy_gb_s(const bench *b);
 
-/* What a frame that no peer draws is compared with: a scene that is the same everywhere, drawn by the first peer that
+/* Frames that no peer draws are compared with this: a scene that is the same everywhere, drawn by the first peer that
  * is built in, or else a copy in memory. */
 typedef struct bench_yardstick {
     const char *name; /* "Cairo's long walks" */
@@ -166,7 +166,7 @@ void bench_result_add_figure(json_t *result, const bench_figure *figure);
 
 /* Times of a row are kept to a microsecond. */
 json_t *bench_ms(double ms);
-/* Of a row: 0 or "" where it is not there. */
+/* A row's value by its key: 0 or "" where it is not there. */
 double bench_number(const json_t *row, const char *key);
 const char *bench_text(const json_t *row, const char *key);
 

@@ -10,7 +10,7 @@ enum { PEERS_MAX = 8 };
  * that unite all lines to 3.9; an empty picture, of lines 2 px wide or more, comes to more than 100. */
 #define DIFFERENCE_MAX 20.0
 
-/* What is timed of camber: by GL and by kernels, of every point and of what BENCH_SIMPLIFY_PX leaves. */
+/* camber's own times: by GL and by kernels, with every point and with those that BENCH_SIMPLIFY_PX leaves. */
 enum { DRAW, FRAME, SIMPLE_DRAW, SIMPLE_FRAME, UNITED_DRAW, CL_FRAME, CL_SIMPLE_FRAME, OURS };
 
 static const struct {

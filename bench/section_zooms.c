@@ -30,7 +30,7 @@ static bool is_seen(const float *points, size_t count) {
     return high[0] > -margin && high[1] > -margin && low[0] < BENCH_SIDE_PX + margin && low[1] < BENCH_SIDE_PX + margin;
 }
 
-/* What is seen 2^zoom times as large, about the middle of the points. seen has room for all. */
+/* Keeps the polylines that are seen 2^zoom times as large about the middle of the points; seen has room for all. */
 static void magnify(const camber_lines *from, int zoom, const double middle[2], camber_lines *seen) {
     const double scale = ldexp(1, zoom);
     seen->point_count = seen->polyline_count = 0;

@@ -14,9 +14,9 @@ static void on_log(void *user, camber_log_level level, const char *message) {
         fprintf(stderr, "camber_bench: %s\n", message);
 }
 
-static camber_status open_renderer(bench *b, camber_draw draw, camber_renderer **renderer, camber_mesh **mesh) {
-    const camber_renderer_desc desc = {.draw = draw};
-    camber_surface *surface = draw == CAMBER_DRAW_GL ? b->surface : NULL;
+static camber_status open_renderer(bench *b, camber_rasterizer draw, camber_renderer **renderer, camber_mesh **mesh) {
+    const camber_renderer_desc desc = {.rasterizer = draw};
+    camber_surface *surface = draw == CAMBER_RASTERIZER_GL ? b->surface : NULL;
     const camber_status status = camber_renderer_create(b->device, surface, &desc, renderer);
     return status == CAMBER_OK ? camber_mesh_create(b->device, *renderer, mesh) : status;
 }
@@ -29,9 +29,9 @@ bool bench_open(bench *b) {
     if (status == CAMBER_OK)
         status = camber_device_create(b->context, NULL, b->surface, &b->device);
     if (status == CAMBER_OK)
-        status = open_renderer(b, CAMBER_DRAW_GL, &b->renderer, &b->mesh);
+        status = open_renderer(b, CAMBER_RASTERIZER_GL, &b->renderer, &b->mesh);
     if (status == CAMBER_OK)
-        status = open_renderer(b, CAMBER_DRAW_CL, &b->covering, &b->covered);
+        status = open_renderer(b, CAMBER_RASTERIZER_OPENCL, &b->covering, &b->covered);
     if (status != CAMBER_OK)
         return false;
     b->picture = calloc((size_t)BENCH_SIDE_PX * BENCH_SIDE_PX, 4);
@@ -73,7 +73,8 @@ static camber_status draw_mesh(bench *b, const bench_frame_desc *desc, taking *t
         .mesh = desc->in_cl ? b->covered : b->mesh, .paints = &paint, .paint_count = 1, .overlap = desc->overlap};
     const camber_frame frame = {
         .width = BENCH_SIDE_PX, .height = BENCH_SIDE_PX, .background = {1, 1, 1, 1}, .passes = &pass, .pass_count = 1};
-    return camber_render(desc->in_cl ? b->covering : b->renderer, &frame, desc->picture ? take_rows : NULL, t, stats);
+    return camber_renderer_render(desc->in_cl ? b->covering : b->renderer, &frame, desc->picture ? take_rows : NULL, t,
+                                  stats);
 }
 
 static camber_status tessellate_lines(bench *b, const bench_frame_desc *desc, const camber_tessellation_desc *strokes) {
@@ -85,7 +86,7 @@ static camber_status tessellate_lines(bench *b, const bench_frame_desc *desc, co
                                         .keep_open = true};
     camber_status status = camber_polylines_create(b->context, &made, &polylines);
     if (status == CAMBER_OK)
-        status = camber_tessellate(desc->in_cl ? b->covered : b->mesh, polylines, strokes);
+        status = camber_mesh_tessellate(desc->in_cl ? b->covered : b->mesh, polylines, strokes);
     camber_polylines_destroy(polylines);
     return status;
 }
@@ -94,7 +95,7 @@ static camber_status tessellate(bench *b, const bench_frame_desc *desc) {
     const camber_stroke stroke = {.width_px = desc->width_px};
     const camber_tessellation_desc strokes = {.strokes = &stroke, .stroke_count = 1};
     camber_mesh *mesh = desc->in_cl ? b->covered : b->mesh;
-    return desc->network ? camber_tessellate_network(mesh, desc->network, &desc->camera, &strokes)
+    return desc->network ? camber_mesh_tessellate_network(mesh, desc->network, &desc->camera, &strokes)
                          : tessellate_lines(b, desc, &strokes);
 }
 

@@ -79,8 +79,8 @@ static camber_status fly_frame(flight *f, double share, double times[PARTS]) {
         status = tessellate(f);
     const double made = camber_now_ms();
     if (status == CAMBER_OK) {
-        const camber_frame frame = camber_scene_frame(f->scene, mesh_of(f));
-        status = camber_render(renderer_of(f), &frame, take_rows, f, &stats);
+        const camber_frame frame = camber_scene_get_frame(f->scene, mesh_of(f));
+        status = camber_renderer_render(renderer_of(f), &frame, take_rows, f, &stats);
     }
     times[PART_FRAME] = camber_now_ms() - begin;
     times[PART_SCENE] = moved - begin;
@@ -106,18 +106,18 @@ static camber_status fly_overlapped(flight *f) {
         if (status == CAMBER_OK)
             status = camber_scene_tessellate(f->scene, meshes[i % 2], CAMBER_METHOD_STRIP);
         if (status == CAMBER_OK) {
-            const camber_frame frame = camber_scene_frame(f->scene, meshes[i % 2]);
-            status = camber_render_begin(renderer_of(f), &frame);
+            const camber_frame frame = camber_scene_get_frame(f->scene, meshes[i % 2]);
+            status = camber_renderer_begin(renderer_of(f), &frame);
         }
         if (status == CAMBER_OK && i > 0)
-            status = camber_render_end(renderer_of(f), take_rows, f, NULL);
+            status = camber_renderer_end(renderer_of(f), take_rows, f, NULL);
         const double now = camber_now_ms();
         if (i >= WARM_UPS)
             f->times[PART_OVERLAPPED][n] = now - last;
         last = now;
     }
     if (status == CAMBER_OK)
-        status = camber_render_end(renderer_of(f), take_rows, f, NULL);
+        status = camber_renderer_end(renderer_of(f), take_rows, f, NULL);
     camber_mesh_destroy(meshes[1]);
     return status;
 }
@@ -142,7 +142,7 @@ static camber_status open_flight(flight *f, const char *path) {
     const camber_scene_desc whole = {.view = {.width = f->b->fly_width, .height = f->b->fly_height},
                                      .simplify_px = BENCH_SIMPLIFY_PX,
                                      .on_device = true};
-    camber_status status = camber_style_builtin(b->context, CAMBER_THEME_LIGHT, &f->style);
+    camber_status status = camber_style_create_builtin(b->context, CAMBER_THEME_LIGHT, &f->style);
     if (status == CAMBER_OK)
         status = camber_features_create(b->context, f->style, &f->features);
     if (status == CAMBER_OK)

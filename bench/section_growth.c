@@ -121,10 +121,10 @@ static camber_status draw_once(bench *b, const load *l, const camber_polylines *
     camber_frame_stats stats = {0};
     uint64_t rows = 0;
     const double begin = camber_now_ms(), busy = processor_ms();
-    camber_status status = camber_tessellate(b->covered, polylines, &strokes);
+    camber_status status = camber_mesh_tessellate(b->covered, polylines, &strokes);
     const double tessellated = camber_now_ms();
     if (status == CAMBER_OK)
-        status = camber_render(b->covering, &frame, take_rows, &rows, &stats);
+        status = camber_renderer_render(b->covering, &frame, take_rows, &rows, &stats);
     const double frame_ms = camber_now_ms() - begin;
     bench_series_add(&c->frame, frame_ms);
     bench_series_add(&c->tessellate, tessellated - begin);

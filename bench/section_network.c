@@ -29,7 +29,7 @@ static camber_status tessellate(trial *t, double simplify_px) {
     camber_status status = CAMBER_OK;
     for (size_t run = 0; run < t->b->warm_ups + t->b->runs && status == CAMBER_OK; run++) {
         const double begin = camber_now_ms();
-        status = camber_tessellate_network(t->b->mesh, t->network, &camera, &desc);
+        status = camber_mesh_tessellate_network(t->b->mesh, t->network, &camera, &desc);
         const double ms = camber_now_ms() - begin;
         if (status != CAMBER_OK || run < t->b->warm_ups)
             continue;

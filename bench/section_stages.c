@@ -41,7 +41,7 @@ static camber_status measure_offset(trial *t) {
     camber_status status = CAMBER_OK;
     t->offset.count = 0;
     for (size_t run = 0; run < t->b->warm_ups + t->b->runs && status == CAMBER_OK; run++) {
-        status = camber_tessellate(t->b->mesh, t->polylines, &desc);
+        status = camber_mesh_tessellate(t->b->mesh, t->polylines, &desc);
         if (status == CAMBER_OK && run >= t->b->warm_ups)
             bench_series_add(&t->offset, camber_mesh_get_info(t->b->mesh).offset_ms);
     }
@@ -53,7 +53,7 @@ static camber_status tessellate(trial *t) {
     const camber_tessellation_desc desc = {.strokes = &stroke, .stroke_count = 1, .method = t->method};
     camber_status status = CAMBER_OK;
     for (size_t run = 0; run < t->b->warm_ups + t->b->runs && status == CAMBER_OK; run++) {
-        status = camber_tessellate(t->b->mesh, t->polylines, &desc);
+        status = camber_mesh_tessellate(t->b->mesh, t->polylines, &desc);
         if (status != CAMBER_OK || run < t->b->warm_ups)
             continue;
         const camber_mesh_info info = camber_mesh_get_info(t->b->mesh);
@@ -75,10 +75,10 @@ static camber_status measure_drawing(trial *t) {
     const camber_pass pass = {.mesh = b->covered, .paints = &paint, .paint_count = 1};
     const camber_frame frame = {
         .width = BENCH_SIDE_PX, .height = BENCH_SIDE_PX, .background = {1, 1, 1, 1}, .passes = &pass, .pass_count = 1};
-    camber_status status = camber_tessellate(b->covered, t->polylines, &desc);
+    camber_status status = camber_mesh_tessellate(b->covered, t->polylines, &desc);
     for (size_t run = 0; run < b->warm_ups + b->runs && status == CAMBER_OK; run++) {
         camber_frame_stats stats;
-        status = camber_render(b->covering, &frame, NULL, NULL, &stats);
+        status = camber_renderer_render(b->covering, &frame, NULL, NULL, &stats);
         if (status != CAMBER_OK || run < b->warm_ups)
             continue;
         const double ms[DRAWN] = {stats.shape_ms, stats.count_ms, stats.total_ms, stats.fill_ms, stats.cover_ms};
@@ -124,7 +124,7 @@ static void report(trial *t, json_t *result) {
         moved[i] = points * (stages[i].read + stages[i].written) + (i == STAGES - 1 ? mesh : 0);
         sum += moved[i];
     }
-    const char *method = camber_method_name(t->method);
+    const char *method = camber_method_get_name(t->method);
     json_t *row =
         json_pack("{s:s, s:s, s:s, s:f, s:I, s:I, s:f, s:f, s:f, s:f}", "key", t->scene->key, "scene", t->scene->name,
                   "method", method, "width_px", (double)t->width_px, "points", (json_int_t)points, "segments",

@@ -107,7 +107,7 @@ typedef struct reading {
 static double read_ms(bench *b, const char *path, reading *read) {
     camber_style *style = NULL;
     camber_features *features = NULL;
-    camber_status status = camber_style_builtin(b->context, CAMBER_THEME_LIGHT, &style);
+    camber_status status = camber_style_create_builtin(b->context, CAMBER_THEME_LIGHT, &style);
     if (status == CAMBER_OK)
         status = camber_features_create(b->context, style, &features);
     const double begin = camber_now_ms();

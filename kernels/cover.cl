@@ -210,13 +210,13 @@ static inline void write_cells(private const canvas *c, global camber_u32 *pixel
 #if CAMBER_COVER_RICH
 #if CAMBER_COVER_PITCHED
 #define PLANES_TOO , global const float *restrict planes
-#define MORE_GIVEN , measures, more, tail, planes
+#define MORE_GIVEN , arc_lengths, more, tail, planes
 #else
 #define PLANES_TOO
-#define MORE_GIVEN , measures, more, tail
+#define MORE_GIVEN , arc_lengths, more, tail
 #endif
 #define MORE                                                                                                           \
-    , global const float *restrict measures, global const camber_ink_more *restrict more,                              \
+    , global const float *restrict arc_lengths, global const camber_ink_more *restrict more,                           \
         global const float *restrict tail PLANES_TOO
 
 /* cover_rich.cl */
@@ -278,11 +278,11 @@ CAMBER_KERNEL(1, cover,
 #if CAMBER_COVER_PITCHED
         draw_tilted(&c, &at, where,
                     (tilted){shape, planes + (size_t)CAMBER_PLANE_WORDS * lists[k],
-                             measures + CAMBER_SHAPE_MEASURES * (size_t)lists[k], tail, s.eye});
+                             arc_lengths + CAMBER_SHAPE_MEASURES * (size_t)lists[k], tail, s.eye});
 #else
 #if CAMBER_COVER_RICH
         if (c.more.features) {
-            draw_rich(&c, &at, shape, where, measures + CAMBER_SHAPE_MEASURES * (size_t)lists[k], tail);
+            draw_rich(&c, &at, shape, where, arc_lengths + CAMBER_SHAPE_MEASURES * (size_t)lists[k], tail);
         } else
 #endif
             if (c.now.mode == CAMBER_INK_UNION) {

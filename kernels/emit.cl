@@ -13,12 +13,12 @@ static inline void put_record(global camber_u32 *records, size_t k, float x, flo
 }
 
 #if CAMBER_MEASURED
-#define MEASURES , global const float *restrict measures
-#define MEASURES_GIVEN , measures
+#define MEASURES , global const float *restrict arc_lengths
+#define MEASURES_GIVEN , arc_lengths
 /* The records [k, k + count) lie as far along their line as point i. */
-static inline void put_measures(global camber_u32 *records, size_t k, size_t count, global const float *measures,
+static inline void put_measures(global camber_u32 *records, size_t k, size_t count, global const float *arc_lengths,
                                 size_t i) {
-    const camber_u32 along = as_uint(measures[2 * i]), in_all = as_uint(measures[2 * i + 1]);
+    const camber_u32 along = as_uint(arc_lengths[2 * i]), in_all = as_uint(arc_lengths[2 * i + 1]);
     for (size_t r = 0; r < count; r++)
         vstore4((uint4)(along, in_all, 0u, 0u), 2 * (k + r) + 1, records);
 }
@@ -93,7 +93,7 @@ CAMBER_KERNEL(LANES, emit,
             for (size_t n = i; n < i + 4; n++) {
                 const size_t count = put_any(x, y, n, joins[n], info[n], records, k);
 #if CAMBER_MEASURED
-                put_measures(records, k, count, measures, n - 1);
+                put_measures(records, k, count, arc_lengths, n - 1);
 #endif
                 k += count;
             }
@@ -216,7 +216,7 @@ CAMBER_KERNEL(LANES, emit,
     for (size_t i = first; i < first + CAMBER_ITEM; i++) {
         at += put_point(x, y, info, joins, i, records, indices + at);
 #if CAMBER_MEASURED
-        put_measures(records, i - 1, 1, measures, i - 1);
+        put_measures(records, i - 1, 1, arc_lengths, i - 1);
 #endif
     }
 }

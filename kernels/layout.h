@@ -78,7 +78,7 @@ typedef struct camber_row {
 } camber_row;
 
 /* Words of a record: see camber_record in camber_proof.h. A measured mesh has as many again behind them, of which the
- * first two are camber_measure. */
+ * first two are camber_arc_length. */
 #define CAMBER_RECORD_WORDS 4
 #ifndef CAMBER_MEASURED
 #define CAMBER_MEASURED 0

@@ -23,7 +23,7 @@ kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK / CAMBER_MEASURE_CHUNK, 
 
 kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK / CAMBER_MEASURE_CHUNK, 1, 1))) void measure(
     global const float *restrict x, global const float *restrict y, global const camber_u32 *restrict info,
-    global const camber_u64 *restrict carries, global float *restrict measures) {
+    global const camber_u64 *restrict carries, global float *restrict arc_lengths) {
     const size_t chunk = get_global_id(0), first = chunk * CAMBER_MEASURE_CHUNK + 1;
     camber_u64 along[CAMBER_MEASURE_CHUNK];
     camber_u64 sum = carries[2 * chunk];
@@ -37,8 +37,8 @@ kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK / CAMBER_MEASURE_CHUNK, 
         const size_t i = first + k;
         sum = info[i] & CAMBER_POINT_LAST ? 0 : sum;
         const camber_u32 real = info[i] & CAMBER_POINT_REAL;
-        measures[2 * (i - 1)] = real ? camber_length_px(along[k]) : 0.0f;
-        measures[2 * (i - 1) + 1] = real ? camber_length_px(along[k] + sum) : 0.0f;
+        arc_lengths[2 * (i - 1)] = real ? camber_length_px(along[k]) : 0.0f;
+        arc_lengths[2 * (i - 1) + 1] = real ? camber_length_px(along[k] + sum) : 0.0f;
         sum += camber_length_into(x[i] - x[i - 1], y[i] - y[i - 1], info[i]);
     }
 }

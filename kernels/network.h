@@ -80,7 +80,7 @@ typedef struct camber_walk {
     camber_u32 first, end, word; /* of the run */
 #if CAMBER_WALK_MEASURES
     CAMBER_GLOBAL const float *lengths; /* of each point along its run, steps. NULL: not measured */
-    CAMBER_GLOBAL float *slot_measures; /* camber_measure of each slot */
+    CAMBER_GLOBAL float *slot_measures; /* camber_arc_length of each slot */
     CAMBER_GLOBAL const float *totals;  /* of the runs: how long the line is that each is a part of, steps */
     CAMBER_GLOBAL const camber_run *runs;
     float total; /* of the run */

@@ -10,7 +10,7 @@
         global const camber_shift *restrict shifts, global camber_span *restrict spans
 #define CHUNKS (CAMBER_BLOCK / CAMBER_OFFSET_CHUNK)
 #if CAMBER_MEASURED
-#define MEASURES , global const float *restrict measures, global float *restrict out_measures
+#define MEASURES , global const float *restrict arc_lengths, global float *restrict out_measures
 #else
 #define MEASURES
 #endif
@@ -43,8 +43,8 @@ kernel __attribute__((reqd_work_group_size(CHUNKS, 1, 1))) void shift(COURSE, gl
     pen.y = out_y;
     pen.info = out_info;
 #if CAMBER_MEASURED
-    course.measures = measures;
-    pen.measures = out_measures;
+    course.arc_lengths = arc_lengths;
+    pen.arc_lengths = out_measures;
 #endif
     pen.puts = 1u;
     pen.at = bases[chunk] + 1u;

@@ -57,7 +57,7 @@ typedef struct camber_course {
     CAMBER_GLOBAL const camber_u32 *info;
     CAMBER_GLOBAL const camber_shift *shifts;
     CAMBER_GLOBAL const camber_span *spans;
-    CAMBER_GLOBAL const float *measures; /* camber_measure of each slot. NULL: not measured */
+    CAMBER_GLOBAL const float *arc_lengths; /* camber_arc_length of each slot. NULL: not measured */
     camber_u32 slots;
 } camber_course;
 

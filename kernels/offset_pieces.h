@@ -55,7 +55,7 @@ CAMBER_FN camber_piece camber_piece_before(const camber_course *c, camber_u32 sl
 typedef struct camber_pen {
     CAMBER_GLOBAL float *x, *y;
     CAMBER_GLOBAL camber_u32 *info;
-    CAMBER_GLOBAL float *measures;
+    CAMBER_GLOBAL float *arc_lengths;
     camber_u32 puts;        /* 0: points are counted, 1: and put */
     camber_u32 at;          /* the next slot */
     camber_u32 word, flags; /* of the next point; flags are for one */
@@ -69,9 +69,9 @@ CAMBER_FN void camber_pen_slot(camber_pen *pen, float x, float y, camber_u32 inf
         pen->x[pen->at] = x;
         pen->y[pen->at] = y;
         pen->info[pen->at] = info;
-        if (pen->measures) {
-            pen->measures[2u * (pen->at - 1u)] = info ? along : 0.0f;
-            pen->measures[2u * (pen->at - 1u) + 1u] = info ? pen->total : 0.0f;
+        if (pen->arc_lengths) {
+            pen->arc_lengths[2u * (pen->at - 1u)] = info ? along : 0.0f;
+            pen->arc_lengths[2u * (pen->at - 1u) + 1u] = info ? pen->total : 0.0f;
         }
     }
     pen->at++;
@@ -93,7 +93,7 @@ CAMBER_FN void camber_pen_point(camber_pen *pen, float x, float y, float along) 
 }
 
 CAMBER_FN float camber_along_slot(const camber_course *c, camber_u32 slot) {
-    return c->measures ? c->measures[2u * (slot - 1u)] : 0.0f;
+    return c->arc_lengths ? c->arc_lengths[2u * (slot - 1u)] : 0.0f;
 }
 
 CAMBER_FN float camber_along_leg(const camber_course *c, camber_u32 slot, const camber_leg *leg, float along) {
@@ -295,7 +295,7 @@ CAMBER_FN void camber_put_beside(const camber_course *c, camber_u32 slot, camber
     if (!(info & CAMBER_POINT_REAL))
         return;
     const camber_shift shift = c->shifts[info >> CAMBER_POINT_ROW_SHIFT];
-    pen->total = c->measures ? c->measures[2u * (slot - 1u) + 1u] : 0.0f;
+    pen->total = c->arc_lengths ? c->arc_lengths[2u * (slot - 1u) + 1u] : 0.0f;
     if (!(shift.offset_px < 0.0f || shift.offset_px > 0.0f) || camber_is_dot(info)) {
         camber_put_same(c, slot, pen);
         return;

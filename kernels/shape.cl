@@ -101,8 +101,8 @@ static inline void turn_over(private float16 *words) {
 }
 
 #if CAMBER_COVER_RICH
-#define MEASURES , global float *restrict measures
-#define MEASURES_GIVEN , measures
+#define MEASURES , global float *restrict arc_lengths
+#define MEASURES_GIVEN , arc_lengths
 
 static inline float2 measure_at(global const camber_u32 *records, int i, camber_shape_range r) {
     const int last = (int)r.record_count - 1, at = i < 0 ? 0 : i > last ? last : i;
@@ -110,7 +110,7 @@ static inline float2 measure_at(global const camber_u32 *records, int i, camber_
 }
 
 static inline void put_measures(global const camber_u32 *records, int first, camber_shape_range r,
-                                private const camber_shape *s, global float *measures) {
+                                private const camber_shape *s, global float *arc_lengths) {
     float from[16], to[16], total[16];
     for (int k = 0; k < 16; k++) {
         const int is_dot = record_at(records, first + k, r).s2 >> CAMBER_JOIN_KIND_SHIFT == CAMBER_KIND_DOT;
@@ -122,7 +122,7 @@ static inline void put_measures(global const camber_u32 *records, int first, cam
     const float16 along = vload16(0, from);
     const float16 rates = camber_shape_rate(s, along, vload16(0, to));
     for (int k = 0; k < 16; k++)
-        vstore4((float4)(from[k], ((private const float *)&rates)[k], total[k], 0.0f), (size_t)k, measures);
+        vstore4((float4)(from[k], ((private const float *)&rates)[k], total[k], 0.0f), (size_t)k, arc_lengths);
 }
 #else
 #define MEASURES
@@ -199,9 +199,9 @@ CAMBER_KERNEL(1, shape,
         return;
 #if CAMBER_COVER_PITCHED
     put_planes(&flat, &plane, planes + 16 * CAMBER_PLANE_WORDS * at);
-    put_measures(records, first, r, &flat, measures + 64 * at);
+    put_measures(records, first, r, &flat, arc_lengths + 64 * at);
 #elif CAMBER_COVER_RICH
-    put_measures(records, first, r, &s, measures + 64 * at);
+    put_measures(records, first, r, &s, arc_lengths + 64 * at);
 #endif
     float16 words[16] = {s.ax,         s.ay,    s.bx,    s.by,    s.ux,
                          s.uy,         s.nax,   s.nay,   s.nbx,   s.nby,

@@ -60,7 +60,7 @@ typedef enum camber_status {
 } camber_status;
 
 /* A short English name of the status; never NULL. */
-CAMBER_API const char *camber_status_name(camber_status status);
+CAMBER_API const char *camber_status_get_name(camber_status status);
 
 /* "0.1.0" of the library in use. */
 CAMBER_API const char *camber_version(void);
@@ -87,8 +87,8 @@ typedef struct camber_budget camber_budget;
 CAMBER_API camber_status camber_budget_create(const camber_budget_desc *desc, camber_budget **budget);
 CAMBER_API void camber_budget_destroy(camber_budget *budget);
 /* What is held now, and what may be held. */
-CAMBER_API uint64_t camber_budget_held_bytes(const camber_budget *budget);
-CAMBER_API uint64_t camber_budget_most_bytes(camber_budget *budget);
+CAMBER_API uint64_t camber_budget_get_held_bytes(const camber_budget *budget);
+CAMBER_API uint64_t camber_budget_get_most_bytes(camber_budget *budget);
 
 /* ---- Access: what files may reach ------------------------------------------------------------------ */
 
@@ -234,7 +234,7 @@ CAMBER_API camber_status camber_device_list(camber_context *context, size_t capa
                                             size_t *count);
 
 /* Whether match, as in camber_device_desc, names the device. */
-CAMBER_API bool camber_device_matches(const camber_device_info *info, const char *match);
+CAMBER_API bool camber_device_info_matches(const camber_device_info *info, const char *match);
 
 typedef struct camber_device_desc {
     /* "cpu", "gpu", or part of a device's or platform's name, case ignored. NULL: a GPU, else a CPU. */
@@ -312,7 +312,7 @@ typedef enum camber_backend {
 typedef struct camber_surface_desc {
     camber_backend backend;
     /* A GLES context of the caller's (EGLContext) and its initialised display (EGLDisplay): the surface's own context
-     * shares textures and fences with it (camber_render_texture), and no state. NULL: none. Needs EGL. */
+     * shares textures and fences with it (camber_renderer_render_texture), and no state. NULL: none. Needs EGL. */
     void *egl_context, *egl_display;
 } camber_surface_desc;
 
@@ -354,36 +354,36 @@ typedef enum camber_sharing {
 } camber_sharing;
 
 /* What draws. */
-typedef enum camber_draw {
+typedef enum camber_rasterizer {
     /* OpenCL where there is no surface or its GL is a software rasteriser, which takes several times as long for the
      * same picture; GL where it is hardware. A program that wants pictures in memory opens a surface only where
      * camber_surface_may_be_hardware. */
-    CAMBER_DRAW_AUTO = 0,
-    CAMBER_DRAW_GL, /* GLES shaders */
-    CAMBER_DRAW_CL, /* OpenCL kernels, which need no surface */
-} camber_draw;
+    CAMBER_RASTERIZER_AUTO = 0,
+    CAMBER_RASTERIZER_GL,     /* GLES shaders */
+    CAMBER_RASTERIZER_OPENCL, /* OpenCL kernels, which need no surface */
+} camber_rasterizer;
 
 typedef struct camber_renderer_desc {
     /* Asking for one path and not AUTO fails with CAMBER_ERROR_DEVICE where it does not work. */
     camber_sharing sharing;
-    camber_draw draw;
+    camber_rasterizer rasterizer;
 } camber_renderer_desc;
 
 typedef struct camber_renderer camber_renderer;
 
-/* desc may be NULL, and so may the surface where OpenCL draws: its pictures need no GL, and only camber_render_texture
- * uses a surface then, whose paths of sharing pixels take. Returns CAMBER_ERROR_DEVICE (the sharing path asked for does
- * not work), CAMBER_ERROR_MEMORY. Shaders are built when they are first used. */
+/* desc may be NULL, and so may the surface where OpenCL draws: its pictures need no GL, and only
+ * camber_renderer_render_texture uses a surface then, whose paths of sharing pixels take. Returns CAMBER_ERROR_DEVICE
+ * (the sharing path asked for does not work), CAMBER_ERROR_MEMORY. Shaders are built when they are first used. */
 CAMBER_API camber_status camber_renderer_create(camber_device *device, camber_surface *surface,
                                                 const camber_renderer_desc *desc, camber_renderer **renderer);
 CAMBER_API void camber_renderer_destroy(camber_renderer *renderer);
 /* CAMBER_SHARING_AUTO without a surface: nothing is shared. */
 CAMBER_API camber_sharing camber_renderer_get_sharing(const camber_renderer *renderer);
-CAMBER_API camber_draw camber_renderer_get_draw(const camber_renderer *renderer);
+CAMBER_API camber_rasterizer camber_renderer_get_rasterizer(const camber_renderer *renderer);
 /* "auto", "gl" or "cl". */
-CAMBER_API const char *camber_draw_name(camber_draw draw);
+CAMBER_API const char *camber_rasterizer_get_name(camber_rasterizer draw);
 /* "cl_khr_gl_sharing", "zero copy" or "copy". */
-CAMBER_API const char *camber_sharing_name(camber_sharing sharing);
+CAMBER_API const char *camber_sharing_get_name(camber_sharing sharing);
 
 /* ---- Meshes ---------------------------------------------------------------------------------------- */
 
@@ -393,15 +393,15 @@ typedef enum camber_method {
     CAMBER_METHOD_FAN,       /* bodies and a fan of triangles a round join */
 } camber_method;
 
-CAMBER_API const char *camber_method_name(camber_method method);
+CAMBER_API const char *camber_method_get_name(camber_method method);
 
 typedef struct camber_tessellation_desc {
     const camber_stroke *strokes; /* stroke_count rows; every row of the polylines must be below it */
     size_t stroke_count;
     camber_method method;
     float fan_tolerance_px; /* farthest that a fan's chord lies from its arc, up to 64 chords a half turn. 0: 0.25 */
-    bool measured; /* records say how far along their polyline they lie, as dashes, trims, ramps and patterns need it:
-                    * 32 bytes a record */
+    bool has_arc_length; /* records say how far along their polyline they lie, as dashes, trims, ramps and patterns need
+                          * it: 32 bytes a record */
 } camber_tessellation_desc;
 
 /* How far the geometry reaches past the stroke's edge, so that every pixel an edge touches is shaded: exact
@@ -411,7 +411,7 @@ typedef struct camber_tessellation_desc {
 typedef struct camber_mesh_info {
     camber_method method;
     bool strips;           /* triangle strips; else triangles */
-    bool measured;         /* as the tessellation was asked for */
+    bool has_arc_length;   /* as the tessellation was asked for */
     size_t record_count;   /* camber_record */
     size_t vertex_count;   /* of strips two a record, those between strips too */
     size_t index_count;    /* of strips one a vertex, though none is kept */
@@ -440,8 +440,8 @@ CAMBER_API void camber_mesh_destroy(camber_mesh *mesh);
  * more than the largest buffer, or than half of what the device's meshes may hold), CAMBER_ERROR_MEMORY,
  * CAMBER_ERROR_DEVICE (a kernel that does not build: the log has the build log). Cost: 1 s the first time a method is
  * used, 3 ms from the cache; then about 10 ns a point on two cores. */
-CAMBER_API camber_status camber_tessellate(camber_mesh *mesh, const camber_polylines *polylines,
-                                           const camber_tessellation_desc *desc);
+CAMBER_API camber_status camber_mesh_tessellate(camber_mesh *mesh, const camber_polylines *polylines,
+                                                const camber_tessellation_desc *desc);
 /* The counts of joins and triangles are made at the first call after a tessellation: about 1 ns a point. */
 CAMBER_API camber_mesh_info camber_mesh_get_info(camber_mesh *mesh);
 
@@ -579,7 +579,8 @@ typedef struct camber_frame_stats {
     size_t pieces;
     double draw_ms; /* clear, draw, finish; of a frame that overlaps others, what its calls take */
     double read_ms;
-    double shape_ms, count_ms, total_ms, fill_ms, cover_ms; /* of CAMBER_DRAW_CL's kernels on the device's queue */
+    double shape_ms, count_ms, total_ms, fill_ms,
+        cover_ms; /* of CAMBER_RASTERIZER_OPENCL's kernels on the device's queue */
 } camber_frame_stats;
 
 /* Takes row_count rows of width * 4 bytes, premultiplied RGBA8, from the top down; a return of false stops the
@@ -592,27 +593,27 @@ typedef bool camber_rows_fn(void *user, const uint8_t *rgba, uint32_t first_row,
  * CAMBER_ERROR_LIMIT (more rows of strokes and paints, or images of one pass, than textures hold, or in OpenCL images
  * of one frame than a buffer), CAMBER_ERROR_DEVICE (a shader or a kernel does not build, or GL or OpenCL reported an
  * error), CAMBER_ERROR_MEMORY, CAMBER_ERROR_IO (rows returned false). */
-CAMBER_API camber_status camber_render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows,
-                                       void *user, camber_frame_stats *stats);
+CAMBER_API camber_status camber_renderer_render(camber_renderer *renderer, const camber_frame *frame,
+                                                camber_rows_fn *rows, void *user, camber_frame_stats *stats);
 
 #define CAMBER_FRAMES_IN_FLIGHT 2
 
-/* camber_render in two steps, so that what comes next overlaps the drawing: begin draws and does not wait, end waits
- * for the frame that began first and hands its rows over. With two meshes in turn,
+/* camber_renderer_render in two steps, so that what comes next overlaps the drawing: begin draws and does not wait, end
+ * waits for the frame that began first and hands its rows over. With two meshes in turn,
  *
  *     tessellate mesh n + 1, begin frame n + 1, end frame n
  *
  * keeps the device and GL at work on two frames. CAMBER_FRAMES_IN_FLIGHT frames at most may have begun and not ended,
- * and none when camber_render is called; the passes' meshes, dashes, ramps and images must live until the end.
+ * and none when camber_renderer_render is called; the passes' meshes, dashes, ramps and images must live until the end.
  * Tessellating a mesh before waits for the drawing, and so gains nothing; nor does drawing in OpenCL gain, which has
  * both steps on one device: begin draws the frame and keeps it. Where a picture takes several
  * pieces, those after the first are drawn at the end, in OpenCL all of them, from the meshes as they are then.
  *
- * They return what camber_render returns. Where begin fails no frame has begun; where end fails the frame is given up.
- * Destroying the renderer gives up what is in flight. */
-CAMBER_API camber_status camber_render_begin(camber_renderer *renderer, const camber_frame *frame);
-CAMBER_API camber_status camber_render_end(camber_renderer *renderer, camber_rows_fn *rows, void *user,
-                                           camber_frame_stats *stats);
+ * They return what camber_renderer_render returns. Where begin fails no frame has begun; where end fails the frame is
+ * given up. Destroying the renderer gives up what is in flight. */
+CAMBER_API camber_status camber_renderer_begin(camber_renderer *renderer, const camber_frame *frame);
+CAMBER_API camber_status camber_renderer_end(camber_renderer *renderer, camber_rows_fn *rows, void *user,
+                                             camber_frame_stats *stats);
 
 /* ---- Drawing into textures: for engines that draw more than lines ----------------------------------- */
 
@@ -633,10 +634,11 @@ typedef struct camber_texture {
  * before it uses the texture, and the caller deletes it. It may be NULL then: all is done. With drawn NULL the call
  * itself waits. No frame may be in flight. The surface's context stays current: make your own one current again.
  *
- * Returns what camber_render does, and CAMBER_ERROR_ARGUMENT (no such texture, another size or format, a renderer
- * without a surface), CAMBER_ERROR_LIMIT (a side too long). The texture's pixels are not defined on failure. */
-CAMBER_API camber_status camber_render_texture(camber_renderer *renderer, const camber_frame *frame,
-                                               const camber_texture *texture, void **drawn);
+ * Returns what camber_renderer_render does, and CAMBER_ERROR_ARGUMENT (no such texture, another size or format, a
+ * renderer without a surface), CAMBER_ERROR_LIMIT (a side too long). The texture's pixels are not defined on failure.
+ */
+CAMBER_API camber_status camber_renderer_render_texture(camber_renderer *renderer, const camber_frame *frame,
+                                                        const camber_texture *texture, void **drawn);
 
 #ifdef __cplusplus
 }

@@ -27,8 +27,8 @@ typedef struct camber_network_desc {
     const float *importance;
     const camber_network_entry *entries; /* entry_count. NULL: each polyline once, with row 0 */
     size_t entry_count;
-    bool keep_open; /* as in camber_polylines_desc */
-    bool measured;  /* points know how far along their polyline they lie, for measured meshes: 4 bytes a point */
+    bool keep_open;      /* as in camber_polylines_desc */
+    bool has_arc_length; /* points know how far along their polyline they lie, for measured meshes: 4 bytes a point */
     /* Of measured ones, pairs by polyline: it is a part of a longer line, from this share of that one's length to this
      * one, and its measures are those of the whole. NULL: 0 and 1 for all. */
     const float *progress;
@@ -65,13 +65,14 @@ typedef struct camber_camera {
  * learns the sizes. Polylines are cut where they leave a window around the picture that lies farther out than any
  * stroke reaches, by 64 px at least, so that neither caps show there nor vertices lie far away. The mesh keeps the
  * network on the device: another call uploads nothing. The same camera gives the same bytes.
- * Returns what camber_tessellate does, and CAMBER_ERROR_ARGUMENT for a camera that is not finite, a scale or a size of
- * 0, a size above 65535, a scale that makes more than 10^9 px of a step. Cost: about 10 ns a point of what the boxes of
- * polylines do not rule out, on two cores. */
-CAMBER_API camber_status camber_tessellate_network(camber_mesh *mesh, camber_network *network,
-                                                   const camber_camera *camera, const camber_tessellation_desc *desc);
+ * Returns what camber_mesh_tessellate does, and CAMBER_ERROR_ARGUMENT for a camera that is not finite, a scale or a
+ * size of 0, a size above 65535, a scale that makes more than 10^9 px of a step. Cost: about 10 ns a point of what the
+ * boxes of polylines do not rule out, on two cores. */
+CAMBER_API camber_status camber_mesh_tessellate_network(camber_mesh *mesh, camber_network *network,
+                                                        const camber_camera *camera,
+                                                        const camber_tessellation_desc *desc);
 /* Whether the mesh's last tessellation was of this network. */
-CAMBER_API bool camber_mesh_holds(const camber_mesh *mesh, const camber_network *network);
+CAMBER_API bool camber_mesh_holds_network(const camber_mesh *mesh, const camber_network *network);
 
 #ifdef __cplusplus
 }

@@ -26,9 +26,9 @@ typedef struct camber_record {
 
 /* How far along its polyline a record of a measured mesh lies: the arc length over all of the polyline's points, those
  * of a network also where the camera leaves points out or cuts. */
-typedef struct camber_measure {
+typedef struct camber_arc_length {
     float along_px, total_px; /* from its first point, and to its last */
-} camber_measure;
+} camber_arc_length;
 
 /* A vertex as the vertex shader makes it from records. A segment runs from A to B, u is its direction, L its length.
  * The vertex lies at P + u * clamp(along * g, -limit_px, +limit_px) + (-u.y, u.x) * across * g with g = half the width
@@ -70,7 +70,7 @@ typedef struct camber_mesh_data {
     /* What the device has: info.record_count, and of kite and fan info.index_count, record << 7 | corner
      * (CAMBER_CORNER_* in kernels/layout.h); NULL of strips. */
     camber_record *records;
-    camber_measure *measures; /* as many, of measured meshes. NULL: not measured */
+    camber_arc_length *arc_lengths; /* as many, of measured meshes. NULL: not measured */
     uint32_t *corners;
     /* What is drawn by it: info.vertex_count, and info.index_count. Of strips these are two indices a record, both
      * CAMBER_RESTART_INDEX where it lies between two strips. At a tight join two records follow each other that have
@@ -85,22 +85,22 @@ typedef struct camber_mesh_data {
 CAMBER_API bool camber_mesh_data_draws(const camber_mesh_data *data, size_t first_index);
 
 CAMBER_API camber_status camber_mesh_read(camber_mesh *mesh, camber_mesh_data *data);
-/* The CPU twin: the same bytes as camber_tessellate where the device rounds correctly. Needs no device. */
-CAMBER_API camber_status camber_tessellate_on_host(camber_context *context, const camber_polylines *polylines,
-                                                   const camber_tessellation_desc *desc, camber_mesh_data *data);
+/* The CPU twin: the same bytes as camber_mesh_tessellate where the device rounds correctly. Needs no device. */
+CAMBER_API camber_status camber_mesh_data_tessellate(camber_context *context, const camber_polylines *polylines,
+                                                     const camber_tessellation_desc *desc, camber_mesh_data *data);
 CAMBER_API void camber_mesh_data_free(camber_context *context, camber_mesh_data *data);
 
 /* ---- Networks: what a camera makes of them ---------------------------------------------------------- */
 
-/* The CPU twin: the polylines that camber_tessellate would make the same mesh of, an entry each. Of desc only the
+/* The CPU twin: the polylines that camber_mesh_tessellate would make the same mesh of, an entry each. Of desc only the
  * strokes matter. */
 CAMBER_API camber_status camber_network_project(const camber_network *network, const camber_camera *camera,
                                                 const camber_tessellation_desc *desc, camber_polylines **polylines);
 /* The same polylines with each piece by itself and without entries of which nothing is seen; a ring that is cut begins
  * at a cut. *entries is the entry of each; free it with camber_entries_free. */
-CAMBER_API camber_status camber_network_lines(const camber_network *network, const camber_camera *camera,
-                                              const camber_tessellation_desc *desc, camber_lines *lines,
-                                              uint32_t **entries);
+CAMBER_API camber_status camber_network_project_lines(const camber_network *network, const camber_camera *camera,
+                                                      const camber_tessellation_desc *desc, camber_lines *lines,
+                                                      uint32_t **entries);
 CAMBER_API void camber_entries_free(camber_context *context, uint32_t *entries);
 
 /* ---- Stages: what came before the mesh ----------------------------------------------------------- */
@@ -124,11 +124,11 @@ typedef struct camber_stages {
 /* Of the last tessellation. Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_DEVICE. */
 CAMBER_API camber_status camber_mesh_read_stages(camber_mesh *mesh, camber_stages *stages);
 /* The CPU twin's. */
-CAMBER_API camber_status camber_stages_on_host(camber_context *context, const camber_polylines *polylines,
-                                               const camber_tessellation_desc *desc, camber_stages *stages);
+CAMBER_API camber_status camber_stages_tessellate(camber_context *context, const camber_polylines *polylines,
+                                                  const camber_tessellation_desc *desc, camber_stages *stages);
 CAMBER_API void camber_stages_free(camber_context *context, camber_stages *stages);
 
-/* ---- Stages of drawing: what CAMBER_DRAW_CL's kernels found for a frame ------------------------------ */
+/* ---- Stages of drawing: what CAMBER_RASTERIZER_OPENCL's kernels found for a frame ------------------------------ */
 
 /* Of a frame's first area, which is all of it up to 16 M px and 8192 px a side. Tiles are 32 px square. Free with
  * camber_drawing_stages_free. */
@@ -138,10 +138,10 @@ typedef struct camber_drawing_stages {
      * byte each: the first one's column, its row, the last one's column, its row. Where the last column lies before the
      * first, nothing is drawn. What lies along lines is measured where passes have gaps, blurs, dashes, trims or ramps;
      * a frame that is pitched has a shape's words of its plane too. */
-    float *shapes;   /* shape_words * shape_count */
-    uint32_t *boxes; /* shape_count */
-    float *measures; /* measure_words * shape_count. NULL: nothing lies along lines, or beside them */
-    float *planes;   /* plane_words * shape_count. NULL: not pitched */
+    float *shapes;      /* shape_words * shape_count */
+    uint32_t *boxes;    /* shape_count */
+    float *arc_lengths; /* measure_words * shape_count. NULL: nothing lies along lines, or beside them */
+    float *planes;      /* plane_words * shape_count. NULL: not pitched */
     size_t shape_count, shape_words, measure_words, plane_words;
     /* count and total: where the list of each tile begins, columns * rows + 1, row by row. */
     uint32_t *starts;
@@ -151,13 +151,13 @@ typedef struct camber_drawing_stages {
     uint32_t width, height;
 } camber_drawing_stages;
 
-/* Draws the frame. Returns what camber_render returns, CAMBER_ERROR_LIMIT also where it takes several slices. The
- * renderer draws in OpenCL. */
-CAMBER_API camber_status camber_drawing_read_stages(camber_renderer *renderer, const camber_frame *frame,
-                                                    camber_drawing_stages *stages);
+/* Draws the frame. Returns what camber_renderer_render returns, CAMBER_ERROR_LIMIT also where it takes several slices.
+ * The renderer draws in OpenCL. */
+CAMBER_API camber_status camber_renderer_read_stages(camber_renderer *renderer, const camber_frame *frame,
+                                                     camber_drawing_stages *stages);
 /* The CPU twin's, from the records that the device has: the same bytes, but for shapes that are not drawn. */
-CAMBER_API camber_status camber_drawing_stages_on_host(camber_renderer *renderer, const camber_frame *frame,
-                                                       camber_drawing_stages *stages);
+CAMBER_API camber_status camber_drawing_stages_rasterize(camber_renderer *renderer, const camber_frame *frame,
+                                                         camber_drawing_stages *stages);
 CAMBER_API void camber_drawing_stages_free(camber_context *context, camber_drawing_stages *stages);
 
 /* ---- Overdraw: what the GPU does for a mesh, counted on it ----------------------------------------- */
@@ -184,9 +184,10 @@ typedef struct camber_overdraw {
     uint64_t repeated_pixels; /* with coverage from more than one fragment of a range, once a range */
 } camber_overdraw;
 
-/* Counts with the stencil and additive blending, two draw calls a range. Returns what camber_render returns. */
-CAMBER_API camber_status camber_overdraw_count(camber_renderer *renderer, const camber_overdraw_desc *desc,
-                                               camber_overdraw *overdraw);
+/* Counts with the stencil and additive blending, two draw calls a range. Returns what camber_renderer_render returns.
+ */
+CAMBER_API camber_status camber_renderer_count_overdraw(camber_renderer *renderer, const camber_overdraw_desc *desc,
+                                                        camber_overdraw *overdraw);
 
 /* ---- GLB ------------------------------------------------------------------------------------------- */
 

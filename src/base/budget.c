@@ -42,7 +42,7 @@ void camber_budget_destroy(camber_budget *budget) {
     free(budget);
 }
 
-uint64_t camber_budget_held_bytes(const camber_budget *budget) {
+uint64_t camber_budget_get_held_bytes(const camber_budget *budget) {
     return atomic_load(&budget->held_bytes);
 }
 
@@ -119,9 +119,9 @@ static void look_up(camber_budget *budget, uint64_t held_bytes) {
     atomic_compare_exchange_strong(&budget->most_bytes, &unknown, held_bytes + free_bytes / 4 * 3);
 }
 
-uint64_t camber_budget_most_bytes(camber_budget *budget) {
+uint64_t camber_budget_get_most_bytes(camber_budget *budget) {
     if (atomic_load(&budget->most_bytes) == UINT64_MAX)
-        look_up(budget, camber_budget_held_bytes(budget));
+        look_up(budget, camber_budget_get_held_bytes(budget));
     return atomic_load(&budget->most_bytes);
 }
 
@@ -131,7 +131,7 @@ bool camber_budget_take(camber_context *context, uint64_t size_bytes) {
     camber_budget *budget = context->budget;
     const uint64_t held = atomic_fetch_add(&budget->held_bytes, size_bytes);
     const uint64_t most =
-        held + size_bytes > UNASKED_BYTES ? camber_budget_most_bytes(budget) : atomic_load(&budget->most_bytes);
+        held + size_bytes > UNASKED_BYTES ? camber_budget_get_most_bytes(budget) : atomic_load(&budget->most_bytes);
     if (size_bytes <= most && held <= most - size_bytes)
         return true;
     atomic_fetch_sub(&budget->held_bytes, size_bytes);
@@ -143,8 +143,8 @@ camber_status camber_budget_fail(camber_context *context, uint64_t size_bytes) {
     return camber_fail(context, CAMBER_ERROR_MEMORY,
                        "memory: %.1f MB are held, %.1f MB more are needed, and %.1f MB are allowed; give it less data, "
                        "or allow more memory",
-                       (double)camber_budget_held_bytes(budget) / 1e6, (double)size_bytes / 1e6,
-                       (double)camber_budget_most_bytes(budget) / 1e6);
+                       (double)camber_budget_get_held_bytes(budget) / 1e6, (double)size_bytes / 1e6,
+                       (double)camber_budget_get_most_bytes(budget) / 1e6);
 }
 
 void camber_budget_give(camber_context *context, uint64_t size_bytes) {
@@ -152,7 +152,8 @@ void camber_budget_give(camber_context *context, uint64_t size_bytes) {
 }
 
 bool camber_budget_has(const camber_context *context, uint64_t size_bytes) {
-    const uint64_t held = camber_budget_held_bytes(context->budget), most = camber_budget_most_bytes(context->budget);
+    const uint64_t held = camber_budget_get_held_bytes(context->budget),
+                   most = camber_budget_get_most_bytes(context->budget);
     return size_bytes <= most && held <= most - size_bytes;
 }
 

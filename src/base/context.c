@@ -55,7 +55,7 @@ void camber_context_destroy(camber_context *context) {
     desc.reallocate(desc.allocator_user, context, 0);
 }
 
-const char *camber_status_name(camber_status status) {
+const char *camber_status_get_name(camber_status status) {
     switch (status) {
     case CAMBER_OK: return "ok";
     case CAMBER_ERROR_MEMORY: return "out of memory";

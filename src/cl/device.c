@@ -175,7 +175,7 @@ static bool contains_ignoring_case(const char *text, const char *part) {
     return *part == 0;
 }
 
-bool camber_device_matches(const camber_device_info *info, const char *match) {
+bool camber_device_info_matches(const camber_device_info *info, const char *match) {
     if (!match)
         return true;
     if (contains_ignoring_case("cpu", match) && strlen(match) == 3)
@@ -206,7 +206,7 @@ static camber_status choose(camber_device *device, const char *match, uint32_t n
         const camber_device_info info = found[i].info;
         const size_t used = strlen(names);
         snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", info.name);
-        if (!camber_device_matches(&info, match) || (number ? ++seen != number : rank(&info) <= best))
+        if (!camber_device_info_matches(&info, match) || (number ? ++seen != number : rank(&info) <= best))
             continue;
         best = rank(&info);
         device->platform = found[i].platform;
@@ -323,13 +323,13 @@ camber_status camber_device_create(camber_context *context, const camber_device_
 void camber_device_destroy(camber_device *device) {
     if (!device)
         return;
-    for (int measured = 0; measured < 2; measured++) {
+    for (int has_arc_length = 0; has_arc_length < 2; has_arc_length++) {
         for (int kind = 0; kind < 6; kind++)
-            camber_program_destroy(device->context, device->programs[measured][kind / 3][kind % 3]);
+            camber_program_destroy(device->context, device->programs[has_arc_length][kind / 3][kind % 3]);
         for (int pitched = 0; pitched < 2; pitched++)
-            camber_program_destroy(device->context, device->network_programs[measured][pitched]);
+            camber_program_destroy(device->context, device->network_programs[has_arc_length][pitched]);
     }
-    camber_program_destroy(device->context, device->measures);
+    camber_program_destroy(device->context, device->arc_lengths);
     for (size_t i = 0; i < 2; i++)
         camber_program_destroy(device->context, device->offset_programs[i]);
     for (size_t i = 0; i < sizeof device->cover / sizeof *device->cover; i++)

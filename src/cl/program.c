@@ -221,13 +221,13 @@ static camber_status make_program(camber_device *device, const recipe *from, cam
 }
 
 /* method: one of camber_method's, or what stands for no method. */
-static void set_options(const camber_device *device, int method, bool measured, recipe *from) {
+static void set_options(const camber_device *device, int method, bool has_arc_length, recipe *from) {
     char block[32] = "";
     if (device->block != CAMBER_BLOCK)
         snprintf(block, sizeof block, " -DCAMBER_BLOCK=%zu", device->block);
     snprintf(from->options, sizeof from->options, OPTIONS, method,
              device->rounds_correctly ? " -cl-fp32-correctly-rounded-divide-sqrt" : "", block, device->item,
-             measured ? " -DCAMBER_MEASURED=1" : "");
+             has_arc_length ? " -DCAMBER_MEASURED=1" : "");
 }
 
 #ifdef CAMBER_KERNEL_FOLDER
@@ -256,25 +256,25 @@ static camber_status use_program(camber_device *device, recipe *from, camber_pro
 }
 
 camber_status camber_device_program(camber_device *device, camber_program_desc desc, camber_program **program) {
-    recipe from = {PROGRAM_METHOD, camber_method_name(desc.method), camber_kernels_source, camber_kernels_source_size,
-                   ""};
-    set_options(device, (int)desc.method, desc.measured, &from);
+    recipe from = {PROGRAM_METHOD, camber_method_get_name(desc.method), camber_kernels_source,
+                   camber_kernels_source_size, ""};
+    set_options(device, (int)desc.method, desc.has_arc_length, &from);
     const size_t used = strlen(from.options);
     if (!desc.round_limits)
         snprintf(from.options + used, sizeof from.options - used, " -DCAMBER_ROUND_LIMITS=0");
-    return use_program(device, &from, &device->programs[desc.measured][desc.round_limits][desc.method], program);
+    return use_program(device, &from, &device->programs[desc.has_arc_length][desc.round_limits][desc.method], program);
 }
 
 camber_status camber_device_measures(camber_device *device, camber_program **program) {
     recipe from = {PROGRAM_MEASURES, "measures", camber_measure_kernels_source, camber_measure_kernels_source_size, ""};
     set_options(device, -1, false, &from);
-    return use_program(device, &from, &device->measures, program);
+    return use_program(device, &from, &device->arc_lengths, program);
 }
 
-camber_status camber_device_offsets(camber_device *device, bool measured, camber_program **program) {
+camber_status camber_device_offsets(camber_device *device, bool has_arc_length, camber_program **program) {
     recipe from = {PROGRAM_OFFSETS, "offsets", camber_offset_kernels_source, camber_offset_kernels_source_size, ""};
-    set_options(device, -1, measured, &from);
-    return use_program(device, &from, &device->offset_programs[measured], program);
+    set_options(device, -1, has_arc_length, &from);
+    return use_program(device, &from, &device->offset_programs[has_arc_length], program);
 }
 
 camber_status camber_device_cover_program(camber_device *device, unsigned variant, camber_program **program) {
@@ -288,14 +288,14 @@ camber_status camber_device_cover_program(camber_device *device, unsigned varian
     return use_program(device, &from, &device->cover[variant], program);
 }
 
-camber_status camber_device_network_program(camber_device *device, bool measured, bool pitched,
+camber_status camber_device_network_program(camber_device *device, bool has_arc_length, bool pitched,
                                             camber_program **program) {
     recipe from = {PROGRAM_NETWORK, "networks", camber_network_kernels_source, camber_network_kernels_source_size, ""};
-    set_options(device, -1, measured, &from);
+    set_options(device, -1, has_arc_length, &from);
     const size_t used = strlen(from.options);
     if (pitched)
         snprintf(from.options + used, sizeof from.options - used, " -DCAMBER_PITCHED=1");
-    return use_program(device, &from, &device->network_programs[measured][pitched], program);
+    return use_program(device, &from, &device->network_programs[has_arc_length][pitched], program);
 }
 
 /* The n-th program of all that a device can be asked for, or none; what takes longest comes first. */

@@ -80,7 +80,7 @@ static camber_status draw(camber_context *context, const camber_path *path, size
     const camber_polylines_desc desc = {
         .points = points, .point_count = offsets[LINES], .offsets = offsets, .polyline_count = LINES};
     const camber_tessellation_desc tessellation = {
-        .strokes = &stroke, .stroke_count = 1, .method = method, .measured = true};
+        .strokes = &stroke, .stroke_count = 1, .method = method, .has_arc_length = true};
     const camber_pass pass = {.mesh = path->mesh,
                               .paints = paint,
                               .paint_count = 1,
@@ -92,9 +92,9 @@ static camber_status draw(camber_context *context, const camber_path *path, size
     camber_polylines *polylines = NULL;
     camber_status status = camber_polylines_create(context, &desc, &polylines);
     if (status == CAMBER_OK)
-        status = camber_tessellate(path->mesh, polylines, &tessellation);
+        status = camber_mesh_tessellate(path->mesh, polylines, &tessellation);
     if (status == CAMBER_OK)
-        status = camber_render(path->renderer, &frame, take, drawn, NULL);
+        status = camber_renderer_render(path->renderer, &frame, take, drawn, NULL);
     camber_polylines_destroy(polylines);
     return status;
 }
@@ -126,7 +126,7 @@ static int check_row(camber_validation *v, const camber_rig *rig, const camber_e
                      size_t number) {
     static const camber_window window = {0, 0, SIDE_PX, SIDE_PX};
     camber_check check = camber_check_start(rig->name, easel->name, "along lines: %s: %s: pixels, on %s, %s",
-                                            camber_method_name(method), rows[number].name, rig->name, easel->name);
+                                            camber_method_get_name(method), rows[number].name, rig->name, easel->name);
     float *truth = calloc(2 * PIXELS, sizeof *truth);
     channels *drawn = calloc(1, sizeof *drawn);
     check.most = rows[number].bounds;

@@ -104,8 +104,8 @@ static bool words_differ(const char *field, const float *got, const float *expec
 static bool shapes_differ(const camber_drawing_stages *got, const camber_drawing_stages *expected,
                           camber_finding *finding) {
     return words_differ("shape", got->shapes, expected->shapes, expected->shape_words, expected, finding) ||
-           (expected->measures &&
-            words_differ("measures", got->measures, expected->measures, expected->measure_words, expected, finding)) ||
+           (expected->arc_lengths && words_differ("measures", got->arc_lengths, expected->arc_lengths,
+                                                  expected->measure_words, expected, finding)) ||
            (expected->planes &&
             words_differ("plane", got->planes, expected->planes, expected->plane_words, expected, finding));
 }
@@ -159,9 +159,9 @@ static camber_status compare(const camber_validation *v, const camber_subject *s
     drawn d;
     if (!make_frame(s, v->session->options, path->mesh, variant, &d))
         return CAMBER_ERROR_MEMORY;
-    camber_status status = camber_drawing_read_stages(path->renderer, &d.frame, &got);
+    camber_status status = camber_renderer_read_stages(path->renderer, &d.frame, &got);
     if (status == CAMBER_OK)
-        status = camber_drawing_stages_on_host(path->renderer, &d.frame, &expected);
+        status = camber_drawing_stages_rasterize(path->renderer, &d.frame, &expected);
     if (status == CAMBER_OK && stages_differ(&got, &expected, &check->finding))
         check->verdict = CAMBER_VERDICT_FAILED;
     camber_drawing_stages_free(context, &got);
@@ -182,7 +182,7 @@ static int check_method(camber_validation *v, const camber_subject *s, const cam
     const camber_tessellation_desc desc = {s->strokes, s->stroke_count, method, 0, false};
     camber_check check =
         camber_check_start(rig->name, on->easel, "%s: %s%s: drawn as by the CPU twin%s, on %s", s->name,
-                           camber_method_name(method), variants[on->variant].name, on->how, rig->name);
+                           camber_method_get_name(method), variants[on->variant].name, on->how, rig->name);
     if (rig->broken[method]) {
         camber_verdicts_skip(&v->verdicts, check, "the mesh is not the CPU twin's");
         return CAMBER_EXIT_DONE;
@@ -229,7 +229,7 @@ int camber_check_drawing(camber_validation *v, const camber_subject *s) {
         for (size_t e = 0; e < v->rigs.list[r].easel_count && status == CAMBER_EXIT_DONE; e++) {
             const camber_rig *rig = v->rigs.list + r;
             const camber_easel *easel = rig->easels + e;
-            if (easel->draw != CAMBER_DRAW_CL)
+            if (easel->draw != CAMBER_RASTERIZER_OPENCL)
                 continue;
             for (int i = 0; i < VARIANTS && status == CAMBER_EXIT_DONE; i++)
                 status = check_methods(v, s, rig, &(drawer){easel->name, "", easel->paths[0], i});

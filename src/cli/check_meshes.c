@@ -27,8 +27,8 @@ camber_stroke *camber_strokes_styled(const camber_stroke *strokes, size_t count,
 
 camber_status camber_subject_tessellate(const camber_subject *s, camber_mesh *mesh,
                                         const camber_tessellation_desc *desc) {
-    return s->network ? camber_tessellate_network(mesh, s->network, &s->camera, desc)
-                      : camber_tessellate(mesh, s->polylines, desc);
+    return s->network ? camber_mesh_tessellate_network(mesh, s->network, &s->camera, desc)
+                      : camber_mesh_tessellate(mesh, s->polylines, desc);
 }
 
 bool camber_subject_takes(const camber_subject *s, const camber_options *options, camber_method method) {
@@ -44,9 +44,9 @@ bool camber_draws_method(const camber_options *options, camber_method method) {
 static camber_status see_twin(camber_validation *v, const camber_subject *s, const camber_tessellation_desc *desc,
                               camber_sight *sight) {
     camber_context *context = v->session->context;
-    const camber_status status = camber_stages_on_host(context, s->polylines, desc, &sight->stages);
+    const camber_status status = camber_stages_tessellate(context, s->polylines, desc, &sight->stages);
     sight->has_stages = status == CAMBER_OK;
-    return status == CAMBER_OK ? camber_tessellate_on_host(context, s->polylines, desc, &sight->mesh) : status;
+    return status == CAMBER_OK ? camber_mesh_data_tessellate(context, s->polylines, desc, &sight->mesh) : status;
 }
 
 static camber_status see_mesh(camber_mesh *mesh, const camber_subject *s, const camber_tessellation_desc *desc,
@@ -106,7 +106,7 @@ static int check_twin(job *j, size_t number) {
         snprintf(styled, sizeof styled, ", %s joins, %s caps", camber_join_name((camber_join)(number / 3 % 3)),
                  camber_cap_name((camber_cap)(number % 3)));
     camber_check check = camber_check_start(j->rig->name, NULL, "%s: %s%s: as the CPU twin, on %s", j->s->name,
-                                            camber_method_name(j->desc.method), styled, j->rig->name);
+                                            camber_method_get_name(j->desc.method), styled, j->rig->name);
     camber_status made = strokes ? see_twin(j->v, j->s, &j->desc, &twin) : CAMBER_ERROR_MEMORY;
     if (made == CAMBER_OK)
         made = compare_mesh(j, j->rig->mesh, &twin, true, &check);
@@ -212,7 +212,7 @@ static int check_way(job *j, int way, const camber_sight *first) {
     else if (way >= IN_GROUPS)
         snprintf(what, sizeof what, "in work-groups of %u", j->rig->groups[way - IN_GROUPS].size);
     camber_check check = camber_check_start(j->rig->name, NULL, "%s: %s: the same bytes %s, on %s", j->s->name,
-                                            camber_method_name(j->desc.method), what, j->rig->name);
+                                            camber_method_get_name(j->desc.method), what, j->rig->name);
     camber_mesh *mesh = way == AGAIN || way == IN_PARTS ? j->rig->mesh : j->rig->groups[way - IN_GROUPS].mesh;
     const camber_status compared =
         way == IN_PARTS ? compare_parts(j, first, &check) : compare_mesh(j, mesh, first, false, &check);

@@ -140,14 +140,14 @@ static double reach_of(const job *j) {
     return reach;
 }
 
-/* What camber_tessellate_network promises of the window, of all that the twin sees. */
+/* What camber_mesh_tessellate_network promises of the window, of all that the twin sees. */
 static int check_window(job *j, const camber_subject *s) {
     camber_check check = camber_check_start(NULL, NULL, "%s: no point far outside the picture", s->name);
     const camber_tessellation_desc desc = {j->strokes, j->stroke_count, s->method, 0, false};
     const double most = 64 + 16 + reach_of(j) + s->camera.translate_px;
     camber_stages stages = {0};
     const int status = camber_report_status(
-        j->v->session->report, camber_stages_on_host(j->v->session->context, s->polylines, &desc, &stages));
+        j->v->session->report, camber_stages_tessellate(j->v->session->context, s->polylines, &desc, &stages));
     if (status != CAMBER_EXIT_DONE)
         return status;
     for (size_t i = 0; i < stages.point_count; i++) {

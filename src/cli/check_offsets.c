@@ -97,7 +97,7 @@ static int check_bend(camber_validation *v, const bend *b, double offset) {
     camber_stages stages = {0};
     camber_status made = camber_polylines_create(v->session->context, &given, &polylines);
     if (made == CAMBER_OK)
-        made = camber_stages_on_host(v->session->context, polylines, &desc, &stages);
+        made = camber_stages_tessellate(v->session->context, polylines, &desc, &stages);
     if (made == CAMBER_OK && stages.point_count > 1) {
         check_points(b, &p, offset, &stages, &check);
     } else if (made == CAMBER_OK) {

@@ -134,7 +134,7 @@ static camber_status meshes_differ(job *j, camber_easel *easel, size_t path, cam
 /* A sharing path against the first: the mesh's bytes and the picture's. */
 static int check_path(job *j, camber_easel *easel, size_t path) {
     camber_check check = camber_check_start(j->rig->name, easel->name, "%s: %s, %s: %s as %s, on %s, %s", j->s->name,
-                                            camber_method_name(j->desc.method), j->style, easel->paths[path].name,
+                                            camber_method_get_name(j->desc.method), j->style, easel->paths[path].name,
                                             easel->paths[0].name, j->rig->name, easel->name);
     bool differ = false;
     size_t pixel = 0;
@@ -159,7 +159,7 @@ static int check_path(job *j, camber_easel *easel, size_t path) {
 /* What one draws against what the first does. */
 static int check_drawer(job *j, const camber_easel *easel) {
     camber_check check = camber_check_start(j->rig->name, easel->name, "%s: %s, %s: %s as %s, on %s", j->s->name,
-                                            camber_method_name(j->desc.method), j->style, easel->name,
+                                            camber_method_get_name(j->desc.method), j->style, easel->name,
                                             j->rig->easels[0].name, j->rig->name);
     size_t pixel = 0;
     check.has_error = true;
@@ -182,8 +182,9 @@ static int check_drawer(job *j, const camber_easel *easel) {
 
 /* The layers of translucent lines, drawn opaque: against the union of all lines. */
 static int check_united(job *j, const camber_easel *easel) {
-    camber_check check = camber_check_start(j->rig->name, easel->name, "%s: %s, %s: united, on %s, %s", j->s->name,
-                                            camber_method_name(j->desc.method), j->style, j->rig->name, easel->name);
+    camber_check check =
+        camber_check_start(j->rig->name, easel->name, "%s: %s, %s: united, on %s, %s", j->s->name,
+                           camber_method_get_name(j->desc.method), j->style, j->rig->name, easel->name);
     const int status =
         camber_report_status(j->v->session->report, draw(j, &easel->paths[0], CAMBER_OVERLAP_UNITE, j->other));
     return status == CAMBER_EXIT_DONE ? check_truth(j, &check, CAMBER_TRUTH_UNION, j->other) : status;
@@ -193,7 +194,7 @@ static int check_united(job *j, const camber_easel *easel) {
 static int check_once(job *j, const camber_easel *easel) {
     camber_check check =
         camber_check_start(j->rig->name, easel->name, "%s: %s, %s: each pixel once, on %s, %s", j->s->name,
-                           camber_method_name(j->desc.method), j->style, j->rig->name, easel->name);
+                           camber_method_get_name(j->desc.method), j->style, j->rig->name, easel->name);
     camber_overdraw sum = {0};
     camber_finding *finding = &check.finding;
     const camber_drawing drawing = drawing_of(j, CAMBER_OVERLAP_FLATTEN);
@@ -212,14 +213,15 @@ static int check_once(job *j, const camber_easel *easel) {
 
 static int check_easel(job *j, size_t which) {
     camber_easel *easel = (camber_easel *)&j->rig->easels[which];
-    camber_check check = camber_check_start(j->rig->name, easel->name, "%s: %s, %s: pixels, on %s, %s", j->s->name,
-                                            camber_method_name(j->desc.method), j->style, j->rig->name, easel->name);
+    camber_check check =
+        camber_check_start(j->rig->name, easel->name, "%s: %s, %s: pixels, on %s, %s", j->s->name,
+                           camber_method_get_name(j->desc.method), j->style, j->rig->name, easel->name);
     int status = camber_report_status(j->v->session->report, draw(j, &easel->paths[0], CAMBER_OVERLAP_FLATTEN, j->own));
     if (status == CAMBER_EXIT_DONE)
         status = check_truth(j, &check, CAMBER_TRUTH_OVER, j->own);
     if (status == CAMBER_EXIT_DONE && j->desc.method == CAMBER_METHOD_STRIP && !j->s->network)
         status = check_united(j, easel);
-    const bool counts = easel->draw == CAMBER_DRAW_GL && j->desc.method != CAMBER_METHOD_FAN;
+    const bool counts = easel->draw == CAMBER_RASTERIZER_GL && j->desc.method != CAMBER_METHOD_FAN;
     if (status == CAMBER_EXIT_DONE && j->is_drawn_once && counts)
         status = check_once(j, easel);
     /* Kernels draw any mesh as strips are. */
@@ -239,7 +241,7 @@ static int check_rig(job *j) {
     if (j->rig->broken[j->desc.method]) {
         camber_verdicts_skip(&j->v->verdicts,
                              camber_check_start(j->rig->name, NULL, "%s: %s, %s: pixels, on %s", j->s->name,
-                                                camber_method_name(j->desc.method), j->style, j->rig->name),
+                                                camber_method_get_name(j->desc.method), j->style, j->rig->name),
                              "the mesh is not the CPU twin's");
         return status;
     }
@@ -281,7 +283,7 @@ static void set_style(camber_stroke *stroke, size_t row, size_t number) {
 static camber_status find_bounds(job *j) {
     camber_context *context = j->v->session->context;
     camber_mesh_data twin = {0};
-    const camber_status status = camber_tessellate_on_host(context, j->s->polylines, &j->desc, &twin);
+    const camber_status status = camber_mesh_data_tessellate(context, j->s->polylines, &j->desc, &twin);
     const double joins = (double)(twin.info.joins ? twin.info.joins : 1);
     const double share = (double)(twin.info.tight_joins + twin.info.split_joins) / joins;
     camber_mesh_data_free(context, &twin);

@@ -81,7 +81,7 @@ static camber_status tessellate(const trial *t) {
                                            .method = camber_methods_shown[t->method],
                                            .fan_tolerance_px =
                                                (float)t->comparison->session->options->fan_tolerance_px};
-    return camber_tessellate(t->comparison->mesh, t->network->polylines, &desc);
+    return camber_mesh_tessellate(t->comparison->mesh, t->network->polylines, &desc);
 }
 
 static camber_status draw(const trial *t, bool keep, camber_frame_stats *stats) {
@@ -94,7 +94,7 @@ static camber_status draw(const trial *t, bool keep, camber_frame_stats *stats) 
                                 .coverage = (camber_coverage)c->session->options->coverage};
     /* Black on nothing has its coverage as alpha. */
     camber_levels to = {c->levels[t->method], frame.width, 3};
-    return camber_render(c->session->renderer, &frame, keep ? camber_levels_take : NULL, &to, stats);
+    return camber_renderer_render(c->session->renderer, &frame, keep ? camber_levels_take : NULL, &to, stats);
 }
 
 static camber_status time_runs(const trial *t) {
@@ -114,8 +114,8 @@ static camber_status time_runs(const trial *t) {
         draw_ms[i - WARM_UPS] = stats.draw_ms;
     }
     if (status == CAMBER_OK) {
-        t->row->measures[t->method][CAMBER_MEASURE_TESSELLATE_MS] = camber_statistics_median(tessellate_ms, runs);
-        t->row->measures[t->method][CAMBER_MEASURE_DRAW_MS] = camber_statistics_median(draw_ms, runs);
+        t->row->arc_lengths[t->method][CAMBER_MEASURE_TESSELLATE_MS] = camber_statistics_median(tessellate_ms, runs);
+        t->row->arc_lengths[t->method][CAMBER_MEASURE_DRAW_MS] = camber_statistics_median(draw_ms, runs);
     }
     free(tessellate_ms);
     free(draw_ms);
@@ -123,12 +123,12 @@ static camber_status time_runs(const trial *t) {
 }
 
 static void count_mesh(const trial *t, const camber_mesh_data *mesh) {
-    double *measures = t->row->measures[t->method], *figures = t->row->figures;
+    double *arc_lengths = t->row->arc_lengths[t->method], *figures = t->row->figures;
     const camber_mesh_info *info = &mesh->info;
-    measures[CAMBER_MEASURE_VERTICES] = (double)info->vertex_count;
-    measures[CAMBER_MEASURE_TRIANGLES] = (double)info->triangle_count;
-    measures[CAMBER_MEASURE_BYTES] = (double)info->bytes;
-    measures[CAMBER_MEASURE_DRAW_CALLS_16_BIT] = (double)camber_batches_count(mesh, CAMBER_BATCH_VERTICES);
+    arc_lengths[CAMBER_MEASURE_VERTICES] = (double)info->vertex_count;
+    arc_lengths[CAMBER_MEASURE_TRIANGLES] = (double)info->triangle_count;
+    arc_lengths[CAMBER_MEASURE_BYTES] = (double)info->bytes;
+    arc_lengths[CAMBER_MEASURE_DRAW_CALLS_16_BIT] = (double)camber_batches_count(mesh, CAMBER_BATCH_VERTICES);
     figures[CAMBER_FIGURE_TIGHT_JOINS] = (double)info->tight_joins;
     figures[CAMBER_FIGURE_SPLIT_JOINS] = (double)info->split_joins;
 }
@@ -150,7 +150,7 @@ static camber_status count_ranges(const trial *t, const camber_index_range *rang
     /* Its progress would stand where that of the whole does. */
     const bool bars = c->session->report->bars;
     c->session->report->bars = false;
-    const camber_status status = camber_overdraw_count(c->session->renderer, &desc, overdraw);
+    const camber_status status = camber_renderer_count_overdraw(c->session->renderer, &desc, overdraw);
     c->session->report->bars = bars;
     return status;
 }
@@ -169,36 +169,36 @@ static camber_status count_joins(const trial *t, const camber_joins *joins, camb
         status = count_ranges(t, ranges, count, c->at_joins, &overdraw);
     for (size_t i = 0; i < (size_t)c->networks.width * c->networks.height && count > 0; i++)
         c->repeated[i] = c->at_joins[i] ? 0 : c->repeated[i];
-    t->row->measures[t->method][CAMBER_MEASURE_REPEATED_AT_PLAIN + (int)room] = (double)overdraw.repeated_pixels;
+    t->row->arc_lengths[t->method][CAMBER_MEASURE_REPEATED_AT_PLAIN + (int)room] = (double)overdraw.repeated_pixels;
     free(ranges);
     return status;
 }
 
 static camber_status count_pixels(const trial *t, const camber_mesh_data *mesh) {
     camber_comparison *c = t->comparison;
-    double *measures = t->row->measures[t->method];
+    double *arc_lengths = t->row->arc_lengths[t->method];
     camber_joins joins = {0};
     camber_overdraw overdraw = {0};
     camber_status status = count_ranges(t, NULL, 0, c->repeated, &overdraw);
-    measures[CAMBER_MEASURE_FRAGMENTS] = (double)overdraw.fragments;
-    measures[CAMBER_MEASURE_DRAWN_PIXELS] = (double)overdraw.drawn_pixels;
-    measures[CAMBER_MEASURE_REPEATED_PIXELS] = (double)overdraw.repeated_pixels;
+    arc_lengths[CAMBER_MEASURE_FRAGMENTS] = (double)overdraw.fragments;
+    arc_lengths[CAMBER_MEASURE_DRAWN_PIXELS] = (double)overdraw.drawn_pixels;
+    arc_lengths[CAMBER_MEASURE_REPEATED_PIXELS] = (double)overdraw.repeated_pixels;
     if (status == CAMBER_OK && !camber_joins_find(mesh, t->network->strokes, &joins))
         status = CAMBER_ERROR_MEMORY;
     for (int room = 0; room < CAMBER_JOIN_ROOMS && status == CAMBER_OK; room++)
         status = count_joins(t, &joins, (camber_join_room)room);
     for (size_t i = 0; i < (size_t)c->networks.width * c->networks.height; i++)
-        measures[CAMBER_MEASURE_REPEATED_ELSEWHERE] += c->repeated[i];
+        arc_lengths[CAMBER_MEASURE_REPEATED_ELSEWHERE] += c->repeated[i];
     camber_joins_free(&joins);
     return status;
 }
 
 /* What kernels have no such thing of. */
 static void leave_out_gl(const trial *t) {
-    double *measures = t->row->measures[t->method];
-    measures[CAMBER_MEASURE_DRAW_CALLS_16_BIT] = measures[CAMBER_MEASURE_DRAW_CALLS] = NAN;
+    double *arc_lengths = t->row->arc_lengths[t->method];
+    arc_lengths[CAMBER_MEASURE_DRAW_CALLS_16_BIT] = arc_lengths[CAMBER_MEASURE_DRAW_CALLS] = NAN;
     for (int i = CAMBER_MEASURE_OF_PIXELS; i < CAMBER_MEASURE_COUNT; i++)
-        measures[i] = NAN;
+        arc_lengths[i] = NAN;
 }
 
 static camber_status try_method(const trial *t) {
@@ -207,13 +207,13 @@ static camber_status try_method(const trial *t) {
     camber_status status = time_runs(t);
     if (status == CAMBER_OK)
         status = draw(t, true, &stats);
-    t->row->measures[t->method][CAMBER_MEASURE_DRAW_CALLS] = (double)stats.draw_calls;
+    t->row->arc_lengths[t->method][CAMBER_MEASURE_DRAW_CALLS] = (double)stats.draw_calls;
     if (status == CAMBER_OK)
         status = camber_mesh_read(t->comparison->mesh, &mesh);
     if (status != CAMBER_OK)
         return status;
     count_mesh(t, &mesh);
-    if (t->comparison->session->draw == CAMBER_DRAW_GL)
+    if (t->comparison->session->draw == CAMBER_RASTERIZER_GL)
         status = count_pixels(t, &mesh);
     else
         leave_out_gl(t);
@@ -257,8 +257,8 @@ static camber_status measure_errors(const camber_comparison *c, const camber_net
     if (!camber_bands_measure(&job, differences))
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < job.picture_count; i++) {
-        row->measures[methods[i]][CAMBER_MEASURE_MEAN_ERROR] = camber_difference_mean(&differences[i]);
-        row->measures[methods[i]][CAMBER_MEASURE_MAX_ERROR] = differences[i].max;
+        row->arc_lengths[methods[i]][CAMBER_MEASURE_MEAN_ERROR] = camber_difference_mean(&differences[i]);
+        row->arc_lengths[methods[i]][CAMBER_MEASURE_MAX_ERROR] = differences[i].max;
         row->max_at[methods[i]] = differences[i].max_at;
     }
     return CAMBER_OK;
@@ -302,8 +302,8 @@ static void average(camber_comparison *c) {
             sum->figures[k] += c->rows[i].figures[k] / count;
         for (int method = 0; method < CAMBER_METHODS; method++)
             for (int k = 0; k < CAMBER_MEASURE_COUNT; k++) {
-                const double measure = c->rows[i].measures[method][k];
-                double *to = &sum->measures[method][k];
+                const double measure = c->rows[i].arc_lengths[method][k];
+                double *to = &sum->arc_lengths[method][k];
                 *to = k != CAMBER_MEASURE_MAX_ERROR ? *to + measure / count : measure > *to ? measure : *to;
             }
     }
@@ -354,9 +354,9 @@ void camber_comparison_close(camber_comparison *comparison) {
 
 double camber_comparison_ratio(const camber_comparison *comparison, int method, int measure) {
     for (int i = 0; i < CAMBER_METHODS; i++) {
-        const double kite = comparison->average.measures[i][measure];
+        const double kite = comparison->average.arc_lengths[i][measure];
         if (camber_methods_shown[i] == CAMBER_METHOD_KITE && kite > 0)
-            return comparison->average.measures[method][measure] / kite;
+            return comparison->average.arc_lengths[method][measure] / kite;
     }
     return NAN;
 }

@@ -55,7 +55,7 @@ typedef struct camber_comparison_row {
     const char *name; /* of the network */
     double figures[CAMBER_FIGURE_COUNT];
     /* As camber_methods_shown; NAN: of GL alone, and kernels draw. */
-    double measures[CAMBER_METHODS][CAMBER_MEASURE_COUNT];
+    double arc_lengths[CAMBER_METHODS][CAMBER_MEASURE_COUNT];
     size_t max_at[CAMBER_METHODS]; /* the pixel of the maximum error */
 } camber_comparison_row;
 

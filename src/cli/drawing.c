@@ -25,7 +25,7 @@ camber_status camber_draw_levels(const camber_path *path, const camber_drawing *
                                 .passes = &pass,
                                 .pass_count = 1,
                                 .coverage = drawing->coverage};
-    const camber_status status = camber_render(path->renderer, &frame, camber_levels_take, &kept, NULL);
+    const camber_status status = camber_renderer_render(path->renderer, &frame, camber_levels_take, &kept, NULL);
     free(paints);
     return status;
 }
@@ -39,7 +39,7 @@ camber_status camber_draw_count(const camber_path *path, const camber_drawing *d
                                        .mesh = path->mesh,
                                        .paints = paints,
                                        .paint_count = drawing->stroke_count};
-    const camber_status status = camber_overdraw_count(path->renderer, &desc, sum);
+    const camber_status status = camber_renderer_count_overdraw(path->renderer, &desc, sum);
     free(paints);
     return status;
 }

@@ -126,13 +126,13 @@ static camber_frame polylines_frame(camber_input *input, camber_mesh *mesh) {
 #ifdef CAMBER_MAP
 bool camber_input_ships(const char *name) {
     size_t size_bytes;
-    return camber_style_text(name, CAMBER_THEME_LIGHT, &size_bytes) && access(name, F_OK) != 0;
+    return camber_style_get_text(name, CAMBER_THEME_LIGHT, &size_bytes) && access(name, F_OK) != 0;
 }
 
 static int fail_name(camber_session *session, const char *name) {
     char names[128] = "";
     const char *next;
-    for (size_t i = 0; (next = camber_style_name(i)) != NULL; i++)
+    for (size_t i = 0; (next = camber_style_list(i)) != NULL; i++)
         snprintf(names + strlen(names), sizeof names - strlen(names), "%s%s", i ? ", " : "", next);
     return camber_report_fail(session->report, CAMBER_EXIT_NO_INPUT,
                               "%s: neither a file nor a style that ships; name a style document, or one of: %s", name,
@@ -142,7 +142,7 @@ static int fail_name(camber_session *session, const char *name) {
 int camber_input_read_style(camber_session *session, const char *path, camber_theme theme, camber_style_input *style) {
     *style = (camber_style_input){.name = path};
     if (camber_input_ships(path)) {
-        style->text = camber_style_text(path, theme, &style->size_bytes);
+        style->text = camber_style_get_text(path, theme, &style->size_bytes);
         return CAMBER_EXIT_DONE;
     }
     if (strcmp(path, "-") != 0 && !strchr(path, '/') && access(path, F_OK) != 0)
@@ -162,7 +162,8 @@ static int open_style(camber_input *input) {
     const camber_options *options = session->options;
     const camber_theme theme = options->theme < 0 ? CAMBER_THEME_LIGHT : (camber_theme)options->theme;
     if (!options->style)
-        return camber_report_status(session->report, camber_style_builtin(session->context, theme, &input->style));
+        return camber_report_status(session->report,
+                                    camber_style_create_builtin(session->context, theme, &input->style));
     camber_style_input style;
     const int status = camber_input_read_style(session, options->style, theme, &style);
     if (status != CAMBER_EXIT_DONE)
@@ -249,7 +250,7 @@ static int open_map(camber_input *input) {
     if (status != CAMBER_EXIT_DONE)
         return status;
     const char *asked = session->options->attribution;
-    input->attribution = asked ? (*asked ? asked : NULL) : camber_features_attribution(input->features);
+    input->attribution = asked ? (*asked ? asked : NULL) : camber_features_get_attribution(input->features);
     const camber_features_stats stats = camber_features_get_stats(input->features);
     input->points_in = stats.points;
     input->segments_in = stats.points > stats.polylines ? stats.points - stats.polylines : 0;
@@ -326,7 +327,7 @@ void camber_input_warn_empty(const camber_input *input, const char *consequence)
 const camber_polylines *camber_input_polylines(const camber_input *input) {
 #ifdef CAMBER_MAP
     if (input->scene)
-        return camber_scene_polylines(input->scene);
+        return camber_scene_get_polylines(input->scene);
 #endif
     return input->polylines;
 }
@@ -334,7 +335,7 @@ const camber_polylines *camber_input_polylines(const camber_input *input) {
 const camber_lines *camber_input_lines(const camber_input *input) {
 #ifdef CAMBER_MAP
     if (input->scene)
-        return camber_scene_lines(input->scene);
+        return camber_scene_get_lines(input->scene);
 #endif
     return input->session->options->simplify_px > 0 ? &input->simplified : &input->lines;
 }
@@ -342,7 +343,7 @@ const camber_lines *camber_input_lines(const camber_input *input) {
 const uint32_t *camber_input_rows(const camber_input *input) {
 #ifdef CAMBER_MAP
     if (input->scene)
-        return camber_scene_rows(input->scene);
+        return camber_scene_get_rows(input->scene);
 #endif
     (void)input;
     return NULL;
@@ -351,7 +352,7 @@ const uint32_t *camber_input_rows(const camber_input *input) {
 const camber_stroke *camber_input_strokes(const camber_input *input, size_t *count) {
 #ifdef CAMBER_MAP
     if (input->scene)
-        return camber_scene_strokes(input->scene, count);
+        return camber_scene_get_strokes(input->scene, count);
 #endif
     *count = 1;
     return &input->stroke;
@@ -360,7 +361,7 @@ const camber_stroke *camber_input_strokes(const camber_input *input, size_t *cou
 camber_network *camber_input_network(const camber_input *input, camber_camera *camera, camber_tessellation_desc *desc) {
 #ifdef CAMBER_MAP
     if (input->scene)
-        return camber_scene_network(input->scene, camera, desc);
+        return camber_scene_get_network(input->scene, camera, desc);
 #endif
     (void)input;
     (void)camera;
@@ -372,7 +373,7 @@ camber_frame camber_input_frame(camber_input *input, camber_mesh *mesh) {
     camber_frame frame;
 #ifdef CAMBER_MAP
     if (input->scene)
-        frame = camber_scene_frame(input->scene, mesh);
+        frame = camber_scene_get_frame(input->scene, mesh);
     else
 #endif
         frame = polylines_frame(input, mesh);
@@ -398,5 +399,5 @@ camber_status camber_input_tessellate(const camber_input *input, camber_mesh *me
         return camber_scene_tessellate(input->scene, mesh, desc.method);
 #endif
     desc.strokes = camber_input_strokes(input, &desc.stroke_count);
-    return camber_tessellate(mesh, camber_input_polylines(input), &desc);
+    return camber_mesh_tessellate(mesh, camber_input_polylines(input), &desc);
 }

@@ -57,7 +57,7 @@ typedef struct camber_style_input {
     char *bytes; /* the text where it was read, to be freed; else NULL */
 } camber_style_input;
 
-/* Whether the name is one of camber_style_name, and no file is called so. */
+/* Whether the name is one of camber_style_list, and no file is called so. */
 bool camber_input_ships(const char *name);
 /* theme: of one that ships. Returns an exit status, its line printed. */
 int camber_input_read_style(camber_session *session, const char *path, camber_theme theme, camber_style_input *style);

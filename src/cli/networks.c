@@ -146,11 +146,11 @@ static camber_status project_map(camber_networks *networks, size_t i, camber_net
     if (status != CAMBER_OK)
         return status;
     *network = (camber_network){.name = options->where_count ? options->wheres[i] : options->inputs[0],
-                                .polylines = camber_scene_polylines(networks->scene),
-                                .lines = camber_scene_lines(networks->scene),
-                                .rows = camber_scene_rows(networks->scene)};
+                                .polylines = camber_scene_get_polylines(networks->scene),
+                                .lines = camber_scene_get_lines(networks->scene),
+                                .rows = camber_scene_get_rows(networks->scene)};
     networks->info = camber_scene_get_info(networks->scene);
-    network->strokes = camber_scene_strokes(networks->scene, &network->stroke_count);
+    network->strokes = camber_scene_get_strokes(networks->scene, &network->stroke_count);
     return CAMBER_OK;
 }
 #endif

@@ -147,7 +147,7 @@ static int check_style(const checked *p) {
 static int check_draw(const checked *p) {
     const camber_options *options = p->options;
     const bool named = options->backend != CAMBER_BACKEND_AUTO;
-    if (options->draw != CAMBER_DRAW_CL || (!named && options->sharing == CAMBER_SHARING_AUTO))
+    if (options->draw != CAMBER_RASTERIZER_OPENCL || (!named && options->sharing == CAMBER_SHARING_AUTO))
         return CAMBER_EXIT_DONE;
     return usage(p, "--draw cl and --%s: OpenCL kernels draw without any GL; leave out --%s, or give --draw gl",
                  named ? "backend" : "sharing", named ? "backend" : "sharing");

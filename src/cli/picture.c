@@ -38,7 +38,7 @@ int camber_picture_write(camber_input *input, camber_mesh *mesh, camber_output *
     camber_status status = camber_png_create(session->context, &desc, camber_output_sink(output), &w.png);
     w.write_ms = camber_clock_ms() - start_ms;
     if (status == CAMBER_OK)
-        status = camber_render(session->renderer, &frame, write_rows, &w, &times->frame);
+        status = camber_renderer_render(session->renderer, &frame, write_rows, &w, &times->frame);
     if (w.status != CAMBER_OK)
         status = w.status;
     const double finish_ms = camber_clock_ms();

@@ -151,14 +151,14 @@ static void put_panel(const camber_comparison *c, const panel *p, FILE *script) 
     int bars = 0;
     fputs("$bars << END\n", script);
     for (int i = 0; i < CAMBER_METHODS; i++) {
-        const double measure = c->average.measures[i][p->measure], value = isnan(measure) ? 0 : measure;
+        const double measure = c->average.arc_lengths[i][p->measure], value = isnan(measure) ? 0 : measure;
         char text[32] = "of GL alone";
         if (!c->shown[i])
             continue;
         if (!isnan(measure))
             abbreviate(value, text, sizeof text);
         fprintf(script, "%d %.9g %s \"%s\" \"%s\"\n", -bars++, value, colors[i],
-                camber_method_name(camber_methods_shown[i]), text);
+                camber_method_get_name(camber_methods_shown[i]), text);
         most = value > most ? value : most;
     }
     fprintf(script,

@@ -5,12 +5,12 @@
 
 /* What draws; the last are kernels, which need no surface. */
 static const struct {
-    camber_draw draw;
+    camber_rasterizer draw;
     camber_backend backend;
     const char *name;
-} drawers[CAMBER_RIG_EASELS] = {{CAMBER_DRAW_GL, CAMBER_BACKEND_EGL, "EGL"},
-                                {CAMBER_DRAW_GL, CAMBER_BACKEND_OSMESA, "OSMesa"},
-                                {CAMBER_DRAW_CL, CAMBER_BACKEND_AUTO, "OpenCL"}};
+} drawers[CAMBER_RIG_EASELS] = {{CAMBER_RASTERIZER_GL, CAMBER_BACKEND_EGL, "EGL"},
+                                {CAMBER_RASTERIZER_GL, CAMBER_BACKEND_OSMESA, "OSMesa"},
+                                {CAMBER_RASTERIZER_OPENCL, CAMBER_BACKEND_AUTO, "OpenCL"}};
 
 static const camber_sharing paths[CAMBER_RIG_PATHS] = {CAMBER_SHARING_GL, CAMBER_SHARING_ZERO_COPY,
                                                        CAMBER_SHARING_COPY};
@@ -20,7 +20,7 @@ static const uint32_t group_sizes[CAMBER_RIG_GROUPS] = {64, 128};
 /* A failed call's story becomes the reason of a skip. */
 static void skip(camber_verdicts *verdicts, camber_check check, camber_status status) {
     camber_report *report = verdicts->report;
-    camber_verdicts_skip(verdicts, check, report->error[0] ? report->error : camber_status_name(status));
+    camber_verdicts_skip(verdicts, check, report->error[0] ? report->error : camber_status_get_name(status));
     report->error[0] = 0;
 }
 
@@ -50,9 +50,9 @@ camber_status camber_rig_open_small(const camber_rig *rig, camber_session *sessi
 /* ---- What draws ---- */
 
 static void open_path(const camber_rig *rig, camber_easel *easel, camber_sharing sharing, camber_verdicts *verdicts) {
-    const bool in_gl = easel->draw == CAMBER_DRAW_GL;
-    const camber_renderer_desc desc = {.sharing = sharing, .draw = easel->draw};
-    camber_path path = {.name = in_gl ? camber_sharing_name(sharing) : "no sharing"};
+    const bool in_gl = easel->draw == CAMBER_RASTERIZER_GL;
+    const camber_renderer_desc desc = {.sharing = sharing, .rasterizer = easel->draw};
+    camber_path path = {.name = in_gl ? camber_sharing_get_name(sharing) : "no sharing"};
     camber_status status = camber_renderer_create(easel->device, easel->surface, &desc, &path.renderer);
     if (status == CAMBER_OK)
         status = camber_mesh_create(easel->device, path.renderer, &path.mesh);
@@ -78,23 +78,24 @@ static void close_easel(camber_easel *easel) {
 
 /* Whether it was named: what is not there is an error then. */
 static bool is_asked_for(size_t which, const camber_options *options) {
-    return drawers[which].draw == CAMBER_DRAW_CL ? (camber_draw)options->draw == CAMBER_DRAW_CL
-                                                 : options->backend == (int)drawers[which].backend;
+    return drawers[which].draw == CAMBER_RASTERIZER_OPENCL
+               ? (camber_rasterizer)options->draw == CAMBER_RASTERIZER_OPENCL
+               : options->backend == (int)drawers[which].backend;
 }
 
 /* --draw leaves one kind, and --backend a back end of GL's. */
 static bool is_wanted(size_t which, const camber_options *options) {
-    const camber_draw draw = (camber_draw)options->draw;
+    const camber_rasterizer draw = (camber_rasterizer)options->draw;
     if (is_asked_for(which, options))
-        return draw == CAMBER_DRAW_AUTO || draw == drawers[which].draw;
-    return options->backend == CAMBER_BACKEND_AUTO && (draw == CAMBER_DRAW_AUTO || draw == drawers[which].draw);
+        return draw == CAMBER_RASTERIZER_AUTO || draw == drawers[which].draw;
+    return options->backend == CAMBER_BACKEND_AUTO && (draw == CAMBER_RASTERIZER_AUTO || draw == drawers[which].draw);
 }
 
 /* The row number which of the table; one that is not there is skipped, or an error where it was asked for. */
 static int open_easel(camber_rig *rig, size_t which, camber_session *session, camber_verdicts *verdicts) {
     const camber_surface_desc desc = {.backend = drawers[which].backend};
     camber_easel easel = {.name = drawers[which].name, .draw = drawers[which].draw};
-    const bool in_gl = easel.draw == CAMBER_DRAW_GL;
+    const bool in_gl = easel.draw == CAMBER_RASTERIZER_GL;
     camber_status status = in_gl ? camber_surface_create(session->context, &desc, &easel.surface) : CAMBER_OK;
     if (status == CAMBER_OK)
         status = open_device(rig, session, &(camber_device_desc){0}, easel.surface, &easel.device);
@@ -174,7 +175,7 @@ static int open_all(camber_rigs *rigs, camber_session *session, camber_verdicts 
     int status = CAMBER_EXIT_DONE;
     uint32_t number = 0;
     for (size_t i = 0; i < count && status == CAMBER_EXIT_DONE; i++) {
-        if (!camber_device_matches(&infos[i], match))
+        if (!camber_device_info_matches(&infos[i], match))
             continue;
         camber_rig *rig = &rigs->list[rigs->count];
         name_rig(rig, infos, i);

@@ -18,7 +18,7 @@ typedef struct camber_path {
 /* A GL back end, or OpenCL without any, with the device opened once more for it. */
 typedef struct camber_easel {
     const char *name; /* "EGL", "OSMesa", "OpenCL" */
-    camber_draw draw;
+    camber_rasterizer draw;
     camber_surface *surface; /* NULL: OpenCL draws */
     camber_device *device;
     camber_path paths[CAMBER_RIG_PATHS]; /* path_count, those that work; never none */

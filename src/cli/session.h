@@ -32,7 +32,7 @@ typedef struct camber_session {
     camber_surface *surface;
     camber_device *device;
     camber_renderer *renderer;
-    camber_draw draw; /* what the renderer draws with, and why: once one was asked for */
+    camber_rasterizer draw; /* what the renderer draws with, and why: once one was asked for */
     char draw_reason[256];
     bool opens_beside;     /* camber_input_open starts a renderer, once it knows the style */
     camber_opener *opener; /* NULL: not started */

@@ -47,7 +47,7 @@ static int time_run(job *j, run_times *times) {
     camber_status status = camber_input_tessellate(&j->input, j->mesh);
     camber_frame frame = camber_input_frame(&j->input, j->mesh);
     if (status == CAMBER_OK)
-        status = camber_render(j->session->renderer, &frame, keep_rows, j, NULL);
+        status = camber_renderer_render(j->session->renderer, &frame, keep_rows, j, NULL);
     times->frame = camber_clock_ms() - start_ms;
     const double resident_ms = camber_clock_ms();
     if (status == CAMBER_OK)
@@ -62,7 +62,7 @@ static int time_run(job *j, run_times *times) {
     times->emit = info.emit_ms;
     frame = camber_input_frame(&j->input, j->mesh); /* a scene's is valid until the next call on it */
     if (status == CAMBER_OK)
-        status = camber_render(j->session->renderer, &frame, NULL, NULL, &j->stats);
+        status = camber_renderer_render(j->session->renderer, &frame, NULL, NULL, &j->stats);
     times->draw = j->stats.draw_ms;
     times->shape = j->stats.shape_ms;
     times->count = j->stats.count_ms;
@@ -160,7 +160,7 @@ static int print_json(const job *j) {
     const camber_polylines_stats lines = camber_polylines_get_stats(camber_input_polylines(&j->input));
     const camber_mesh_info mesh = camber_mesh_get_info(j->mesh);
     json_t *object =
-        json_pack("{s:s, s:I, s:I, s:I}", "method", camber_method_name(mesh.method), "width", (json_int_t)j->width,
+        json_pack("{s:s, s:I, s:I, s:I}", "method", camber_method_get_name(mesh.method), "width", (json_int_t)j->width,
                   "height", (json_int_t)j->height, "runs", (json_int_t)session->options->runs);
     if (!object)
         return camber_report_json(session->report, NULL);
@@ -190,7 +190,7 @@ static int print_json(const job *j) {
     /* The kernels that draw are there where they drew. */
     static const char *const names[] = {"survey", "project", "classify", "scan", "emit",
                                         "shape",  "count",   "total",    "fill", "cover"};
-    const size_t count = camber_renderer_get_draw(session->renderer) == CAMBER_DRAW_CL ? 10 : 5;
+    const size_t count = camber_renderer_get_rasterizer(session->renderer) == CAMBER_RASTERIZER_OPENCL ? 10 : 5;
     for (size_t i = 0; i < count; i++)
         json_object_set_new(stages, names[i], summary_json(&j->summaries[3 + i]));
     json_object_set_new(object, "stage_ms", stages);
@@ -209,11 +209,11 @@ static int print_text(const job *j) {
     const camber_device_info device = camber_device_get_info(session->device);
     if (session->surface)
         fprintf(file, "%s; %s; sharing: %s\n", device.name, camber_surface_get_info(session->surface).renderer,
-                camber_sharing_name(camber_renderer_get_sharing(session->renderer)));
+                camber_sharing_get_name(camber_renderer_get_sharing(session->renderer)));
     else
         fprintf(file, "%s; drawn in OpenCL\n", device.name);
     fprintf(file, "%u x %u px, %s, %zu polyline%s, %zu points (%zu read), %zu segments (%zu read)\n", j->width,
-            j->height, camber_method_name(mesh.method), lines.polylines, camber_plural(lines.polylines),
+            j->height, camber_method_get_name(mesh.method), lines.polylines, camber_plural(lines.polylines),
             lines.kept_points, j->input.points_in, lines.kept_segments, j->input.segments_in);
     fprintf(file, "%zu vertices, %zu triangles, %.1f MB, ", mesh.vertex_count, mesh.triangle_count,
             (double)mesh.bytes / 1e6);
@@ -222,7 +222,7 @@ static int print_text(const job *j) {
     fprintf(file, "peak memory %.0f MB\n", (double)camber_peak_rss_bytes() / 1e6);
     static const char *const names[TIMES] = {"tessellate", "draw",  "frame", "survey", "project", "classify", "scan",
                                              "emit",       "shape", "count", "total",  "fill",    "cover"};
-    const size_t count = camber_renderer_get_draw(session->renderer) == CAMBER_DRAW_CL ? TIMES : 8;
+    const size_t count = camber_renderer_get_rasterizer(session->renderer) == CAMBER_RASTERIZER_OPENCL ? TIMES : 8;
     fprintf(file, "\n%-12s %10s %10s %10s   ms, %u run%s\n", "", "min", "median", "max", options->runs,
             camber_plural(options->runs));
     for (size_t i = 0; i < count; i++)

@@ -14,12 +14,13 @@ static json_t *number_json(double value, int decimals) {
     return decimals == 0 && value == floor(value) ? json_integer((json_int_t)value) : json_real(value);
 }
 
-static json_t *measures_json(const double *measures) {
+static json_t *measures_json(const double *arc_lengths) {
     json_t *object = json_object();
     for (int i = 0; i < CAMBER_MEASURE_COUNT; i++) {
         const bool ms = i == CAMBER_MEASURE_TESSELLATE_MS || i == CAMBER_MEASURE_DRAW_MS;
         json_object_set_new(object, camber_measures[i].key,
-                            ms ? camber_json_ms(measures[i]) : number_json(measures[i], camber_measures[i].decimals));
+                            ms ? camber_json_ms(arc_lengths[i])
+                               : number_json(arc_lengths[i], camber_measures[i].decimals));
     }
     return object;
 }
@@ -32,7 +33,8 @@ static json_t *row_json(const camber_comparison *c, const camber_comparison_row 
     }
     for (int i = 0; i < CAMBER_METHODS; i++)
         if (c->shown[i])
-            json_object_set_new(methods, camber_method_name(camber_methods_shown[i]), measures_json(row->measures[i]));
+            json_object_set_new(methods, camber_method_get_name(camber_methods_shown[i]),
+                                measures_json(row->arc_lengths[i]));
     json_object_set_new(object, "joins_by_turn_deg", turns);
     json_object_set_new(object, "methods", methods);
     return object;
@@ -43,8 +45,8 @@ static void put_places(const camber_comparison *c, const camber_comparison_row *
     for (int i = 0; i < CAMBER_METHODS; i++) {
         const json_int_t at = (json_int_t)row->max_at[i], width = (json_int_t)c->networks.width;
         if (c->shown[i])
-            json_object_set_new(json_object_get(methods, camber_method_name(camber_methods_shown[i])), "max_error_at",
-                                json_pack("[I, I]", at % width, at / width));
+            json_object_set_new(json_object_get(methods, camber_method_get_name(camber_methods_shown[i])),
+                                "max_error_at", json_pack("[I, I]", at % width, at / width));
     }
 }
 
@@ -56,7 +58,7 @@ static json_t *ratios_json(const camber_comparison *c) {
             const double ratio = camber_comparison_ratio(c, i, k);
             json_object_set_new(ratios, camber_measures[k].key, isnan(ratio) ? json_null() : json_real(ratio));
         }
-        json_object_set_new(object, camber_method_name(camber_methods_shown[i]), ratios);
+        json_object_set_new(object, camber_method_get_name(camber_methods_shown[i]), ratios);
     }
     return object;
 }
@@ -166,15 +168,16 @@ static void print_measures(const camber_comparison *c, int width, int first, int
         for (int method = 0; method < CAMBER_METHODS; method++) {
             if (!c->shown[method])
                 continue;
-            const double *measures = row_at(c, i)->measures[method];
+            const double *arc_lengths = row_at(c, i)->arc_lengths[method];
             put_name(row_at(c, i)->name, width);
-            printf("  %-7s", camber_method_name(camber_methods_shown[method]));
+            printf("  %-7s", camber_method_get_name(camber_methods_shown[method]));
             for (int k = first; k < end; k++)
-                put_number(measures[k], decimals_of(&camber_measures[k], measures[k]), camber_measures[k].width);
+                put_number(arc_lengths[k], decimals_of(&camber_measures[k], arc_lengths[k]), camber_measures[k].width);
             putchar('\n');
         }
     for (int method = 0; method < CAMBER_METHODS && c->session->options->method < 0; method++) {
-        printf("%-*s  %-7s", width, method ? "" : "to one of kite's", camber_method_name(camber_methods_shown[method]));
+        printf("%-*s  %-7s", width, method ? "" : "to one of kite's",
+               camber_method_get_name(camber_methods_shown[method]));
         for (int k = first; k < end; k++)
             put_number(camber_comparison_ratio(c, method, k), 2, camber_measures[k].width);
         putchar('\n');
@@ -186,7 +189,7 @@ static int print_text(const camber_comparison *c) {
     const camber_device_info device = camber_device_get_info(c->session->device);
     int width = name_width(c);
     width = width < 16 ? 16 : width;
-    const bool in_gl = c->session->draw == CAMBER_DRAW_GL;
+    const bool in_gl = c->session->draw == CAMBER_RASTERIZER_GL;
     printf("%s; %s\n", device.name, in_gl ? camber_surface_get_info(c->session->surface).renderer : "drawn in OpenCL");
     printf("%u x %u px", networks->width, networks->height);
     if (networks->features)

@@ -18,7 +18,7 @@ static json_t *device_json(const camber_device_info *info) {
 
 /* The story of the last failure, which must not be told twice. */
 static json_t *take_error(camber_report *report, camber_status status) {
-    json_t *text = camber_json_text(report->error[0] ? report->error : camber_status_name(status));
+    json_t *text = camber_json_text(report->error[0] ? report->error : camber_status_get_name(status));
     report->error[0] = 0;
     return text;
 }
@@ -79,11 +79,11 @@ static void add_formats(json_t *object) {
     json_t *list = json_array();
     json_object_set_new(object, "formats", list);
 #ifdef CAMBER_MAP
-    const char *version = camber_gdal_version();
+    const char *version = camber_gdal_get_version();
     json_object_set_new(object, "gdal", version ? camber_json_text(version) : json_null());
     const char *name;
     bool has_pmtiles = false;
-    for (size_t i = 0; (name = camber_format_name(i)) != NULL; i++) {
+    for (size_t i = 0; (name = camber_format_list(i)) != NULL; i++) {
         json_array_append_new(list, camber_json_text(name));
         has_pmtiles |= strcmp(name, "PMTiles") == 0;
     }

@@ -57,12 +57,13 @@ static int print_json(const job *j) {
     const camber_scene_info scene = camber_scene_get_info(j->input.scene);
     const camber_polylines_stats lines = camber_polylines_get_stats(camber_input_polylines(&j->input));
     const camber_mesh_info mesh = camber_mesh_get_info(j->mesh);
-    json_t *object = json_pack("{s:o, s:I, s:I, s:o, s:f, s:f, s:f, s:f, s:f, s:s, s:s}", "output",
-                               camber_json_text(session->options->output), "width", (json_int_t)scene.width, "height",
-                               (json_int_t)scene.height, "output_bytes", camber_json_count(j->written_bytes),
-                               "longitude", scene.longitude, "latitude", scene.latitude, "zoom", scene.zoom, "bearing",
-                               scene.bearing_deg, "pitch", scene.pitch_deg, "method", camber_method_name(mesh.method),
-                               "coverage", session->options->coverage == CAMBER_COVERAGE_EXACT ? "exact" : "linear");
+    json_t *object =
+        json_pack("{s:o, s:I, s:I, s:o, s:f, s:f, s:f, s:f, s:f, s:s, s:s}", "output",
+                  camber_json_text(session->options->output), "width", (json_int_t)scene.width, "height",
+                  (json_int_t)scene.height, "output_bytes", camber_json_count(j->written_bytes), "longitude",
+                  scene.longitude, "latitude", scene.latitude, "zoom", scene.zoom, "bearing", scene.bearing_deg,
+                  "pitch", scene.pitch_deg, "method", camber_method_get_name(mesh.method), "coverage",
+                  session->options->coverage == CAMBER_COVERAGE_EXACT ? "exact" : "linear");
     if (!object)
         return camber_report_json(session->report, NULL);
     camber_session_describe(session, object);
@@ -106,12 +107,12 @@ static void print_counts(const job *j, const camber_scene_info *scene) {
     const camber_mesh_info mesh = camber_mesh_get_info(j->mesh);
     const size_t calls = j->times.frame.draw_calls;
     char drawn[64] = "drawn by OpenCL kernels";
-    if (camber_renderer_get_draw(j->session->renderer) == CAMBER_DRAW_GL)
+    if (camber_renderer_get_rasterizer(j->session->renderer) == CAMBER_RASTERIZER_GL)
         snprintf(drawn, sizeof drawn, "%zu draw call%s", calls, camber_plural(calls));
     camber_report_say(j->session->report, "%zu feature%s, %zu polyline%s, %zu point%s, %zu triangle%s (%s), %s",
                       scene->features, camber_plural(scene->features), scene->polylines,
                       camber_plural(scene->polylines), scene->points, camber_plural(scene->points), mesh.triangle_count,
-                      camber_plural(mesh.triangle_count), camber_method_name(mesh.method), drawn);
+                      camber_plural(mesh.triangle_count), camber_method_get_name(mesh.method), drawn);
 }
 
 static void print_text(const job *j) {

@@ -86,7 +86,7 @@ static int print_json(const job *j) {
     json_t *object = json_pack(
         "{s:o, s:o, s:I, s:I, s:s, s:b, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "output",
         camber_json_text(session->options->output), "output_bytes", camber_json_count(j->written_bytes), "width",
-        (json_int_t)scene.width, "height", (json_int_t)scene.height, "method", camber_method_name(mesh->method),
+        (json_int_t)scene.width, "height", (json_int_t)scene.height, "method", camber_method_get_name(mesh->method),
         "strips", mesh->strips, "features", camber_json_count(scene.features), "polylines",
         camber_json_count(scene.polylines), "points", camber_json_count(scene.points), "vertices",
         camber_json_count(mesh->vertex_count), "indices", camber_json_count(mesh->index_count), "triangles",
@@ -114,7 +114,7 @@ static void print_text(const job *j) {
     const size_t triangles = j->data.info.triangle_count;
     camber_report_say(report, "%s: %zu vertices, %zu triangle%s (%s), %zu bytes",
                       path[0] == '-' && !path[1] ? "mesh" : path, j->data.info.vertex_count, triangles,
-                      camber_plural(triangles), camber_method_name(j->data.info.method), j->written_bytes);
+                      camber_plural(triangles), camber_method_get_name(j->data.info.method), j->written_bytes);
     camber_report_say(report, "%zu feature%s, %zu polyline%s, %zu point%s", scene.features,
                       camber_plural(scene.features), scene.polylines, camber_plural(scene.polylines), scene.points,
                       camber_plural(scene.points));

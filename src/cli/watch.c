@@ -41,7 +41,7 @@ static void look_at_memory(const camber_watch *watch) {
     const uint64_t held = resident_bytes();
     if (held <= LIBRARIES_BYTES)
         return;
-    const uint64_t most = camber_budget_most_bytes(watch->budget);
+    const uint64_t most = camber_budget_get_most_bytes(watch->budget);
     if (held - LIBRARIES_BYTES <= most)
         return;
     camber_guard_end(watch->guard,

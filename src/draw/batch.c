@@ -37,7 +37,7 @@ void camber_renderer_use_shader(camber_renderer *renderer, const camber_shader *
     gl->Uniform1i(shader->table, mesh->mesh_info.strips ? 31 : 0);
     if (piece->pitched)
         gl->Uniform4f(shader->eye, piece->eye[0], piece->eye[1], piece->eye[2], piece->eye[3]);
-    gl->Uniform1i(shader->stride, mesh->mesh_info.measured ? 2 : 1);
+    gl->Uniform1i(shader->stride, mesh->mesh_info.has_arc_length ? 2 : 1);
 }
 
 void camber_renderer_bind_part(camber_renderer *renderer, camber_mesh_part *part) {

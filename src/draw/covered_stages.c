@@ -1,7 +1,7 @@
 /* What the kernels that draw found, and their twin: for proofs. */
 #include "camber_proof.h"
-#include "raster/raster.h"
 #include "draw/renderer.h"
+#include "raster/raster.h"
 
 #include <assert.h>
 
@@ -47,7 +47,7 @@ static camber_status read_stages(camber_renderer *renderer, const camber_frame *
         .measure_words = CAMBER_SHAPE_MEASURES,
         .plane_words = CAMBER_PLANE_WORDS,
         .boxes = r.stages.boxes,
-        .measures = r.stages.measures,
+        .arc_lengths = r.stages.arc_lengths,
         .planes = r.stages.planes,
         .shape_count = r.stages.shape_count,
         .starts = r.stages.starts,
@@ -61,20 +61,20 @@ static camber_status read_stages(camber_renderer *renderer, const camber_frame *
     return CAMBER_OK;
 }
 
-camber_status camber_drawing_read_stages(camber_renderer *renderer, const camber_frame *frame,
-                                         camber_drawing_stages *stages) {
+camber_status camber_renderer_read_stages(camber_renderer *renderer, const camber_frame *frame,
+                                          camber_drawing_stages *stages) {
     return read_stages(renderer, frame, false, stages);
 }
 
-camber_status camber_drawing_stages_on_host(camber_renderer *renderer, const camber_frame *frame,
-                                            camber_drawing_stages *stages) {
+camber_status camber_drawing_stages_rasterize(camber_renderer *renderer, const camber_frame *frame,
+                                              camber_drawing_stages *stages) {
     return read_stages(renderer, frame, true, stages);
 }
 
 void camber_drawing_stages_free(camber_context *context, camber_drawing_stages *stages) {
     camber_free(context, stages->shapes);
     camber_free(context, stages->boxes);
-    camber_free(context, stages->measures);
+    camber_free(context, stages->arc_lengths);
     camber_free(context, stages->planes);
     camber_free(context, stages->starts);
     camber_free(context, stages->lists);

@@ -42,8 +42,8 @@ static camber_status check_paints(const camber_renderer *renderer, const camber_
                paint->pattern <= pass->image_count);
         const char *what = paint->pattern ? "patterns" : paint->dash ? "dashes" : paint->ramp ? "ramps" : "trims";
         const bool trims = paint->trim_end > paint->trim_start;
-        const bool measured = pass->mesh->mesh_info.measured || pass->mesh->empty;
-        if (!measured && (paint->dash || paint->ramp || paint->pattern || trims))
+        const bool has_arc_length = pass->mesh->mesh_info.has_arc_length || pass->mesh->empty;
+        if (!has_arc_length && (paint->dash || paint->ramp || paint->pattern || trims))
             return camber_fail(context, CAMBER_ERROR_ARGUMENT,
                                "%s of a mesh that is not measured; tessellate it measured", what);
     }
@@ -253,8 +253,8 @@ static camber_status end(camber_renderer *renderer, camber_flight *flight, cambe
     return status;
 }
 
-camber_status camber_render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows, void *user,
-                            camber_frame_stats *stats) {
+camber_status camber_renderer_render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows,
+                                     void *user, camber_frame_stats *stats) {
     assert(renderer->flight_count == 0);
     camber_flight flight = {0};
     camber_status status = camber_frame_check(renderer, frame);
@@ -306,7 +306,7 @@ static void drop_passes(camber_renderer *renderer, camber_flight *flight) {
     flight->passes = NULL;
 }
 
-camber_status camber_render_begin(camber_renderer *renderer, const camber_frame *frame) {
+camber_status camber_renderer_begin(camber_renderer *renderer, const camber_frame *frame) {
     assert(renderer->flight_count < CAMBER_FRAMES_IN_FLIGHT);
     if (renderer->flight_count == 0)
         renderer->first_flight = 0;
@@ -329,8 +329,8 @@ camber_status camber_render_begin(camber_renderer *renderer, const camber_frame 
     return CAMBER_OK;
 }
 
-camber_status camber_render_end(camber_renderer *renderer, camber_rows_fn *rows, void *user,
-                                camber_frame_stats *stats) {
+camber_status camber_renderer_end(camber_renderer *renderer, camber_rows_fn *rows, void *user,
+                                  camber_frame_stats *stats) {
     assert(renderer->flight_count > 0);
     camber_flight *flight = renderer->flights + renderer->first_flight;
     const camber_status status =

@@ -311,8 +311,8 @@ static camber_status prepare(counting *c, camber_index_range **list) {
     return CAMBER_OK;
 }
 
-camber_status camber_overdraw_count(camber_renderer *renderer, const camber_overdraw_desc *desc,
-                                    camber_overdraw *overdraw) {
+camber_status camber_renderer_count_overdraw(camber_renderer *renderer, const camber_overdraw_desc *desc,
+                                             camber_overdraw *overdraw) {
     camber_context *context = renderer->share.device->context;
     assert(desc->mesh->renderer == renderer);
     assert(desc->paint_count == 0 || desc->paints);

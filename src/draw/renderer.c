@@ -46,7 +46,8 @@ camber_status camber_renderer_create(camber_device *device, camber_surface *surf
                                      camber_renderer **renderer) {
     const camber_renderer_desc full = desc ? *desc : (camber_renderer_desc){0};
     const bool in_hardware = surface && !surface->info.software;
-    const bool in_cl = full.draw == CAMBER_DRAW_CL || (full.draw == CAMBER_DRAW_AUTO && !in_hardware);
+    const bool in_cl =
+        full.rasterizer == CAMBER_RASTERIZER_OPENCL || (full.rasterizer == CAMBER_RASTERIZER_AUTO && !in_hardware);
     assert(surface || in_cl);
     camber_renderer *made = camber_alloc_zero(device->context, 1, sizeof *made);
     if (!made)
@@ -86,15 +87,15 @@ camber_sharing camber_renderer_get_sharing(const camber_renderer *renderer) {
     return renderer->path ? renderer->path->sharing : CAMBER_SHARING_AUTO;
 }
 
-camber_draw camber_renderer_get_draw(const camber_renderer *renderer) {
-    return renderer->cover ? CAMBER_DRAW_CL : CAMBER_DRAW_GL;
+camber_rasterizer camber_renderer_get_rasterizer(const camber_renderer *renderer) {
+    return renderer->cover ? CAMBER_RASTERIZER_OPENCL : CAMBER_RASTERIZER_GL;
 }
 
-const char *camber_draw_name(camber_draw draw) {
+const char *camber_rasterizer_get_name(camber_rasterizer draw) {
     switch (draw) {
-    case CAMBER_DRAW_AUTO: return "auto";
-    case CAMBER_DRAW_GL: return "gl";
-    case CAMBER_DRAW_CL: return "cl";
+    case CAMBER_RASTERIZER_AUTO: return "auto";
+    case CAMBER_RASTERIZER_GL: return "gl";
+    case CAMBER_RASTERIZER_OPENCL: return "cl";
     }
     return "unknown";
 }

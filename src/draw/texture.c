@@ -1,7 +1,7 @@
 /* Frames into textures of the caller's. What GL draws and nothing lies below goes straight there; what kernels draw
  * comes through a buffer that GL shares. What lies over something, or upside down, is drawn beside and put onto it. */
-#include "raster/raster.h"
 #include "draw/renderer.h"
+#include "raster/raster.h"
 
 #include <assert.h>
 
@@ -149,8 +149,8 @@ static void end(camber_renderer *renderer, void **drawn) {
         *drawn = (void *)fence;
 }
 
-camber_status camber_render_texture(camber_renderer *renderer, const camber_frame *frame, const camber_texture *texture,
-                                    void **drawn) {
+camber_status camber_renderer_render_texture(camber_renderer *renderer, const camber_frame *frame,
+                                             const camber_texture *texture, void **drawn) {
     assert(renderer->flight_count == 0);
     camber_status status = camber_frame_check(renderer, frame);
     if (status == CAMBER_OK)

@@ -3,7 +3,7 @@
 
 #include <stdio.h>
 
-const char *camber_sharing_name(camber_sharing sharing) {
+const char *camber_sharing_get_name(camber_sharing sharing) {
     switch (sharing) {
     case CAMBER_SHARING_AUTO: return "auto";
     case CAMBER_SHARING_GL: return "cl_khr_gl_sharing";
@@ -102,7 +102,7 @@ camber_status camber_share_choose(camber_share *share, camber_sharing wanted, co
     if (share->surface->lost)
         return camber_surface_make_current(share->surface);
     return camber_fail(context, status, "sharing '%s' does not work between %s and %s%s; use %s",
-                       camber_sharing_name(wanted), share->device->info.name, share->surface->info.renderer,
+                       camber_sharing_get_name(wanted), share->device->info.name, share->surface->info.renderer,
                        status == CAMBER_ERROR_MEMORY ? ": out of memory" : "",
                        wanted == CAMBER_SHARING_AUTO ? "another device or back end" : "auto");
 }

@@ -335,7 +335,7 @@ static void describe_mesh(json_t *root, const writer *w, uint64_t vertex_bytes, 
     set(root, "meshes",
         json_pack("[{s:s, s:[{s:i, s:o, s:i, s:i}], s:{s:s, s:o}}]", "name", "lines", "primitives", "mode",
                   w->mesh->info.strips ? GLTF_TRIANGLE_STRIP : GLTF_TRIANGLES, "attributes", attributes, "indices",
-                  (int)attribute_count, "material", 0, "extras", "method", camber_method_name(w->mesh->info.method),
+                  (int)attribute_count, "material", 0, "extras", "method", camber_method_get_name(w->mesh->info.method),
                   "rows", style_table(w->desc, ok)),
         ok);
     set(root, "accessors", accessors(w, attribute_count, ok), ok);

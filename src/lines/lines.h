@@ -13,7 +13,8 @@ struct camber_polylines {
     float *x, *y;
     uint32_t *info;
     size_t slot_count;
-    camber_measure *measures; /* of each slot, where a measured network knows it. NULL: it is the sum over the points */
+    camber_arc_length
+        *arc_lengths; /* of each slot, where a measured network knows it. NULL: it is the sum over the points */
     /* Slots of polyline i: [first_slots[i], first_slots[i + 1]), counted without the leading ghost. */
     uint32_t *first_slots;
     uint32_t *polyline_rows;

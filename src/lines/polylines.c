@@ -161,7 +161,7 @@ void camber_polylines_destroy(camber_polylines *polylines) {
     camber_context *context = polylines->context;
     camber_free(context, polylines->polyline_rows);
     camber_free(context, polylines->first_slots);
-    camber_free(context, polylines->measures);
+    camber_free(context, polylines->arc_lengths);
     camber_free(context, polylines->info);
     camber_free(context, polylines->y);
     camber_free(context, polylines->x);

@@ -78,7 +78,8 @@ static uint64_t key_of(const camber_view *view, const camber_plan *plan) {
 }
 
 bool camber_geometry_serves(const camber_geometry *geometry, const camber_view *view, const camber_plan *plan) {
-    return geometry->network && geometry->key == key_of(view, plan) && (geometry->measured || !plan->measured);
+    return geometry->network && geometry->key == key_of(view, plan) &&
+           (geometry->has_arc_length || !plan->has_arc_length);
 }
 
 /* ---- The network ---- */
@@ -116,8 +117,8 @@ static camber_status make_network(const camber_features *features, const entry_l
                                       .importance = features->importance,
                                       .entries = entries,
                                       .entry_count = list->count,
-                                      .progress = geometry->measured ? features->progress : NULL,
-                                      .measured = geometry->measured};
+                                      .progress = geometry->has_arc_length ? features->progress : NULL,
+                                      .has_arc_length = geometry->has_arc_length};
     camber_context *context = geometry->context;
     if (!(geometry->polylines = camber_alloc(context, list->count, sizeof *geometry->polylines)) ||
         !(geometry->pairs = camber_alloc(context, list->count, sizeof *geometry->pairs)))
@@ -133,7 +134,7 @@ camber_status camber_geometry_create(const camber_features *features, const camb
                                      camber_geometry *geometry) {
     *geometry = (camber_geometry){.context = features->context,
                                   .set_count = plan->set_count,
-                                  .measured = plan->measured,
+                                  .has_arc_length = plan->has_arc_length,
                                   .key = key_of(view, plan)};
     const copies worlds = copies_in(view, plan);
     entry_list list = {0};
@@ -203,7 +204,7 @@ camber_status camber_geometry_see(const camber_features *features, const camber_
                                   const camber_plan *plan, const camber_camera *camera,
                                   const camber_tessellation_desc *desc, camber_seen *seen) {
     *seen = (camber_seen){.context = geometry->context};
-    camber_status status = camber_network_lines(geometry->network, camera, desc, &seen->lines, &seen->entries);
+    camber_status status = camber_network_project_lines(geometry->network, camera, desc, &seen->lines, &seen->entries);
     if (status == CAMBER_OK)
         status = fill_rows(geometry, plan, seen);
     for (size_t s = 0; status == CAMBER_OK && s < geometry->set_count; s++)

@@ -6,7 +6,7 @@
 
 typedef struct camber_geometry {
     camber_context *context;
-    bool measured;               /* the network is, for what lies along lines */
+    bool has_arc_length;         /* the network is, for what lies along lines */
     camber_network *network;     /* rows are the plan's pairs; entries by set, and in input order in a set */
     uint32_t *polylines, *pairs; /* of the entries: the features' and the plan's */
     size_t *first_entries;       /* set_count + 1 */

@@ -369,7 +369,7 @@ static bool fill_tuple(camber_plan *plan, const camber_plan_set *set, const camb
         table->stroke.width_px = width_px;
         table->stroke.round_limit = round_limit_that_shows(&table->stroke);
         *key = paint.sort_key;
-        plan->measured |= made->dash || made->ramp || made->pattern || made->trim_end > made->trim_start;
+        plan->has_arc_length |= made->dash || made->ramp || made->pattern || made->trim_end > made->trim_start;
         if (made->width_px > 0.0f)
             plan->translate_px = fmaxf(plan->translate_px, hypotf(made->translate_x_px, made->translate_y_px));
     }

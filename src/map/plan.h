@@ -59,7 +59,7 @@ typedef struct camber_plan {
     size_t dash_slot_count;
     camber_ramp *ramps; /* ramp_count: the style's */
     size_t ramp_count;
-    bool measured;       /* a paint has what lies along its lines */
+    bool has_arc_length; /* a paint has what lies along its lines */
     uint32_t *pair_rows; /* pair_count */
     double *pair_keys;   /* pair_count: their features' places in a sorted set */
     size_t pair_count;

@@ -238,7 +238,7 @@ static camber_tessellation_desc desc_of(const camber_scene *scene, camber_method
     return (camber_tessellation_desc){.strokes = scene->pair_strokes,
                                       .stroke_count = scene->plan.pair_count,
                                       .method = method,
-                                      .measured = scene->plan.measured};
+                                      .has_arc_length = scene->plan.has_arc_length};
 }
 
 static void forget(camber_scene *scene) {
@@ -412,10 +412,11 @@ camber_status camber_scene_move(camber_scene *scene, const camber_view_desc *vie
 camber_status camber_scene_tessellate(const camber_scene *scene, camber_mesh *mesh, camber_method method) {
     const camber_camera camera = camera_of(scene);
     const camber_tessellation_desc desc = desc_of(scene, method);
-    return camber_tessellate_network(mesh, scene->geometry.network, &camera, &desc);
+    return camber_mesh_tessellate_network(mesh, scene->geometry.network, &camera, &desc);
 }
 
-camber_network *camber_scene_network(const camber_scene *scene, camber_camera *camera, camber_tessellation_desc *desc) {
+camber_network *camber_scene_get_network(const camber_scene *scene, camber_camera *camera,
+                                         camber_tessellation_desc *desc) {
     *camera = camera_of(scene);
     *desc = desc_of(scene, CAMBER_METHOD_STRIP);
     return scene->geometry.network;
@@ -455,25 +456,25 @@ camber_scene_info camber_scene_get_info(const camber_scene *scene) {
     return info;
 }
 
-const camber_polylines *camber_scene_polylines(const camber_scene *scene) {
+const camber_polylines *camber_scene_get_polylines(const camber_scene *scene) {
     return is_seen(scene) ? scene->polylines : NULL;
 }
 
-const uint32_t *camber_scene_rows(const camber_scene *scene) {
+const uint32_t *camber_scene_get_rows(const camber_scene *scene) {
     return is_seen(scene) ? scene->seen.rows : NULL;
 }
 
-const camber_lines *camber_scene_lines(const camber_scene *scene) {
+const camber_lines *camber_scene_get_lines(const camber_scene *scene) {
     return is_seen(scene) ? &scene->seen.lines : NULL;
 }
 
-const camber_stroke *camber_scene_strokes(const camber_scene *scene, size_t *count) {
+const camber_stroke *camber_scene_get_strokes(const camber_scene *scene, size_t *count) {
     *count = scene->plan.row_count;
     return scene->plan.strokes;
 }
 
-camber_frame camber_scene_frame(camber_scene *scene, camber_mesh *mesh) {
-    const bool holds_network = mesh && camber_mesh_holds(mesh, scene->geometry.network);
+camber_frame camber_scene_get_frame(camber_scene *scene, camber_mesh *mesh) {
+    const bool holds_network = mesh && camber_mesh_holds_network(mesh, scene->geometry.network);
     if (!holds_network)
         (void)is_seen(scene);
     const pass_list *list = holds_network ? &scene->pair_passes : &scene->passes;

@@ -147,7 +147,7 @@ camber_status camber_cover_read_stages(camber_cover *cover, camber_cover_stages 
     if (status == CAMBER_OK)
         status = get(cover, BUFFER_BOXES, 4 * made.shape_count, &made.boxes);
     if (status == CAMBER_OK && cover->variant)
-        status = get(cover, BUFFER_MEASURES, 4 * CAMBER_SHAPE_MEASURES * made.shape_count, &made.measures);
+        status = get(cover, BUFFER_MEASURES, 4 * CAMBER_SHAPE_MEASURES * made.shape_count, &made.arc_lengths);
     if (status == CAMBER_OK && cover->variant & CAMBER_COVER_PITCHED)
         status = get(cover, BUFFER_PLANES, 4 * CAMBER_PLANE_WORDS * made.shape_count, &made.planes);
     if (status == CAMBER_OK)

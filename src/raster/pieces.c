@@ -104,7 +104,7 @@ camber_shape_range camber_cover_range(const camber_cover_scene *scene, const cam
         .record_count = (uint32_t)(!mesh    ? CAMBER_FILL_RECORDS
                                    : strips ? part->record_count
                                             : part->slot_count),
-        .stride = mesh && mesh->mesh_info.measured ? 2 : 1,
+        .stride = mesh && mesh->mesh_info.has_arc_length ? 2 : 1,
         .strips = strips,
         .linear = scene->linear,
         .base = (uint32_t)piece->base,
@@ -121,7 +121,7 @@ camber_shape_range camber_cover_range(const camber_cover_scene *scene, const cam
 void camber_cover_stages_free(camber_context *context, camber_cover_stages *stages) {
     camber_free(context, stages->shapes);
     camber_free(context, stages->boxes);
-    camber_free(context, stages->measures);
+    camber_free(context, stages->arc_lengths);
     camber_free(context, stages->planes);
     camber_free(context, stages->starts);
     camber_free(context, stages->lists);

@@ -85,10 +85,10 @@ uint32_t camber_cover_slices(const camber_cover *cover);
 /* ---- Stages in host memory, for proofs: freed with camber_cover_stages_free ---- */
 
 typedef struct camber_cover_stages {
-    float *shapes;   /* shape_count times CAMBER_SHAPE_WORDS */
-    uint32_t *boxes; /* shape_count */
-    float *measures; /* shape_count times CAMBER_SHAPE_MEASURES. NULL: of a plain scene */
-    float *planes;   /* shape_count times CAMBER_PLANE_WORDS. NULL: not pitched */
+    float *shapes;      /* shape_count times CAMBER_SHAPE_WORDS */
+    uint32_t *boxes;    /* shape_count */
+    float *arc_lengths; /* shape_count times CAMBER_SHAPE_MEASURES. NULL: of a plain scene */
+    float *planes;      /* shape_count times CAMBER_PLANE_WORDS. NULL: not pitched */
     size_t shape_count;
     uint32_t *starts; /* tile_count + 1 */
     size_t tile_count;

@@ -13,7 +13,7 @@
 /* Of a part, as the device has them: padding is ghosts. */
 typedef struct part_records {
     camber_record *records;
-    camber_measure *measures; /* NULL: not measured */
+    camber_arc_length *arc_lengths; /* NULL: not measured */
 } part_records;
 
 /* A record's number, or that of the nearest there is. */
@@ -37,14 +37,14 @@ static bool ends_segment(const camber_record *b, const camber_shape_range *r) {
 }
 
 /* How far along its line a segment lies: from one record to another. */
-static void put_measure(const camber_measure *measures, size_t from, size_t to, const camber_shape *s,
+static void put_measure(const camber_arc_length *arc_lengths, size_t from, size_t to, const camber_shape *s,
                         float measure[CAMBER_SHAPE_MEASURES]) {
     memset(measure, 0, CAMBER_SHAPE_MEASURES * sizeof *measure);
-    if (!measures)
+    if (!arc_lengths)
         return;
-    measure[0] = measures[from].along_px;
-    measure[1] = camber_shape_rate(s, measures[from].along_px, measures[to].along_px);
-    measure[2] = measures[from].total_px;
+    measure[0] = arc_lengths[from].along_px;
+    measure[1] = camber_shape_rate(s, arc_lengths[from].along_px, arc_lengths[to].along_px);
+    measure[2] = arc_lengths[from].total_px;
 }
 
 static void put_words(const camber_shape *s, float ink, float *made) {
@@ -81,9 +81,9 @@ static void put_shape(const camber_twin *t, const part_records *part, const camb
     camber_shape s =
         camber_shape_of(p.x + x, p.y + y, a.x + x, a.y + y, b.x + x, b.y + y, a.join, b.join, row[0], r->linear);
     bool drawn = ends && row[0] >= 0.0f;
-    if (t->stages->measures)
-        put_measure(part->measures, place_of(is_dot ? i : i - 1, r), place_of(i, r), &s,
-                    t->stages->measures + CAMBER_SHAPE_MEASURES * shape);
+    if (t->stages->arc_lengths)
+        put_measure(part->arc_lengths, place_of(is_dot ? i : i - 1, r), place_of(i, r), &s,
+                    t->stages->arc_lengths + CAMBER_SHAPE_MEASURES * shape);
     if (t->stages->planes) {
         camber_shape band;
         camber_plane plane;
@@ -99,7 +99,7 @@ static void put_shape(const camber_twin *t, const part_records *part, const camb
 
 static void free_part(camber_context *context, part_records *part) {
     camber_free(context, part->records);
-    camber_free(context, part->measures);
+    camber_free(context, part->arc_lengths);
 }
 
 /* The records of a part, read as the device has them. */
@@ -112,16 +112,16 @@ static camber_status read_part(camber_mesh *mesh, size_t which, part_records *pa
     const camber_mesh_part *from = mesh->parts + which;
     const size_t count = mesh->mesh_info.strips ? from->record_count : from->slot_count;
     const size_t kept = from->record_count < count ? from->record_count : count;
-    const bool measured = mesh->mesh_info.measured;
+    const bool has_arc_length = mesh->mesh_info.has_arc_length;
     part_records made = {camber_alloc_zero(context, count, sizeof *made.records),
-                         measured ? camber_alloc_zero(context, count, sizeof *made.measures) : NULL};
+                         has_arc_length ? camber_alloc_zero(context, count, sizeof *made.arc_lengths) : NULL};
     if (made.records)
         memcpy(made.records, data.records + from->first_record, kept * sizeof *made.records);
-    if (made.measures)
-        memcpy(made.measures, data.measures + from->first_record, kept * sizeof *made.measures);
+    if (made.arc_lengths)
+        memcpy(made.arc_lengths, data.arc_lengths + from->first_record, kept * sizeof *made.arc_lengths);
     camber_mesh_data_free(context, &data);
     *part = made;
-    return made.records && (made.measures || !measured) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    return made.records && (made.arc_lengths || !has_arc_length) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
 }
 
 static camber_status make_shapes(const camber_twin *t, const camber_cover_piece *pieces, size_t piece_count) {
@@ -189,12 +189,12 @@ camber_status camber_cover_on_host(camber_context *context, const camber_cover_s
     made.shapes = camber_alloc(context, made.shape_count, CAMBER_SHAPE_WORDS * sizeof *made.shapes);
     made.boxes = camber_alloc(context, made.shape_count, sizeof *made.boxes);
     if (scene->more)
-        made.measures = camber_alloc(context, made.shape_count, CAMBER_SHAPE_MEASURES * sizeof *made.measures);
+        made.arc_lengths = camber_alloc(context, made.shape_count, CAMBER_SHAPE_MEASURES * sizeof *made.arc_lengths);
     if (scene->pitched)
         made.planes = camber_alloc(context, made.shape_count, CAMBER_PLANE_WORDS * sizeof *made.planes);
     made.starts = camber_alloc(context, made.tile_count + 1, sizeof *made.starts);
     made.rgba = camber_alloc(context, 4 * (size_t)area->width, area->height);
-    if (!made.shapes || !made.boxes || (scene->more && !made.measures) || (scene->pitched && !made.planes) ||
+    if (!made.shapes || !made.boxes || (scene->more && !made.arc_lengths) || (scene->pitched && !made.planes) ||
         !made.starts || !made.rgba)
         status = CAMBER_ERROR_MEMORY;
     if (status == CAMBER_OK)

@@ -420,7 +420,7 @@ static void draw_segment(canvas *c, const camber_twin *t, uint32_t which, float 
         camber_pitch_pen_of(by.eye, shape, stages->planes + (size_t)CAMBER_PLANE_WORDS * which, flags, &by.tilted_pen);
     else
         camber_pen_of(shape, flags, &by.pen);
-    const float *measure = stages->measures + CAMBER_SHAPE_MEASURES * (size_t)which;
+    const float *measure = stages->arc_lengths + CAMBER_SHAPE_MEASURES * (size_t)which;
     by.tail = t->scene->tail;
     by.is_fill = (by.tilted ? by.tilted_pen.half_width : by.pen.half_width) >= CAMBER_FILL_PX;
     if (c->more.features)

@@ -79,7 +79,7 @@ camber_status camber_features_sign(camber_features *features, const char *text) 
         return CAMBER_ERROR_MEMORY;
     camber_status status = CAMBER_OK;
     const size_t size = make_plain(text, plain);
-    const char *known = camber_features_attribution(features);
+    const char *known = camber_features_get_attribution(features);
     if (size && !(known && strstr(known, plain)))
         status = append(features, plain, size);
     camber_free(features->context, plain);
@@ -92,6 +92,6 @@ void camber_features_unsign(camber_features *features, size_t size) {
         features->attribution[size] = 0;
 }
 
-const char *camber_features_attribution(const camber_features *features) {
+const char *camber_features_get_attribution(const camber_features *features) {
     return features->attribution_size ? features->attribution : NULL;
 }

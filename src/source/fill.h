@@ -20,7 +20,7 @@ camber_status camber_features_add_feature(camber_features *features, uint32_t cl
 camber_status camber_features_add_polyline(camber_features *features, const double *points, size_t point_count);
 /* The progress of the polyline added last. */
 camber_status camber_features_set_progress(camber_features *features, double first, double last);
-/* Adds to what camber_features_attribution says, plain text or HTML, unless it stands there; NULL: nothing. */
+/* Adds to what camber_features_get_attribution says, plain text or HTML, unless it stands there; NULL: nothing. */
 camber_status camber_features_sign(camber_features *features, const char *text);
 /* Takes what was added since it had so many bytes, attribution_size, out again. */
 void camber_features_unsign(camber_features *features, size_t size);

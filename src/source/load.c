@@ -81,13 +81,13 @@ camber_status camber_features_read(camber_features *features, const camber_sourc
     return status == CAMBER_OK ? calls->read(features, desc) : status;
 }
 
-const char *camber_format_name(size_t n) {
+const char *camber_format_list(size_t n) {
     const char *why;
     const camber_gdal_calls *calls = load(&why);
     return calls ? calls->format_name(n) : NULL;
 }
 
-const char *camber_gdal_version(void) {
+const char *camber_gdal_get_version(void) {
     const char *why;
     const camber_gdal_calls *calls = load(&why);
     return calls ? calls->version() : NULL;

@@ -10,7 +10,7 @@ typedef struct checker {
     camber_context *context;
     camber_style_finding *findings;
     camber_style_type *types;
-    camber_style_origin *sources;
+    camber_style_report_source *sources;
     size_t finding_capacity, type_capacity, source_capacity;
     char **texts;
     size_t text_count, text_capacity;
@@ -229,7 +229,8 @@ static void list_sources(checker *k, const camber_style *style) {
         size_t count = 0;
         for (size_t n = 0; n < style->layer_count; n++)
             count += style->layers[n].kind == CAMBER_LAYER_LINE && style->layers[n].source_index == i;
-        k->sources[i] = (camber_style_origin){keep(k, source->name), keep(k, source->type), count, trouble_of(source)};
+        k->sources[i] =
+            (camber_style_report_source){keep(k, source->name), keep(k, source->type), count, trouble_of(source)};
     }
     k->report.source_count = style->source_count;
 }

@@ -339,7 +339,7 @@ camber_status camber_style_parse(camber_context *context, const char *json, size
     return status;
 }
 
-camber_status camber_style_builtin(camber_context *context, camber_theme theme, camber_style **style) {
+camber_status camber_style_create_builtin(camber_context *context, camber_theme theme, camber_style **style) {
     if (theme == CAMBER_THEME_DARK)
         return camber_style_parse(context, camber_style_dark, camber_style_dark_size, "built-in dark style", style);
     return camber_style_parse(context, camber_style_light, camber_style_light_size, "built-in light style", style);

@@ -43,7 +43,7 @@ camber_status camber_part_measure(camber_mesh *mesh, camber_mesh_part *part) {
     const camber_part_course *c = &part->course;
     const cl_mem mems[] = {mesh->offsets ? c->x : part->x, mesh->offsets ? c->y : part->y,
                            mesh->offsets ? c->info : part->info, mesh->offsets ? c->lengths : part->lengths,
-                           mesh->offsets ? c->measures : part->measures};
+                           mesh->offsets ? c->arc_lengths : part->arc_lengths};
     const camber_stage stages[] = {{"tally", program->tally, mems, 4, CAMBER_MEASURE_CHUNK, part->given_count},
                                    {"measure", program->measure, mems, 5, CAMBER_MEASURE_CHUNK, part->given_count}};
     status = camber_stage_run(device, stages[0], NULL);
@@ -57,7 +57,7 @@ camber_status camber_part_measure(camber_mesh *mesh, camber_mesh_part *part) {
 /* ---- Twin ---- */
 
 /* The slots [first, end) of a polyline's piece: from a first point to its last. */
-static void measure_piece(const camber_polylines *p, size_t first, size_t end, camber_measure *measures) {
+static void measure_piece(const camber_polylines *p, size_t first, size_t end, camber_arc_length *arc_lengths) {
     camber_u64 sum = 0;
     for (size_t pass = 0; pass < 2; pass++) {
         const camber_u64 total = sum;
@@ -66,18 +66,18 @@ static void measure_piece(const camber_polylines *p, size_t first, size_t end, c
             if (i > first)
                 sum += camber_length_of(p->x[i] - p->x[i - 1], p->y[i] - p->y[i - 1], CAMBER_LENGTH_UNITS);
             if (pass == 1)
-                measures[i - 1] = (camber_measure){camber_length_px(sum), camber_length_px(total)};
+                arc_lengths[i - 1] = (camber_arc_length){camber_length_px(sum), camber_length_px(total)};
         }
     }
 }
 
-camber_status camber_polylines_measure(const camber_polylines *polylines, camber_measure **measures) {
-    camber_measure *made = camber_alloc_zero(polylines->context, polylines->slot_count + 1, sizeof *made);
+camber_status camber_polylines_measure(const camber_polylines *polylines, camber_arc_length **arc_lengths) {
+    camber_arc_length *made = camber_alloc_zero(polylines->context, polylines->slot_count + 1, sizeof *made);
     if (!made)
         return CAMBER_ERROR_MEMORY;
-    if (polylines->measures)
-        memcpy(made, polylines->measures, polylines->slot_count * sizeof *made);
-    for (size_t i = 1; i <= polylines->slot_count && !polylines->measures; i++) {
+    if (polylines->arc_lengths)
+        memcpy(made, polylines->arc_lengths, polylines->slot_count * sizeof *made);
+    for (size_t i = 1; i <= polylines->slot_count && !polylines->arc_lengths; i++) {
         if (!(polylines->info[i] & CAMBER_POINT_FIRST))
             continue;
         const size_t first = i;
@@ -85,6 +85,6 @@ camber_status camber_polylines_measure(const camber_polylines *polylines, camber
             i++;
         measure_piece(polylines, first, i + 1, made);
     }
-    *measures = made;
+    *arc_lengths = made;
     return CAMBER_OK;
 }

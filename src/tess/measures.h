@@ -8,6 +8,6 @@
 camber_status camber_part_measure(camber_mesh *mesh, camber_mesh_part *part);
 
 /* The twin: of each slot, 0 of ghosts; freed with camber_free. */
-camber_status camber_polylines_measure(const camber_polylines *polylines, camber_measure **measures);
+camber_status camber_polylines_measure(const camber_polylines *polylines, camber_arc_length **arc_lengths);
 
 #endif

@@ -27,22 +27,24 @@ static void count(camber_device *device, uint64_t *held_bytes, uint64_t now_byte
         device->most_held_bytes = device->held_bytes + device->drawing_bytes;
 }
 
-uint64_t camber_input_bytes(const camber_device *device, bool measured, size_t slots) {
+uint64_t camber_input_bytes(const camber_device *device, bool has_arc_length, size_t slots) {
     const uint64_t blocks = slots / device->block, words = slots ? (uint64_t)slots + 2 : 0;
-    const uint64_t measures = sizeof(camber_measure) * (uint64_t)slots + 16 * ((uint64_t)slots / CAMBER_MEASURE_CHUNK);
-    return (measured ? measures : 0) + 16 * words + 4 * ((uint64_t)slots / device->item) + (4 + 16) * blocks;
+    const uint64_t arc_lengths =
+        sizeof(camber_arc_length) * (uint64_t)slots + 16 * ((uint64_t)slots / CAMBER_MEASURE_CHUNK);
+    return (has_arc_length ? arc_lengths : 0) + 16 * words + 4 * ((uint64_t)slots / device->item) + (4 + 16) * blocks;
 }
 
-uint64_t camber_course_bytes(bool measured, size_t slots) {
+uint64_t camber_course_bytes(bool has_arc_length, size_t slots) {
     const uint64_t words = slots ? (uint64_t)slots + 2 : 0;
-    const uint64_t measures = sizeof(camber_measure) * (uint64_t)slots + 16 * ((uint64_t)slots / CAMBER_MEASURE_CHUNK);
-    return (measured ? measures : 0) + (12 + sizeof(camber_span)) * words + 4 * (uint64_t)slots +
+    const uint64_t arc_lengths =
+        sizeof(camber_arc_length) * (uint64_t)slots + 16 * ((uint64_t)slots / CAMBER_MEASURE_CHUNK);
+    return (has_arc_length ? arc_lengths : 0) + (12 + sizeof(camber_span)) * words + 4 * (uint64_t)slots +
            (slots ? 4 * ((uint64_t)slots / CAMBER_OFFSET_CHUNK + 1) : 0);
 }
 
 void camber_part_count(const camber_mesh *mesh, camber_mesh_part *part) {
-    uint64_t bytes = camber_input_bytes(mesh->device, part->measures != NULL, part->slot_capacity);
-    bytes += camber_course_bytes(part->course.measures != NULL, part->course.slot_capacity);
+    uint64_t bytes = camber_input_bytes(mesh->device, part->arc_lengths != NULL, part->slot_capacity);
+    bytes += camber_course_bytes(part->course.arc_lengths != NULL, part->course.slot_capacity);
     bytes += part->base_capacity * sizeof *part->host_bases + part->chunk_capacity * sizeof *part->chunk_bases;
     for (int i = 0; i < 2; i++)
         bytes += mesh->buffer_copies * (uint64_t)part->buffers[i].capacity_bytes;

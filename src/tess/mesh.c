@@ -196,12 +196,12 @@ static camber_status read_words(const camber_mesh *mesh, const camber_mesh_part 
 
 static camber_status read_records(const camber_mesh *mesh, const camber_mesh_part *part, camber_mesh_data *data) {
     camber_record *records = data->records + part->first_record;
-    if (!mesh->mesh_info.measured)
+    if (!mesh->mesh_info.has_arc_length)
         return read_buffer(mesh, part->buffers + CAMBER_BUFFER_RECORDS, part->record_count * sizeof *records, records);
     const camber_status status = read_words(mesh, part, 0, sizeof *records, records);
-    return status == CAMBER_OK
-               ? read_words(mesh, part, sizeof *records, sizeof *data->measures, data->measures + part->first_record)
-               : status;
+    return status == CAMBER_OK ? read_words(mesh, part, sizeof *records, sizeof *data->arc_lengths,
+                                            data->arc_lengths + part->first_record)
+                               : status;
 }
 
 static camber_status read_part(camber_mesh *mesh, camber_mesh_part *part, camber_mesh_data *data) {
@@ -231,9 +231,9 @@ camber_status camber_mesh_read(camber_mesh *mesh, camber_mesh_data *data) {
     made.records = camber_alloc(context, made.info.record_count, sizeof *made.records);
     if (made.records && !made.info.strips)
         made.corners = camber_alloc(context, made.info.index_count, sizeof *made.corners);
-    if (made.records && made.info.measured)
-        made.measures = camber_alloc(context, made.info.record_count, sizeof *made.measures);
-    if (!made.records || (!made.info.strips && !made.corners) || (made.info.measured && !made.measures))
+    if (made.records && made.info.has_arc_length)
+        made.arc_lengths = camber_alloc(context, made.info.record_count, sizeof *made.arc_lengths);
+    if (!made.records || (!made.info.strips && !made.corners) || (made.info.has_arc_length && !made.arc_lengths))
         status = CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < mesh->part_count && mesh->done && status == CAMBER_OK; i++)
         if (mesh->parts[i].record_count > 0)

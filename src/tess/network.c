@@ -210,7 +210,7 @@ static camber_status fill(camber_network *n, const camber_network_desc *desc) {
     }
     n->entry_runs[n->entry_count] = (uint32_t)n->run_count;
     n->runs[n->run_count] = (camber_run){.first = (uint32_t)n->point_count};
-    return desc->measured ? measure_runs(n, desc) : CAMBER_OK;
+    return desc->has_arc_length ? measure_runs(n, desc) : CAMBER_OK;
 }
 
 camber_status camber_network_create(camber_context *context, const camber_network_desc *desc,
@@ -383,7 +383,7 @@ camber_status camber_network_aim(const camber_network *network, const camber_cam
     const camber_status status = check_camera(network, camera);
     if (status != CAMBER_OK)
         return status;
-    if (desc->measured && !network->lengths && network->point_count)
+    if (desc->has_arc_length && !network->lengths && network->point_count)
         return camber_fail(network->context, CAMBER_ERROR_ARGUMENT,
                            "a measured mesh of a network that is not; make the network measured");
     const double angle = fmod(camera->bearing_deg, 360.0) * (3.14159265358979323846 / 180.0);

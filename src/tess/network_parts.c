@@ -209,12 +209,12 @@ camber_status camber_mesh_plan_network(camber_mesh *mesh, camber_network *networ
 
 camber_status camber_mesh_aim(camber_mesh *mesh, const camber_camera *camera, const camber_tessellation_desc *desc) {
     const camber_status status = camber_network_aim(mesh->held->network, camera, desc, &mesh->held->projection);
-    return status == CAMBER_OK ? camber_device_network_program(mesh->device, desc->measured, camera->pitch_deg > 0.0,
-                                                               &mesh->held->program)
+    return status == CAMBER_OK ? camber_device_network_program(mesh->device, desc->has_arc_length,
+                                                               camera->pitch_deg > 0.0, &mesh->held->program)
                                : status;
 }
 
-bool camber_mesh_holds(const camber_mesh *mesh, const camber_network *network) {
+bool camber_mesh_holds_network(const camber_mesh *mesh, const camber_network *network) {
     return mesh->done && mesh->serial == network->serial;
 }
 
@@ -337,7 +337,7 @@ static camber_status reserve_slots(camber_mesh *mesh, camber_mesh_part *part, si
     const uint64_t largest = mesh->device->info.largest_buffer_bytes;
     const bool enough =
         slots <= part->slot_capacity || 4 * ((uint64_t)more + 2) > largest ||
-        !camber_device_is_roomy(mesh->device, camber_input_bytes(mesh->device, mesh->mesh_info.measured, more));
+        !camber_device_is_roomy(mesh->device, camber_input_bytes(mesh->device, mesh->mesh_info.has_arc_length, more));
     part->slot_count = slots;
     return camber_part_reserve(mesh, part, enough ? slots : more);
 }
@@ -392,8 +392,8 @@ camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, boo
                            mesh->offsets ? course->spans : part->joins,
                            section->lengths,
                            section->totals,
-                           mesh->offsets ? course->measures : part->measures};
-    const cl_uint mem_count = mesh->mesh_info.measured ? 13 : 10;
+                           mesh->offsets ? course->arc_lengths : part->arc_lengths};
+    const cl_uint mem_count = mesh->mesh_info.has_arc_length ? 13 : 10;
     return run_stage(device, &p, (stage){"project", mesh->held->program->project, mems, mem_count},
                      &mesh->held->projected);
 }

@@ -66,7 +66,7 @@ static camber_status make_slots(const camber_network *network, const camber_proj
     if (!(p->x = camber_alloc_zero(context, slots + 2, sizeof *p->x)) ||
         !(p->y = camber_alloc_zero(context, slots + 2, sizeof *p->y)) ||
         !(p->info = camber_alloc_zero(context, slots + 2, sizeof *p->info)) ||
-        (network->lengths && !(p->measures = camber_alloc_zero(context, slots, sizeof *p->measures))) ||
+        (network->lengths && !(p->arc_lengths = camber_alloc_zero(context, slots, sizeof *p->arc_lengths))) ||
         !(p->first_slots = camber_alloc(context, network->entry_count + 1, sizeof *p->first_slots)) ||
         !(p->polyline_rows = camber_alloc(context, network->entry_count, sizeof *p->polyline_rows)))
         return CAMBER_ERROR_MEMORY;
@@ -74,7 +74,7 @@ static camber_status make_slots(const camber_network *network, const camber_proj
     w.slot_x = p->x;
     w.slot_y = p->y;
     w.slot_info = p->info;
-    w.slot_measures = (float *)p->measures;
+    w.slot_measures = (float *)p->arc_lengths;
     w.puts = 1;
     w.at = 1;
     for (size_t i = 0; i < network->entry_count; i++) {
@@ -172,8 +172,9 @@ static void put_entry(pieces *p, size_t entry) {
     }
 }
 
-camber_status camber_network_lines(const camber_network *network, const camber_camera *camera,
-                                   const camber_tessellation_desc *desc, camber_lines *lines, uint32_t **entries) {
+camber_status camber_network_project_lines(const camber_network *network, const camber_camera *camera,
+                                           const camber_tessellation_desc *desc, camber_lines *lines,
+                                           uint32_t **entries) {
     camber_context *context = network->context;
     camber_polylines *slots = NULL;
     camber_status status = camber_network_project(network, camera, desc, &slots);

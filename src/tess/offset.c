@@ -78,7 +78,7 @@ enum { COURSE_BUFFERS = 8 };
 
 void camber_course_release(const camber_device *device, camber_part_course *course) {
     cl_mem *mems[COURSE_BUFFERS] = {&course->x,      &course->y,      &course->info,    &course->spans,
-                                    &course->counts, &course->places, &course->lengths, &course->measures};
+                                    &course->counts, &course->places, &course->lengths, &course->arc_lengths};
     for (size_t i = 0; i < COURSE_BUFFERS; i++)
         camber_release_buffer(device, mems[i]);
     course->slot_capacity = 0;
@@ -93,7 +93,8 @@ camber_status camber_part_check_course(const camber_mesh *mesh, const camber_mes
     return part->polyline_count > 1 ? CAMBER_OK : camber_fail_polyline(mesh, part->first_polyline, size_bytes);
 }
 
-static camber_status make_course(const camber_device *device, bool measured, camber_part_course *course, size_t slots) {
+static camber_status make_course(const camber_device *device, bool has_arc_length, camber_part_course *course,
+                                 size_t slots) {
     const size_t words = slots + 2;
     const struct {
         cl_mem *mem;
@@ -106,9 +107,9 @@ static camber_status make_course(const camber_device *device, bool measured, cam
         {&course->counts, 4 * (slots / CAMBER_OFFSET_CHUNK + 1)},
         {&course->places, 4 * slots},
         {&course->lengths, 16 * slots / CAMBER_MEASURE_CHUNK},
-        {&course->measures, sizeof(camber_measure) * slots},
+        {&course->arc_lengths, sizeof(camber_arc_length) * slots},
     };
-    const size_t count = measured ? COURSE_BUFFERS : COURSE_BUFFERS - 2;
+    const size_t count = has_arc_length ? COURSE_BUFFERS : COURSE_BUFFERS - 2;
     camber_status status = CAMBER_OK;
     camber_course_release(device, course);
     for (size_t i = 0; i < count && status == CAMBER_OK; i++)
@@ -121,17 +122,17 @@ static camber_status make_course(const camber_device *device, bool measured, cam
 }
 
 camber_status camber_part_reserve_course(camber_mesh *mesh, camber_mesh_part *part, size_t slots) {
-    const bool measured = mesh->mesh_info.measured;
+    const bool has_arc_length = mesh->mesh_info.has_arc_length;
     const camber_device *device = mesh->device;
-    const uint64_t wanted = camber_course_bytes(measured, slots);
-    if (slots <= part->course.slot_capacity && (!measured || part->course.measures))
+    const uint64_t wanted = camber_course_bytes(has_arc_length, slots);
+    if (slots <= part->course.slot_capacity && (!has_arc_length || part->course.arc_lengths))
         return CAMBER_OK;
     if (wanted > camber_device_share(device, 4))
         return camber_fail_memory(mesh, part->first_polyline, wanted);
-    const uint64_t held = camber_course_bytes(part->course.measures != NULL, part->course.slot_capacity);
+    const uint64_t held = camber_course_bytes(part->course.arc_lengths != NULL, part->course.slot_capacity);
     camber_status status = camber_mesh_make_room(mesh, part, wanted > held ? wanted - held : 0);
     if (status == CAMBER_OK)
-        status = make_course(device, measured, &part->course, slots);
+        status = make_course(device, has_arc_length, &part->course, slots);
     part->uploaded = false;
     camber_part_count(mesh, part);
     return status;
@@ -163,7 +164,7 @@ static camber_status reserve_slots(camber_mesh *mesh, camber_mesh_part *part, si
     const bool enough =
         slots <= part->slot_capacity || !mesh->held ||
         4 * ((uint64_t)more + 2) > mesh->device->info.largest_buffer_bytes ||
-        !camber_device_is_roomy(mesh->device, camber_input_bytes(mesh->device, mesh->mesh_info.measured, more));
+        !camber_device_is_roomy(mesh->device, camber_input_bytes(mesh->device, mesh->mesh_info.has_arc_length, more));
     part->slot_count = slots;
     return camber_part_reserve(mesh, part, enough ? slots : more);
 }
@@ -181,9 +182,9 @@ static camber_status check_slots(const camber_mesh *mesh, const camber_mesh_part
 static camber_status run_shift(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program,
                                cl_event *event) {
     const camber_part_course *c = &part->course;
-    const cl_mem mems[] = {c->x,    c->y,       c->info,     mesh->shifts, c->spans,    c->counts,     part->x,
-                           part->y, part->info, part->joins, c->places,    c->measures, part->measures};
-    const cl_uint mem_count = mesh->mesh_info.measured ? 13 : 11;
+    const cl_mem mems[] = {c->x,    c->y,       c->info,     mesh->shifts, c->spans,       c->counts,        part->x,
+                           part->y, part->info, part->joins, c->places,    c->arc_lengths, part->arc_lengths};
+    const cl_uint mem_count = mesh->mesh_info.has_arc_length ? 13 : 11;
     return camber_stage_run(
         mesh->device, (camber_stage){"shift", program->shift, mems, mem_count, CAMBER_OFFSET_CHUNK, part->given_count},
         event);
@@ -201,7 +202,7 @@ camber_status camber_part_offset(camber_mesh *mesh, camber_mesh_part *part, bool
     /* What the part had before is gone, though nothing may come of it now. */
     part->slot_count = part->record_count = part->vertex_count = part->index_count = 0;
     part->course.made_count = 0;
-    camber_status status = camber_device_offsets(mesh->device, mesh->mesh_info.measured, &program);
+    camber_status status = camber_device_offsets(mesh->device, mesh->mesh_info.has_arc_length, &program);
     if (status == CAMBER_OK)
         status = camber_stage_run(device, (camber_stage){"span", program->span, mems, 5, 1, given}, events);
     if (status == CAMBER_OK)
@@ -229,13 +230,13 @@ camber_status camber_part_offset(camber_mesh *mesh, camber_mesh_part *part, bool
 /* ---- Twin ---- */
 
 static camber_course course_of(const camber_polylines *polylines, const camber_shift *shifts, const camber_span *spans,
-                               const camber_measure *measures) {
+                               const camber_arc_length *arc_lengths) {
     return (camber_course){.x = polylines->x,
                            .y = polylines->y,
                            .info = polylines->info,
                            .shifts = shifts,
                            .spans = spans,
-                           .measures = (const float *)measures,
+                           .arc_lengths = (const float *)arc_lengths,
                            .slots = (camber_u32)polylines->slot_count};
 }
 
@@ -270,14 +271,15 @@ static camber_status put(const camber_course *course, const camber_polylines *fr
     if (!(made->x = camber_alloc_zero(context, slots + 2, sizeof *made->x)) ||
         !(made->y = camber_alloc_zero(context, slots + 2, sizeof *made->y)) ||
         !(made->info = camber_alloc_zero(context, slots + 2, sizeof *made->info)) ||
-        (course->measures && !(made->measures = camber_alloc_zero(context, slots + 1, sizeof *made->measures))) ||
+        (course->arc_lengths &&
+         !(made->arc_lengths = camber_alloc_zero(context, slots + 1, sizeof *made->arc_lengths))) ||
         !(made->first_slots = camber_alloc(context, from->polyline_count + 1, sizeof *made->first_slots)))
         return CAMBER_ERROR_MEMORY;
     camber_pen pen = camber_pen_counting();
     pen.x = made->x;
     pen.y = made->y;
     pen.info = made->info;
-    pen.measures = (float *)made->measures;
+    pen.arc_lengths = (float *)made->arc_lengths;
     pen.puts = 1;
     pen.at = 1;
     walk(course, from, &pen, made->first_slots);
@@ -307,12 +309,12 @@ static camber_status make_beside(const camber_course *course, const camber_polyl
 }
 
 camber_status camber_polylines_offset(const camber_polylines *polylines, const camber_tessellation_desc *desc,
-                                      const camber_measure *measures, camber_polylines **beside) {
+                                      const camber_arc_length *arc_lengths, camber_polylines **beside) {
     camber_context *context = polylines->context;
     camber_shift *shifts = NULL;
     camber_span *spans = camber_alloc_zero(context, polylines->slot_count + 2, sizeof *spans);
     camber_status status = spans ? make_shifts(context, desc, &shifts) : CAMBER_ERROR_MEMORY;
-    const camber_course course = course_of(polylines, shifts, spans, measures);
+    const camber_course course = course_of(polylines, shifts, spans, arc_lengths);
     for (size_t i = 1; i <= polylines->slot_count && status == CAMBER_OK; i++)
         spans[i] = camber_span_of(&course, (camber_u32)i);
     if (status == CAMBER_OK)

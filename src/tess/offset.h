@@ -22,6 +22,6 @@ camber_status camber_part_offset(camber_mesh *mesh, camber_mesh_part *part, bool
 
 /* The twin: polylines beside others, whose measures are given where they are wanted; the polylines' own then. */
 camber_status camber_polylines_offset(const camber_polylines *polylines, const camber_tessellation_desc *desc,
-                                      const camber_measure *measures, camber_polylines **beside);
+                                      const camber_arc_length *arc_lengths, camber_polylines **beside);
 
 #endif

@@ -58,8 +58,8 @@ camber_status camber_write_buffer(const camber_device *device, cl_mem mem, size_
 enum { INPUTS = 9 };
 
 static void list_input(camber_mesh_part *part, cl_mem *mems[INPUTS]) {
-    cl_mem *const list[INPUTS] = {&part->x,    &part->y,     &part->info,    &part->joins,   &part->offsets,
-                                  &part->sums, &part->bases, &part->lengths, &part->measures};
+    cl_mem *const list[INPUTS] = {&part->x,    &part->y,     &part->info,    &part->joins,      &part->offsets,
+                                  &part->sums, &part->bases, &part->lengths, &part->arc_lengths};
     memcpy(mems, list, sizeof list);
 }
 
@@ -102,12 +102,13 @@ void camber_part_take(camber_mesh_part *part, camber_mesh_part *from) {
     from->uploaded = from->made = false;
 }
 
-static bool has_input(const camber_mesh_part *part, bool measured, size_t slots) {
-    return slots <= part->slot_capacity && (!measured || part->measures);
+static bool has_input(const camber_mesh_part *part, bool has_arc_length, size_t slots) {
+    return slots <= part->slot_capacity && (!has_arc_length || part->arc_lengths);
 }
 
-static camber_status reserve_input(const camber_device *device, bool measured, camber_mesh_part *part, size_t slots) {
-    if (has_input(part, measured, slots))
+static camber_status reserve_input(const camber_device *device, bool has_arc_length, camber_mesh_part *part,
+                                   size_t slots) {
+    if (has_input(part, has_arc_length, slots))
         return CAMBER_OK;
     const bool uploaded = part->uploaded && part->course.x; /* to the course, which stays */
     release_slots(device, part);
@@ -126,9 +127,9 @@ static camber_status reserve_input(const camber_device *device, bool measured, c
         {&part->sums, 4 * blocks},
         {&part->bases, 16 * blocks},
         {&part->lengths, 16 * slots / CAMBER_MEASURE_CHUNK},
-        {&part->measures, sizeof(camber_measure) * slots},
+        {&part->arc_lengths, sizeof(camber_arc_length) * slots},
     };
-    const size_t count = measured ? INPUTS : INPUTS - 2;
+    const size_t count = has_arc_length ? INPUTS : INPUTS - 2;
     for (size_t i = 0; i < count && status == CAMBER_OK; i++)
         status = camber_make_buffer(device, CL_MEM_READ_WRITE, wanted[i].size_bytes, NULL, wanted[i].mem);
     if (status != CAMBER_OK) {
@@ -143,23 +144,23 @@ static camber_status reserve_input(const camber_device *device, bool measured, c
 static uint64_t bytes_of_slots(const camber_mesh *mesh, const camber_mesh_part *part, size_t slots) {
     const uint64_t chunks = mesh->held ? (part->end_point - part->first_point) / CAMBER_CHUNK + 3 : 0;
     const uint64_t blocks = slots / mesh->device->block;
-    return camber_input_bytes(mesh->device, mesh->mesh_info.measured, slots) + 2 * (16 * (blocks + 1) + 4 * chunks) +
-           256;
+    return camber_input_bytes(mesh->device, mesh->mesh_info.has_arc_length, slots) +
+           2 * (16 * (blocks + 1) + 4 * chunks) + 256;
 }
 
 camber_status camber_part_reserve(camber_mesh *mesh, camber_mesh_part *part, size_t slots) {
     const camber_device *device = mesh->device;
-    const bool measured = mesh->mesh_info.measured;
+    const bool has_arc_length = mesh->mesh_info.has_arc_length;
     const uint64_t wanted = bytes_of_slots(mesh, part, slots);
     if (wanted > camber_device_share(device, 4))
         return camber_fail_memory(mesh, part->first_polyline, wanted);
     camber_status status = CAMBER_OK;
-    if (!has_input(part, measured, slots))
+    if (!has_input(part, has_arc_length, slots))
         status = camber_mesh_make_room(
             mesh, part,
             wanted - camber_input_bytes(device, false, slots > part->slot_capacity ? part->slot_capacity : 0));
     if (status == CAMBER_OK)
-        status = reserve_input(device, measured, part, slots);
+        status = reserve_input(device, has_arc_length, part, slots);
     if (status == CAMBER_OK && !camber_grow(device->context, &part->host_bases, &part->base_capacity,
                                             2 * (part->slot_capacity / device->block + 1), sizeof *part->host_bases))
         status = CAMBER_ERROR_MEMORY;
@@ -285,9 +286,9 @@ void camber_mesh_trim_parts(camber_mesh *mesh) {
 /* Slots of a part that its share of memory takes, with a record each or a little more: a block at least. */
 static uint64_t shared_slots(const camber_mesh *mesh) {
     const size_t block = mesh->device->block;
-    const uint64_t block_bytes = camber_input_bytes(mesh->device, mesh->mesh_info.measured, block) +
+    const uint64_t block_bytes = camber_input_bytes(mesh->device, mesh->mesh_info.has_arc_length, block) +
                                  20 * mesh->buffer_copies * block +
-                                 (mesh->offsets ? camber_course_bytes(mesh->mesh_info.measured, block) : 0);
+                                 (mesh->offsets ? camber_course_bytes(mesh->mesh_info.has_arc_length, block) : 0);
     const uint64_t blocks = camber_device_share(mesh->device, 1) / block_bytes;
     return (blocks ? blocks : 1) * block;
 }
@@ -348,7 +349,7 @@ camber_status camber_mesh_plan(camber_mesh *mesh, const camber_polylines *polyli
 
 /* Whether the buffers that are uploaded to have those of measures beside them, if these are wanted now. */
 static bool has_uploaded(const camber_mesh *mesh, const camber_mesh_part *part) {
-    return !mesh->mesh_info.measured || (mesh->offsets ? part->course.measures : part->measures);
+    return !mesh->mesh_info.has_arc_length || (mesh->offsets ? part->course.arc_lengths : part->arc_lengths);
 }
 
 camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part) {
@@ -411,7 +412,7 @@ static uint64_t index_bytes(const camber_mesh *mesh, part_size size) {
 
 static uint64_t need(const camber_mesh *mesh, const camber_mesh_part *part, part_size size) {
     const size_t given = (size_t)whole_blocks(mesh, size.given);
-    return (mesh->offsets ? camber_course_bytes(mesh->mesh_info.measured, given) : 0) +
+    return (mesh->offsets ? camber_course_bytes(mesh->mesh_info.has_arc_length, given) : 0) +
            bytes_of_slots(mesh, part, (size_t)whole_blocks(mesh, size.slots)) +
            mesh->buffer_copies * (record_bytes(mesh, size) + index_bytes(mesh, size));
 }

@@ -73,7 +73,7 @@ camber_status camber_rows_create(camber_context *context, uint32_t row_count, co
     return CAMBER_OK;
 }
 
-const char *camber_method_name(camber_method method) {
+const char *camber_method_get_name(camber_method method) {
     switch (method) {
     case CAMBER_METHOD_STRIP: return "strip";
     case CAMBER_METHOD_KITE: return "kite";

@@ -26,7 +26,7 @@ struct camber_device {
     /* Built when first used; the second of two for what is measured. */
     struct camber_program *programs[2][2][3];      /* without and with round limits, by camber_method */
     struct camber_program *network_programs[2][2]; /* the second ones of a camera with a pitch */
-    struct camber_program *measures;
+    struct camber_program *arc_lengths;
     struct camber_program *offset_programs[2];
     struct camber_program *cover[4]; /* what draws, by its variant */
     /* What its meshes may hold (0: what they want), hold, and held at most. */
@@ -63,7 +63,7 @@ typedef struct camber_program {
 /* What the kernels of a mesh are built for. */
 typedef struct camber_program_desc {
     camber_method method;
-    bool measured;
+    bool has_arc_length;
     bool round_limits; /* a row has one; without them classify is a fifth faster on PoCL */
 } camber_program_desc;
 
@@ -74,10 +74,10 @@ typedef struct camber_program_desc {
 
 /* The kernels, built or loaded at first use. */
 camber_status camber_device_program(camber_device *device, camber_program_desc desc, camber_program **program);
-camber_status camber_device_network_program(camber_device *device, bool measured, bool pitched,
+camber_status camber_device_network_program(camber_device *device, bool has_arc_length, bool pitched,
                                             camber_program **program);
 camber_status camber_device_measures(camber_device *device, camber_program **program);
-camber_status camber_device_offsets(camber_device *device, bool measured, camber_program **program);
+camber_status camber_device_offsets(camber_device *device, bool has_arc_length, camber_program **program);
 camber_status camber_device_cover_program(camber_device *device, unsigned variant, camber_program **program);
 void camber_program_destroy(camber_context *context, camber_program *program);
 
@@ -107,7 +107,7 @@ typedef struct camber_buffer_ops {
 /* Of lines with an offset: the slots of the lines that they lie beside, and what becomes of each. */
 typedef struct camber_part_course {
     cl_mem x, y, info, spans, counts, places;
-    cl_mem lengths, measures; /* of what is measured */
+    cl_mem lengths, arc_lengths; /* of what is measured */
     size_t slot_capacity;
     size_t made_count; /* slots beside, without padding */
 } camber_part_course;
@@ -125,7 +125,7 @@ typedef struct camber_mesh_part {
     size_t chunk_capacity;
     bool uploaded;
     cl_mem x, y, info, joins, offsets, sums, bases;
-    cl_mem lengths, measures; /* of what is measured: sums of chunks, and a camber_measure a slot */
+    cl_mem lengths, arc_lengths; /* of what is measured: sums of chunks, and a camber_arc_length a slot */
     size_t slot_capacity;
     camber_part_course course;
     uint64_t *host_bases; /* first vertex and first index of each block, and the totals behind the last */
@@ -192,7 +192,7 @@ static inline size_t camber_buffer_count(const camber_mesh *mesh) {
 }
 /* Of a record as the device has it: a measured one's words and its measure, rounded up to what a texel is. */
 static inline size_t camber_record_bytes(const camber_mesh_info *info) {
-    return (info->measured ? 2 : 1) * sizeof(camber_record);
+    return (info->has_arc_length ? 2 : 1) * sizeof(camber_record);
 }
 /* First index of a polyline in its part, of strips its first vertex; the part's first polyline + polyline_count gives
  * the end. */
@@ -299,9 +299,9 @@ bool camber_device_is_roomy(const camber_device *device, uint64_t size_bytes);
 void camber_part_count(const camber_mesh *mesh, camber_mesh_part *part);
 void camber_mesh_count(camber_mesh *mesh);
 /* Of a part's input for so many slots. */
-uint64_t camber_input_bytes(const camber_device *device, bool measured, size_t slots);
+uint64_t camber_input_bytes(const camber_device *device, bool has_arc_length, size_t slots);
 /* Of the course of a part for so many slots. */
-uint64_t camber_course_bytes(bool measured, size_t slots);
+uint64_t camber_course_bytes(bool has_arc_length, size_t slots);
 /* Lets parts and sections go, those of other meshes before the mesh's own, until so many more bytes can be held. keep
  * and its section stay, and with spare_made all parts of the mesh that are made. */
 bool camber_mesh_has_room(camber_mesh *mesh, const camber_mesh_part *keep, uint64_t more_bytes, bool spare_made);

@@ -33,7 +33,7 @@ size_t camber_records_max(camber_method method) {
 camber_status camber_fail_records(camber_context *context, camber_method method) {
     return camber_fail(context, CAMBER_ERROR_LIMIT,
                        "more than the %zu records that 32 bits number for method %s; tessellate in parts",
-                       camber_records_max(method), camber_method_name(method));
+                       camber_records_max(method), camber_method_get_name(method));
 }
 
 void camber_scan_blocks(const uint32_t *sums, size_t block_count, uint64_t *bases) {
@@ -133,8 +133,8 @@ static camber_status emit(camber_mesh *mesh, camber_mesh_part *part, const cambe
                            part->bases,
                            part->buffers[CAMBER_BUFFER_RECORDS].mem,
                            part->buffers[mesh->mesh_info.strips ? CAMBER_BUFFER_RECORDS : CAMBER_BUFFER_INDICES].mem,
-                           part->measures};
-    const cl_uint mem_count = mesh->mesh_info.measured ? 10 : 9;
+                           part->arc_lengths};
+    const cl_uint mem_count = mesh->mesh_info.has_arc_length ? 10 : 9;
     status = camber_stage_run(
         device, (camber_stage){"emit", program->emit, mems, mem_count, device->item, part->slot_count}, &event);
     const cl_int code = clFinish(device->queue);
@@ -193,7 +193,7 @@ static camber_status prepare(camber_mesh *mesh, camber_mesh_part *part, const ca
                                       : camber_part_check_course(mesh, part, part->given_count, fits);
     if (status == CAMBER_OK && *fits && !mesh->held)
         status = camber_part_upload(mesh, part);
-    if (status == CAMBER_OK && *fits && mesh->mesh_info.measured && !mesh->held && part->given_count > 0)
+    if (status == CAMBER_OK && *fits && mesh->mesh_info.has_arc_length && !mesh->held && part->given_count > 0)
         status = camber_part_measure(mesh, part);
     if (status == CAMBER_OK && *fits && mesh->offsets && part->given_count > 0)
         status = camber_part_offset(mesh, part, fits);
@@ -262,7 +262,7 @@ static camber_status run_parts(camber_mesh *mesh, const camber_program *program)
 }
 
 static camber_program_desc program_of(const camber_mesh *mesh) {
-    return (camber_program_desc){mesh->mesh_info.method, mesh->mesh_info.measured, mesh->round_limits};
+    return (camber_program_desc){mesh->mesh_info.method, mesh->mesh_info.has_arc_length, mesh->round_limits};
 }
 
 camber_status camber_part_use(camber_mesh *mesh, camber_mesh_part *part) {
@@ -312,7 +312,7 @@ static camber_status plan(camber_mesh *mesh, const source *from, const camber_te
 
 static camber_status tessellate(camber_mesh *mesh, const source *from, const camber_tessellation_desc *desc) {
     const camber_mesh_info nothing = {
-        .method = desc->method, .strips = desc->method == CAMBER_METHOD_STRIP, .measured = desc->measured};
+        .method = desc->method, .strips = desc->method == CAMBER_METHOD_STRIP, .has_arc_length = desc->has_arc_length};
     camber_context *context = mesh->device->context;
     camber_row *rows = NULL;
     camber_program *program = NULL;
@@ -355,14 +355,14 @@ static camber_status tessellate(camber_mesh *mesh, const source *from, const cam
     return status;
 }
 
-camber_status camber_tessellate(camber_mesh *mesh, const camber_polylines *polylines,
-                                const camber_tessellation_desc *desc) {
+camber_status camber_mesh_tessellate(camber_mesh *mesh, const camber_polylines *polylines,
+                                     const camber_tessellation_desc *desc) {
     const source from = {.polylines = polylines, .row_count = polylines->row_count};
     return tessellate(mesh, &from, desc);
 }
 
-camber_status camber_tessellate_network(camber_mesh *mesh, camber_network *network, const camber_camera *camera,
-                                        const camber_tessellation_desc *desc) {
+camber_status camber_mesh_tessellate_network(camber_mesh *mesh, camber_network *network, const camber_camera *camera,
+                                             const camber_tessellation_desc *desc) {
     const source from = {.network = network, .camera = camera, .row_count = network->row_count};
     return tessellate(mesh, &from, desc);
 }

@@ -12,9 +12,9 @@ typedef struct twin {
     const camber_row *rows;
     camber_u32 method;
     camber_mesh_data *data;
-    const camber_measure *measures; /* of each slot. NULL: not measured */
-    camber_stages *stages;          /* NULL: not wanted */
-    uint32_t polyline, point;       /* of its next point */
+    const camber_arc_length *arc_lengths; /* of each slot. NULL: not measured */
+    camber_stages *stages;                /* NULL: not wanted */
+    uint32_t polyline, point;             /* of its next point */
     size_t record_capacity, measure_capacity, index_capacity, stage_capacity;
     bool failed; /* out of memory, or of 32-bit indices */
 } twin;
@@ -29,7 +29,8 @@ static bool grow_records(twin *t) {
     camber_context *context = t->polylines->context;
     const size_t count = t->data->info.record_count + 1;
     return camber_grow(context, &t->data->records, &t->record_capacity, count, sizeof *t->data->records) &&
-           (!t->measures || camber_grow(context, &t->data->measures, &t->measure_capacity, count, sizeof *t->measures));
+           (!t->arc_lengths ||
+            camber_grow(context, &t->data->arc_lengths, &t->measure_capacity, count, sizeof *t->arc_lengths));
 }
 
 /* A record of a slot, whose place may be another's. */
@@ -39,8 +40,8 @@ static void push_record(twin *t, size_t slot, camber_record record) {
         t->failed = true;
         return;
     }
-    if (t->measures)
-        t->data->measures[info->record_count] = t->measures[slot - 1];
+    if (t->arc_lengths)
+        t->data->arc_lengths[info->record_count] = t->arc_lengths[slot - 1];
     t->data->records[info->record_count++] = record;
 }
 
@@ -253,22 +254,22 @@ static camber_status run(camber_context *context, const camber_polylines *polyli
     camber_status status = camber_rows_create(context, polylines->row_count, desc, &rows);
     if (status != CAMBER_OK)
         return status;
-    camber_measure *measures = NULL;
+    camber_arc_length *arc_lengths = NULL;
     camber_polylines *beside = NULL;
-    if (desc->measured)
-        status = camber_polylines_measure(polylines, &measures);
+    if (desc->has_arc_length)
+        status = camber_polylines_measure(polylines, &arc_lengths);
     if (status == CAMBER_OK && camber_desc_has_offsets(desc)) {
-        status = camber_polylines_offset(polylines, desc, measures, &beside);
+        status = camber_polylines_offset(polylines, desc, arc_lengths, &beside);
         if (beside)
             polylines = beside;
     }
     data->info = (camber_mesh_info){
-        .method = desc->method, .strips = desc->method == CAMBER_METHOD_STRIP, .measured = desc->measured};
+        .method = desc->method, .strips = desc->method == CAMBER_METHOD_STRIP, .has_arc_length = desc->has_arc_length};
     twin t = {.polylines = polylines,
               .rows = rows,
               .method = (camber_u32)desc->method,
               .data = data,
-              .measures = beside ? beside->measures : measures,
+              .arc_lengths = beside ? beside->arc_lengths : arc_lengths,
               .stages = stages};
     if (status == CAMBER_OK)
         walk(&t);
@@ -284,7 +285,7 @@ static camber_status run(camber_context *context, const camber_polylines *polyli
     if (status == CAMBER_OK && stages && !info->strips)
         status = number_vertices(context, data, stages);
     camber_polylines_destroy(beside);
-    camber_free(context, measures);
+    camber_free(context, arc_lengths);
     camber_free(context, rows);
     if (status == CAMBER_OK)
         return status;
@@ -294,8 +295,8 @@ static camber_status run(camber_context *context, const camber_polylines *polyli
     return status;
 }
 
-camber_status camber_tessellate_on_host(camber_context *context, const camber_polylines *polylines,
-                                        const camber_tessellation_desc *desc, camber_mesh_data *data) {
+camber_status camber_mesh_data_tessellate(camber_context *context, const camber_polylines *polylines,
+                                          const camber_tessellation_desc *desc, camber_mesh_data *data) {
     camber_mesh_data made = {0};
     const camber_status status = run(context, polylines, desc, &made, NULL);
     if (status == CAMBER_OK)
@@ -303,8 +304,8 @@ camber_status camber_tessellate_on_host(camber_context *context, const camber_po
     return status;
 }
 
-camber_status camber_stages_on_host(camber_context *context, const camber_polylines *polylines,
-                                    const camber_tessellation_desc *desc, camber_stages *stages) {
+camber_status camber_stages_tessellate(camber_context *context, const camber_polylines *polylines,
+                                       const camber_tessellation_desc *desc, camber_stages *stages) {
     camber_mesh_data mesh = {0};
     camber_stages made = {0};
     const camber_status status = run(context, polylines, desc, &mesh, &made);
@@ -318,7 +319,7 @@ void camber_mesh_data_free(camber_context *context, camber_mesh_data *data) {
     camber_free(context, data->indices);
     camber_free(context, data->vertices);
     camber_free(context, data->corners);
-    camber_free(context, data->measures);
+    camber_free(context, data->arc_lengths);
     camber_free(context, data->records);
     *data = (camber_mesh_data){0};
 }

@@ -37,11 +37,11 @@ static size_t compare(bench *b, camber_network *network, const camber_camera *ca
     camber_mesh_data got = {0}, expected = {0};
     camber_stages got_stages = {0}, expected_stages = {0};
     assert_int_equal(camber_network_project(network, camera, desc, &twin), CAMBER_OK);
-    assert_int_equal(camber_tessellate_network(b->mesh, network, camera, desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate_network(b->mesh, network, camera, desc), CAMBER_OK);
     assert_int_equal(camber_mesh_read(b->mesh, &got), CAMBER_OK);
     assert_int_equal(camber_mesh_read_stages(b->mesh, &got_stages), CAMBER_OK);
-    assert_int_equal(camber_tessellate_on_host(b->context, twin, desc, &expected), CAMBER_OK);
-    assert_int_equal(camber_stages_on_host(b->context, twin, desc, &expected_stages), CAMBER_OK);
+    assert_int_equal(camber_mesh_data_tessellate(b->context, twin, desc, &expected), CAMBER_OK);
+    assert_int_equal(camber_stages_tessellate(b->context, twin, desc, &expected_stages), CAMBER_OK);
     assert_int_equal(got_stages.point_count, expected_stages.point_count);
     for (size_t i = 0; b->rounds && i < expected_stages.point_count; i++) {
         const camber_point_stages *is = got_stages.points + i, *should = expected_stages.points + i;
@@ -86,7 +86,7 @@ static size_t check_city(bench *b, const camber_features *features, const city *
             assert_int_equal(
                 camber_scene_create(features, &(camber_scene_desc){.view = view, .on_device = true}, &streets),
                 CAMBER_OK);
-        camber_network *network = camber_scene_network(streets, &camera, &desc);
+        camber_network *network = camber_scene_get_network(streets, &camera, &desc);
         camera.simplify_px = LOOKS[i].simplify_px;
         desc.method = (camber_method)(i % 3);
         records += compare(b, network, &camera, &desc);
@@ -99,7 +99,7 @@ static void test_cities(void **state) {
     bench *b = *state;
     camber_style *style = NULL;
     size_t seen = 0;
-    assert_int_equal(camber_style_builtin(b->context, CAMBER_THEME_LIGHT, &style), CAMBER_OK);
+    assert_int_equal(camber_style_create_builtin(b->context, CAMBER_THEME_LIGHT, &style), CAMBER_OK);
     for (size_t i = 0; i < sizeof CITIES / sizeof *CITIES; i++) {
         char path[4096];
         camber_features *features = NULL;

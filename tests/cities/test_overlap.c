@@ -73,7 +73,7 @@ static camber_scene *streets_look(const streets *it, const network *n, double zo
     camber_scene *made = NULL;
     size_t rows;
     assert_int_equal(camber_scene_create(it->features, &desc, &made), CAMBER_OK);
-    camber_scene_strokes(made, &rows);
+    camber_scene_get_strokes(made, &rows);
     assert_int_equal(rows, 1);
     return made;
 }
@@ -99,7 +99,7 @@ static drawing drawing_make(studio *s, const camber_polylines *polylines, float 
     drawing d = {.renderer = studio_any(s), .width_px = width_px};
     camber_mesh_data data;
     assert_int_equal(camber_mesh_create(s->device, d.renderer, &d.mesh), CAMBER_OK);
-    assert_int_equal(camber_tessellate(d.mesh, polylines, &desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(d.mesh, polylines, &desc), CAMBER_OK);
     assert_int_equal(camber_mesh_read(d.mesh, &data), CAMBER_OK);
     assert_true(camber_joins_find(&data, &stroke, &d.joins));
     camber_mesh_data_free(s->context, &data);
@@ -123,7 +123,7 @@ static camber_overdraw count_ranges(const drawing *d, const camber_index_range *
                                        .range_count = count,
                                        .map = map};
     camber_overdraw sum;
-    assert_int_equal(camber_overdraw_count(d->renderer, &desc, &sum), CAMBER_OK);
+    assert_int_equal(camber_renderer_count_overdraw(d->renderer, &desc, &sum), CAMBER_OK);
     return sum;
 }
 
@@ -239,11 +239,11 @@ static void show(camber_context *context, const drawing *d, const overlap *o, co
 /* One view with one method; what its plain joins draw again, at the mesh's width and at half of it. */
 static uint64_t check_view(studio *s, const camber_scene *town, const network *n, const street_view *view,
                            camber_method method) {
-    drawing d = drawing_make(s, camber_scene_polylines(town), view->width_px, method);
+    drawing d = drawing_make(s, camber_scene_get_polylines(town), view->width_px, method);
     overlap o = count_overlap(&d);
     uint64_t broken = o.repeated[CAMBER_JOIN_PLAIN];
     printf("%-10s %4g %5g %-5s %8zu %6zu %6zu %9llu %6zu %6zu %6zu %9zu\n", n->name, view->zoom, (double)view->width_px,
-           camber_method_name(method), o.joins[CAMBER_JOIN_PLAIN], o.joins[CAMBER_JOIN_TIGHT],
+           camber_method_get_name(method), o.joins[CAMBER_JOIN_PLAIN], o.joins[CAMBER_JOIN_TIGHT],
            o.joins[CAMBER_JOIN_SPLIT], (unsigned long long)o.drawn, o.pixels[CAMBER_JOIN_PLAIN],
            o.pixels[CAMBER_JOIN_TIGHT], o.pixels[CAMBER_JOIN_SPLIT], o.elsewhere);
     assert_true(o.joins[CAMBER_JOIN_PLAIN] > 20 && o.drawn > 10000);

@@ -102,11 +102,11 @@ static bool check(camber_context *context, camber_mesh *mesh, const camber_polyl
                   const camber_tessellation_desc *desc) {
     camber_mesh_data device = {0}, twin = {0};
     camber_stages device_stages = {0}, twin_stages = {0};
-    const bool good = camber_tessellate(mesh, polylines, desc) == CAMBER_OK &&
+    const bool good = camber_mesh_tessellate(mesh, polylines, desc) == CAMBER_OK &&
                       camber_mesh_read(mesh, &device) == CAMBER_OK &&
                       camber_mesh_read_stages(mesh, &device_stages) == CAMBER_OK &&
-                      camber_tessellate_on_host(context, polylines, desc, &twin) == CAMBER_OK &&
-                      camber_stages_on_host(context, polylines, desc, &twin_stages) == CAMBER_OK &&
+                      camber_mesh_data_tessellate(context, polylines, desc, &twin) == CAMBER_OK &&
+                      camber_stages_tessellate(context, polylines, desc, &twin_stages) == CAMBER_OK &&
                       same_meshes(&device, &twin) && same_stages(&device_stages, &twin_stages);
     camber_stages_free(context, &twin_stages);
     camber_stages_free(context, &device_stages);
@@ -131,7 +131,7 @@ static int check_methods(camber_context *context, camber_mesh *mesh, const scene
             .strokes = strokes, .stroke_count = ROWS, .method = (camber_method)method};
         if (check(context, mesh, polylines, &tessellation))
             continue;
-        printf("not ok - %s, %s\n", camber_method_name(tessellation.method), what);
+        printf("not ok - %s, %s\n", camber_method_get_name(tessellation.method), what);
         failures++;
     }
     camber_polylines_destroy(polylines);
@@ -179,18 +179,18 @@ static int check_networks(camber_context *context, camber_mesh *mesh, const scen
                                       .importance = importance,
                                       .entries = entries,
                                       .entry_count = s->line_count,
-                                      .measured = true,
+                                      .has_arc_length = true,
                                       .progress = progress};
-    const camber_tessellation_desc strips = {.strokes = strokes, .stroke_count = ROWS, .measured = true};
+    const camber_tessellation_desc strips = {.strokes = strokes, .stroke_count = ROWS, .has_arc_length = true};
     camber_network *network = NULL;
     int failures = camber_network_create(context, &desc, &network) != CAMBER_OK;
     for (size_t i = 0; i < sizeof cameras / sizeof *cameras && network; i++) {
         camber_stages device = {0}, twin = {0};
         camber_polylines *seen = NULL;
         const bool good = camber_network_project(network, cameras + i, &strips, &seen) == CAMBER_OK &&
-                          camber_tessellate_network(mesh, network, cameras + i, &strips) == CAMBER_OK &&
+                          camber_mesh_tessellate_network(mesh, network, cameras + i, &strips) == CAMBER_OK &&
                           camber_mesh_read_stages(mesh, &device) == CAMBER_OK &&
-                          camber_stages_on_host(context, seen, &strips, &twin) == CAMBER_OK &&
+                          camber_stages_tessellate(context, seen, &strips, &twin) == CAMBER_OK &&
                           same_stages(&device, &twin);
         if (!good)
             printf("not ok - camera %zu\n", i);
@@ -207,9 +207,9 @@ static int check_networks(camber_context *context, camber_mesh *mesh, const scen
 static bool check_counts(camber_context *context, camber_mesh *mesh, const camber_polylines *polylines,
                          const camber_tessellation_desc *desc) {
     camber_mesh_data device = {0}, twin = {0};
-    const bool good = camber_tessellate(mesh, polylines, desc) == CAMBER_OK &&
+    const bool good = camber_mesh_tessellate(mesh, polylines, desc) == CAMBER_OK &&
                       camber_mesh_read(mesh, &device) == CAMBER_OK &&
-                      camber_tessellate_on_host(context, polylines, desc, &twin) == CAMBER_OK &&
+                      camber_mesh_data_tessellate(context, polylines, desc, &twin) == CAMBER_OK &&
                       device.info.record_count == twin.info.record_count;
     camber_mesh_data_free(context, &twin);
     camber_mesh_data_free(context, &device);
@@ -227,11 +227,12 @@ static int check_offsets(camber_context *context, camber_mesh *mesh, const scene
     int failures = camber_polylines_create(context, &desc, &polylines) != CAMBER_OK;
     for (size_t row = 0; row < ROWS; row++)
         strokes[row].offset_px = offsets[row % (sizeof offsets / sizeof *offsets)];
-    for (int measured = 0; measured < 2 && polylines; measured++) {
-        const camber_tessellation_desc strips = {.strokes = strokes, .stroke_count = ROWS, .measured = measured};
+    for (int has_arc_length = 0; has_arc_length < 2 && polylines; has_arc_length++) {
+        const camber_tessellation_desc strips = {
+            .strokes = strokes, .stroke_count = ROWS, .has_arc_length = has_arc_length};
         if (check_counts(context, mesh, polylines, &strips))
             continue;
-        printf("not ok - offsets%s\n", measured ? ", measured" : "");
+        printf("not ok - offsets%s\n", has_arc_length ? ", measured" : "");
         failures++;
     }
     for (size_t row = 0; row < ROWS; row++)
@@ -272,7 +273,7 @@ static bool draw(camber_device *device, camber_context *context, const scene *s,
                                         .offsets = s->offsets,
                                         .polyline_count = s->line_count,
                                         .rows = s->rows};
-    const camber_tessellation_desc strips = {.strokes = strokes, .stroke_count = ROWS, .measured = true};
+    const camber_tessellation_desc strips = {.strokes = strokes, .stroke_count = ROWS, .has_arc_length = true};
     static const float lengths[] = {4, 3, 0, 2};
     static const camber_ramp_stop stops[] = {{0.1f, {1, 0, 0, 1}}, {0.5f, {0, 1, 0, 0}}, {0.5f, {0, 1, 1, 1}}};
     const camber_dash dash = {lengths, 4};
@@ -289,7 +290,7 @@ static bool draw(camber_device *device, camber_context *context, const scene *s,
     bool good = camber_polylines_create(context, &desc, &polylines) == CAMBER_OK &&
                 camber_renderer_create(device, NULL, NULL, &renderer) == CAMBER_OK &&
                 camber_mesh_create(device, renderer, &mesh) == CAMBER_OK &&
-                camber_tessellate(mesh, polylines, &strips) == CAMBER_OK;
+                camber_mesh_tessellate(mesh, polylines, &strips) == CAMBER_OK;
     const camber_pass passes[] = {{.mesh = mesh, .paints = paints[0], .paint_count = ROWS},
                                   {.fill = {.color = {0, 1, 0, 0.3f}}},
                                   {.mesh = mesh, .paints = paints[1], .paint_count = ROWS, .opacity = 0.5f}};
@@ -307,11 +308,11 @@ static bool draw(camber_device *device, camber_context *context, const scene *s,
          .images = &image,
          .image_count = 1}};
     camber_frame frame = {.width = PICTURE_WIDTH, .height = PICTURE_HEIGHT, .passes = passes, .pass_count = 3};
-    good = good && camber_render(renderer, &frame, take_rows, pictures[0], NULL) == CAMBER_OK;
+    good = good && camber_renderer_render(renderer, &frame, take_rows, pictures[0], NULL) == CAMBER_OK;
     frame.pitch_deg = 75;
-    good = good && camber_render(renderer, &frame, take_rows, pictures[1], NULL) == CAMBER_OK;
+    good = good && camber_renderer_render(renderer, &frame, take_rows, pictures[1], NULL) == CAMBER_OK;
     frame = (camber_frame){.width = PICTURE_WIDTH, .height = PICTURE_HEIGHT, .passes = rich_passes, .pass_count = 2};
-    good = good && camber_render(renderer, &frame, take_rows, pictures[2], NULL) == CAMBER_OK;
+    good = good && camber_renderer_render(renderer, &frame, take_rows, pictures[2], NULL) == CAMBER_OK;
     camber_mesh_destroy(mesh);
     camber_renderer_destroy(renderer);
     camber_polylines_destroy(polylines);

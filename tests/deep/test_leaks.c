@@ -225,7 +225,7 @@ static camber_status draw(camber_context *context, camber_renderer *renderer, ca
     }
     camber_polylines *polylines = scene_polylines(context, a->scenes + n % SCENES);
     const camber_tessellation_desc desc = {STROKES, ROWS, (camber_method)(n % 3), 0, false};
-    camber_status status = camber_tessellate(mesh, polylines, &desc);
+    camber_status status = camber_mesh_tessellate(mesh, polylines, &desc);
     const camber_pass passes[] = {
         {.mesh = mesh, .paints = solid, .paint_count = ROWS},
         {.mesh = mesh, .paints = layered, .paint_count = ROWS},
@@ -237,7 +237,7 @@ static camber_status draw(camber_context *context, camber_renderer *renderer, ca
                                 .coverage = (camber_coverage)(n / 3 % 2),
                                 .largest_piece_px = pieces[n % 5]};
     if (status == CAMBER_OK)
-        status = camber_render(renderer, &frame, take_rows, a, NULL);
+        status = camber_renderer_render(renderer, &frame, take_rows, a, NULL);
     camber_polylines_destroy(polylines);
     return status;
 }
@@ -329,7 +329,7 @@ static camber_status draw_on(atelier *a, camber_context *context, camber_device 
     camber_renderer *renderer = NULL;
     camber_mesh *mesh = NULL;
     camber_status status =
-        camber_renderer_create(device, surface, &(camber_renderer_desc){.draw = CAMBER_DRAW_GL}, &renderer);
+        camber_renderer_create(device, surface, &(camber_renderer_desc){.rasterizer = CAMBER_RASTERIZER_GL}, &renderer);
     if (status == CAMBER_OK)
         status = camber_mesh_create(device, renderer, &mesh);
     if (status == CAMBER_OK)

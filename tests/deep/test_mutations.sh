@@ -258,7 +258,7 @@ mutant strip shaders/stroke.frag "colours at the ends of pieces" 'mix(color, nex
 mutant strip shaders/stroke.frag "translucent ramps that are opaque" 'o_alpha = vec4(o_color.a' 'o_alpha = vec4(area'
 mutant strip shaders/flatten.frag "alphas that are left beside" 'vec4(layer.rgb, texelFetch' 'vec4(layer.rgb, layer.a) + 0.0 * vec4(texelFetch'
 mutant strip kernels/measure.cl "lengths that are not summed" 'FIRST ? 0 : sum + ' 'FIRST ? 0 : '
-mutant strip kernels/emit.cl "measures of the neighbour" 'as_uint(measures[2 * i])' 'as_uint(measures[2 * i + 2])'
+mutant strip kernels/emit.cl "measures of the neighbour" 'as_uint(arc_lengths[2 * i])' 'as_uint(arc_lengths[2 * i + 2])'
 
 # ---- Kernels that draw: the twin tells ----
 

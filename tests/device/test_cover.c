@@ -14,7 +14,7 @@ typedef struct drawing {
     camber_paint paints[3][SCENE_ROWS];
     camber_pass passes[3];
     camber_frame frame;
-    bool measured;
+    bool has_arc_length;
 } drawing;
 
 static camber_color color_of(size_t i, float alpha) {
@@ -55,7 +55,7 @@ static void fill_scene(scene *lines, int which) {
 enum { SCENES = 5 };
 
 static camber_mesh *make_mesh(const covering *e, camber_renderer *renderer, const drawing *d, camber_method method) {
-    const camber_tessellation_desc desc = {d->strokes, SCENE_ROWS, method, 0, d->measured};
+    const camber_tessellation_desc desc = {d->strokes, SCENE_ROWS, method, 0, d->has_arc_length};
     return studio_mesh(&e->s, renderer, &d->lines, &desc);
 }
 
@@ -109,7 +109,7 @@ static void test_twin(void **state) {
         for (int m = 0; m < 3; m++) {
             drawing d = begin_drawing();
             fill_scene(&d.lines, which);
-            d.measured = (which + m) % 2;
+            d.has_arc_length = (which + m) % 2;
             camber_mesh *mesh = make_mesh(e, e->cl, &d, methods[m]);
             compare_with_twin(e, &d, mesh, which % 2, (camber_cover_area){32 * (uint32_t)m, 64, 500, 333});
             camber_mesh_destroy(mesh);
@@ -339,11 +339,11 @@ static void test_steps(void **state) {
         p.rgba = malloc(4 * (size_t)p.width * p.height);
         p.rows = 0;
         assert_non_null(p.rgba);
-        assert_int_equal(camber_render_begin(e->cl, frame), CAMBER_OK);
-        assert_int_equal(camber_render_begin(e->cl, frame), CAMBER_OK);
-        assert_int_equal(camber_render_end(e->cl, picture_rows, &p, NULL), CAMBER_OK);
+        assert_int_equal(camber_renderer_begin(e->cl, frame), CAMBER_OK);
+        assert_int_equal(camber_renderer_begin(e->cl, frame), CAMBER_OK);
+        assert_int_equal(camber_renderer_end(e->cl, picture_rows, &p, NULL), CAMBER_OK);
         picture_assert_same(&whole, &p);
-        assert_int_equal(camber_render_end(e->cl, NULL, NULL, NULL), CAMBER_OK);
+        assert_int_equal(camber_renderer_end(e->cl, NULL, NULL, NULL), CAMBER_OK);
         picture_free(&whole);
         picture_free(&p);
         camber_mesh_destroy(mesh);
@@ -425,8 +425,8 @@ static void test_refused(void **state) {
     camber_mesh *mesh = make_mesh(e, e->cl, &d, CAMBER_METHOD_STRIP);
     d.frame.pitch_deg = 30;
     d.paints[0][5].blur_px = 2;
-    assert_int_equal(camber_render(e->cl, end_drawing(&d, mesh, 1), NULL, NULL, NULL), CAMBER_OK);
-    assert_int_equal(camber_renderer_get_draw(e->cl), CAMBER_DRAW_CL);
+    assert_int_equal(camber_renderer_render(e->cl, end_drawing(&d, mesh, 1), NULL, NULL, NULL), CAMBER_OK);
+    assert_int_equal(camber_renderer_get_rasterizer(e->cl), CAMBER_RASTERIZER_OPENCL);
     assert_int_equal(camber_renderer_get_sharing(e->cl), CAMBER_SHARING_AUTO);
     camber_mesh_destroy(mesh);
     scene_free(&d.lines);

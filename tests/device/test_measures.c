@@ -10,7 +10,7 @@ static camber_mesh_data measured_on_host(bench *b, const camber_polylines *polyl
                                          camber_method method) {
     camber_mesh_data data;
     const camber_tessellation_desc desc = {strokes, SCENE_ROWS, method, 0, true};
-    assert_int_equal(camber_tessellate_on_host(b->context, polylines, &desc, &data), CAMBER_OK);
+    assert_int_equal(camber_mesh_data_tessellate(b->context, polylines, &desc, &data), CAMBER_OK);
     return data;
 }
 
@@ -30,7 +30,7 @@ static void check_line(const float *points, size_t count, const camber_mesh_data
             const bool here = r->x == points[2 * i] && r->y == points[2 * i + 1];
             if (!(r->last & CAMBER_RECORD_BREAK) && !here)
                 break;
-            const camber_measure *measure = data->measures + *record;
+            const camber_arc_length *measure = data->arc_lengths + *record;
             assert_true(!here || fabs((double)measure->along_px - along) <= bound);
             assert_true(fabs((double)measure->total_px - total) <= bound);
             if (i + 1 == count && here) {
@@ -54,7 +54,7 @@ static void test_against_doubles(void **state) {
     }
     camber_polylines *polylines = scene_first(b->context, &s, s.polyline_count, true);
     camber_mesh_data data = measured_on_host(b, polylines, strokes, CAMBER_METHOD_STRIP);
-    assert_true(data.info.measured);
+    assert_true(data.info.has_arc_length);
     assert_int_equal(data.info.bytes, data.info.record_count * 32);
     size_t record = 0;
     for (size_t i = 0; i < s.polyline_count; i++) {
@@ -71,11 +71,12 @@ static void test_against_doubles(void **state) {
 static void assert_same(const camber_mesh_data *a, const camber_mesh_data *b) {
     assert_int_equal(a->info.record_count, b->info.record_count);
     assert_memory_equal(a->records, b->records, a->info.record_count * sizeof *a->records);
-    assert_non_null(a->measures);
+    assert_non_null(a->arc_lengths);
     for (size_t i = 0; i < a->info.record_count; i++)
-        if (memcmp(a->measures + i, b->measures + i, sizeof *a->measures) != 0)
-            fail_msg("record %zu: %.9g of %.9g, %.9g of %.9g", i, (double)a->measures[i].along_px,
-                     (double)a->measures[i].total_px, (double)b->measures[i].along_px, (double)b->measures[i].total_px);
+        if (memcmp(a->arc_lengths + i, b->arc_lengths + i, sizeof *a->arc_lengths) != 0)
+            fail_msg("record %zu: %.9g of %.9g, %.9g of %.9g", i, (double)a->arc_lengths[i].along_px,
+                     (double)a->arc_lengths[i].total_px, (double)b->arc_lengths[i].along_px,
+                     (double)b->arc_lengths[i].total_px);
 }
 
 static void test_device_equals_twin(void **state) {
@@ -90,7 +91,7 @@ static void test_device_equals_twin(void **state) {
         for (size_t m = 0; m < 3; m++) {
             const camber_tessellation_desc desc = {strokes, SCENE_ROWS, METHODS[m], 0, true};
             camber_mesh_data twin = measured_on_host(b, polylines, strokes, METHODS[m]), device;
-            assert_int_equal(camber_tessellate(b->mesh, polylines, &desc), CAMBER_OK);
+            assert_int_equal(camber_mesh_tessellate(b->mesh, polylines, &desc), CAMBER_OK);
             assert_int_equal(camber_mesh_read(b->mesh, &device), CAMBER_OK);
             assert_same(&twin, &device);
             camber_mesh_data_free(b->context, &twin);
@@ -111,9 +112,9 @@ static void test_in_turn(void **state) {
     camber_mesh_data meshes[4];
     for (size_t i = 0; i < 4; i++) {
         const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0, i % 2 == 1};
-        assert_int_equal(camber_tessellate(b->mesh, polylines, &desc), CAMBER_OK);
+        assert_int_equal(camber_mesh_tessellate(b->mesh, polylines, &desc), CAMBER_OK);
         assert_int_equal(camber_mesh_read(b->mesh, meshes + i), CAMBER_OK);
-        assert_int_equal(meshes[i].measures != NULL, i % 2);
+        assert_int_equal(meshes[i].arc_lengths != NULL, i % 2);
         assert_int_equal(meshes[i].info.record_count, meshes[0].info.record_count);
         assert_memory_equal(meshes[i].records, meshes[0].records,
                             meshes[0].info.record_count * sizeof *meshes[0].records);
@@ -148,8 +149,11 @@ static camber_network *wander(bench *b, double *points, size_t count, size_t lin
     }
     offsets[lines] = lines * count;
     camber_network *network = NULL;
-    const camber_network_desc desc = {
-        .points = points, .offsets = offsets, .polyline_count = lines, .importance = importance, .measured = true};
+    const camber_network_desc desc = {.points = points,
+                                      .offsets = offsets,
+                                      .polyline_count = lines,
+                                      .importance = importance,
+                                      .has_arc_length = true};
     assert_int_equal(camber_network_create(b->context, &desc, &network), CAMBER_OK);
     free(importance);
     return network;
@@ -195,14 +199,14 @@ static void test_networks(void **state) {
         camber_polylines *seen = NULL;
         camber_mesh_data twin, device;
         assert_int_equal(camber_network_project(network, &camera, &desc, &seen), CAMBER_OK);
-        assert_int_equal(camber_tessellate_on_host(b->context, seen, &desc, &twin), CAMBER_OK);
-        assert_int_equal(camber_tessellate_network(b->mesh, network, &camera, &desc), CAMBER_OK);
+        assert_int_equal(camber_mesh_data_tessellate(b->context, seen, &desc, &twin), CAMBER_OK);
+        assert_int_equal(camber_mesh_tessellate_network(b->mesh, network, &camera, &desc), CAMBER_OK);
         assert_int_equal(camber_mesh_read(b->mesh, &device), CAMBER_OK);
         if (b->rounds)
             assert_same(&twin, &device);
         for (size_t line = 0; line < LINES && camera.simplify_px <= 0; line++)
             for (size_t slot = seen->first_slots[line] + 1; slot <= seen->first_slots[line + 1]; slot++) {
-                const camber_measure *measure = seen->measures + slot - 1;
+                const camber_arc_length *measure = seen->arc_lengths + slot - 1;
                 double away = INFINITY;
                 const double along = nearest(points + 2 * COUNT * line, COUNT, &camera, (double)seen->x[slot],
                                              (double)seen->y[slot], (double)measure->along_px, &away);
@@ -248,18 +252,18 @@ static void test_parts_of_lines(void **state) {
         const camber_network_desc network_desc = {.points = points,
                                                   .offsets = offsets,
                                                   .polyline_count = LINES,
-                                                  .measured = true,
+                                                  .has_arc_length = true,
                                                   .progress = part ? progress : NULL};
         camber_network *network = NULL;
         assert_int_equal(camber_network_create(b->context, &network_desc, &network), CAMBER_OK);
         assert_int_equal(camber_network_project(network, &camera, &desc, seen + part), CAMBER_OK);
-        assert_int_equal(camber_tessellate_on_host(b->context, seen[part], &desc, data + part), CAMBER_OK);
+        assert_int_equal(camber_mesh_data_tessellate(b->context, seen[part], &desc, data + part), CAMBER_OK);
         if (part) {
             camber_device *device = NULL;
             camber_mesh *mesh = NULL;
             assert_int_equal(camber_device_create(b->context, &small, NULL, &device), CAMBER_OK);
             assert_int_equal(camber_mesh_create(device, NULL, &mesh), CAMBER_OK);
-            assert_int_equal(camber_tessellate_network(mesh, network, &camera, &desc), CAMBER_OK);
+            assert_int_equal(camber_mesh_tessellate_network(mesh, network, &camera, &desc), CAMBER_OK);
             assert_true(camber_mesh_get_memory(mesh).parts > 2);
             assert_int_equal(camber_mesh_read(mesh, data + 2), CAMBER_OK);
             if (b->rounds)
@@ -275,7 +279,7 @@ static void test_parts_of_lines(void **state) {
         for (size_t slot = seen[0]->first_slots[line]; slot < seen[0]->first_slots[line + 1]; slot++) {
             if (!(seen[0]->info[slot + 1] & CAMBER_POINT_REAL))
                 continue;
-            const camber_measure whole = seen[0]->measures[slot], part = seen[1]->measures[slot];
+            const camber_arc_length whole = seen[0]->arc_lengths[slot], part = seen[1]->arc_lengths[slot];
             const bool said = line != 1 && line != 2;
             const double from = said ? (double)progress[2 * line] : 0, to = said ? (double)progress[2 * line + 1] : 1;
             const double total = (double)whole.total_px / (to - from), along = from * total + (double)whole.along_px;

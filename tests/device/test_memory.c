@@ -149,7 +149,7 @@ static void test_same_bytes(void **state) {
     for (int method = 0; method < 3; method++) {
         const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)method, 0, false};
         camber_polylines *polylines = scene_polylines(whole.context, &s);
-        assert_int_equal(camber_tessellate(whole.mesh, polylines, &desc), CAMBER_OK);
+        assert_int_equal(camber_mesh_tessellate(whole.mesh, polylines, &desc), CAMBER_OK);
         camber_polylines_destroy(polylines);
         wanted[method] = read_result(&whole, whole.mesh);
         assert_int_equal(wanted[method].memory.parts, 1);
@@ -162,7 +162,7 @@ static void test_same_bytes(void **state) {
         for (int method = 0; method < 3; method++) {
             const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)method, 0, false};
             camber_polylines *polylines = scene_polylines(b.context, &s);
-            assert_int_equal(camber_tessellate(b.mesh, polylines, &desc), CAMBER_OK);
+            assert_int_equal(camber_mesh_tessellate(b.mesh, polylines, &desc), CAMBER_OK);
             camber_polylines_destroy(polylines); /* the mesh keeps what it needs */
             result r = read_result(&b, b.mesh);
             assert_same(&r, wanted + method);
@@ -201,7 +201,7 @@ static void test_keeps_what_fits(void **state) {
     bench b;
     bench_open(&b, 3 << 19, 64);
     camber_polylines *polylines = scene_polylines(b.context, &s);
-    assert_int_equal(camber_tessellate(b.mesh, polylines, &desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(b.mesh, polylines, &desc), CAMBER_OK);
     const camber_mesh_memory before = camber_mesh_get_memory(b.mesh);
     assert_true(before.held_bytes > (3 << 19) / 4 * 3);
     assert_true(before.resident_parts >= 5 && before.resident_parts < before.parts - 2);
@@ -281,8 +281,8 @@ static void test_networks(void **state) {
         for (size_t k = 0; k < sizeof scales / sizeof *scales; k++) {
             const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)(k % 3), 0, false};
             const camber_camera camera = camera_at(scales[k], 30.0 * (double)k);
-            assert_int_equal(camber_tessellate_network(whole.mesh, network, &camera, &desc), CAMBER_OK);
-            assert_int_equal(camber_tessellate_network(b.mesh, own, &camera, &desc), CAMBER_OK);
+            assert_int_equal(camber_mesh_tessellate_network(whole.mesh, network, &camera, &desc), CAMBER_OK);
+            assert_int_equal(camber_mesh_tessellate_network(b.mesh, own, &camera, &desc), CAMBER_OK);
             if (k == 4)
                 camber_network_destroy(own);
             result wanted = read_result(&whole, whole.mesh), r = read_result(&b, b.mesh);
@@ -326,8 +326,8 @@ static void test_parts_join(void **state) {
         const camber_tessellation_desc desc = {strokes, SCENE_ROWS, k == 3 ? CAMBER_METHOD_FAN : CAMBER_METHOD_STRIP, 0,
                                                false};
         const camber_camera camera = camera_at(scales[k], 10);
-        assert_int_equal(camber_tessellate_network(whole.mesh, network, &camera, &desc), CAMBER_OK);
-        assert_int_equal(camber_tessellate_network(b.mesh, own, &camera, &desc), CAMBER_OK);
+        assert_int_equal(camber_mesh_tessellate_network(whole.mesh, network, &camera, &desc), CAMBER_OK);
+        assert_int_equal(camber_mesh_tessellate_network(b.mesh, own, &camera, &desc), CAMBER_OK);
         result wanted = read_result(&whole, whole.mesh), r = read_result(&b, b.mesh);
         assert_same(&r, &wanted);
         parts[k] = r.memory.parts;
@@ -360,7 +360,7 @@ static void test_meshes_share(void **state) {
     bench whole, b;
     bench_open(&whole, 0, 0);
     camber_polylines *polylines = scene_polylines(whole.context, &s);
-    assert_int_equal(camber_tessellate(whole.mesh, polylines, &desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(whole.mesh, polylines, &desc), CAMBER_OK);
     camber_polylines_destroy(polylines);
     result wanted = read_result(&whole, whole.mesh);
     bench_open(&b, 1200000, 64);
@@ -373,9 +373,9 @@ static void test_meshes_share(void **state) {
     for (int round = 0; round < 2; round++) {
         for (int i = 0; i < 4; i++)
             if (i < 3)
-                assert_int_equal(camber_tessellate(meshes[i], polylines, &desc), CAMBER_OK);
+                assert_int_equal(camber_mesh_tessellate(meshes[i], polylines, &desc), CAMBER_OK);
             else
-                assert_int_equal(camber_tessellate_network(meshes[i], network, &camera, &desc), CAMBER_OK);
+                assert_int_equal(camber_mesh_tessellate_network(meshes[i], network, &camera, &desc), CAMBER_OK);
         size_t there = 0, all = 0;
         for (int i = 0; i < 4; i++) {
             const camber_mesh_memory memory = camber_mesh_get_memory(meshes[i]);
@@ -431,9 +431,9 @@ static void assert_goes_on(bench *b, const camber_tessellation_desc *desc) {
         scene_point(&s, 3 * i, i % 3);
     scene_end(&s, 0);
     camber_polylines *polylines = scene_polylines(b->context, &s);
-    assert_int_equal(camber_tessellate(b->mesh, polylines, desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(b->mesh, polylines, desc), CAMBER_OK);
     assert_int_equal(camber_mesh_read(b->mesh, &data), CAMBER_OK);
-    assert_int_equal(camber_tessellate_on_host(b->context, polylines, desc, &twin), CAMBER_OK);
+    assert_int_equal(camber_mesh_data_tessellate(b->context, polylines, desc, &twin), CAMBER_OK);
     assert_int_equal(data.info.record_count, twin.info.record_count);
     assert_memory_equal(data.records, twin.records, twin.info.record_count * sizeof *twin.records);
     camber_mesh_data_free(b->context, &data);
@@ -464,14 +464,14 @@ static void test_too_long(void **state) {
         camber_network *network = make_network(b.context, &s);
         const camber_camera camera = camera_at(0.1, 0);
         for (int time = 0; time < 2; time++) {
-            assert_int_equal(camber_tessellate(b.mesh, polylines, &desc),
+            assert_int_equal(camber_mesh_tessellate(b.mesh, polylines, &desc),
                              cases[k].fits ? CAMBER_OK : CAMBER_ERROR_LIMIT);
             if (!cases[k].fits) {
                 assert_story(&b.h, "polyline 41 takes ");
                 assert_non_null(strstr(b.h.last, "of the 131072 that meshes may hold; allow more memory, "));
                 assert_goes_on(&b, &desc);
             }
-            assert_int_equal(camber_tessellate_network(b.mesh, network, &camera, &desc),
+            assert_int_equal(camber_mesh_tessellate_network(b.mesh, network, &camera, &desc),
                              cases[k].fits_network ? CAMBER_OK : CAMBER_ERROR_LIMIT);
             if (!cases[k].fits_network) {
                 assert_story(&b.h, "polyline 41 takes ");
@@ -496,9 +496,10 @@ static void test_too_many_strokes(void **state) {
     scene_point(&s, 9, 9);
     scene_end(&s, 0);
     camber_polylines *polylines = scene_polylines(b.context, &s);
-    assert_int_equal(camber_tessellate(b.mesh, polylines,
-                                       &(camber_tessellation_desc){strokes, STROKES, CAMBER_METHOD_STRIP, 0, false}),
-                     CAMBER_ERROR_LIMIT);
+    assert_int_equal(
+        camber_mesh_tessellate(b.mesh, polylines,
+                               &(camber_tessellation_desc){strokes, STROKES, CAMBER_METHOD_STRIP, 0, false}),
+        CAMBER_ERROR_LIMIT);
     assert_story(&b.h, "300 strokes take ");
     assert_goes_on(&b, &(camber_tessellation_desc){strokes, 50, CAMBER_METHOD_STRIP, 0, false});
     camber_polylines_destroy(polylines);
@@ -518,13 +519,13 @@ static void test_refused_buffers(void **state) {
     bench b;
     bench_open(&b, 300000, 64);
     camber_polylines *polylines = scene_polylines(b.context, &s);
-    assert_int_equal(camber_tessellate(b.mesh, polylines, &desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(b.mesh, polylines, &desc), CAMBER_OK);
     result wanted = read_result(&b, b.mesh);
     size_t refused = 0;
     for (int n = 1; n < 60; n++) {
         camber_stages stages;
         watch.refuse_in = n;
-        const camber_status made = camber_tessellate(b.mesh, polylines, &desc);
+        const camber_status made = camber_mesh_tessellate(b.mesh, polylines, &desc);
         const camber_status read = made == CAMBER_OK ? camber_mesh_read_stages(b.mesh, &stages) : made;
         if (read == CAMBER_OK)
             camber_stages_free(b.context, &stages);
@@ -535,7 +536,7 @@ static void test_refused_buffers(void **state) {
         }
         watch.refuse_in = 0;
         if (made != CAMBER_OK)
-            assert_int_equal(camber_tessellate(b.mesh, polylines, &desc), CAMBER_OK);
+            assert_int_equal(camber_mesh_tessellate(b.mesh, polylines, &desc), CAMBER_OK);
         result r = read_result(&b, b.mesh);
         assert_same(&r, &wanted);
         free_result(&b, &r);
@@ -561,8 +562,8 @@ static camber_status try_parts(camber_context *context, void *user) {
     const camber_camera camera = camera_at(1, 0);
     camber_status status = camber_mesh_create(a->device, NULL, &mesh);
     for (int i = 0; i < 2 && status == CAMBER_OK; i++) {
-        status = i ? camber_tessellate_network(mesh, a->network, &camera, a->desc)
-                   : camber_tessellate(mesh, a->polylines, a->desc);
+        status = i ? camber_mesh_tessellate_network(mesh, a->network, &camera, a->desc)
+                   : camber_mesh_tessellate(mesh, a->polylines, a->desc);
         if (status == CAMBER_OK)
             status = camber_mesh_read(mesh, &data);
         if (status == CAMBER_OK)
@@ -627,7 +628,7 @@ static bool easel_open(easel *e, uint64_t memory_bytes, camber_backend backend, 
     if (camber_surface_create(e->context, &(camber_surface_desc){backend}, &e->surface) != CAMBER_OK ||
         camber_device_create(e->context, &desc, e->surface, &e->device) != CAMBER_OK ||
         camber_renderer_create(e->device, e->surface,
-                               &(camber_renderer_desc){.sharing = sharing, .draw = CAMBER_DRAW_GL},
+                               &(camber_renderer_desc){.sharing = sharing, .rasterizer = CAMBER_RASTERIZER_GL},
                                &e->renderer) != CAMBER_OK) {
         easel_close(e);
         return false;
@@ -675,7 +676,7 @@ static camber_overdraw count(easel *e, uint8_t *map) {
                                        .paints = e->opaque,
                                        .paint_count = SCENE_ROWS,
                                        .map = map};
-    assert_int_equal(camber_overdraw_count(e->renderer, &desc, &counted), CAMBER_OK);
+    assert_int_equal(camber_renderer_count_overdraw(e->renderer, &desc, &counted), CAMBER_OK);
     return counted;
 }
 
@@ -692,11 +693,11 @@ static void tessellate_on(easel *e, const scene *s, bool of_network, camber_meth
                                       .width = SIDE_PX,
                                       .height = SIDE_PX};
         camber_network *network = make_network(e->context, s);
-        assert_int_equal(camber_tessellate_network(e->mesh, network, &camera, &desc), CAMBER_OK);
+        assert_int_equal(camber_mesh_tessellate_network(e->mesh, network, &camera, &desc), CAMBER_OK);
         camber_network_destroy(network);
     } else {
         camber_polylines *polylines = scene_polylines(e->context, s);
-        assert_int_equal(camber_tessellate(e->mesh, polylines, &desc), CAMBER_OK);
+        assert_int_equal(camber_mesh_tessellate(e->mesh, polylines, &desc), CAMBER_OK);
         camber_polylines_destroy(polylines);
     }
     make_passes(e, strokes, s->polyline_count);
@@ -743,7 +744,7 @@ static void test_same_pictures(void **state) {
         for (size_t k = 0; k < 3; k++) {
             easel probe;
             if (!easel_open(&probe, 0, BACKEND[backend], sharings[k])) {
-                print_message("%s, %s: not here\n", BACKEND_NAME[backend], camber_sharing_name(sharings[k]));
+                print_message("%s, %s: not here\n", BACKEND_NAME[backend], camber_sharing_get_name(sharings[k]));
                 continue;
             }
             easel_close(&probe);
@@ -778,7 +779,7 @@ static void test_refused_frames(void **state) {
             else
                 e.h.refuse_first = e.h.calls + n;
             e.h.refuse_count = 1;
-            const camber_status status = camber_render(e.renderer, &frame, NULL, NULL, NULL);
+            const camber_status status = camber_renderer_render(e.renderer, &frame, NULL, NULL, NULL);
             e.h.refuse_first = 0;
             watch.refuse_in = 0;
             if (status != CAMBER_OK) {

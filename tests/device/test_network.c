@@ -172,13 +172,13 @@ static size_t compare(bench *b, size_t which, camber_network *network, const cam
     camber_polylines *twin = NULL;
     camber_mesh *mesh = b->meshes[which];
     assert_int_equal(camber_network_project(network, camera, desc, &twin), CAMBER_OK);
-    assert_int_equal(camber_tessellate_network(mesh, network, camera, desc), CAMBER_OK);
-    assert_true(camber_mesh_holds(mesh, network));
+    assert_int_equal(camber_mesh_tessellate_network(mesh, network, camera, desc), CAMBER_OK);
+    assert_true(camber_mesh_holds_network(mesh, network));
     for (size_t i = 0; b->rounds && i < mesh->part_count; i++)
         compare_part(b, which, mesh->parts + i, twin);
     camber_mesh_data device, twins;
     assert_int_equal(camber_mesh_read(mesh, &device), CAMBER_OK);
-    assert_int_equal(camber_tessellate_on_host(b->context, twin, desc, &twins), CAMBER_OK);
+    assert_int_equal(camber_mesh_data_tessellate(b->context, twin, desc, &twins), CAMBER_OK);
     if (b->rounds) {
         assert_int_equal(device.info.vertex_count, twins.info.vertex_count);
         assert_int_equal(device.info.joins, twins.info.joins);
@@ -236,7 +236,7 @@ static void test_draws_a_dot(void **state) {
                 .scale_px = scales[k], .width = 64, .height = 32, .pitch_deg = k % 2 ? 60 : 0};
             camber_lines lines;
             uint32_t *entries;
-            assert_int_equal(camber_network_lines(network, &camera, &desc, &lines, &entries), CAMBER_OK);
+            assert_int_equal(camber_network_project_lines(network, &camera, &desc, &lines, &entries), CAMBER_OK);
             assert_int_equal(lines.polyline_count, 1);
             for (size_t n = 0; n < lines.point_count; n++) {
                 assert_true(fabsf(lines.points[2 * n] - 32) < 0.01f);
@@ -245,7 +245,7 @@ static void test_draws_a_dot(void **state) {
             camber_lines_free(b->context, &lines);
             camber_entries_free(b->context, entries);
             assert_true(compare(b, k % 3, network, &camera, &desc) > 0);
-            assert_int_equal(camber_tessellate_network(b->meshes[0], network, &camera, &desc), CAMBER_OK);
+            assert_int_equal(camber_mesh_tessellate_network(b->meshes[0], network, &camera, &desc), CAMBER_OK);
             assert_true(camber_mesh_get_info(b->meshes[0]).triangle_count > 0);
         }
         camber_network_destroy(network);
@@ -357,7 +357,7 @@ static void test_sees_all_in_the_picture(void **state) {
             camera.pitch_deg = 0; /* test_pitch.c has pictures of others */
             camber_lines lines;
             uint32_t *entries;
-            assert_int_equal(camber_network_lines(network, &camera, &desc, &lines, &entries), CAMBER_OK);
+            assert_int_equal(camber_network_project_lines(network, &camera, &desc, &lines, &entries), CAMBER_OK);
             seen += check_seen(&w, &camera, &lines, entries);
             for (size_t k = 0; k < lines.point_count; k++)
                 for (size_t axis = 0; axis < 2; axis++) {
@@ -472,7 +472,7 @@ static camber_status make_and_look(camber_context *context, void *user) {
     uint32_t *entries = NULL;
     camber_status status = camber_network_create(context, user, &network);
     if (status == CAMBER_OK)
-        status = camber_network_lines(network, &camera, &desc, &lines, &entries);
+        status = camber_network_project_lines(network, &camera, &desc, &lines, &entries);
     camber_network_destroy(network);
     camber_lines_free(context, &lines);
     camber_entries_free(context, entries);
@@ -493,7 +493,7 @@ static camber_status draw_on_device(camber_context *context, void *user) {
     if (status == CAMBER_OK)
         status = camber_mesh_create(b->devices[0], NULL, &mesh);
     if (status == CAMBER_OK)
-        status = camber_tessellate_network(mesh, network, &camera, &desc);
+        status = camber_mesh_tessellate_network(mesh, network, &camera, &desc);
     camber_network_destroy(network);
     camber_mesh_destroy(mesh);
     return status;
@@ -534,17 +534,18 @@ static void test_wrong_input(void **state) {
                                      {.scale_px = 1, .width = 65536, .height = 1},
                                      {.scale_px = 1, .width = 1, .height = 1, .simplify_px = -1}};
     for (size_t i = 0; i < sizeof cameras / sizeof *cameras; i++) {
-        assert_int_equal(camber_tessellate_network(b->meshes[0], network, cameras + i, &desc), CAMBER_ERROR_ARGUMENT);
+        assert_int_equal(camber_mesh_tessellate_network(b->meshes[0], network, cameras + i, &desc),
+                         CAMBER_ERROR_ARGUMENT);
         assert_story(&b->h, "camera: ");
-        assert_false(camber_mesh_holds(b->meshes[0], network));
+        assert_false(camber_mesh_holds_network(b->meshes[0], network));
     }
     const camber_camera good = {.scale_px = 1, .width = 1, .height = 1};
-    assert_int_equal(camber_tessellate_network(b->meshes[0], network, &good, &(camber_tessellation_desc){0}),
+    assert_int_equal(camber_mesh_tessellate_network(b->meshes[0], network, &good, &(camber_tessellation_desc){0}),
                      CAMBER_ERROR_ARGUMENT);
     assert_story(&b->h, "row 0");
     camber_network_destroy(network);
     network = network_make(b, &(camber_network_desc){0});
-    assert_int_equal(camber_tessellate_network(b->meshes[0], network, &good, &desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate_network(b->meshes[0], network, &good, &desc), CAMBER_OK);
     assert_int_equal(camber_mesh_get_info(b->meshes[0]).vertex_count, 0);
     camber_network_destroy(network);
 }

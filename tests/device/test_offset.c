@@ -101,7 +101,7 @@ static line made_of(bench *b, const line *l, camber_stroke stroke) {
     const camber_tessellation_desc desc = {.strokes = &stroke, .stroke_count = 1};
     camber_stages stages;
     made.count = 0;
-    assert_int_equal(camber_stages_on_host(b->context, polylines, &desc, &stages), CAMBER_OK);
+    assert_int_equal(camber_stages_tessellate(b->context, polylines, &desc, &stages), CAMBER_OK);
     for (size_t i = 0; i < stages.point_count; i++)
         add(&made, (double)stages.points[i].x, (double)stages.points[i].y);
     camber_stages_free(b->context, &stages);
@@ -325,9 +325,9 @@ static void assert_same(const camber_mesh_data *a, const camber_mesh_data *b) {
         if (memcmp(a->records + i, b->records + i, sizeof *a->records) != 0)
             fail_msg("record %zu: %.9g, %.9g and %.9g, %.9g", i, (double)a->records[i].x, (double)a->records[i].y,
                      (double)b->records[i].x, (double)b->records[i].y);
-    assert_int_equal(a->measures != NULL, b->measures != NULL);
-    if (a->measures)
-        assert_memory_equal(a->measures, b->measures, a->info.record_count * sizeof *a->measures);
+    assert_int_equal(a->arc_lengths != NULL, b->arc_lengths != NULL);
+    if (a->arc_lengths)
+        assert_memory_equal(a->arc_lengths, b->arc_lengths, a->info.record_count * sizeof *a->arc_lengths);
     if (a->corners)
         assert_memory_equal(a->corners, b->corners, a->info.index_count * sizeof *a->corners);
 }
@@ -336,9 +336,9 @@ static void compare(bench *b, camber_mesh *mesh, const camber_polylines *polylin
                     const camber_tessellation_desc *desc) {
     camber_mesh_data device, twin;
     camber_stages seen, wanted;
-    assert_int_equal(camber_tessellate_on_host(b->context, polylines, desc, &twin), CAMBER_OK);
-    assert_int_equal(camber_stages_on_host(b->context, polylines, desc, &wanted), CAMBER_OK);
-    assert_int_equal(camber_tessellate(mesh, polylines, desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_data_tessellate(b->context, polylines, desc, &twin), CAMBER_OK);
+    assert_int_equal(camber_stages_tessellate(b->context, polylines, desc, &wanted), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(mesh, polylines, desc), CAMBER_OK);
     assert_int_equal(camber_mesh_read(mesh, &device), CAMBER_OK);
     assert_int_equal(camber_mesh_read_stages(mesh, &seen), CAMBER_OK);
     assert_same(&twin, &device);
@@ -368,7 +368,7 @@ static void test_device_equals_twin(void **state) {
         for (int method = 0; method < 3; method++) {
             camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)method, 0, method != 1};
             compare(b, b->mesh, polylines, &desc);
-            desc.measured = !desc.measured;
+            desc.has_arc_length = !desc.has_arc_length;
             compare(b, mesh, polylines, &desc);
         }
         camber_polylines_destroy(polylines);
@@ -392,7 +392,7 @@ static void test_parts(void **state) {
     static const camber_device_desc descs[] = {
         {.largest_buffer_bytes = 70000}, {.memory_bytes = 700000}, {.memory_bytes = 2 << 20}};
     camber_polylines *polylines = scene_polylines(b->context, &s);
-    const camber_tessellation_desc desc = {.strokes = strokes, .stroke_count = SCENE_ROWS, .measured = true};
+    const camber_tessellation_desc desc = {.strokes = strokes, .stroke_count = SCENE_ROWS, .has_arc_length = true};
     for (size_t i = 0; i < sizeof descs / sizeof *descs; i++) {
         camber_device *device = NULL;
         camber_mesh *mesh = NULL;
@@ -476,7 +476,7 @@ static world world_of(bench *b, const scene *s) {
                                       .polyline_count = w.count,
                                       .entries = w.entries,
                                       .entry_count = w.count,
-                                      .measured = true};
+                                      .has_arc_length = true};
     assert_int_equal(camber_network_create(b->context, &desc, &w.network), CAMBER_OK);
     return w;
 }
@@ -493,9 +493,9 @@ static camber_stages seen_by(bench *b, const world *w, const camber_camera *came
     camber_polylines *seen = NULL;
     camber_stages stages = {0}, device = {0};
     assert_int_equal(camber_network_project(w->network, camera, desc, &seen), CAMBER_OK);
-    assert_int_equal(camber_stages_on_host(b->context, seen, desc, &stages), CAMBER_OK);
+    assert_int_equal(camber_stages_tessellate(b->context, seen, desc, &stages), CAMBER_OK);
     if (b->rounds) {
-        assert_int_equal(camber_tessellate_network(b->mesh, w->network, camera, desc), CAMBER_OK);
+        assert_int_equal(camber_mesh_tessellate_network(b->mesh, w->network, camera, desc), CAMBER_OK);
         assert_int_equal(camber_mesh_read_stages(b->mesh, &device), CAMBER_OK);
         assert_int_equal(device.point_count, stages.point_count);
         assert_memory_equal(device.points, stages.points, device.point_count * sizeof *device.points);
@@ -538,7 +538,7 @@ static void test_windows(void **state) {
     }
     scene s = make_streets();
     world w = world_of(b, &s);
-    const camber_tessellation_desc desc = {.strokes = strokes, .stroke_count = SCENE_ROWS, .measured = true};
+    const camber_tessellation_desc desc = {.strokes = strokes, .stroke_count = SCENE_ROWS, .has_arc_length = true};
     const camber_camera whole = {.x = 500, .y = 500, .scale_px = 1, .width = 6000, .height = 6000};
     camber_stages all = seen_by(b, &w, &whole, &desc);
     size_t compared = 0;
@@ -615,13 +615,13 @@ static void test_measures(void **state) {
     for (int sign = -1; sign < 2; sign += 2) {
         const double total = 150 + hypot(80, 30);
         const camber_stroke stroke = {.width_px = 3, .offset_px = (float)(6 * sign)};
-        const camber_tessellation_desc desc = {.strokes = &stroke, .stroke_count = 1, .measured = true};
+        const camber_tessellation_desc desc = {.strokes = &stroke, .stroke_count = 1, .has_arc_length = true};
         camber_polylines *polylines = polylines_of(b, &l);
         camber_mesh_data data;
-        assert_int_equal(camber_tessellate_on_host(b->context, polylines, &desc, &data), CAMBER_OK);
+        assert_int_equal(camber_mesh_data_tessellate(b->context, polylines, &desc, &data), CAMBER_OK);
         double before = 0;
         for (size_t i = 0; i < data.info.record_count; i++) {
-            const camber_measure m = data.measures[i];
+            const camber_arc_length m = data.arc_lengths[i];
             assert_true(fabs((double)m.total_px - total) < 0.01);
             assert_true((double)m.along_px >= before - 1e-3 && (double)m.along_px <= total + 1e-3);
             before = (double)m.along_px;
@@ -646,9 +646,9 @@ static void test_arguments(void **state) {
         const camber_stroke stroke = {.width_px = 3, .offset_px = wrong[i]};
         const camber_tessellation_desc desc = {.strokes = &stroke, .stroke_count = 1};
         camber_mesh_data data;
-        assert_int_equal(camber_tessellate_on_host(b->context, polylines, &desc, &data), CAMBER_ERROR_ARGUMENT);
+        assert_int_equal(camber_mesh_data_tessellate(b->context, polylines, &desc, &data), CAMBER_ERROR_ARGUMENT);
         assert_story(&b->h, "offset");
-        assert_int_equal(camber_tessellate(b->mesh, polylines, &desc), CAMBER_ERROR_ARGUMENT);
+        assert_int_equal(camber_mesh_tessellate(b->mesh, polylines, &desc), CAMBER_ERROR_ARGUMENT);
         assert_story(&b->h, "offset");
     }
     camber_polylines_destroy(polylines);

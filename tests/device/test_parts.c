@@ -73,7 +73,7 @@ static result read_result(bench *b) {
 
 static result tessellate(bench *b, const scene *s, const camber_tessellation_desc *desc) {
     camber_polylines *polylines = scene_polylines(b->context, s);
-    assert_int_equal(camber_tessellate(b->mesh, polylines, desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(b->mesh, polylines, desc), CAMBER_OK);
     camber_polylines_destroy(polylines);
     return read_result(b);
 }
@@ -291,7 +291,7 @@ static void test_nothing(void **state) {
 
 static result again(bench *b, const camber_polylines *polylines, const camber_tessellation_desc *desc, size_t *count) {
     writes = 0;
-    assert_int_equal(camber_tessellate(b->mesh, polylines, desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(b->mesh, polylines, desc), CAMBER_OK);
     *count = writes;
     return read_result(b);
 }
@@ -372,7 +372,8 @@ static void test_too_long(void **state) {
             const camber_tessellation_desc desc = {&stroke, 1, (camber_method)method, 0, false};
             const bool fits = k == 2 && method == CAMBER_METHOD_STRIP;
             for (int time = 0; time < 2; time++) {
-                assert_int_equal(camber_tessellate(b.mesh, polylines, &desc), fits ? CAMBER_OK : CAMBER_ERROR_LIMIT);
+                assert_int_equal(camber_mesh_tessellate(b.mesh, polylines, &desc),
+                                 fits ? CAMBER_OK : CAMBER_ERROR_LIMIT);
                 if (fits)
                     continue;
                 assert_story(&b.h, "polyline 41 ");
@@ -388,9 +389,9 @@ static void test_too_long(void **state) {
             scene_strokes(strokes);
             const camber_tessellation_desc next = {strokes, SCENE_ROWS, (camber_method)method, 0, false};
             camber_mesh_data mesh, twin;
-            assert_int_equal(camber_tessellate(b.mesh, others, &next), CAMBER_OK);
+            assert_int_equal(camber_mesh_tessellate(b.mesh, others, &next), CAMBER_OK);
             assert_int_equal(camber_mesh_read(b.mesh, &mesh), CAMBER_OK);
-            assert_int_equal(camber_tessellate_on_host(b.context, others, &next, &twin), CAMBER_OK);
+            assert_int_equal(camber_mesh_data_tessellate(b.context, others, &next, &twin), CAMBER_OK);
             assert_int_equal(mesh.info.vertex_count, twin.info.vertex_count);
             assert_memory_equal(mesh.indices, twin.indices, twin.info.index_count * sizeof *twin.indices);
             camber_mesh_data_free(b.context, &mesh);
@@ -415,13 +416,14 @@ static void test_too_many_strokes(void **state) {
     scene_point(&s, 9, 9);
     scene_end(&s, 0);
     camber_polylines *polylines = scene_polylines(b.context, &s);
-    assert_int_equal(camber_tessellate(b.mesh, polylines,
-                                       &(camber_tessellation_desc){strokes, STROKES, CAMBER_METHOD_STRIP, 0, false}),
-                     CAMBER_ERROR_LIMIT);
+    assert_int_equal(
+        camber_mesh_tessellate(b.mesh, polylines,
+                               &(camber_tessellation_desc){strokes, STROKES, CAMBER_METHOD_STRIP, 0, false}),
+        CAMBER_ERROR_LIMIT);
     assert_story(&b.h, "128 strokes");
     assert_int_equal(
-        camber_tessellate(b.mesh, polylines,
-                          &(camber_tessellation_desc){strokes, STROKES - 1, CAMBER_METHOD_STRIP, 0, false}),
+        camber_mesh_tessellate(b.mesh, polylines,
+                               &(camber_tessellation_desc){strokes, STROKES - 1, CAMBER_METHOD_STRIP, 0, false}),
         CAMBER_OK);
     camber_polylines_destroy(polylines);
     scene_free(&s);
@@ -471,7 +473,7 @@ static camber_status try_parts(camber_context *context, void *user) {
     camber_stages stages;
     camber_status status = camber_mesh_create(a->device, NULL, &mesh);
     if (status == CAMBER_OK)
-        status = camber_tessellate(mesh, a->polylines, a->desc);
+        status = camber_mesh_tessellate(mesh, a->polylines, a->desc);
     if (status == CAMBER_OK)
         status = camber_mesh_read(mesh, &data);
     if (status == CAMBER_OK) {
@@ -518,7 +520,7 @@ static bool draw(uint64_t limit, camber_backend backend, camber_sharing sharing,
     camber_context *context = host_context(&h);
     const camber_device_desc device_desc = {.largest_buffer_bytes = limit};
     const camber_surface_desc surface_desc = {backend};
-    const camber_renderer_desc renderer_desc = {.sharing = sharing, .draw = CAMBER_DRAW_GL};
+    const camber_renderer_desc renderer_desc = {.sharing = sharing, .rasterizer = CAMBER_RASTERIZER_GL};
     camber_surface *surface = NULL;
     camber_device *device = NULL;
     camber_renderer *renderer = NULL;
@@ -544,8 +546,8 @@ static bool draw(uint64_t limit, camber_backend backend, camber_sharing sharing,
         camber_polylines *polylines = scene_polylines(context, s);
         assert_int_equal(camber_mesh_create(device, renderer, &mesh), CAMBER_OK);
         assert_int_equal(
-            camber_tessellate(mesh, polylines,
-                              &(camber_tessellation_desc){strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0, false}),
+            camber_mesh_tessellate(mesh, polylines,
+                                   &(camber_tessellation_desc){strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0, false}),
             CAMBER_OK);
         const camber_pass passes[PASSES] = {{.mesh = mesh, .paints = opaque, .paint_count = SCENE_ROWS},
                                             {.mesh = mesh, .paints = paints, .paint_count = SCENE_ROWS},
@@ -565,7 +567,7 @@ static bool draw(uint64_t limit, camber_backend backend, camber_sharing sharing,
                                               .paints = paints,
                                               .paint_count = SCENE_ROWS,
                                               .map = d->map};
-        assert_int_equal(camber_overdraw_count(renderer, &counted, &d->overdraw), CAMBER_OK);
+        assert_int_equal(camber_renderer_count_overdraw(renderer, &counted, &d->overdraw), CAMBER_OK);
         d->parts = mesh->part_count;
         d->largest_buffer = largest_buffer;
         camber_mesh_destroy(mesh);
@@ -595,7 +597,7 @@ static void test_same_picture(void **state) {
         for (size_t k = 0; k < 3; k++) {
             drawing whole;
             if (!draw(0, BACKEND[backend], sharings[k], &s, &whole)) {
-                print_message("%s, %s: not here\n", BACKEND_NAME[backend], camber_sharing_name(sharings[k]));
+                print_message("%s, %s: not here\n", BACKEND_NAME[backend], camber_sharing_get_name(sharings[k]));
                 continue;
             }
             assert_int_equal(whole.parts, 1);

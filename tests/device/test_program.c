@@ -135,9 +135,9 @@ static void test_device_number(void **state) {
         assert_string_equal(info.name, infos[i].name);
         assert_string_equal(info.platform, infos[i].platform);
         camber_device_destroy(device);
-        assert_true(camber_device_matches(&infos[i], infos[i].name));
-        assert_true(camber_device_matches(&infos[i], NULL));
-        assert_false(camber_device_matches(&infos[i], "no such device"));
+        assert_true(camber_device_info_matches(&infos[i], infos[i].name));
+        assert_true(camber_device_info_matches(&infos[i], NULL));
+        assert_false(camber_device_info_matches(&infos[i], "no such device"));
         assert_int_equal(camber_device_create(context, &named, NULL, &device), CAMBER_OK);
         assert_string_equal(camber_device_get_info(device).name, infos[i].name);
         camber_device_destroy(device);
@@ -174,9 +174,9 @@ static bool tessellate_once(const char *cache_dir, camber_method method) {
     const bool built = program->built;
     const camber_stroke stroke = {3, CAMBER_JOIN_ROUND, CAMBER_CAP_ROUND, 0};
     const camber_tessellation_desc desc = {&stroke, 1, method, 0, false};
-    assert_int_equal(camber_tessellate(mesh, polylines, &desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(mesh, polylines, &desc), CAMBER_OK);
     assert_int_equal(camber_mesh_read(mesh, &data), CAMBER_OK);
-    assert_int_equal(camber_tessellate_on_host(context, polylines, &desc, &twin), CAMBER_OK);
+    assert_int_equal(camber_mesh_data_tessellate(context, polylines, &desc, &twin), CAMBER_OK);
     assert_int_equal(data.info.vertex_count, twin.info.vertex_count);
     assert_int_equal(data.info.index_count, twin.info.index_count);
     assert_memory_equal(data.indices, twin.indices, twin.info.index_count * sizeof *twin.indices);

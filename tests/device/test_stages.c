@@ -24,7 +24,7 @@ static camber_stages on_device(bench *b) {
 
 static camber_stages on_host(bench *b, const camber_polylines *polylines, const camber_tessellation_desc *desc) {
     camber_stages stages;
-    assert_int_equal(camber_stages_on_host(b->context, polylines, desc, &stages), CAMBER_OK);
+    assert_int_equal(camber_stages_tessellate(b->context, polylines, desc, &stages), CAMBER_OK);
     return stages;
 }
 
@@ -65,7 +65,7 @@ static void test_device_equals_twin(void **state) {
         for (int i = 0; i < 6; i++) {
             const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)(i / 2), 0, false};
             camber_polylines *polylines = scene_first(b->context, &s, s.polyline_count, i % 2);
-            assert_int_equal(camber_tessellate(b->mesh, polylines, &desc), CAMBER_OK);
+            assert_int_equal(camber_mesh_tessellate(b->mesh, polylines, &desc), CAMBER_OK);
             camber_stages device = on_device(b), twin = on_host(b, polylines, &desc);
             assert_true(device.point_count > 100);
             check_against_mesh(b, polylines, &device);
@@ -88,7 +88,7 @@ static void test_wrong_words_show(void **state) {
     const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0, false};
     scene s = scene_make(1);
     camber_polylines *polylines = scene_first(b->context, &s, s.polyline_count, true);
-    assert_int_equal(camber_tessellate(b->mesh, polylines, &desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(b->mesh, polylines, &desc), CAMBER_OK);
     camber_stages good = on_device(b);
     /* Without rings and repeated points a point's slot is its place in the list. */
     assert_int_equal(good.point_count, polylines->first_slots[polylines->polyline_count]);
@@ -130,7 +130,7 @@ static void test_ring_by_hand(void **state) {
     const camber_stroke stroke = {2, CAMBER_JOIN_ROUND, CAMBER_CAP_ROUND, 0};
     const camber_tessellation_desc desc = {&stroke, 1, CAMBER_METHOD_STRIP, 0, false};
     camber_polylines *polylines = scene_polylines(b->context, &s);
-    assert_int_equal(camber_tessellate(b->mesh, polylines, &desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(b->mesh, polylines, &desc), CAMBER_OK);
     camber_stages stages = on_device(b);
     assert_int_equal(stages.point_count, 4);
     /* A break and a start; a turn past 127 degrees: an end, a break and a start; an end. Two indices each. */
@@ -170,22 +170,22 @@ static void test_nothing(void **state) {
     scene_point(&s, 3, 4);
     scene_end(&s, 0);
     camber_polylines *dot = scene_polylines(b->context, &s);
-    assert_int_equal(camber_tessellate(b->mesh, dot, &desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(b->mesh, dot, &desc), CAMBER_OK);
     camber_stages stages = on_device(b), twin = on_host(b, dot, &desc);
     assert_int_equal(stages.point_count, 1); /* tessellated, and nothing drawn of it */
     assert_int_equal(first_difference(&stages, &twin), 1);
     camber_stages_free(b->context, &stages);
     camber_stages_free(b->context, &twin);
-    assert_int_equal(camber_tessellate(b->mesh, none, &desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(b->mesh, none, &desc), CAMBER_OK);
     assert_no_points(b);
     twin = on_host(b, none, &desc);
     assert_int_equal(twin.point_count, 0);
     camber_stages_free(b->context, &twin);
-    assert_int_equal(camber_tessellate(b->mesh, dot, &(camber_tessellation_desc){0}), CAMBER_ERROR_ARGUMENT);
+    assert_int_equal(camber_mesh_tessellate(b->mesh, dot, &(camber_tessellation_desc){0}), CAMBER_ERROR_ARGUMENT);
     assert_no_points(b); /* of the last tessellation, which failed */
     const camber_stages untouched = {.point_count = 7};
     twin = untouched;
-    assert_int_equal(camber_stages_on_host(b->context, dot, &(camber_tessellation_desc){0}, &twin),
+    assert_int_equal(camber_stages_tessellate(b->context, dot, &(camber_tessellation_desc){0}, &twin),
                      CAMBER_ERROR_ARGUMENT);
     assert_memory_equal(&twin, &untouched, sizeof twin);
     b->h.errors = 0;
@@ -210,7 +210,7 @@ static camber_status try_stages(camber_context *context, void *user) {
     camber_stages device = untouched, twin = untouched;
     camber_status status = camber_mesh_read_stages(a->b->mesh, &device);
     if (status == CAMBER_OK)
-        status = camber_stages_on_host(context, a->polylines, a->desc, &twin);
+        status = camber_stages_tessellate(context, a->polylines, a->desc, &twin);
     if (status != CAMBER_OK)
         assert_memory_equal(&twin, &untouched, sizeof twin);
     else
@@ -227,7 +227,7 @@ static void test_memory(void **state) {
     const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_KITE, 0, false};
     scene s = scene_make(0);
     camber_polylines *polylines = scene_polylines(b->context, &s);
-    assert_int_equal(camber_tessellate(b->mesh, polylines, &desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(b->mesh, polylines, &desc), CAMBER_OK);
     attempt a = {b, polylines, &desc};
     each_allocation_fails(&b->h, try_stages, b->context, &a);
     camber_polylines_destroy(polylines);

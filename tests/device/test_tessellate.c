@@ -3,14 +3,14 @@
 
 static camber_mesh_data on_device(bench *b, const camber_polylines *polylines, const camber_tessellation_desc *desc) {
     camber_mesh_data data;
-    assert_int_equal(camber_tessellate(b->mesh, polylines, desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(b->mesh, polylines, desc), CAMBER_OK);
     assert_int_equal(camber_mesh_read(b->mesh, &data), CAMBER_OK);
     return data;
 }
 
 static camber_mesh_data on_host(bench *b, const camber_polylines *polylines, const camber_tessellation_desc *desc) {
     camber_mesh_data data;
-    assert_int_equal(camber_tessellate_on_host(b->context, polylines, desc, &data), CAMBER_OK);
+    assert_int_equal(camber_mesh_data_tessellate(b->context, polylines, desc, &data), CAMBER_OK);
     return data;
 }
 
@@ -163,7 +163,7 @@ static void test_other_strokes_upload_nothing(void **state) {
     camber_mesh *fresh = NULL;
     camber_mesh_data wanted;
     assert_int_equal(camber_mesh_create(b->device, NULL, &fresh), CAMBER_OK);
-    assert_int_equal(camber_tessellate(fresh, twin, &desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(fresh, twin, &desc), CAMBER_OK);
     assert_int_equal(camber_mesh_read(fresh, &wanted), CAMBER_OK);
     assert_same(&data, &wanted);
     camber_mesh_data_free(b->context, &wanted);
@@ -248,12 +248,12 @@ static void test_arguments(void **state) {
     descs[count++] = (camber_tessellation_desc){goods, 2, CAMBER_METHOD_FAN, NAN, false};
     for (size_t i = 0; i < count; i++) {
         b->h.errors = 0;
-        assert_int_equal(camber_tessellate(b->mesh, polylines, descs + i), CAMBER_ERROR_ARGUMENT);
+        assert_int_equal(camber_mesh_tessellate(b->mesh, polylines, descs + i), CAMBER_ERROR_ARGUMENT);
         assert_story(&b->h, "; ");
         assert_nothing(b, 0);
         const camber_mesh_data untouched = {.vertices = (camber_vertex *)(uintptr_t)8};
         camber_mesh_data data = untouched;
-        assert_int_equal(camber_tessellate_on_host(b->context, polylines, descs + i, &data), CAMBER_ERROR_ARGUMENT);
+        assert_int_equal(camber_mesh_data_tessellate(b->context, polylines, descs + i, &data), CAMBER_ERROR_ARGUMENT);
         assert_story(&b->h, "; ");
         assert_memory_equal(&data, &untouched, sizeof data);
     }
@@ -274,7 +274,7 @@ static void test_first_index(void **state) {
         camber_polylines *all = scene_polylines(b->context, &s);
         for (int method = 0; method < 3; method++) {
             const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)method, 0, false};
-            assert_int_equal(camber_tessellate(b->mesh, all, &desc), CAMBER_OK);
+            assert_int_equal(camber_mesh_tessellate(b->mesh, all, &desc), CAMBER_OK);
             for (size_t i = 0; i <= s.polyline_count; i++) {
                 camber_polylines *before = scene_first(b->context, &s, i, false);
                 camber_mesh_data twin = on_host(b, before, &desc);
@@ -341,8 +341,8 @@ static camber_status try_device(camber_context *context, void *user) {
         assert_ptr_equal(mesh, user);
     } else {
         camber_mesh_data data = {.indices = user};
-        status =
-            camber_tessellate(mesh, polylines, &(camber_tessellation_desc){&stroke, 1, CAMBER_METHOD_STRIP, 0, false});
+        status = camber_mesh_tessellate(mesh, polylines,
+                                        &(camber_tessellation_desc){&stroke, 1, CAMBER_METHOD_STRIP, 0, false});
         if (status == CAMBER_OK)
             status = camber_mesh_read(mesh, &data);
         if (status == CAMBER_OK)
@@ -377,7 +377,7 @@ static void test_after_failure(void **state) {
     for (size_t n = 1;; n++) {
         b->h.refuse_first = b->h.calls + n;
         b->h.refuse_count = 1;
-        const camber_status status = camber_tessellate(b->mesh, polylines, &desc);
+        const camber_status status = camber_mesh_tessellate(b->mesh, polylines, &desc);
         b->h.refuse_first = 0;
         if (status == CAMBER_OK)
             break;

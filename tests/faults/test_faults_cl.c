@@ -69,7 +69,7 @@ static void open_set(stage_set *s, bool parts, camber_method method) {
     s->desc = (camber_tessellation_desc){s->strokes, SCENE_ROWS, method, 0, false};
     camber_mesh *mesh = NULL;
     assert_int_equal(camber_mesh_create(s->device, NULL, &mesh), CAMBER_OK);
-    assert_int_equal(camber_tessellate(mesh, s->polylines, &s->desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(mesh, s->polylines, &s->desc), CAMBER_OK);
     assert_true(parts ? mesh->part_count > 2 : mesh->part_count == 1);
     assert_int_equal(camber_mesh_read(mesh, &s->wanted), CAMBER_OK);
     assert_int_equal(camber_mesh_read_stages(mesh, &s->stages), CAMBER_OK);
@@ -121,7 +121,7 @@ static size_t refuse(stage_set *s, attempt_fn *attempt, void *user, const char *
             continue;
         }
         if (cl_fault.refusals == 0)
-            fail_msg("%s, and no call was refused: %s", camber_status_name(status), s->h.last);
+            fail_msg("%s, and no call was refused: %s", camber_status_get_name(status), s->h.last);
         if (!story)
             assert_int_equal(status, FAULTS[fault].status);
         else
@@ -166,7 +166,7 @@ static camber_status read_mesh(stage_set *s, camber_device *device) {
     camber_stages stages;
     camber_status status = camber_mesh_create(device, NULL, &mesh);
     if (status == CAMBER_OK)
-        status = camber_tessellate(mesh, s->polylines, &s->desc);
+        status = camber_mesh_tessellate(mesh, s->polylines, &s->desc);
     if (status == CAMBER_OK)
         status = camber_mesh_read(mesh, &data);
     if (status == CAMBER_OK) {
@@ -242,19 +242,19 @@ static void test_mesh_again(void **state) {
         camber_mesh *mesh = NULL;
         open_set(&s, parts, CAMBER_METHOD_STRIP);
         assert_int_equal(camber_mesh_create(s.device, NULL, &mesh), CAMBER_OK);
-        assert_int_equal(camber_tessellate(mesh, s.polylines, &s.desc), CAMBER_OK);
+        assert_int_equal(camber_mesh_tessellate(mesh, s.polylines, &s.desc), CAMBER_OK);
         for (size_t n = 1;; n++) {
             assert_true(n < CALLS_MAX);
             if (fresh)
-                assert_int_equal(camber_tessellate(mesh, s.others, &s.desc), CAMBER_OK);
+                assert_int_equal(camber_mesh_tessellate(mesh, s.others, &s.desc), CAMBER_OK);
             cl_fault_arm(n, n, CL_OUT_OF_RESOURCES);
-            const camber_status status = camber_tessellate(mesh, s.polylines, &s.desc);
+            const camber_status status = camber_mesh_tessellate(mesh, s.polylines, &s.desc);
             cl_fault_disarm();
             if (status != CAMBER_OK) {
                 assert_int_equal(status, CAMBER_ERROR_MEMORY);
                 assert_story(&s.h, cl_fault.refused);
                 assert_nothing(&s, mesh);
-                assert_int_equal(camber_tessellate(mesh, s.polylines, &s.desc), CAMBER_OK);
+                assert_int_equal(camber_mesh_tessellate(mesh, s.polylines, &s.desc), CAMBER_OK);
             }
             assert_right(&s, mesh);
             if (cl_fault.refusals == 0)
@@ -275,7 +275,7 @@ static void test_read_again(void **state) {
     for (size_t n = 1;; n++) {
         const camber_mesh_data untouched = {.indices = (uint32_t *)(uintptr_t)8};
         camber_mesh_data data = untouched;
-        assert_int_equal(camber_tessellate(mesh, s.polylines, &s.desc), CAMBER_OK);
+        assert_int_equal(camber_mesh_tessellate(mesh, s.polylines, &s.desc), CAMBER_OK);
         cl_fault_arm(n, n, CL_OUT_OF_HOST_MEMORY);
         const camber_status status = camber_mesh_read(mesh, &data);
         cl_fault_disarm();
@@ -288,7 +288,7 @@ static void test_read_again(void **state) {
         assert_story(&s.h, cl_fault.refused);
         assert_right(&s, mesh);
     }
-    assert_int_equal(camber_tessellate(mesh, s.polylines, &s.desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(mesh, s.polylines, &s.desc), CAMBER_OK);
     cl_fault_arm(2, 2, CL_OUT_OF_HOST_MEMORY); /* the second map of the first part */
     camber_mesh_info info = camber_mesh_get_info(mesh);
     cl_fault_disarm();
@@ -319,7 +319,7 @@ static void test_build_log(void **state) {
     const char *const logs[] = {"emit.cl:7:3: error: no such thing\n  thing(7);\r\n", "", long_log};
     for (size_t i = 0; i < 3; i++) {
         cl_fault.build_log = logs[i];
-        assert_int_equal(camber_tessellate(mesh, s.polylines, &s.desc), CAMBER_ERROR_DEVICE);
+        assert_int_equal(camber_mesh_tessellate(mesh, s.polylines, &s.desc), CAMBER_ERROR_DEVICE);
         cl_fault.build_log = NULL;
         assert_non_null(strstr(s.h.last, "clBuildProgram"));
         assert_non_null(strstr(s.h.last, "; update"));
@@ -329,7 +329,7 @@ static void test_build_log(void **state) {
         assert_int_equal(cl_fault.live.programs, live.programs);
         assert_int_equal(cl_fault.live.kernels, live.kernels);
     }
-    assert_int_equal(camber_tessellate(mesh, s.polylines, &s.desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(mesh, s.polylines, &s.desc), CAMBER_OK);
     assert_right(&s, mesh);
     camber_mesh_destroy(mesh);
     camber_device_destroy(device);
@@ -348,7 +348,8 @@ static camber_status try_cached(stage_set *s, void *user) {
     assert_int_equal(camber_context_create(&context_desc, &context), CAMBER_OK);
     camber_status status = camber_device_create(context, NULL, NULL, &device);
     if (status == CAMBER_OK)
-        status = camber_device_program(device, (camber_program_desc){s->desc.method, s->desc.measured, true}, &program);
+        status = camber_device_program(device, (camber_program_desc){s->desc.method, s->desc.has_arc_length, true},
+                                       &program);
     s->h.errors += h.errors;
     if (h.errors)
         snprintf(s->h.last, sizeof s->h.last, "%s", h.last);
@@ -420,7 +421,7 @@ static camber_paint paints[SCENE_ROWS];
 static camber_status try_renderer(stage_set *s, void *user) {
     const easel *e = user;
     camber_renderer *renderer = NULL;
-    const camber_renderer_desc desc = {.sharing = e->sharing, .draw = CAMBER_DRAW_GL};
+    const camber_renderer_desc desc = {.sharing = e->sharing, .rasterizer = CAMBER_RASTERIZER_GL};
     const camber_status status = camber_renderer_create(s->device, e->surface, &desc, &renderer);
     camber_renderer_destroy(renderer);
     return status;
@@ -436,8 +437,8 @@ static camber_status draw(const easel *e, uint8_t *rgba, camber_overdraw *overdr
     const camber_frame frame = {.width = SIDE_PX, .height = SIDE_PX, .passes = &pass, .pass_count = 1};
     const camber_overdraw_desc counted = {
         .width = SIDE_PX, .height = SIDE_PX, .mesh = e->mesh, .paints = paints, .paint_count = SCENE_ROWS};
-    const camber_status status = camber_render(e->renderer, &frame, take_rows, rgba, NULL);
-    return status == CAMBER_OK ? camber_overdraw_count(e->renderer, &counted, overdraw) : status;
+    const camber_status status = camber_renderer_render(e->renderer, &frame, take_rows, rgba, NULL);
+    return status == CAMBER_OK ? camber_renderer_count_overdraw(e->renderer, &counted, overdraw) : status;
 }
 
 static void assert_drawn(const easel *e) {
@@ -454,9 +455,9 @@ static void draw_after_each(stage_set *s, easel *e) {
         uint8_t rgba[4 * SIDE_PX * SIDE_PX];
         camber_overdraw overdraw;
         assert_true(n < CALLS_MAX);
-        assert_int_equal(camber_tessellate(e->mesh, s->others, &s->desc), CAMBER_OK);
+        assert_int_equal(camber_mesh_tessellate(e->mesh, s->others, &s->desc), CAMBER_OK);
         cl_fault_arm(n, n, CL_OUT_OF_RESOURCES);
-        camber_status status = camber_tessellate(e->mesh, s->polylines, &s->desc);
+        camber_status status = camber_mesh_tessellate(e->mesh, s->polylines, &s->desc);
         const bool tessellated = status == CAMBER_OK;
         if (tessellated)
             status = draw(e, rgba, &overdraw);
@@ -466,7 +467,7 @@ static void draw_after_each(stage_set *s, easel *e) {
             assert_story(&s->h, cl_fault.refused);
         }
         if (!tessellated)
-            assert_int_equal(camber_tessellate(e->mesh, s->polylines, &s->desc), CAMBER_OK);
+            assert_int_equal(camber_mesh_tessellate(e->mesh, s->polylines, &s->desc), CAMBER_OK);
         assert_drawn(e);
         if (cl_fault.refusals == 0)
             break;
@@ -486,12 +487,12 @@ static void test_drawing(void **state) {
             paints[i] = (camber_paint){.width_px = fminf(s.strokes[i].width_px, 2),
                                        .color = {1, 0.5f, (float)i / SCENE_ROWS, 1}};
         const camber_surface_desc surface_desc = {BACKEND[k / 3]};
-        const camber_renderer_desc renderer_desc = {.sharing = e.sharing, .draw = CAMBER_DRAW_GL};
+        const camber_renderer_desc renderer_desc = {.sharing = e.sharing, .rasterizer = CAMBER_RASTERIZER_GL};
         if (camber_surface_create(s.context, &surface_desc, &e.surface) == CAMBER_OK &&
             camber_renderer_create(s.device, e.surface, &renderer_desc, &e.renderer) == CAMBER_OK) {
             each_call_fails(&s, try_renderer, &e, "sharing '", 2);
             assert_int_equal(camber_mesh_create(s.device, e.renderer, &e.mesh), CAMBER_OK);
-            assert_int_equal(camber_tessellate(e.mesh, s.polylines, &s.desc), CAMBER_OK);
+            assert_int_equal(camber_mesh_tessellate(e.mesh, s.polylines, &s.desc), CAMBER_OK);
             assert_true(parts ? e.mesh->part_count > 2 : e.mesh->part_count == 1);
             e.wanted = (picture){.rgba = calloc(SIDE_PX * SIDE_PX, 4), .width = SIDE_PX, .height = SIDE_PX};
             assert_non_null(e.wanted.rgba);
@@ -501,7 +502,7 @@ static void test_drawing(void **state) {
             picture_free(&e.wanted);
             drawn++;
         } else {
-            print_message("%s, %s: not here\n", BACKEND_NAME[k / 3], camber_sharing_name(e.sharing));
+            print_message("%s, %s: not here\n", BACKEND_NAME[k / 3], camber_sharing_get_name(e.sharing));
         }
         camber_mesh_destroy(e.mesh);
         camber_renderer_destroy(e.renderer);
@@ -516,7 +517,7 @@ static void test_drawing(void **state) {
 
 /* A device of its own where kernels are to be built, and everything else in any case. */
 static camber_status draw_covered(const stage_set *s, camber_device *device, uint8_t *rgba) {
-    const camber_renderer_desc desc = {.draw = CAMBER_DRAW_CL};
+    const camber_renderer_desc desc = {.rasterizer = CAMBER_RASTERIZER_OPENCL};
     camber_pass passes[2] = {{.paints = paints, .paint_count = SCENE_ROWS}};
     camber_renderer *renderer = NULL;
     camber_mesh *mesh = NULL;
@@ -524,14 +525,14 @@ static camber_status draw_covered(const stage_set *s, camber_device *device, uin
     if (status == CAMBER_OK)
         status = camber_mesh_create(device, renderer, &mesh);
     if (status == CAMBER_OK)
-        status = camber_tessellate(mesh, s->polylines, &s->desc);
+        status = camber_mesh_tessellate(mesh, s->polylines, &s->desc);
     passes[0].mesh = mesh;
     passes[1] = passes[0];
     passes[1].overlap = CAMBER_OVERLAP_UNITE;
     passes[1].opacity = 0.5f;
     const camber_frame frame = {.width = SIDE_PX, .height = SIDE_PX, .passes = passes, .pass_count = 2};
     if (status == CAMBER_OK)
-        status = camber_render(renderer, &frame, take_rows, rgba, NULL);
+        status = camber_renderer_render(renderer, &frame, take_rows, rgba, NULL);
     camber_mesh_destroy(mesh);
     camber_renderer_destroy(renderer);
     return status;
@@ -568,7 +569,7 @@ static void refuse_some(stage_set *s, sheet *of, bool forever) {
         assert_live(&live);
         assert_int_equal(s->h.live_blocks, blocks);
         if (status == CAMBER_OK ? reached && !is_optional(cl_fault.refused) : !reached)
-            fail_msg("%s (call %zu) was refused: %s", cl_fault.refused, n, camber_status_name(status));
+            fail_msg("%s (call %zu) was refused: %s", cl_fault.refused, n, camber_status_get_name(status));
         if (status != CAMBER_OK)
             assert_story(&s->h, forever ? ": OpenCL " : cl_fault.refused);
     }
@@ -601,7 +602,7 @@ static void test_covered(void **state) {
 static void open_easel(stage_set *s, easel *e) {
     assert_int_equal(camber_renderer_create(s->device, NULL, NULL, &e->renderer), CAMBER_OK);
     assert_int_equal(camber_mesh_create(s->device, e->renderer, &e->mesh), CAMBER_OK);
-    assert_int_equal(camber_tessellate(e->mesh, s->polylines, &s->desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(e->mesh, s->polylines, &s->desc), CAMBER_OK);
 }
 
 static void close_easel(easel *e) {
@@ -612,7 +613,7 @@ static void close_easel(easel *e) {
 static camber_status draw_easel(const easel *e, uint8_t *rgba) {
     const camber_pass pass = {.mesh = e->mesh, .paints = paints, .paint_count = SCENE_ROWS};
     const camber_frame frame = {.width = SIDE_PX, .height = SIDE_PX, .passes = &pass, .pass_count = 1};
-    return camber_render(e->renderer, &frame, take_rows, rgba, NULL);
+    return camber_renderer_render(e->renderer, &frame, take_rows, rgba, NULL);
 }
 
 /* What a renderer draws after its first frame has failed, wherever it did, is right. */

@@ -258,7 +258,7 @@ static void judge(desk *d, camber_status status, uint64_t hash, verdict wanted, 
         return;
     }
     if (status != wanted.status && status != wanted.other)
-        fail_msg("%s: call %zu, %s, was refused: %s: %s", d->path, n, call, camber_status_name(status), d->h.last);
+        fail_msg("%s: call %zu, %s, was refused: %s: %s", d->path, n, call, camber_status_get_name(status), d->h.last);
     assert_story(&d->h, NULL);
 }
 

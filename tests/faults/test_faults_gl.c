@@ -47,7 +47,7 @@ static camber_status count(easel *e, const camber_paint *paints) {
     const camber_overdraw_desc desc = {
         .width = WIDTH, .height = HEIGHT, .mesh = e->meshes[0], .paints = paints, .paint_count = ROWS};
     camber_overdraw counted = {0};
-    const camber_status status = camber_overdraw_count(e->renderer, &desc, &counted);
+    const camber_status status = camber_renderer_count_overdraw(e->renderer, &desc, &counted);
     if (status == CAMBER_OK && e->overdraw.fragments == 0)
         e->overdraw = counted;
     if (status == CAMBER_OK)
@@ -68,9 +68,9 @@ static camber_status draw(easel *e) {
                                              {.width_px = 5, .color = {1, 0, 1, 0.7f}}};
     camber_status status = CAMBER_OK;
     if (!e->renderer)
-        status = camber_renderer_create(e->device, e->surface,
-                                        &(camber_renderer_desc){.sharing = e->sharing, .draw = CAMBER_DRAW_GL},
-                                        &e->renderer);
+        status = camber_renderer_create(
+            e->device, e->surface, &(camber_renderer_desc){.sharing = e->sharing, .rasterizer = CAMBER_RASTERIZER_GL},
+            &e->renderer);
     for (int i = 0; i < MESHES && status == CAMBER_OK; i++) {
         camber_stroke strokes[ROWS];
         for (int k = 0; k < ROWS; k++)
@@ -78,8 +78,8 @@ static camber_status draw(easel *e) {
         if (!e->meshes[i])
             status = camber_mesh_create(e->device, e->renderer, e->meshes + i);
         if (status == CAMBER_OK && !e->ready[i])
-            status = camber_tessellate(e->meshes[i], e->polylines,
-                                       &(camber_tessellation_desc){strokes, ROWS, CAMBER_METHOD_STRIP, 0, false});
+            status = camber_mesh_tessellate(e->meshes[i], e->polylines,
+                                            &(camber_tessellation_desc){strokes, ROWS, CAMBER_METHOD_STRIP, 0, false});
         e->ready[i] = status == CAMBER_OK;
     }
     const camber_pass passes[] = {
@@ -97,7 +97,7 @@ static camber_status draw(easel *e) {
     if (status == CAMBER_OK && e->counts)
         return count(e, solid);
     if (status == CAMBER_OK)
-        status = camber_render(e->renderer, &frame, take_rows, e, NULL);
+        status = camber_renderer_render(e->renderer, &frame, take_rows, e, NULL);
     if (status == CAMBER_OK)
         assert_int_equal(e->rows, HEIGHT);
     return status;
@@ -190,7 +190,8 @@ static void on_each_road(void (*check)(easel *e)) {
 
 static void assert_told(easel *e, camber_status status, camber_status wanted, const char *part) {
     if (status != wanted)
-        fail_msg("status '%s', not '%s': %s", camber_status_name(status), camber_status_name(wanted), e->h.last);
+        fail_msg("status '%s', not '%s': %s", camber_status_get_name(status), camber_status_get_name(wanted),
+                 e->h.last);
     assert_non_null(strchr(e->h.last, ';')); /* the cure */
     assert_story(&e->h, part);
 }

@@ -86,14 +86,14 @@ static camber_status try_twin(camber_context *context, void *user) {
     desk *d = user;
     camber_mesh_data mesh = {.vertices = (camber_vertex *)(uintptr_t)8};
     camber_stages stages = {.point_count = 7};
-    camber_status status = camber_tessellate_on_host(context, d->polylines, &STRIPS, &mesh);
+    camber_status status = camber_mesh_data_tessellate(context, d->polylines, &STRIPS, &mesh);
     if (status != CAMBER_OK) {
         assert_ptr_equal(mesh.vertices, (camber_vertex *)(uintptr_t)8);
         return status;
     }
     assert_same_mesh(&mesh, &d->mesh);
     camber_mesh_data_free(context, &mesh);
-    status = camber_stages_on_host(context, d->polylines, &STRIPS, &stages);
+    status = camber_stages_tessellate(context, d->polylines, &STRIPS, &stages);
     if (status != CAMBER_OK) {
         assert_true(stages.point_count == 7 && !stages.points);
         return status;
@@ -133,7 +133,7 @@ static camber_status try_device(camber_context *context, void *user) {
     if (status == CAMBER_OK)
         status = camber_mesh_create(device, NULL, &mesh);
     if (status == CAMBER_OK)
-        status = camber_tessellate(mesh, d->polylines, &STRIPS);
+        status = camber_mesh_tessellate(mesh, d->polylines, &STRIPS);
     if (status == CAMBER_OK)
         status = read_all(context, mesh, d);
     camber_mesh_destroy(mesh);
@@ -178,14 +178,14 @@ static camber_status draw(camber_renderer *renderer, camber_mesh *mesh, desk *d)
                                 .pass_count = 3,
                                 .largest_piece_px = PIECE_PX};
     taker t = {d, 0};
-    camber_status status = camber_render(renderer, &frame, take_rows, &t, NULL);
+    camber_status status = camber_renderer_render(renderer, &frame, take_rows, &t, NULL);
     if (status != CAMBER_OK)
         return status;
     assert_int_equal(t.rows, HEIGHT);
-    if (camber_renderer_get_draw(renderer) == CAMBER_DRAW_CL)
+    if (camber_renderer_get_rasterizer(renderer) == CAMBER_RASTERIZER_OPENCL)
         return CAMBER_OK;
     camber_overdraw overdraw = {0};
-    status = camber_overdraw_count(
+    status = camber_renderer_count_overdraw(
         renderer,
         &(camber_overdraw_desc){.width = WIDTH, .height = HEIGHT, .mesh = mesh, .paints = solid, .paint_count = ROWS},
         &overdraw);
@@ -203,7 +203,7 @@ static camber_status try_drawing(camber_context *context, void *user) {
     camber_renderer *renderer = NULL;
     camber_mesh *mesh = NULL;
     const bool in_cl = d->backend == BACKENDS;
-    const camber_renderer_desc desc = {.draw = in_cl ? CAMBER_DRAW_CL : CAMBER_DRAW_GL};
+    const camber_renderer_desc desc = {.rasterizer = in_cl ? CAMBER_RASTERIZER_OPENCL : CAMBER_RASTERIZER_GL};
     camber_status status = CAMBER_OK;
     if (!in_cl)
         status = camber_surface_create(context, &(camber_surface_desc){BACKEND[d->backend]}, &surface);
@@ -212,7 +212,7 @@ static camber_status try_drawing(camber_context *context, void *user) {
     if (status == CAMBER_OK)
         status = camber_mesh_create(d->s.device, renderer, &mesh);
     if (status == CAMBER_OK)
-        status = camber_tessellate(mesh, d->polylines, &STRIPS);
+        status = camber_mesh_tessellate(mesh, d->polylines, &STRIPS);
     if (status == CAMBER_OK)
         status = draw(renderer, mesh, d);
     camber_mesh_destroy(mesh);
@@ -279,8 +279,8 @@ static int set_up(void **state) {
     d->file.refuse_at = d->png.refuse_at = SIZE_MAX;
     assert_int_equal(camber_lines_write(d->s.context, &lines, (camber_sink){byte_list_write, &d->file}), CAMBER_OK);
     d->polylines = scene_polylines(d->s.context, &d->lines);
-    assert_int_equal(camber_tessellate_on_host(d->s.context, d->polylines, &STRIPS, &d->mesh), CAMBER_OK);
-    assert_int_equal(camber_stages_on_host(d->s.context, d->polylines, &STRIPS, &d->stages), CAMBER_OK);
+    assert_int_equal(camber_mesh_data_tessellate(d->s.context, d->polylines, &STRIPS, &d->mesh), CAMBER_OK);
+    assert_int_equal(camber_stages_tessellate(d->s.context, d->polylines, &STRIPS, &d->stages), CAMBER_OK);
     for (size_t i = 0; i < sizeof d->rgba; i++)
         d->rgba[i] = (uint8_t)(i % 4 == 3 ? 255 : random_bits(&seed));
     assert_int_equal(write_png(d->s.context, d, &d->png), CAMBER_OK);
@@ -387,7 +387,7 @@ static void test_same_objects(void **state) {
     d->known = false;
     for (int i = 0; i <= BACKENDS; i++) {
         const bool in_cl = i == BACKENDS;
-        const camber_renderer_desc desc = {.draw = in_cl ? CAMBER_DRAW_CL : CAMBER_DRAW_GL};
+        const camber_renderer_desc desc = {.rasterizer = in_cl ? CAMBER_RASTERIZER_OPENCL : CAMBER_RASTERIZER_GL};
         camber_renderer *renderer = NULL;
         if (!in_cl && !d->s.renderer[i])
             continue;
@@ -399,7 +399,7 @@ static void test_same_objects(void **state) {
             assert_int_equal(camber_mesh_create(d->s.device, renderer, &mesh), CAMBER_OK);
             h->refuse_first = h->calls + n;
             h->refuse_count = 1;
-            camber_status status = camber_tessellate(mesh, d->polylines, &STRIPS);
+            camber_status status = camber_mesh_tessellate(mesh, d->polylines, &STRIPS);
             if (status == CAMBER_OK)
                 status = read_all(d->s.context, mesh, d);
             if (status == CAMBER_OK && d->known)
@@ -410,7 +410,7 @@ static void test_same_objects(void **state) {
                 assert_int_equal(status, CAMBER_ERROR_MEMORY);
                 assert_story(h, "memory");
             }
-            assert_int_equal(camber_tessellate(mesh, d->polylines, &STRIPS), CAMBER_OK);
+            assert_int_equal(camber_mesh_tessellate(mesh, d->polylines, &STRIPS), CAMBER_OK);
             assert_int_equal(read_all(d->s.context, mesh, d), CAMBER_OK);
             assert_int_equal(draw(renderer, mesh, d), CAMBER_OK);
             assert_int_equal(h->errors, 0);

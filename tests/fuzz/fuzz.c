@@ -179,7 +179,7 @@ static void check_stages(fuzz_run *run, const camber_polylines *polylines, const
     const camber_mesh_info *info = &mesh->info;
     size_t kinds[16] = {0};
     camber_stages stages = {0};
-    if (!fuzz_done(run, camber_stages_on_host(run->context, polylines, desc, &stages)))
+    if (!fuzz_done(run, camber_stages_tessellate(run->context, polylines, desc, &stages)))
         return;
     const bool offset = has_offsets(desc);
     REQUIRE(offset || stages.point_count == camber_polylines_get_stats(polylines).kept_points);
@@ -211,7 +211,7 @@ static void check_stages(fuzz_run *run, const camber_polylines *polylines, const
 bool fuzz_tessellate(fuzz_run *run, const camber_polylines *polylines, const camber_tessellation_desc *desc,
                      camber_mesh_data *keep) {
     camber_mesh_data mesh = {0};
-    if (!fuzz_done(run, camber_tessellate_on_host(run->context, polylines, desc, &mesh))) {
+    if (!fuzz_done(run, camber_mesh_data_tessellate(run->context, polylines, desc, &mesh))) {
         REQUIRE(!mesh.vertices && !mesh.indices);
         return false;
     }

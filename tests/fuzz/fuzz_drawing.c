@@ -6,7 +6,7 @@
 enum { WIDTH_PX = 200, HEIGHT_PX = 120, PASSES = 3, ROWS_MAX = 16 };
 
 void fuzz_easel_open(fuzz_easel *easel) {
-    const camber_renderer_desc desc = {.draw = CAMBER_DRAW_CL};
+    const camber_renderer_desc desc = {.rasterizer = CAMBER_RASTERIZER_OPENCL};
     camber_device *device = NULL;
     *easel = (fuzz_easel){0};
 #ifdef CAMBER_FUZZ_ALONE
@@ -31,7 +31,7 @@ static void require_equal_words(const float *got, const float *expected, size_t 
 static void compare(const camber_drawing_stages *got, const camber_drawing_stages *expected) {
     const size_t tiles = (size_t)expected->columns * expected->rows;
     REQUIRE(got->shape_count == expected->shape_count);
-    REQUIRE(!got->measures == !expected->measures && !got->planes == !expected->planes);
+    REQUIRE(!got->arc_lengths == !expected->arc_lengths && !got->planes == !expected->planes);
     for (size_t i = 0; i < expected->shape_count; i++) {
         const size_t word = expected->shape_words * i, measure = expected->measure_words * i,
                      plane = expected->plane_words * i;
@@ -39,8 +39,8 @@ static void compare(const camber_drawing_stages *got, const camber_drawing_stage
         if (!is_drawn(got->boxes[i]))
             continue;
         require_equal_words(got->shapes + word, expected->shapes + word, expected->shape_words);
-        if (expected->measures)
-            require_equal_words(got->measures + measure, expected->measures + measure, expected->measure_words);
+        if (expected->arc_lengths)
+            require_equal_words(got->arc_lengths + measure, expected->arc_lengths + measure, expected->measure_words);
         if (expected->planes)
             require_equal_words(got->planes + plane, expected->planes + plane, expected->plane_words);
     }
@@ -80,8 +80,8 @@ static void draw(const fuzz_easel *easel, const camber_stroke *strokes, size_t s
                                 .passes = passes,
                                 .pass_count = PASSES,
                                 .pitch_deg = variants[variant].pitch_deg};
-    REQUIRE(camber_drawing_read_stages(easel->renderer, &frame, &got) == CAMBER_OK);
-    REQUIRE(camber_drawing_stages_on_host(easel->renderer, &frame, &expected) == CAMBER_OK);
+    REQUIRE(camber_renderer_read_stages(easel->renderer, &frame, &got) == CAMBER_OK);
+    REQUIRE(camber_drawing_stages_rasterize(easel->renderer, &frame, &expected) == CAMBER_OK);
     compare(&got, &expected);
     camber_drawing_stages_free(easel->context, &got);
     camber_drawing_stages_free(easel->context, &expected);

@@ -208,7 +208,7 @@ static void check_chunks(fuzz_run *run, const camber_network *network, const inp
 static void check_lines(fuzz_run *run, const camber_network *network, const input *from) {
     camber_lines lines = {0};
     uint32_t *entries = NULL;
-    if (!fuzz_done(run, camber_network_lines(network, &from->camera, &from->tessellation, &lines, &entries)))
+    if (!fuzz_done(run, camber_network_project_lines(network, &from->camera, &from->tessellation, &lines, &entries)))
         return;
     fuzz_check_lines(&lines);
     for (size_t i = 0; i < lines.polyline_count; i++) {
@@ -228,11 +228,12 @@ static void check_device(const input *from) {
     camber_polylines *twin = NULL;
     camber_mesh_data got = {0}, expected = {0};
     REQUIRE(camber_network_create(easel.context, &from->network, &network) == CAMBER_OK);
-    const camber_status status = camber_tessellate_network(easel.mesh, network, &from->camera, &from->tessellation);
+    const camber_status status =
+        camber_mesh_tessellate_network(easel.mesh, network, &from->camera, &from->tessellation);
     REQUIRE(status == camber_network_project(network, &from->camera, &from->tessellation, &twin));
     if (status == CAMBER_OK) {
         REQUIRE(camber_mesh_read(easel.mesh, &got) == CAMBER_OK);
-        REQUIRE(camber_tessellate_on_host(easel.context, twin, &from->tessellation, &expected) == CAMBER_OK);
+        REQUIRE(camber_mesh_data_tessellate(easel.context, twin, &from->tessellation, &expected) == CAMBER_OK);
         REQUIRE(got.info.record_count == expected.info.record_count &&
                 got.info.index_count == expected.info.index_count);
         REQUIRE(got.info.record_count == 0 ||

@@ -111,7 +111,7 @@ static void check_device(const input *from, const camber_mesh_data *expected) {
     camber_polylines *polylines = NULL;
     camber_mesh_data got = {0};
     REQUIRE(camber_polylines_create(easel.context, &from->polylines, &polylines) == CAMBER_OK);
-    REQUIRE(camber_tessellate(easel.mesh, polylines, &from->tessellation) == CAMBER_OK);
+    REQUIRE(camber_mesh_tessellate(easel.mesh, polylines, &from->tessellation) == CAMBER_OK);
     REQUIRE(camber_mesh_read(easel.mesh, &got) == CAMBER_OK);
     REQUIRE(got.info.record_count == expected->info.record_count);
     REQUIRE(got.info.record_count == 0 ||

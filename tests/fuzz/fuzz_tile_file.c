@@ -16,7 +16,7 @@ void fuzz_write_file(const char *path, const void *bytes, size_t size) {
 
 static void check(const camber_features *features) {
     const camber_features_stats stats = camber_features_get_stats(features);
-    const char *attribution = camber_features_attribution(features);
+    const char *attribution = camber_features_get_attribution(features);
     for (const char *c = attribution; c && *c; c++)
         REQUIRE((unsigned char)*c >= ' ' && *c != 0x7f);
     REQUIRE(stats.points >= stats.polylines);

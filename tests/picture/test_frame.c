@@ -1,4 +1,5 @@
-/* Frames that overlap: what camber_render_begin and camber_render_end hand over is what camber_render does. */
+/* Frames that overlap: what camber_renderer_begin and camber_renderer_end hand over is what camber_renderer_render
+ * does. */
 #include "picture.h"
 
 enum { SIDE = 96 };
@@ -14,7 +15,7 @@ static void fill(studio *s, camber_mesh *mesh, int number) {
     const camber_stroke stroke = {.width_px = paint.width_px};
     camber_polylines *polylines = scene_polylines(s->context, &lines);
     assert_int_equal(
-        camber_tessellate(mesh, polylines, &(camber_tessellation_desc){.strokes = &stroke, .stroke_count = 1}),
+        camber_mesh_tessellate(mesh, polylines, &(camber_tessellation_desc){.strokes = &stroke, .stroke_count = 1}),
         CAMBER_OK);
     camber_polylines_destroy(polylines);
     scene_free(&lines);
@@ -39,7 +40,7 @@ static void begin(camber_renderer *renderer, camber_mesh *mesh, uint32_t largest
     camber_paint own = paint;
     camber_pass pass = {.mesh = mesh, .paints = &own, .paint_count = 1};
     camber_frame frame = frame_of(&pass, largest_piece_px);
-    assert_int_equal(camber_render_begin(renderer, &frame), CAMBER_OK);
+    assert_int_equal(camber_renderer_begin(renderer, &frame), CAMBER_OK);
     /* They are the caller's again. */
     own = (camber_paint){.width_px = 1};
     pass = (camber_pass){0};
@@ -49,7 +50,7 @@ static void begin(camber_renderer *renderer, camber_mesh *mesh, uint32_t largest
 static picture end(camber_renderer *renderer, camber_frame_stats *stats) {
     picture p = {.width = SIDE, .height = SIDE, .rgba = calloc(SIDE * SIDE, 4)};
     assert_non_null(p.rgba);
-    assert_int_equal(camber_render_end(renderer, picture_rows, &p, stats), CAMBER_OK);
+    assert_int_equal(camber_renderer_end(renderer, picture_rows, &p, stats), CAMBER_OK);
     assert_int_equal(p.rows, SIDE);
     return p;
 }
@@ -85,7 +86,7 @@ static void run_frames(studio *s, camber_renderer *renderer, size_t in_flight, u
         assert_int_equal(stats.pieces, largest_piece_px ? 9 : 1);
         assert_true((stats.draw_calls >= 1) != draws_in_cl() && stats.draw_ms > 0);
         if (n + 1 < FRAMES + (int)in_flight - 1 && in_flight > 1) {
-            picture_free(&got); /* camber_render waits for none in flight: the last one is looked at */
+            picture_free(&got); /* camber_renderer_render waits for none in flight: the last one is looked at */
             continue;
         }
         wanted = alone(s, renderer, ready);
@@ -161,11 +162,11 @@ static void test_failures(void **state) {
     camber_mesh *mesh = make_mesh(s, renderer);
     fill(s, mesh, 2);
     const camber_frame wide = {.width = 70000, .height = 1};
-    assert_int_equal(camber_render_begin(renderer, &wide), CAMBER_ERROR_ARGUMENT);
+    assert_int_equal(camber_renderer_begin(renderer, &wide), CAMBER_ERROR_ARGUMENT);
     begin(renderer, mesh, 40);
-    assert_int_equal(camber_render_end(renderer, refuse, NULL, NULL), CAMBER_ERROR_IO);
+    assert_int_equal(camber_renderer_end(renderer, refuse, NULL, NULL), CAMBER_ERROR_IO);
     begin(renderer, mesh, 0);
-    assert_int_equal(camber_render_end(renderer, NULL, NULL, NULL), CAMBER_OK); /* drawn, not read */
+    assert_int_equal(camber_renderer_end(renderer, NULL, NULL, NULL), CAMBER_OK); /* drawn, not read */
     picture got = alone(s, renderer, 2), wanted = alone(s, renderer, 2);
     assert_same(&got, &wanted);
     picture_free(&got);
@@ -179,7 +180,8 @@ static void test_renderer_destroyed(void **state) {
     studio *s = *state;
     for (int i = 0; i < BACKENDS; i++) {
         camber_renderer *renderer = NULL;
-        const camber_renderer_desc desc = {.draw = draws_in_cl() ? CAMBER_DRAW_CL : CAMBER_DRAW_GL};
+        const camber_renderer_desc desc = {.rasterizer =
+                                               draws_in_cl() ? CAMBER_RASTERIZER_OPENCL : CAMBER_RASTERIZER_GL};
         if (!s->renderer[i])
             continue;
         assert_int_equal(camber_renderer_create(s->device, s->surface[i], &desc, &renderer), CAMBER_OK);

@@ -13,7 +13,7 @@ static camber_scene *load(camber_context *context, camber_theme theme, camber_st
     camber_scene *map = NULL;
     const camber_source_desc source = {.path = CAMBER_TEST_DATA "/santa_cruz/osm.mbtiles"};
     const camber_scene_desc desc = {.view = CROSSING, .simplify_px = 0.1};
-    assert_int_equal(camber_style_builtin(context, theme, style), CAMBER_OK);
+    assert_int_equal(camber_style_create_builtin(context, theme, style), CAMBER_OK);
     assert_int_equal(camber_features_create(context, *style, features), CAMBER_OK);
     assert_int_equal(camber_features_read(*features, &source), CAMBER_OK);
     assert_int_equal(camber_scene_create(*features, &desc, &map), CAMBER_OK);
@@ -31,11 +31,11 @@ static void draw_crossing(void **state, const char *name, camber_theme theme) {
             continue;
         camber_mesh *mesh = NULL;
         size_t stroke_count = 0;
-        const camber_stroke *strokes = camber_scene_strokes(map, &stroke_count);
+        const camber_stroke *strokes = camber_scene_get_strokes(map, &stroke_count);
         const camber_tessellation_desc desc = {strokes, stroke_count, CAMBER_METHOD_STRIP, 0, false};
         assert_int_equal(camber_mesh_create(s->device, s->renderer[b], &mesh), CAMBER_OK);
-        assert_int_equal(camber_tessellate(mesh, camber_scene_polylines(map), &desc), CAMBER_OK);
-        const camber_frame frame = camber_scene_frame(map, mesh);
+        assert_int_equal(camber_mesh_tessellate(mesh, camber_scene_get_polylines(map), &desc), CAMBER_OK);
+        const camber_frame frame = camber_scene_get_frame(map, mesh);
         picture drawn = picture_draw(s->renderer[b], &frame);
         good = golden_judge(name, &drawn);
         if (!good)
@@ -44,7 +44,7 @@ static void draw_crossing(void **state, const char *name, camber_theme theme) {
         /* The same by the network, and once more after the view was elsewhere. */
         for (int round = 0; round < 2 && good; round++) {
             assert_int_equal(camber_scene_tessellate(map, mesh, CAMBER_METHOD_STRIP), CAMBER_OK);
-            const camber_frame again = camber_scene_frame(map, mesh);
+            const camber_frame again = camber_scene_get_frame(map, mesh);
             drawn = picture_draw(s->renderer[b], &again);
             good = golden_judge(name, &drawn);
             if (!good)
@@ -73,7 +73,7 @@ static void test_dark(void **state) {
 }
 
 static size_t polylines_of(camber_scene *map, camber_mesh *mesh) {
-    const camber_frame frame = camber_scene_frame(map, mesh);
+    const camber_frame frame = camber_scene_get_frame(map, mesh);
     size_t count = 0;
     for (size_t i = 0; i < frame.pass_count; i++)
         count += frame.passes[i].polyline_count;

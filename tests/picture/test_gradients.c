@@ -172,7 +172,7 @@ static picture draw(studio *s, const char *data, const char *paint) {
     assert_int_equal(camber_scene_create(features, &desc, &map), CAMBER_OK);
     assert_int_equal(camber_mesh_create(s->device, studio_any(s), &mesh), CAMBER_OK);
     assert_int_equal(camber_scene_tessellate(map, mesh, CAMBER_METHOD_STRIP), CAMBER_OK);
-    const camber_frame frame = camber_scene_frame(map, mesh);
+    const camber_frame frame = camber_scene_get_frame(map, mesh);
     picture p = picture_draw(studio_any(s), &frame);
     camber_mesh_destroy(mesh);
     camber_scene_destroy(map);

@@ -49,7 +49,7 @@ static picture draw(studio *s, map *m) {
     camber_mesh *mesh = NULL;
     assert_int_equal(camber_mesh_create(s->device, studio_any(s), &mesh), CAMBER_OK);
     assert_int_equal(camber_scene_tessellate(m->scene, mesh, CAMBER_METHOD_STRIP), CAMBER_OK);
-    const camber_frame frame = camber_scene_frame(m->scene, mesh);
+    const camber_frame frame = camber_scene_get_frame(m->scene, mesh);
     picture p = picture_draw(studio_any(s), &frame);
     camber_mesh_destroy(mesh);
     return p;
@@ -64,8 +64,8 @@ static void assert_pixel(const picture *p, uint32_t x, uint32_t y, double r, dou
 
 static camber_stroke stroke_of(const map *m, size_t polyline) {
     size_t count;
-    const camber_stroke *strokes = camber_scene_strokes(m->scene, &count);
-    const uint32_t row = camber_scene_rows(m->scene)[polyline];
+    const camber_stroke *strokes = camber_scene_get_strokes(m->scene, &count);
+    const uint32_t row = camber_scene_get_rows(m->scene)[polyline];
     assert_in_range(row, 0, count - 1);
     return strokes[row];
 }
@@ -82,7 +82,7 @@ static void test_sort_key(void **state) {
                      "[\"to-number\", [\"get\", \"k\"], 0]}, \"paint\": {\"line-width\": 20, \"line-color\": "
                      "[\"get\", \"c\"]}}",
                      0);
-    const camber_lines *lines = camber_scene_lines(m.scene);
+    const camber_lines *lines = camber_scene_get_lines(m.scene);
     assert_int_equal(lines->polyline_count, 5);
     /* North is up: the first drawn is the one without a key, then the two of key 1 as they come. */
     static const double latitudes[] = {0.2, 0.05, 0.15, 0.1, 0};
@@ -119,7 +119,7 @@ static void test_strokes_by_feature(void **state) {
     assert_int_equal(third.join, CAMBER_JOIN_MITER);
     assert_true(fabsf(third.miter_limit - 2) < 1e-6f);
     assert_true(fabsf(first.width_px - 10) < 1e-6f && fabsf(third.width_px - 14) < 1e-6f); /* two bands and the gap */
-    assert_int_equal(camber_scene_frame(m.scene, NULL).pass_count, 1);
+    assert_int_equal(camber_scene_get_frame(m.scene, NULL).pass_count, 1);
     close_map(&m);
 }
 
@@ -305,8 +305,8 @@ static void test_sharing(void **state) {
                  others[i].layout);
         /* The second join is the later one in the document. */
         map m = open_map(s, "\"s\": " LINES(LINE(0, "\"cap\": \"butt\"")), layers, 0);
-        if (camber_scene_lines(m.scene)->polyline_count != others[i].polylines)
-            fail_msg("%s: %zu polylines", others[i].layout, camber_scene_lines(m.scene)->polyline_count);
+        if (camber_scene_get_lines(m.scene)->polyline_count != others[i].polylines)
+            fail_msg("%s: %zu polylines", others[i].layout, camber_scene_get_lines(m.scene)->polyline_count);
         close_map(&m);
     }
 }
@@ -374,8 +374,8 @@ static void test_many_layers(void **state) {
     camber_frame_stats stats = {0};
     assert_int_equal(camber_mesh_create(s->device, studio_any(s), &mesh), CAMBER_OK);
     assert_int_equal(camber_scene_tessellate(m.scene, mesh, CAMBER_METHOD_STRIP), CAMBER_OK);
-    const camber_frame frame = camber_scene_frame(m.scene, mesh);
-    assert_int_equal(camber_render(studio_any(s), &frame, NULL, NULL, &stats), CAMBER_OK);
+    const camber_frame frame = camber_scene_get_frame(m.scene, mesh);
+    assert_int_equal(camber_renderer_render(studio_any(s), &frame, NULL, NULL, &stats), CAMBER_OK);
     printf("%d layers: %zu bytes parsed in %.1f ms, evaluated in %.1f ms, %zu passes, %zu draw calls\n", LAYERS,
            strlen(json), parse_ms, evaluate_ms, frame.pass_count, stats.draw_calls);
     assert_in_range(frame.pass_count, 2, LAYERS);

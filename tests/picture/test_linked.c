@@ -21,7 +21,8 @@ static picture draw_anew(const char *cache_dir, camber_backend backend, size_t *
     assert_int_equal(camber_device_create(context, NULL, NULL, &device), CAMBER_OK);
     assert_int_equal(camber_surface_create(context, &(camber_surface_desc){backend}, &surface), CAMBER_OK);
     assert_int_equal(
-        camber_renderer_create(device, surface, &(camber_renderer_desc){.draw = CAMBER_DRAW_GL}, &renderer), CAMBER_OK);
+        camber_renderer_create(device, surface, &(camber_renderer_desc){.rasterizer = CAMBER_RASTERIZER_GL}, &renderer),
+        CAMBER_OK);
     assert_int_equal(camber_mesh_create(device, renderer, &mesh), CAMBER_OK);
     const float points[] = {4, 4, 40, 30, 60, 8};
     const uint32_t offsets[] = {0, 3};
@@ -31,7 +32,7 @@ static picture draw_anew(const char *cache_dir, camber_backend backend, size_t *
         camber_polylines_create(context, &(camber_polylines_desc){points, 3, offsets, 1, NULL, false}, &polylines),
         CAMBER_OK);
     assert_int_equal(
-        camber_tessellate(mesh, polylines, &(camber_tessellation_desc){&stroke, 1, CAMBER_METHOD_STRIP, 0, false}),
+        camber_mesh_tessellate(mesh, polylines, &(camber_tessellation_desc){&stroke, 1, CAMBER_METHOD_STRIP, 0, false}),
         CAMBER_OK);
     fault_on(surface);
     fault.only = "CompileShader"; /* counted, none fails */

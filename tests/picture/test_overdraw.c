@@ -1,8 +1,8 @@
 /* Overdraw against counts by hand, against the oracle, and against itself in other ranges, pieces and back ends. */
 #include "picture.h"
 
-#include "validate/oracle.h"
 #include "tess/tess.h"
+#include "validate/oracle.h"
 
 /* ---- Counting ---- */
 
@@ -16,10 +16,10 @@ static counts count(camber_renderer *renderer, camber_overdraw_desc desc) {
     assert_non_null(made.map);
     memset(made.map, 7, (size_t)desc.width * desc.height);
     desc.map = made.map;
-    assert_int_equal(camber_overdraw_count(renderer, &desc, &made.sum), CAMBER_OK);
+    assert_int_equal(camber_renderer_count_overdraw(renderer, &desc, &made.sum), CAMBER_OK);
     camber_overdraw bare;
     desc.map = NULL;
-    assert_int_equal(camber_overdraw_count(renderer, &desc, &bare), CAMBER_OK);
+    assert_int_equal(camber_renderer_count_overdraw(renderer, &desc, &bare), CAMBER_OK);
     assert_memory_equal(&bare, &made.sum, sizeof bare);
     return made;
 }
@@ -269,12 +269,12 @@ static void test_ranges(void **state) {
     for (size_t i = 0; i < 4; i++) {
         desc.ranges = outside + i;
         desc.range_count = 1;
-        assert_int_equal(camber_overdraw_count(studio_any(s), &desc, &sum), CAMBER_ERROR_ARGUMENT);
+        assert_int_equal(camber_renderer_count_overdraw(studio_any(s), &desc, &sum), CAMBER_ERROR_ARGUMENT);
         assert_story(&s->h, "range 0");
     }
     desc.ranges = NULL;
     desc.width = 0;
-    assert_int_equal(camber_overdraw_count(studio_any(s), &desc, &sum), CAMBER_ERROR_ARGUMENT);
+    assert_int_equal(camber_renderer_count_overdraw(studio_any(s), &desc, &sum), CAMBER_ERROR_ARGUMENT);
     assert_story(&s->h, "0 x 64");
     assert_int_equal(sum.fragments, 1);
     camber_mesh_data_free(s->context, &data);
@@ -405,9 +405,9 @@ static void test_parts(void **state) {
         camber_device_create(s->context, &(camber_device_desc){.largest_buffer_bytes = 1 << 15}, NULL, &small),
         CAMBER_OK);
     assert_int_equal(camber_surface_create(s->context, NULL, &surface), CAMBER_OK);
-    assert_int_equal(
-        camber_renderer_create(small, surface, &(camber_renderer_desc){.draw = CAMBER_DRAW_GL}, &renderers[1]),
-        CAMBER_OK);
+    assert_int_equal(camber_renderer_create(small, surface, &(camber_renderer_desc){.rasterizer = CAMBER_RASTERIZER_GL},
+                                            &renderers[1]),
+                     CAMBER_OK);
     for (int method = 0; method < 3; method++) {
         counts made[2][3];
         for (int i = 0; i < 2; i++) {
@@ -415,7 +415,7 @@ static void test_parts(void **state) {
             camber_polylines *polylines = scene_polylines(s->context, &lines);
             camber_mesh *mesh = NULL;
             assert_int_equal(camber_mesh_create(i ? small : s->device, renderers[i], &mesh), CAMBER_OK);
-            assert_int_equal(camber_tessellate(mesh, polylines, &desc), CAMBER_OK);
+            assert_int_equal(camber_mesh_tessellate(mesh, polylines, &desc), CAMBER_OK);
             assert_true(i == 0 ? mesh->part_count == 1 : mesh->part_count > 4);
             const uint64_t end = camber_mesh_get_info(mesh).index_count, third = end / 9 * 3;
             const camber_index_range all = {0, end},
@@ -485,7 +485,7 @@ static camber_status attempt_count(camber_context *context, void *user) {
     (void)context;
     const attempt *a = user;
     camber_overdraw sum;
-    return camber_overdraw_count(a->renderer, &a->desc, &sum);
+    return camber_renderer_count_overdraw(a->renderer, &a->desc, &sum);
 }
 
 static void test_no_memory(void **state) {

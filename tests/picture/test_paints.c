@@ -244,7 +244,7 @@ static void test_opacity_of_rows(void **state) {
             continue;
         assert_int_equal(camber_mesh_create(s->device, s->renderer[b], &mesh), CAMBER_OK);
         assert_int_equal(
-            camber_tessellate(mesh, polylines, &(camber_tessellation_desc){.strokes = strokes, .stroke_count = 2}),
+            camber_mesh_tessellate(mesh, polylines, &(camber_tessellation_desc){.strokes = strokes, .stroke_count = 2}),
             CAMBER_OK);
         const camber_pass pass = {.mesh = mesh, .paints = paints, .paint_count = 2, .opacity = 0.6f};
         const camber_frame frame = {

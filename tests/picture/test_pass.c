@@ -194,9 +194,9 @@ static void test_without_half_floats(void **state) {
     line(&lines, 0, 4, 30.5, 60, 30.5);
     camber_renderer *renderer = NULL, *old = studio_any(s);
     surface->half_float_targets = false;
-    assert_int_equal(
-        camber_renderer_create(s->device, surface, &(camber_renderer_desc){.draw = CAMBER_DRAW_GL}, &renderer),
-        CAMBER_OK);
+    assert_int_equal(camber_renderer_create(s->device, surface,
+                                            &(camber_renderer_desc){.rasterizer = CAMBER_RASTERIZER_GL}, &renderer),
+                     CAMBER_OK);
     const int which = s->renderer[0] ? 0 : 1;
     s->renderer[which] = renderer;
     picture p =
@@ -277,7 +277,7 @@ static size_t draw_stripes(studio *s, const camber_paint *paints, size_t rows, p
     const camber_frame frame = {.width = 64, .height = 64, .passes = &pass, .pass_count = 1};
     camber_frame_stats stats;
     *p = draw(s, &pass, 1);
-    assert_int_equal(camber_render(studio_any(s), &frame, NULL, NULL, &stats), CAMBER_OK);
+    assert_int_equal(camber_renderer_render(studio_any(s), &frame, NULL, NULL, &stats), CAMBER_OK);
     camber_mesh_destroy(mesh);
     scene_free(&lines);
     return stats.draw_calls;
@@ -380,7 +380,7 @@ static void test_some_rows(void **state) {
     const camber_frame frame = {.width = 64, .height = 64, .passes = &pass, .pass_count = 1};
     picture p = picture_draw(studio_any(s), &frame);
     camber_frame_stats stats;
-    assert_int_equal(camber_render(studio_any(s), &frame, NULL, NULL, &stats), CAMBER_OK);
+    assert_int_equal(camber_renderer_render(studio_any(s), &frame, NULL, NULL, &stats), CAMBER_OK);
     assert_int_equal(stats.draw_calls, draws_in_cl() ? 0 : 2); /* the run and its flattening */
     assert_value(&p, 32, 16, 3, 0.5);
     assert_value(&p, 32, 32, 3, 0);
@@ -557,7 +557,7 @@ static void test_mesh_changes(void **state) {
         const camber_stroke stroke = {6, (camber_join)(i % 3), (camber_cap)(2 - i % 3), 0};
         const camber_tessellation_desc desc = {&stroke, 1, (camber_method)(i % 3), 0, false};
         camber_polylines *polylines = scene_polylines(s->context, scenes[i]);
-        assert_int_equal(camber_tessellate(mesh, polylines, &desc), CAMBER_OK);
+        assert_int_equal(camber_mesh_tessellate(mesh, polylines, &desc), CAMBER_OK);
         camber_mesh *fresh = make_mesh(s, scenes[i], &stroke, 1, desc.method);
         const camber_pass a = {.mesh = mesh, .paints = &paint, .paint_count = 1};
         const camber_pass b = {.mesh = fresh, .paints = &paint, .paint_count = 1};
@@ -606,7 +606,7 @@ static void test_passes_of_one_mesh(void **state) {
         camber_surface *surface = studio_any(s)->share.surface;
         camber_gl_multi_draw_arrays_fn *multi = surface ? surface->gl.MultiDrawArrays : NULL;
         camber_frame_stats stats;
-        assert_int_equal(camber_render(studio_any(s), &frame, NULL, NULL, &stats), CAMBER_OK);
+        assert_int_equal(camber_renderer_render(studio_any(s), &frame, NULL, NULL, &stats), CAMBER_OK);
         assert_int_equal(stats.draw_calls, !surface ? 0 : multi && method == 0 ? 1 : PASSES);
         if (surface) {
             surface->gl.MultiDrawArrays = NULL;

@@ -73,9 +73,9 @@ typedef struct drawing {
     uint32_t largest_piece_px;
 } drawing;
 
-static camber_mesh *make_mesh(studio *s, const drawing *d, bool measured) {
+static camber_mesh *make_mesh(studio *s, const drawing *d, bool has_arc_length) {
     const camber_tessellation_desc tessellation = {
-        .strokes = &d->stroke, .stroke_count = 1, .method = d->method, .measured = measured};
+        .strokes = &d->stroke, .stroke_count = 1, .method = d->method, .has_arc_length = has_arc_length};
     return studio_line(s, d->points, d->count, &tessellation);
 }
 
@@ -341,9 +341,9 @@ static void test_many(void **state) {
     }
     passes[0].paints = all;
     if (draws_in_cl()) { /* which holds more, and all of a frame at once */
-        assert_int_equal(camber_render(studio_any(s), &frame, NULL, NULL, NULL), CAMBER_OK);
+        assert_int_equal(camber_renderer_render(studio_any(s), &frame, NULL, NULL, NULL), CAMBER_OK);
     } else {
-        assert_int_equal(camber_render(studio_any(s), &frame, NULL, NULL, NULL), CAMBER_ERROR_LIMIT);
+        assert_int_equal(camber_renderer_render(studio_any(s), &frame, NULL, NULL, NULL), CAMBER_ERROR_LIMIT);
         assert_story(&s->h, "fewer images");
     }
     camber_mesh_destroy(mesh);
@@ -524,12 +524,12 @@ static void test_misuse(void **state) {
     camber_pass pass = {
         .mesh = unmeasured, .paints = &d.paint, .paint_count = 1, .images = &made.image, .image_count = 1};
     const camber_frame frame = {.width = SIDE, .height = SIDE, .passes = &pass, .pass_count = 1};
-    assert_int_equal(camber_render(studio_any(s), &frame, NULL, NULL, NULL), CAMBER_ERROR_ARGUMENT);
+    assert_int_equal(camber_renderer_render(studio_any(s), &frame, NULL, NULL, NULL), CAMBER_ERROR_ARGUMENT);
     assert_story(&s->h, "measured");
     pass.mesh = mesh;
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         pass.images = bad + i;
-        assert_int_equal(camber_render(studio_any(s), &frame, NULL, NULL, NULL), CAMBER_ERROR_ARGUMENT);
+        assert_int_equal(camber_renderer_render(studio_any(s), &frame, NULL, NULL, NULL), CAMBER_ERROR_ARGUMENT);
         assert_story(&s->h, "image 0");
     }
     camber_mesh_destroy(unmeasured);
@@ -547,11 +547,12 @@ static camber_status try_frame(camber_context *context, void *user) {
     camber_surface *surface = a->s->surface[a->s->renderer[0] ? 0 : 1]; /* none, where OpenCL draws */
     camber_renderer *renderer = NULL;
     (void)context;
-    const camber_renderer_desc in_gl = {.sharing = CAMBER_SHARING_COPY, .draw = CAMBER_DRAW_GL}, in_cl = {0};
+    const camber_renderer_desc in_gl = {.sharing = CAMBER_SHARING_COPY, .rasterizer = CAMBER_RASTERIZER_GL},
+                               in_cl = {0};
     const camber_renderer_desc desc = surface ? in_gl : in_cl;
     camber_status status = camber_renderer_create(a->s->device, surface, &desc, &renderer);
     if (status == CAMBER_OK)
-        status = camber_render(renderer, a->frame, NULL, NULL, NULL);
+        status = camber_renderer_render(renderer, a->frame, NULL, NULL, NULL);
     camber_renderer_destroy(renderer);
     return status;
 }

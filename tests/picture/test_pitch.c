@@ -155,7 +155,7 @@ static picture draw(const studio *s, camber_renderer *renderer, const figure *f,
     camber_stroke stroke = f->stroke;
     stroke.width_px = f->width_px;
     const camber_tessellation_desc desc = {
-        .strokes = &stroke, .stroke_count = 1, .method = l->method, .measured = l->dash.count > 0};
+        .strokes = &stroke, .stroke_count = 1, .method = l->method, .has_arc_length = l->dash.count > 0};
     camber_mesh *mesh = studio_mesh(s, renderer, &lines, &desc);
     const camber_paint paint = {
         .width_px = f->width_px, .color = {1, 1, 1, l->alpha > 0 ? l->alpha : 1}, .dash = l->dash.count > 0};
@@ -426,10 +426,10 @@ static void test_network(void **state) {
             .x = 0.5 * WIDE, .y = 0.5 * HIGH, .scale_px = 1, .width = WIDE, .height = HIGH, .pitch_deg = PITCHES[i]};
         camber_polylines *twin = NULL;
         camber_mesh_data of_device, of_twin;
-        assert_int_equal(camber_tessellate_network(mesh, network, &camera, &desc), CAMBER_OK);
+        assert_int_equal(camber_mesh_tessellate_network(mesh, network, &camera, &desc), CAMBER_OK);
         assert_int_equal(camber_network_project(network, &camera, &desc, &twin), CAMBER_OK);
         assert_int_equal(camber_mesh_read(mesh, &of_device), CAMBER_OK);
-        assert_int_equal(camber_tessellate_on_host(s->context, twin, &desc, &of_twin), CAMBER_OK);
+        assert_int_equal(camber_mesh_data_tessellate(s->context, twin, &desc, &of_twin), CAMBER_OK);
         assert_true(of_twin.info.record_count > 0);
         assert_int_equal(of_device.info.record_count, of_twin.info.record_count);
         assert_memory_equal(of_device.records, of_twin.records, of_twin.info.record_count * sizeof *of_twin.records);
@@ -472,7 +472,7 @@ static void test_window(void **state) {
             .x = 0.5 * WIDE, .y = 0.5 * HIGH, .scale_px = 1, .width = WIDE, .height = HIGH, .pitch_deg = PITCHES[i]};
         camber_lines lines;
         uint32_t *entries;
-        assert_int_equal(camber_network_lines(network, &camera, &desc, &lines, &entries), CAMBER_OK);
+        assert_int_equal(camber_network_project_lines(network, &camera, &desc, &lines, &entries), CAMBER_OK);
         assert_int_equal(lines.polyline_count, PITCHES[i] > 50 ? 2 : 1); /* the second one lies farther */
         for (size_t k = 0; k < lines.point_count; k++) {
             const double x = (double)lines.points[2 * k], y = (double)lines.points[2 * k + 1];
@@ -501,9 +501,9 @@ static void test_bad_pitch(void **state) {
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         const camber_camera camera = {.scale_px = 1, .width = WIDE, .height = HIGH, .pitch_deg = bad[i]};
         const camber_frame frame = {.width = WIDE, .height = HIGH, .pitch_deg = bad[i]};
-        assert_int_equal(camber_tessellate_network(mesh, network, &camera, &desc), CAMBER_ERROR_ARGUMENT);
+        assert_int_equal(camber_mesh_tessellate_network(mesh, network, &camera, &desc), CAMBER_ERROR_ARGUMENT);
         assert_story(&s->h, "pitch");
-        assert_int_equal(camber_render(studio_any(s), &frame, NULL, NULL, NULL), CAMBER_ERROR_ARGUMENT);
+        assert_int_equal(camber_renderer_render(studio_any(s), &frame, NULL, NULL, NULL), CAMBER_ERROR_ARGUMENT);
         assert_story(&s->h, "pitch");
     }
     camber_mesh_destroy(mesh);

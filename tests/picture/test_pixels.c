@@ -141,8 +141,8 @@ static void check_turns(camber_method method, int steps, const limits bounds[TUR
         tally tallies[TURN_GROUPS] = {0};
         for (int k = 0; k < TURN_GROUPS; k++) {
             tallies[k].name = names[k];
-            snprintf(names[k], sizeof names[k], "%s, %s %s, turns of %s", camber_method_name(method), join_names[i / 3],
-                     cap_names[i % 3], ranges[k]);
+            snprintf(names[k], sizeof names[k], "%s, %s %s, turns of %s", camber_method_get_name(method),
+                     join_names[i / 3], cap_names[i % 3], ranges[k]);
         }
         add_turns(&t, steps, i / 3, i % 3, tallies);
         sheet_flush(t.sheet);
@@ -206,7 +206,7 @@ static void check_lengths(camber_method method, int copies, const limits bounds[
         for (int k = 0; k < PLACES * SPANS; k++) {
             tallies[k / SPANS][k % SPANS].name = names[k / SPANS][k % SPANS];
             snprintf(names[k / SPANS][k % SPANS], sizeof names[0][0], "%s, %s %s, %s segment %s",
-                     camber_method_name(method), join_names[i / 3], cap_names[i % 3], places[k / SPANS],
+                     camber_method_get_name(method), join_names[i / 3], cap_names[i % 3], places[k / SPANS],
                      spans[k % SPANS]);
         }
         for (int k = 0; k < LENGTHS * WIDTHS; k++) {

@@ -113,7 +113,7 @@ static camber_stages stages_of(const easel *e, const property_case *c) {
     const camber_tessellation_desc desc = {&c->stroke, 1, c->method, 0, false};
     camber_polylines *polylines = property_polylines(e->studio.context, c);
     camber_stages stages;
-    assert_int_equal(camber_stages_on_host(e->studio.context, polylines, &desc, &stages), CAMBER_OK);
+    assert_int_equal(camber_stages_tessellate(e->studio.context, polylines, &desc, &stages), CAMBER_OK);
     camber_polylines_destroy(polylines);
     return stages;
 }
@@ -218,9 +218,9 @@ static property_outcome check_device(void *user, const property_case *c, char st
     camber_polylines *polylines = NULL;
     camber_mesh_data device, twin;
     assert_int_equal(camber_polylines_create(e->studio.context, &desc, &polylines), CAMBER_OK);
-    assert_int_equal(camber_tessellate(e->mesh, polylines, &tessellation), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(e->mesh, polylines, &tessellation), CAMBER_OK);
     assert_int_equal(camber_mesh_read(e->mesh, &device), CAMBER_OK);
-    assert_int_equal(camber_tessellate_on_host(e->studio.context, polylines, &tessellation, &twin), CAMBER_OK);
+    assert_int_equal(camber_mesh_data_tessellate(e->studio.context, polylines, &tessellation, &twin), CAMBER_OK);
     const bool same = device.info.vertex_count == twin.info.vertex_count &&
                       device.info.index_count == twin.info.index_count &&
                       (twin.info.vertex_count == 0 || /* a dot with butt caps: nothing */

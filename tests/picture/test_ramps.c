@@ -187,7 +187,7 @@ static void test_beside_plain(void **state) {
     }
     const camber_stroke strokes[] = {{10, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0},
                                      {10, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0}};
-    const camber_tessellation_desc desc = {.strokes = strokes, .stroke_count = 2, .measured = true};
+    const camber_tessellation_desc desc = {.strokes = strokes, .stroke_count = 2, .has_arc_length = true};
     camber_mesh *mesh = studio_mesh(s, studio_any(s), &lines, &desc);
     const camber_paint paints[] = {{.width_px = 10, .color = GREEN}, {.width_px = 10, .color = WHITE, .ramp = 1}};
     const camber_ramp_stop stops[] = {{0, {1, 0, 0, 0.5f}}};
@@ -212,9 +212,10 @@ static void test_halves(void **state) {
     studio *s = *state;
     const double points[] = {-900, 20, -30, 60, 20, 30, 50, 130, 90, 20, 180, 110, 2000, 300};
     const size_t offsets[] = {0, 7};
-    const camber_network_desc desc = {.points = points, .offsets = offsets, .polyline_count = 1, .measured = true};
+    const camber_network_desc desc = {
+        .points = points, .offsets = offsets, .polyline_count = 1, .has_arc_length = true};
     const camber_stroke stroke = {12, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0};
-    const camber_tessellation_desc tessellation = {.strokes = &stroke, .stroke_count = 1, .measured = true};
+    const camber_tessellation_desc tessellation = {.strokes = &stroke, .stroke_count = 1, .has_arc_length = true};
     const camber_paint paint = {.width_px = 12, .color = WHITE, .ramp = 1};
     camber_ramp_stop stops[40];
     for (size_t i = 0; i < 40; i++) /* a step every 80 px, or so */
@@ -235,7 +236,7 @@ static void test_halves(void **state) {
                                       .scale_px = 1,
                                       .width = i == 0 ? 200 : 100,
                                       .height = 160};
-        assert_int_equal(camber_tessellate_network(mesh, network, &camera, &tessellation), CAMBER_OK);
+        assert_int_equal(camber_mesh_tessellate_network(mesh, network, &camera, &tessellation), CAMBER_OK);
         const camber_pass pass = {.mesh = mesh, .paints = &paint, .paint_count = 1, .ramps = &ramp, .ramp_count = 1};
         pictures[i] = picture_draw(
             studio_any(s), &(camber_frame){.width = camera.width, .height = 160, .passes = &pass, .pass_count = 1});
@@ -274,13 +275,13 @@ static void test_refused(void **state) {
     assert_int_equal(camber_polylines_create(s->context, &desc, &polylines), CAMBER_OK);
     assert_int_equal(camber_mesh_create(s->device, studio_any(s), &mesh), CAMBER_OK);
     for (size_t i = 0; i < 6; i++) {
-        const camber_tessellation_desc tessellation = {.strokes = &stroke, .stroke_count = 1, .measured = i < 5};
-        assert_int_equal(camber_tessellate(mesh, polylines, &tessellation), CAMBER_OK);
+        const camber_tessellation_desc tessellation = {.strokes = &stroke, .stroke_count = 1, .has_arc_length = i < 5};
+        assert_int_equal(camber_mesh_tessellate(mesh, polylines, &tessellation), CAMBER_OK);
         const camber_paint paint = {.width_px = 3, .color = WHITE, .ramp = 1};
         const camber_ramp ramp = i < 5 ? bad[i] : (camber_ramp){smooth, 4};
         const camber_pass pass = {.mesh = mesh, .paints = &paint, .paint_count = 1, .ramps = &ramp, .ramp_count = 1};
         const camber_frame frame = {.width = 64, .height = 64, .passes = &pass, .pass_count = 1};
-        assert_int_equal(camber_render(studio_any(s), &frame, NULL, NULL, NULL), CAMBER_ERROR_ARGUMENT);
+        assert_int_equal(camber_renderer_render(studio_any(s), &frame, NULL, NULL, NULL), CAMBER_ERROR_ARGUMENT);
         assert_story(&s->h, i < 5 ? "ramp 0" : "ramps of a mesh that is not measured");
     }
     camber_mesh_destroy(mesh);

@@ -8,7 +8,7 @@ static camber_mesh *make_mesh(studio *s, camber_renderer *renderer, const scene 
     camber_mesh *mesh = NULL;
     camber_polylines *polylines = scene_polylines(s->context, lines);
     assert_int_equal(camber_mesh_create(s->device, renderer, &mesh), CAMBER_OK);
-    assert_int_equal(camber_tessellate(mesh, polylines, desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(mesh, polylines, desc), CAMBER_OK);
     camber_polylines_destroy(polylines);
     return mesh;
 }
@@ -128,11 +128,11 @@ static void test_sharing_paths_agree(void **state) {
             camber_renderer *renderer = NULL;
             s->h.errors = 0;
             const camber_status status = camber_renderer_create(
-                s->device, s->surface[i], &(camber_renderer_desc){.sharing = paths[path], .draw = CAMBER_DRAW_GL},
-                &renderer);
+                s->device, s->surface[i],
+                &(camber_renderer_desc){.sharing = paths[path], .rasterizer = CAMBER_RASTERIZER_GL}, &renderer);
             if (status != CAMBER_OK) {
                 assert_int_equal(status, CAMBER_ERROR_DEVICE);
-                assert_story(&s->h, camber_sharing_name(paths[path]));
+                assert_story(&s->h, camber_sharing_get_name(paths[path]));
                 assert_true(path > 0); /* a copy works anywhere */
                 assert_null(renderer);
                 continue;
@@ -191,7 +191,7 @@ static void test_pieces(void **state) {
                 frame.largest_piece_px = sides[k];
                 picture pieces = picture_draw(s->renderer[i], &frame);
                 camber_frame_stats stats = {0};
-                assert_int_equal(camber_render(s->renderer[i], &frame, NULL, NULL, &stats), CAMBER_OK);
+                assert_int_equal(camber_renderer_render(s->renderer[i], &frame, NULL, NULL, &stats), CAMBER_OK);
                 /* Of kernels' tiles, 32 px, pieces are whole ones. */
                 const uint32_t side = !draws_in_cl() ? sides[k] : sides[k] < 32 ? 32 : sides[k] / 32 * 32;
                 assert_int_equal(stats.pieces, ((300 + side - 1) / side) * ((200 + side - 1) / side));
@@ -245,8 +245,8 @@ static void test_sizes(void **state) {
         camber_frame_stats stats = {.pieces = 77};
         int left = 2;
         s->h.errors = 0;
-        assert_int_equal(camber_render(studio_any(s), &(camber_frame){.width = bad[i][0], .height = bad[i][1]},
-                                       refuse_rows, &left, &stats),
+        assert_int_equal(camber_renderer_render(studio_any(s), &(camber_frame){.width = bad[i][0], .height = bad[i][1]},
+                                                refuse_rows, &left, &stats),
                          CAMBER_ERROR_ARGUMENT);
         assert_story(&s->h, "; ");
         assert_int_equal(stats.pieces, 77);
@@ -269,13 +269,13 @@ static void test_rows_refused(void **state) {
         int left = after;
         camber_frame_stats stats = {.pieces = 77};
         const camber_frame frame = {.width = 50, .height = 100, .largest_piece_px = 32}; /* four bands */
-        assert_int_equal(camber_render(studio_any(s), &frame, refuse_rows, &left, &stats), CAMBER_ERROR_IO);
+        assert_int_equal(camber_renderer_render(studio_any(s), &frame, refuse_rows, &left, &stats), CAMBER_ERROR_IO);
         assert_int_equal(left, 0); /* not called again */
         assert_int_equal(stats.pieces, 77);
     }
     int left = 5;
     const camber_frame frame = {.width = 50, .height = 100, .largest_piece_px = 32};
-    assert_int_equal(camber_render(studio_any(s), &frame, refuse_rows, &left, NULL), CAMBER_OK);
+    assert_int_equal(camber_renderer_render(studio_any(s), &frame, refuse_rows, &left, NULL), CAMBER_OK);
 }
 
 static void test_background_is_premultiplied(void **state) {

@@ -38,7 +38,7 @@ static picture sheet_draw(sheet *it, const studio *s, const camber_view_desc *vi
     assert_int_equal(camber_scene_create(it->features, &desc, &it->scene), CAMBER_OK);
     assert_int_equal(camber_mesh_create(s->device, studio_any(s), &it->mesh), CAMBER_OK);
     assert_int_equal(camber_scene_tessellate(it->scene, it->mesh, CAMBER_METHOD_STRIP), CAMBER_OK);
-    const camber_frame frame = camber_scene_frame(it->scene, it->mesh);
+    const camber_frame frame = camber_scene_get_frame(it->scene, it->mesh);
     return picture_draw(studio_any(s), &frame);
 }
 

@@ -206,7 +206,7 @@ static void write_tiles(const char *path, const thing *list, size_t count, int (
 
 static json_t *style_of(const char *name, camber_theme theme) {
     size_t size_bytes;
-    const char *text = camber_style_text(name, theme, &size_bytes);
+    const char *text = camber_style_get_text(name, theme, &size_bytes);
     assert_non_null(text);
     json_t *style = json_loadb(text, size_bytes, 0, NULL);
     assert_non_null(style);
@@ -241,11 +241,11 @@ static picture draw(studio *s, json_t *json, double zoom, uint32_t width, uint32
     assert_int_equal(camber_scene_create(features, &desc, &map), CAMBER_OK);
     assert_int_equal(camber_mesh_create(s->device, studio_any(s), &mesh), CAMBER_OK);
     assert_int_equal(camber_scene_tessellate(map, mesh, CAMBER_METHOD_STRIP), CAMBER_OK);
-    const camber_frame frame = camber_scene_frame(map, mesh);
+    const camber_frame frame = camber_scene_get_frame(map, mesh);
     picture p = picture_draw(studio_any(s), &frame);
     camber_mesh_destroy(mesh);
     camber_scene_destroy(map);
-    assert_non_null(strstr(camber_features_attribution(features), "OpenStreetMap")); /* the sources say so */
+    assert_non_null(strstr(camber_features_get_attribution(features), "OpenStreetMap")); /* the sources say so */
     camber_features_destroy(features);
     camber_style_destroy(style);
     return p;
@@ -525,7 +525,7 @@ static size_t read_file(studio *s, const char *path, const char *layer) {
     camber_style *style = NULL;
     camber_features *features = NULL;
     size_t size_bytes;
-    const char *text = camber_style_text("openmaptiles", CAMBER_THEME_LIGHT, &size_bytes);
+    const char *text = camber_style_get_text("openmaptiles", CAMBER_THEME_LIGHT, &size_bytes);
     assert_int_equal(camber_style_parse(s->context, text, size_bytes, "shipped", &style), CAMBER_OK);
     assert_int_equal(camber_features_create(s->context, style, &features), CAMBER_OK);
     const camber_source_desc desc = {.path = path, .layer = layer, .keep_apart = true};
@@ -556,9 +556,9 @@ static void test_file(void **state) {
 static void test_documents(void **state) {
     studio *s = *state;
     size_t size_bytes, count = 0;
-    for (const char *name; (name = camber_style_name(count)) != NULL; count++)
+    for (const char *name; (name = camber_style_list(count)) != NULL; count++)
         for (int theme = 0; theme < 2; theme++) {
-            const char *text = camber_style_text(name, (camber_theme)theme, &size_bytes);
+            const char *text = camber_style_get_text(name, (camber_theme)theme, &size_bytes);
             camber_style_report *report = NULL;
             assert_non_null(text);
             assert_int_equal(camber_style_check(s->context, text, size_bytes, name, &report), CAMBER_OK);
@@ -572,8 +572,8 @@ static void test_documents(void **state) {
             camber_style_report_destroy(report);
         }
     assert_int_equal(count, 3);
-    assert_null(camber_style_name(count));
-    assert_null(camber_style_text("none", CAMBER_THEME_LIGHT, &size_bytes));
+    assert_null(camber_style_list(count));
+    assert_null(camber_style_get_text("none", CAMBER_THEME_LIGHT, &size_bytes));
 }
 
 int main(void) {

@@ -106,12 +106,12 @@ static picture draw(studio *s, const map *m, size_t *calls) {
     camber_mesh *mesh = NULL;
     assert_int_equal(camber_mesh_create(s->device, studio_any(s), &mesh), CAMBER_OK);
     assert_int_equal(camber_scene_tessellate(m->scene, mesh, CAMBER_METHOD_STRIP), CAMBER_OK);
-    const camber_frame frame = camber_scene_frame(m->scene, mesh);
+    const camber_frame frame = camber_scene_get_frame(m->scene, mesh);
     camber_frame_stats stats;
     picture p = {.width = frame.width, .height = frame.height};
     p.rgba = calloc((size_t)p.width * p.height, 4);
     assert_non_null(p.rgba);
-    assert_int_equal(camber_render(studio_any(s), &frame, picture_rows, &p, &stats), CAMBER_OK);
+    assert_int_equal(camber_renderer_render(studio_any(s), &frame, picture_rows, &p, &stats), CAMBER_OK);
     if (calls)
         *calls = stats.draw_calls;
     camber_mesh_destroy(mesh);
@@ -406,7 +406,7 @@ static camber_status try_map(camber_context *context, void *user) {
     const char *layers = user;
     map m = open_with(context, shared->base, layers, view_at(1));
     if (m.status == CAMBER_OK)
-        (void)camber_scene_frame(m.scene, NULL);
+        (void)camber_scene_get_frame(m.scene, NULL);
     close_map(&m);
     return m.status;
 }

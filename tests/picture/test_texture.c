@@ -9,7 +9,7 @@
 
 enum { WIDTH = 203, HEIGHT = 149, ROWS = 3, KINDS = 2 };
 
-static const camber_draw KIND[KINDS] = {CAMBER_DRAW_GL, CAMBER_DRAW_CL};
+static const camber_rasterizer KIND[KINDS] = {CAMBER_RASTERIZER_GL, CAMBER_RASTERIZER_OPENCL};
 static const camber_sharing PATH[] = {CAMBER_SHARING_GL, CAMBER_SHARING_ZERO_COPY, CAMBER_SHARING_COPY};
 
 /* ---- What is drawn ---- */
@@ -106,8 +106,9 @@ static void compare_frames(const studio *s, camber_surface *surface, camber_rend
         d.frame.largest_piece_px = frames[i].piece_px;
         d.frame.background = frames[i].background;
         drawn[i] = NULL;
-        assert_int_equal(camber_render_texture(shared, &d.frame, &(camber_texture){.name = names[i]}, drawn + i),
-                         CAMBER_OK);
+        assert_int_equal(
+            camber_renderer_render_texture(shared, &d.frame, &(camber_texture){.name = names[i]}, drawn + i),
+            CAMBER_OK);
         reference.frame = d.frame;
         reference.frame.passes = reference.passes;
     }
@@ -138,17 +139,17 @@ static void test_kernels(void **state) {
     assert_int_equal(camber_renderer_create(s->device, NULL, NULL, &alone), CAMBER_OK);
     for (size_t k = 0; k < BACKENDS * 3; k++) {
         camber_surface *surface = s->surface[k / 3];
-        const camber_renderer_desc desc = {.draw = CAMBER_DRAW_CL, .sharing = PATH[k % 3]};
+        const camber_renderer_desc desc = {.rasterizer = CAMBER_RASTERIZER_OPENCL, .sharing = PATH[k % 3]};
         camber_renderer *shared = NULL;
         host *h = (host *)(uintptr_t)&s->h;
         if (!surface || camber_renderer_create(s->device, surface, &desc, &shared) != CAMBER_OK) {
             h->errors = 0;
             continue;
         }
-        printf("# %s, %s\n", BACKEND_NAME[k / 3], camber_sharing_name(PATH[k % 3]));
+        printf("# %s, %s\n", BACKEND_NAME[k / 3], camber_sharing_get_name(PATH[k % 3]));
         found++;
         assert_int_equal(camber_renderer_get_sharing(shared), PATH[k % 3]);
-        assert_int_equal(camber_renderer_get_draw(shared), CAMBER_DRAW_CL);
+        assert_int_equal(camber_renderer_get_rasterizer(shared), CAMBER_RASTERIZER_OPENCL);
         compare_frames(s, surface, shared, alone);
         drawing d, reference;
         begin_drawing(s, shared, &d);
@@ -220,7 +221,7 @@ static void compare_over(const studio *s, camber_surface *surface, camber_render
             turn_over(&ground);
         const GLuint name = make_texture(surface, &ground, WIDTH, HEIGHT);
         const camber_texture texture = {.name = name, .keep = keep, .bottom_up = bottom_up};
-        assert_int_equal(camber_render_texture(renderer, &d.frame, &texture, NULL), CAMBER_OK);
+        assert_int_equal(camber_renderer_render_texture(renderer, &d.frame, &texture, NULL), CAMBER_OK);
         picture p = read_texture(surface, name, WIDTH, HEIGHT);
         if (bottom_up)
             turn_over(&p);
@@ -241,7 +242,7 @@ static void test_over(void **state) {
     const studio *s = *state;
     for (int i = 0; i < BACKENDS * KINDS; i++) {
         camber_surface *surface = s->surface[i / KINDS];
-        const camber_renderer_desc desc = {.draw = KIND[i % KINDS]};
+        const camber_renderer_desc desc = {.rasterizer = KIND[i % KINDS]};
         camber_renderer *renderer = NULL;
         if (!surface)
             continue;
@@ -255,7 +256,7 @@ static void test_over(void **state) {
 static void test_in_turn(void **state) {
     const studio *s = *state;
     camber_surface *surface = s->surface[0] ? s->surface[0] : s->surface[1];
-    const camber_renderer_desc desc = {.draw = CAMBER_DRAW_CL};
+    const camber_renderer_desc desc = {.rasterizer = CAMBER_RASTERIZER_OPENCL};
     camber_renderer *turns[3] = {studio_any(s), NULL, studio_any(s)};
     drawing d[3];
     picture wanted = {calloc(4, WIDTH * HEIGHT), WIDTH, HEIGHT, HEIGHT, 0};
@@ -270,9 +271,9 @@ static void test_in_turn(void **state) {
         picture_free(&wanted);
         picture_free(&lines);
         wanted = both;
-        assert_int_equal(
-            camber_render_texture(turns[i], &d[i].frame, &(camber_texture){.name = name, .keep = true}, &drawn),
-            CAMBER_OK);
+        assert_int_equal(camber_renderer_render_texture(turns[i], &d[i].frame,
+                                                        &(camber_texture){.name = name, .keep = true}, &drawn),
+                         CAMBER_OK);
         surface->gl.DeleteSync(drawn);
     }
     picture p = read_texture(surface, name, WIDTH, HEIGHT);
@@ -338,9 +339,9 @@ static void use_engine(const engine *e) {
 }
 
 /* The engine makes the texture and looks at it; between them are only fences. */
-static void draw_for_engine(const studio *s, const engine *e, camber_surface *surface, camber_draw kind) {
+static void draw_for_engine(const studio *s, const engine *e, camber_surface *surface, camber_rasterizer kind) {
     const camber_gl *gl = &surface->gl; /* the same functions in any context of EGL's */
-    const camber_renderer_desc desc = {.draw = kind};
+    const camber_renderer_desc desc = {.rasterizer = kind};
     camber_renderer *renderer = NULL;
     drawing d;
     void *drawn = NULL;
@@ -356,7 +357,7 @@ static void draw_for_engine(const studio *s, const engine *e, camber_surface *su
     GLsync ready = gl->FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
     gl->Flush();
     const camber_texture texture = {.name = name, .keep = true, .ready = (void *)ready};
-    assert_int_equal(camber_render_texture(renderer, &d.frame, &texture, &drawn), CAMBER_OK);
+    assert_int_equal(camber_renderer_render_texture(renderer, &d.frame, &texture, &drawn), CAMBER_OK);
     use_engine(e);
     gl->WaitSync(drawn, 0, GL_TIMEOUT_IGNORED);
     gl->GenFramebuffers(1, &framebuffer);
@@ -407,7 +408,7 @@ static void test_refused(void **state) {
     studio *s = *state;
     for (int i = 0; i < BACKENDS * KINDS; i++) {
         camber_surface *surface = s->surface[i / KINDS];
-        const camber_renderer_desc desc = {.draw = KIND[i % KINDS]};
+        const camber_renderer_desc desc = {.rasterizer = KIND[i % KINDS]};
         camber_renderer *renderer = NULL;
         drawing d;
         if (!surface)
@@ -422,20 +423,22 @@ static void test_refused(void **state) {
         surface->gl.TexStorage2D(GL_TEXTURE_2D, 1, GL_R8, WIDTH, HEIGHT);
         const GLuint refused[] = {0, small, gray, 100000};
         for (size_t k = 0; k < sizeof refused / sizeof *refused; k++) {
-            assert_int_equal(camber_render_texture(renderer, &d.frame, &(camber_texture){.name = refused[k]}, NULL),
-                             CAMBER_ERROR_ARGUMENT);
+            assert_int_equal(
+                camber_renderer_render_texture(renderer, &d.frame, &(camber_texture){.name = refused[k]}, NULL),
+                CAMBER_ERROR_ARGUMENT);
             assert_story(&s->h, "203 x 149 px, like the frame");
         }
         const uint32_t longest = camber_surface_get_info(surface).largest_target_px;
         camber_frame wide = d.frame;
         wide.width = longest + 1;
         if (wide.width <= 65535) {
-            assert_int_equal(camber_render_texture(renderer, &wide, &(camber_texture){.name = good}, NULL),
+            assert_int_equal(camber_renderer_render_texture(renderer, &wide, &(camber_texture){.name = good}, NULL),
                              CAMBER_ERROR_LIMIT);
             assert_story(&s->h, "draw a smaller one");
         }
         /* And then it draws. */
-        assert_int_equal(camber_render_texture(renderer, &d.frame, &(camber_texture){.name = good}, NULL), CAMBER_OK);
+        assert_int_equal(camber_renderer_render_texture(renderer, &d.frame, &(camber_texture){.name = good}, NULL),
+                         CAMBER_OK);
         const GLuint names[] = {small, good, gray};
         surface->gl.DeleteTextures(3, names);
         camber_mesh_destroy(d.mesh);
@@ -449,7 +452,8 @@ static void test_no_surface(void **state) {
     drawing d;
     assert_int_equal(camber_renderer_create(s->device, NULL, NULL, &alone), CAMBER_OK);
     begin_drawing(s, alone, &d);
-    assert_int_equal(camber_render_texture(alone, &d.frame, &(camber_texture){.name = 1}, NULL), CAMBER_ERROR_ARGUMENT);
+    assert_int_equal(camber_renderer_render_texture(alone, &d.frame, &(camber_texture){.name = 1}, NULL),
+                     CAMBER_ERROR_ARGUMENT);
     assert_story(&s->h, "create it with a surface");
     camber_mesh_destroy(d.mesh);
     camber_renderer_destroy(alone);
@@ -467,7 +471,8 @@ typedef struct victim {
 } victim;
 
 static camber_status attempt(const victim *v) {
-    return camber_render_texture(v->renderer, &v->d.frame, &(camber_texture){.name = v->name, .bottom_up = true}, NULL);
+    return camber_renderer_render_texture(v->renderer, &v->d.frame,
+                                          &(camber_texture){.name = v->name, .bottom_up = true}, NULL);
 }
 
 /* The n-th call fails for every n; what comes after is whole. */
@@ -506,7 +511,7 @@ static void check_loss(victim *v) {
     assert_story(&v->s->h, "lost");
     fault_off();
     /* Kernels still draw rows. */
-    if (camber_renderer_get_draw(v->renderer) == CAMBER_DRAW_CL) {
+    if (camber_renderer_get_rasterizer(v->renderer) == CAMBER_RASTERIZER_OPENCL) {
         picture p = picture_draw(v->renderer, &v->d.frame);
         turn_over(&p);
         picture_assert_same(&v->wanted, &p);
@@ -517,7 +522,7 @@ static void check_loss(victim *v) {
 static void test_faults(void **state) {
     studio *s = *state;
     for (size_t k = 0; k < KINDS * 2; k++) {
-        const camber_renderer_desc desc = {.draw = KIND[k % KINDS],
+        const camber_renderer_desc desc = {.rasterizer = KIND[k % KINDS],
                                            .sharing = k < KINDS ? CAMBER_SHARING_COPY : CAMBER_SHARING_AUTO};
         victim v = {.s = s};
         if (camber_surface_create(s->context, NULL, &v.surface) != CAMBER_OK)
@@ -540,14 +545,15 @@ static void test_faults(void **state) {
 
 static camber_status attempt_all(camber_context *context, void *user) {
     victim *v = user;
-    const camber_renderer_desc desc = {.draw = CAMBER_DRAW_CL};
+    const camber_renderer_desc desc = {.rasterizer = CAMBER_RASTERIZER_OPENCL};
     camber_renderer *renderer = NULL;
     camber_mesh *mesh = v->d.mesh;
     (void)context;
     camber_status status = camber_renderer_create(v->s->device, v->surface, &desc, &renderer);
     if (status == CAMBER_OK) {
         mesh->renderer = renderer; /* it is the kernels' alike */
-        status = camber_render_texture(renderer, &v->d.frame, &(camber_texture){.name = v->name, .keep = true}, NULL);
+        status = camber_renderer_render_texture(renderer, &v->d.frame, &(camber_texture){.name = v->name, .keep = true},
+                                                NULL);
     }
     camber_renderer_destroy(renderer);
     mesh->renderer = v->renderer;
@@ -556,7 +562,7 @@ static camber_status attempt_all(camber_context *context, void *user) {
 
 static void test_memory(void **state) {
     studio *s = *state;
-    const camber_renderer_desc desc = {.draw = CAMBER_DRAW_CL};
+    const camber_renderer_desc desc = {.rasterizer = CAMBER_RASTERIZER_OPENCL};
     victim v = {.s = s, .surface = s->surface[0] ? s->surface[0] : s->surface[1]};
     assert_int_equal(camber_renderer_create(s->device, v.surface, &desc, &v.renderer), CAMBER_OK);
     begin_drawing(s, v.renderer, &v.d);

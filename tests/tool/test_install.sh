@@ -29,7 +29,7 @@ int main(void) {
     camber_mesh_data mesh;
     if (camber_context_create(NULL, &context) != CAMBER_OK ||
         camber_polylines_create(context, &(camber_polylines_desc){points, 3, offsets, 1, NULL, false}, &lines) != CAMBER_OK ||
-        camber_tessellate_on_host(context, lines, &(camber_tessellation_desc){&stroke, 1, CAMBER_METHOD_STRIP, 0}, &mesh))
+        camber_mesh_data_tessellate(context, lines, &(camber_tessellation_desc){&stroke, 1, CAMBER_METHOD_STRIP, 0}, &mesh))
         return 1;
     printf("%s: %zu vertices\n", camber_version(), mesh.info.vertex_count);
     return mesh.info.vertex_count == 6 ? 0 : 1;
@@ -41,7 +41,7 @@ int main(void) {
     camber_context *context;
     camber_style *style;
     if (camber_context_create(NULL, &context) != CAMBER_OK ||
-        camber_style_builtin(context, CAMBER_THEME_DARK, &style) != CAMBER_OK)
+        camber_style_create_builtin(context, CAMBER_THEME_DARK, &style) != CAMBER_OK)
         return 1;
     camber_style_destroy(style);
     camber_context_destroy(context);

@@ -89,7 +89,7 @@ static void test_meshes(void **state) {
     for (int method = 0; method < 3; method++) {
         const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)method, 0, false};
         camber_mesh_data mesh;
-        assert_int_equal(camber_tessellate_on_host(context, polylines, &desc, &mesh), CAMBER_OK);
+        assert_int_equal(camber_mesh_data_tessellate(context, polylines, &desc, &mesh), CAMBER_OK);
         assert_true(mesh.info.vertex_count > 10000 && mesh.info.vertex_count < CAMBER_BATCH_VERTICES);
         assert_int_equal(camber_batches_count(&mesh, CAMBER_BATCH_VERTICES), 1);
         for (uint32_t most = 200; most < 12000; most = most * 3 / 2) {

@@ -267,7 +267,7 @@ static camber_mesh_data tessellate(const fixture *f, const camber_polylines_desc
     assert_int_equal(camber_polylines_create(f->context, lines, &polylines), CAMBER_OK);
     camber_mesh_data mesh;
     const camber_tessellation_desc desc = {.strokes = strokes, .stroke_count = stroke_count, .method = method};
-    assert_int_equal(camber_tessellate_on_host(f->context, polylines, &desc, &mesh), CAMBER_OK);
+    assert_int_equal(camber_mesh_data_tessellate(f->context, polylines, &desc, &mesh), CAMBER_OK);
     camber_polylines_destroy(polylines);
     return mesh;
 }

@@ -13,7 +13,7 @@ static found find(camber_context *context, const scene *lines, const camber_stro
     found f = {0};
     camber_polylines *polylines = scene_polylines(context, lines);
     const camber_tessellation_desc desc = {strokes, SCENE_ROWS, method, 0, false};
-    assert_int_equal(camber_tessellate_on_host(context, polylines, &desc, &f.mesh), CAMBER_OK);
+    assert_int_equal(camber_mesh_data_tessellate(context, polylines, &desc, &f.mesh), CAMBER_OK);
     assert_true(camber_joins_find(&f.mesh, strokes, &f.joins));
     for (size_t i = 0; i < f.joins.count; i++) {
         f.rooms[f.joins.items[i].room]++;
@@ -71,8 +71,8 @@ static void test_counts(void **state) {
                 assert_in_range(info->joins, f.joins.count + seams, f.joins.count + seams + (which == 4 ? 4 : 0));
             }
             printf("scene %zu %-5s joins %6zu of %6zu  plain %5zu tight %5zu of %5zu split %5zu of %5zu seams %zu\n",
-                   which, camber_method_name((camber_method)method), f.joins.count, info->joins, f.rooms[0], f.rooms[1],
-                   info->tight_joins, f.rooms[2], info->split_joins, f.seams);
+                   which, camber_method_get_name((camber_method)method), f.joins.count, info->joins, f.rooms[0],
+                   f.rooms[1], info->tight_joins, f.rooms[2], info->split_joins, f.seams);
             forget(context, &f);
         }
         scene_free(&lines);

@@ -26,7 +26,7 @@ static camber_mesh_data tessellate(camber_context *context, const camber_polylin
                                    const camber_stroke *strokes, camber_method method) {
     camber_mesh_data data;
     const camber_tessellation_desc desc = {strokes, SCENE_ROWS, method, 0, false};
-    assert_int_equal(camber_tessellate_on_host(context, polylines, &desc, &data), CAMBER_OK);
+    assert_int_equal(camber_mesh_data_tessellate(context, polylines, &desc, &data), CAMBER_OK);
     return data;
 }
 
@@ -379,7 +379,7 @@ static void test_fan_tolerance(void **state) {
         const camber_stroke stroke = {60, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0};
         camber_mesh_data mesh;
         assert_int_equal(
-            camber_tessellate_on_host(
+            camber_mesh_data_tessellate(
                 context, p, &(camber_tessellation_desc){&stroke, 1, CAMBER_METHOD_FAN, tolerances[i], false}, &mesh),
             CAMBER_OK);
         const double reach = 30.75, tolerance = tolerances[i] > 0 ? (double)tolerances[i] : 0.25;

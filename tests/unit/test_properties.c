@@ -10,7 +10,7 @@ static camber_stages stages_of(camber_context *context, const property_case *c) 
     const camber_tessellation_desc desc = {&c->stroke, 1, c->method, 0, false};
     camber_polylines *polylines = property_polylines(context, c);
     camber_stages stages;
-    assert_int_equal(camber_stages_on_host(context, polylines, &desc, &stages), CAMBER_OK);
+    assert_int_equal(camber_stages_tessellate(context, polylines, &desc, &stages), CAMBER_OK);
     camber_polylines_destroy(polylines);
     return stages;
 }

@@ -98,7 +98,7 @@ static camber_status read_path(fixture *it, const char *path) {
 
 static void expect_ok(const fixture *it, camber_status status) {
     if (status != CAMBER_OK)
-        fail_msg("%s: %s", camber_status_name(status), it->error);
+        fail_msg("%s: %s", camber_status_get_name(status), it->error);
 }
 
 /* Reads a GeoJSON of one geometry into an empty set. */
@@ -168,7 +168,7 @@ static void check_tiles(fixture *it, const char *path, size_t ids, double length
 static void test_osm_tiles(void **state) {
     fixture *it = *state;
     check_tiles(it, CAMBER_TEST_DATA "/santa_cruz/osm.mbtiles", 10930, 5312697.096, TYPE);
-    assert_null(camber_features_attribution(it->features)); /* its metadata does not say whose it is */
+    assert_null(camber_features_get_attribution(it->features)); /* its metadata does not say whose it is */
     assert_string_equal(it->features->layer_names[0], "roads");
     /* Numbers stay numbers. */
     assert_int_equal(value_of(it->features, 0, BRIDGE)->type, CAMBER_VALUE_NUMBER);
@@ -179,7 +179,7 @@ static void test_osm_tiles(void **state) {
 static void test_tiger_tiles(void **state) {
     fixture *it = *state;
     check_tiles(it, CAMBER_TEST_DATA "/santa_cruz/tiger.mbtiles", 14069, 3323175.326, MTFCC);
-    assert_null(camber_features_attribution(it->features));
+    assert_null(camber_features_get_attribution(it->features));
 }
 
 /* Its buildings have five features that OGR cannot parse. */
@@ -240,7 +240,7 @@ static void test_real_files(void **state) {
         assert_int_equal(count_with(set, HIGHWAY), files[i].ways - files[i].lost);
         if (files[i].points)
             assert_int_equal(points, files[i].points);
-        const char *attribution = camber_features_attribution(set);
+        const char *attribution = camber_features_get_attribution(set);
         assert_string_equal(
             attribution ? attribution : "none",
             strstr(files[i].name, ".osm") || strstr(files[i].name, "_osm") ? "(c) OpenStreetMap contributors" : "none");
@@ -264,7 +264,7 @@ static void test_real_shapefile(void **state) {
     assert_int_equal(set->point_count, 108927);
     assert_int_equal(count_with(set, PLAIN), 29834); /* no attributes */
     assert_true(value_of(set, 0, PLAIN)->boolean);
-    assert_null(camber_features_attribution(set));
+    assert_null(camber_features_get_attribution(set));
     /* UTM becomes Pittsburgh: 40.44 N, 80.0 W. */
     double longitude, latitude;
     camber_mercator_unproject(set->points[0], set->points[1], &longitude, &latitude);
@@ -449,7 +449,7 @@ static void test_osm(void **state) {
     assert_int_equal(count_with(set, HIGHWAY), 2);
     assert_string_equal(value_of(set, 0, BRIDGE)->string, "yes");
     assert_string_equal(value_of(set, 3, LAYER)->string, "-1");
-    assert_string_equal(camber_features_attribution(set), "(c) OpenStreetMap contributors");
+    assert_string_equal(camber_features_get_attribution(set), "(c) OpenStreetMap contributors");
 
     it->style.wants_polygons = true;
     start_again(it);
@@ -521,7 +521,8 @@ static void test_conversions(void **state) {
 
 static void expect_failure(fixture *it, camber_status expected, camber_status got) {
     if (got != expected)
-        fail_msg("%s: %s and not %s (%s)", it->path, camber_status_name(got), camber_status_name(expected), it->error);
+        fail_msg("%s: %s and not %s (%s)", it->path, camber_status_get_name(got), camber_status_get_name(expected),
+                 it->error);
     assert_int_equal(it->errors, 1);
     assert_int_equal(it->features->feature_count, 0);
     assert_int_equal(it->features->point_count, 0);
@@ -600,7 +601,7 @@ static void test_cut_files(void **state) {
             start_again(it);
             const camber_status status = read_path(it, write_file(it, names[i], bytes, size / 8 * cut + 1));
             if (status != CAMBER_ERROR_INPUT)
-                fail_msg("%s cut at %zu / 8: %s", names[i], cut, camber_status_name(status));
+                fail_msg("%s cut at %zu / 8: %s", names[i], cut, camber_status_get_name(status));
             assert_int_equal(it->errors, 1);
         }
         uint32_t random = 7;
@@ -665,13 +666,13 @@ static void test_progress_and_formats(void **state) {
     camber_features_destroy(features);
     camber_context_destroy(context);
     bool osm = false, geojson = false;
-    for (size_t n = 0; camber_format_name(n); n++) {
-        osm = osm || strcmp(camber_format_name(n), "OSM") == 0;
-        geojson = geojson || strcmp(camber_format_name(n), "GeoJSON") == 0;
+    for (size_t n = 0; camber_format_list(n); n++) {
+        osm = osm || strcmp(camber_format_list(n), "OSM") == 0;
+        geojson = geojson || strcmp(camber_format_list(n), "GeoJSON") == 0;
         assert_true(n < 1000);
     }
     assert_true(osm && geojson);
-    assert_int_equal(strncmp(camber_gdal_version(), "GDAL ", 5), 0);
+    assert_int_equal(strncmp(camber_gdal_get_version(), "GDAL ", 5), 0);
 }
 
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)

@@ -92,7 +92,7 @@ static camber_status read_view(fixture *it, const char *sources, const char *lay
 
 static void expect_ok(const fixture *it, camber_status status) {
     if (status != CAMBER_OK || it->errors)
-        fail_msg("%s: %s", camber_status_name(status), it->error);
+        fail_msg("%s: %s", camber_status_get_name(status), it->error);
 }
 
 static const char *in_folder(const fixture *it, const char *name, char path[256]) {
@@ -173,7 +173,7 @@ static void expect_bent(fixture *it, const char *source) {
 }
 
 static void expect_attribution(const fixture *it, const char *text) {
-    const char *got = camber_features_attribution(it->features);
+    const char *got = camber_features_get_attribution(it->features);
     if (text)
         assert_string_equal(got, text);
     else
@@ -245,7 +245,7 @@ static void test_archives(void **state) {
     /* As input, too: both are read whole. */
     for (int i = 0; i < 2; i++) {
         forget(it);
-        assert_int_equal(camber_style_builtin(it->context, CAMBER_THEME_LIGHT, &it->style), CAMBER_OK);
+        assert_int_equal(camber_style_create_builtin(it->context, CAMBER_THEME_LIGHT, &it->style), CAMBER_OK);
         assert_int_equal(camber_features_create(it->context, it->style, &it->features), CAMBER_OK);
         const camber_source_desc desc = {.path = in_folder(it, i ? "a.pmtiles" : "a.mbtiles", path)};
         assert_false(camber_source_needs_gdal(&desc));
@@ -399,7 +399,7 @@ static void write_some_damaged(const fixture *it, int damaged, const char *metad
 static camber_status read_input(fixture *it, const char *name) {
     char path[256];
     forget(it);
-    assert_int_equal(camber_style_builtin(it->context, CAMBER_THEME_LIGHT, &it->style), CAMBER_OK);
+    assert_int_equal(camber_style_create_builtin(it->context, CAMBER_THEME_LIGHT, &it->style), CAMBER_OK);
     assert_int_equal(camber_features_create(it->context, it->style, &it->features), CAMBER_OK);
     it->warnings = 0;
     return camber_features_read(it->features, &(camber_source_desc){.path = in_folder(it, name, path)});
@@ -408,7 +408,8 @@ static camber_status read_input(fixture *it, const char *name) {
 static void expect_damage(const fixture *it, camber_status status) {
     if (status != CAMBER_ERROR_INPUT || it->errors != 1 || it->warnings ||
         !strstr(it->error, ": no feature can be read: tile 1/") || !strstr(it->error, "its compression is cut off; "))
-        fail_msg("%s: %zu errors: %s, %zu warnings", camber_status_name(status), it->errors, it->error, it->warnings);
+        fail_msg("%s: %zu errors: %s, %zu warnings", camber_status_get_name(status), it->errors, it->error,
+                 it->warnings);
     assert_int_equal(it->features->feature_count, 0);
     assert_int_equal(it->features->stats.damaged_features, 0);
 }
@@ -454,7 +455,7 @@ static void expect_error(fixture *it, camber_status expected, const char *source
     const camber_status status = read_view(it, source, LINES, &view);
     if (status != expected || it->errors != 1 ||
         !(strstr(it->error, "\"s\"") || strstr(it->error, "style.json: /sources/s: ")) || !strstr(it->error, word))
-        fail_msg("%s: %s: %s", source, camber_status_name(status), it->error);
+        fail_msg("%s: %s: %s", source, camber_status_get_name(status), it->error);
     assert_int_equal(it->features->polyline_count, 0);
     assert_int_equal(it->features->feature_count, 0);
 }

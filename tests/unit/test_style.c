@@ -266,7 +266,7 @@ static void test_builtin(void **state) {
         fixture f;
         setup(&f);
         const camber_theme which = theme ? CAMBER_THEME_DARK : CAMBER_THEME_LIGHT;
-        assert_int_equal(camber_style_builtin(f.context, which, &f.style), CAMBER_OK);
+        assert_int_equal(camber_style_create_builtin(f.context, which, &f.style), CAMBER_OK);
         assert_int_equal(f.error_count + f.warning_count, 0);
         assert_false(f.style->wants_polygons);
         check_order(f.style);
@@ -383,7 +383,7 @@ static void test_plain(void **state) {
         teardown(&f);
     }
     setup(&f);
-    assert_int_equal(camber_style_builtin(f.context, CAMBER_THEME_LIGHT, &f.style), CAMBER_OK);
+    assert_int_equal(camber_style_create_builtin(f.context, CAMBER_THEME_LIGHT, &f.style), CAMBER_OK);
     assert_true(camber_style_is_plain(f.style, (double)NAN));
     teardown(&f);
 }

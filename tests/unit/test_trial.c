@@ -92,7 +92,7 @@ static void check_sample(const sample *s) {
              s->feature ? s->feature : "{}");
     json_t *answer = ask(text, &status);
     if (!answer)
-        fail_msg("%s: %s", text, camber_status_name(status));
+        fail_msg("%s: %s", text, camber_status_get_name(status));
     const json_t *compiled = json_object_get(answer, "compiled");
     const char *result = json_string_value(json_object_get(compiled, "result"));
     if (strcmp(result, s->output ? "success" : "error") != 0) {
@@ -505,7 +505,7 @@ static void run_specification_test(const char *path, const char *name) {
     assert_non_null(text);
     json_t *answer = ask(text, &status);
     if (!answer)
-        fail_msg("%s: %s", name, camber_status_name(status));
+        fail_msg("%s: %s", name, camber_status_get_name(status));
     const json_t *compiled = json_object_get(answer, "compiled"), *wanted = json_object_get(expected, "compiled");
     static const char *const members[] = {"result", "type", "isFeatureConstant", "isZoomConstant"};
     for (size_t i = 0; i < sizeof members / sizeof *members; i++)

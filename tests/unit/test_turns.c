@@ -49,7 +49,7 @@ static void test_sums(void **state) {
             for (int i = 0; i < CAMBER_TURN_CLASSES; i++)
                 sum += counts[i];
             camber_mesh_data mesh;
-            assert_int_equal(camber_tessellate_on_host(context, polylines, &desc, &mesh), CAMBER_OK);
+            assert_int_equal(camber_mesh_data_tessellate(context, polylines, &desc, &mesh), CAMBER_OK);
             assert_int_equal(sum, mesh.info.joins);
             camber_mesh_data_free(context, &mesh);
             camber_polylines_destroy(polylines);

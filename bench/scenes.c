@@ -22,11 +22,11 @@ static double uniform(uint64_t *state) {
 
 static bool make_walks(camber_context *context, size_t polyline_count, double step_px, camber_lines *lines) {
     uint64_t state = 88172645463325252ull;
-    camber_lines made = {.polyline_count = polyline_count};
+    camber_lines made = {.context = context, .polyline_count = polyline_count};
     made.offsets = camber_alloc(context, polyline_count + 1, sizeof *made.offsets);
     made.points = camber_alloc(context, polyline_count * WALK_POINTS_MAX, 2 * sizeof *made.points);
     if (!made.offsets || !made.points) {
-        camber_lines_free(context, &made);
+        camber_lines_destroy(&made);
         return false;
     }
     for (size_t i = 0; i < polyline_count; i++) {
@@ -152,7 +152,7 @@ static double middle_of(const city *c, size_t axis, double *sorted, double *low)
 /* The middle 99 % of the points on each axis span the square; the rest lies outside. */
 static bool fit(const city *c, camber_lines *lines) {
     double *sorted = camber_alloc(c->context, c->point_count, sizeof *sorted);
-    camber_lines made = {.point_count = c->point_count, .polyline_count = c->polyline_count};
+    camber_lines made = {.context = c->context, .point_count = c->point_count, .polyline_count = c->polyline_count};
     made.points = camber_alloc(c->context, c->point_count, 2 * sizeof *made.points);
     made.offsets = camber_alloc(c->context, c->polyline_count + 1, sizeof *made.offsets);
     const bool done = sorted && made.points && made.offsets;
@@ -165,7 +165,7 @@ static bool fit(const city *c, camber_lines *lines) {
         memcpy(made.offsets, c->offsets, (c->polyline_count + 1) * sizeof *made.offsets);
         *lines = made;
     } else {
-        camber_lines_free(c->context, &made);
+        camber_lines_destroy(&made);
     }
     camber_free(c->context, sorted);
     return done;
@@ -270,6 +270,6 @@ const bench_scene *bench_scene_find(const bench *b, const char *key) {
 
 void bench_scenes_free(bench *b) {
     for (size_t i = 0; i < b->scene_count; i++)
-        camber_lines_free(b->context, &b->scenes[i].lines);
+        camber_lines_destroy(&b->scenes[i].lines);
     b->scene_count = 0;
 }

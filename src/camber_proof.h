@@ -64,8 +64,9 @@ typedef enum camber_end {
 
 #define CAMBER_RESTART_INDEX 0xffffffffu
 
-/* A mesh in host memory; free with camber_mesh_data_free. */
+/* A mesh in host memory, which camber_mesh_data_destroy frees. */
 typedef struct camber_mesh_data {
+    camber_context *context; /* which allocated the arrays. NULL: they are the caller's, and destroy leaves them */
     camber_mesh_info info;
     /* What the device has: info.record_count, and of kite and fan info.index_count, record << 7 | corner
      * (CAMBER_CORNER_* in kernels/layout.h); NULL of strips. */
@@ -88,7 +89,7 @@ CAMBER_API camber_status camber_mesh_read(camber_mesh *mesh, camber_mesh_data *d
 /* The CPU twin: the same bytes as camber_mesh_tessellate where the device rounds correctly. Needs no device. */
 CAMBER_API camber_status camber_mesh_data_tessellate(camber_context *context, const camber_polylines *polylines,
                                                      const camber_tessellation_desc *desc, camber_mesh_data *data);
-CAMBER_API void camber_mesh_data_free(camber_context *context, camber_mesh_data *data);
+CAMBER_API void camber_mesh_data_destroy(camber_mesh_data *data);
 
 /* ---- Networks: what a camera makes of them ---------------------------------------------------------- */
 
@@ -97,11 +98,9 @@ CAMBER_API void camber_mesh_data_free(camber_context *context, camber_mesh_data 
 CAMBER_API camber_status camber_network_project(const camber_network *network, const camber_camera *camera,
                                                 const camber_tessellation_desc *desc, camber_polylines **polylines);
 /* The same polylines with each piece by itself and without entries of which nothing is seen; a ring that is cut begins
- * at a cut. *entries is the entry of each; free it with camber_entries_free. */
+ * at a cut. */
 CAMBER_API camber_status camber_network_project_lines(const camber_network *network, const camber_camera *camera,
-                                                      const camber_tessellation_desc *desc, camber_lines *lines,
-                                                      uint32_t **entries);
-CAMBER_API void camber_entries_free(camber_context *context, uint32_t *entries);
+                                                      const camber_tessellation_desc *desc, camber_lines *lines);
 
 /* ---- Stages: what came before the mesh ----------------------------------------------------------- */
 
@@ -115,8 +114,9 @@ typedef struct camber_point_stages {
     uint64_t first_index;  /* and its indices */
 } camber_point_stages;
 
-/* Free with camber_stages_free. */
+/* What a call makes is freed by camber_stages_destroy. */
 typedef struct camber_stages {
+    camber_context *context; /* which allocated the array. NULL: nothing is there */
     camber_point_stages *points; /* point_count, in input order; rings have their first point again at the end */
     size_t point_count;
 } camber_stages;
@@ -126,13 +126,14 @@ CAMBER_API camber_status camber_mesh_read_stages(camber_mesh *mesh, camber_stage
 /* The CPU twin's. */
 CAMBER_API camber_status camber_stages_tessellate(camber_context *context, const camber_polylines *polylines,
                                                   const camber_tessellation_desc *desc, camber_stages *stages);
-CAMBER_API void camber_stages_free(camber_context *context, camber_stages *stages);
+CAMBER_API void camber_stages_destroy(camber_stages *stages);
 
 /* ---- Stages of drawing: what CAMBER_RASTERIZER_OPENCL's kernels found for a frame ------------------------------ */
 
-/* Of a frame's first area, which is all of it up to 16 M px and 8192 px a side. Tiles are 32 px square. Free with
- * camber_drawing_stages_free. */
+/* Of a frame's first area, which is all of it up to 16 M px and 8192 px a side. Tiles are 32 px square.
+ * camber_drawing_stages_destroy frees it. */
 typedef struct camber_drawing_stages {
+    camber_context *context; /* which allocated the arrays. NULL: nothing is there */
     /* shape: what each record of the passes, in drawing order, ends, rounded up to sixteens for each part of a mesh:
      * shape_words floats and bits that tiles and pixels are drawn from, of what is drawn, and the tiles of its box, a
      * byte each: the first one's column, its row, the last one's column, its row. Where the last column lies before the
@@ -158,7 +159,7 @@ CAMBER_API camber_status camber_renderer_read_stages(camber_renderer *renderer, 
 /* The CPU twin's, from the records that the device has: the same bytes, but for shapes that are not drawn. */
 CAMBER_API camber_status camber_drawing_stages_rasterize(camber_renderer *renderer, const camber_frame *frame,
                                                          camber_drawing_stages *stages);
-CAMBER_API void camber_drawing_stages_free(camber_context *context, camber_drawing_stages *stages);
+CAMBER_API void camber_drawing_stages_destroy(camber_drawing_stages *stages);
 
 /* ---- Overdraw: what the GPU does for a mesh, counted on it ----------------------------------------- */
 

@@ -154,7 +154,6 @@ static bool stages_differ(const camber_drawing_stages *got, const camber_drawing
 
 static camber_status compare(const camber_validation *v, const camber_subject *s, const camber_path *path, int variant,
                              camber_check *check) {
-    camber_context *context = v->session->context;
     camber_drawing_stages got = {0}, expected = {0};
     drawn d;
     if (!make_frame(s, v->session->options, path->mesh, variant, &d))
@@ -164,8 +163,8 @@ static camber_status compare(const camber_validation *v, const camber_subject *s
         status = camber_drawing_stages_rasterize(path->renderer, &d.frame, &expected);
     if (status == CAMBER_OK && stages_differ(&got, &expected, &check->finding))
         check->verdict = CAMBER_VERDICT_FAILED;
-    camber_drawing_stages_free(context, &got);
-    camber_drawing_stages_free(context, &expected);
+    camber_drawing_stages_destroy(&got);
+    camber_drawing_stages_destroy(&expected);
     free(d.paints);
     return status;
 }

@@ -71,7 +71,7 @@ static camber_status compare_mesh(job *j, camber_mesh *mesh, const camber_sight 
     const camber_status status = see_mesh(mesh, j->s, &j->desc, with_stages, &got);
     if (status == CAMBER_OK && camber_sights_differ(&got, expected, &check->finding))
         check->verdict = CAMBER_VERDICT_FAILED;
-    camber_sight_close(j->v->session->context, &got);
+    camber_sight_close(&got);
     return status;
 }
 
@@ -119,7 +119,7 @@ static int check_twin(job *j, size_t number) {
     }
     if (status == CAMBER_EXIT_DONE)
         camber_verdicts_add(&j->v->verdicts, &check);
-    camber_sight_close(j->v->session->context, &twin);
+    camber_sight_close(&twin);
     free(strokes);
     return status;
 }
@@ -229,7 +229,7 @@ static int check_ways(job *j) {
     int status = camber_report_status(j->v->session->report, seen);
     for (int way = 0; way < WAYS && status == CAMBER_EXIT_DONE; way++)
         status = check_way(j, way, &first);
-    camber_sight_close(j->v->session->context, &first);
+    camber_sight_close(&first);
     free(strokes);
     return status;
 }

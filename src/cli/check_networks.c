@@ -164,7 +164,7 @@ static int check_window(job *j, const camber_subject *s) {
                  at->polyline, at->point, x, y, out, most);
         break;
     }
-    camber_stages_free(j->v->session->context, &stages);
+    camber_stages_destroy(&stages);
     camber_verdicts_add(&j->v->verdicts, &check);
     return status;
 }

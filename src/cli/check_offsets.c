@@ -104,7 +104,7 @@ static int check_bend(camber_validation *v, const bend *b, double offset) {
         check.verdict = CAMBER_VERDICT_FAILED;
         snprintf(check.finding.what, sizeof check.finding.what, "offset: the line is gone");
     }
-    camber_stages_free(v->session->context, &stages);
+    camber_stages_destroy(&stages);
     camber_polylines_destroy(polylines);
     const int status = camber_report_status(v->session->report, made);
     if (status == CAMBER_EXIT_DONE)

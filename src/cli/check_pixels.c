@@ -118,16 +118,15 @@ static bool first_pixel(const job *j, const uint8_t *first, const uint8_t *secon
     return false;
 }
 
-static camber_status meshes_differ(job *j, camber_easel *easel, size_t path, camber_finding *finding, bool *differ) {
-    camber_context *context = j->v->session->context;
+static camber_status meshes_differ(camber_easel *easel, size_t path, camber_finding *finding, bool *differ) {
     camber_sight first = {0}, other = {0};
     camber_status status = camber_sight_read(easel->paths[0].mesh, true, &first);
     if (status == CAMBER_OK)
         status = camber_sight_read(easel->paths[path].mesh, false, &other);
     if (status == CAMBER_OK)
         *differ = camber_sights_differ(&other, &first, finding);
-    camber_sight_close(context, &first);
-    camber_sight_close(context, &other);
+    camber_sight_close(&first);
+    camber_sight_close(&other);
     return status;
 }
 
@@ -140,7 +139,7 @@ static int check_path(job *j, camber_easel *easel, size_t path) {
     size_t pixel = 0;
     camber_status drawn = draw(j, &easel->paths[path], CAMBER_OVERLAP_FLATTEN, j->other);
     if (drawn == CAMBER_OK)
-        drawn = meshes_differ(j, easel, path, &check.finding, &differ);
+        drawn = meshes_differ(easel, path, &check.finding, &differ);
     int status = camber_report_status(j->v->session->report, drawn);
     if (status != CAMBER_EXIT_DONE)
         return status;
@@ -286,7 +285,7 @@ static camber_status find_bounds(job *j) {
     const camber_status status = camber_mesh_data_tessellate(context, j->s->polylines, &j->desc, &twin);
     const double joins = (double)(twin.info.joins ? twin.info.joins : 1);
     const double share = (double)(twin.info.tight_joins + twin.info.split_joins) / joins;
-    camber_mesh_data_free(context, &twin);
+    camber_mesh_data_destroy(&twin);
     camber_bounds_of_pixels(j->s->scene, share, coverage_of(j), &j->bounds);
     if (j->s->network && j->s->camera.simplify_px > 0)
         j->bounds = camber_bounds_of_simplified(j->bounds);

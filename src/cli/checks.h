@@ -78,7 +78,7 @@ typedef struct camber_sight {
 } camber_sight;
 
 camber_status camber_sight_read(camber_mesh *mesh, bool with_stages, camber_sight *sight);
-void camber_sight_close(camber_context *context, camber_sight *sight);
+void camber_sight_close(camber_sight *sight);
 
 /* The first element where what was got differs from what was expected, with its stage; false: none does. expected
  * has its stages, which tell whose a vertex is. */

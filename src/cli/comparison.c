@@ -217,7 +217,7 @@ static camber_status try_method(const trial *t) {
         status = count_pixels(t, &mesh);
     else
         leave_out_gl(t);
-    camber_mesh_data_free(t->comparison->session->context, &mesh);
+    camber_mesh_data_destroy(&mesh);
     return status;
 }
 

@@ -100,13 +100,13 @@ static bool shift_lines(const camber_lines *lines, const camber_finding *finding
 }
 
 /* Whether GL can be given the mesh: its indices lead to vertices. */
-static camber_status look_at_indices(camber_context *context, camber_mesh *mesh, bool *sound) {
+static camber_status look_at_indices(camber_mesh *mesh, bool *sound) {
     camber_mesh_data data = {0};
     const camber_status status = camber_mesh_read(mesh, &data);
     *sound = status == CAMBER_OK;
     for (size_t i = 0; *sound && i < data.info.index_count; i++)
         *sound = data.indices[i] < data.info.vertex_count || data.indices[i] == CAMBER_RESTART_INDEX;
-    camber_mesh_data_free(context, &data);
+    camber_mesh_data_destroy(&data);
     return status;
 }
 
@@ -121,7 +121,7 @@ static camber_status draw_subject(camber_validation *v, const camber_path *path,
     camber_status status = camber_subject_tessellate(subject, path->mesh, desc);
     bool sound = false;
     if (status == CAMBER_OK)
-        status = look_at_indices(v->session->context, path->mesh, &sound);
+        status = look_at_indices(path->mesh, &sound);
     if (status == CAMBER_OK && sound)
         status = camber_draw_levels(path, &drawing, levels);
     return status;

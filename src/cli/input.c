@@ -95,7 +95,7 @@ static camber_status project_polylines(camber_input *input) {
     camber_context *context = input->session->context;
     const double simplify_px = input->session->options->simplify_px;
     camber_polylines_destroy(input->polylines);
-    camber_lines_free(context, &input->simplified);
+    camber_lines_destroy(&input->simplified);
     input->polylines = NULL;
     if (simplify_px > 0) {
         const camber_status status = camber_lines_simplify(context, &input->lines, simplify_px, &input->simplified);
@@ -286,8 +286,8 @@ void camber_input_close(camber_input *input) {
     camber_style_destroy(input->style);
 #endif
     camber_polylines_destroy(input->polylines);
-    camber_lines_free(input->session->context, &input->simplified);
-    camber_lines_free(input->session->context, &input->lines);
+    camber_lines_destroy(&input->simplified);
+    camber_lines_destroy(&input->lines);
     *input = (camber_input){0};
 }
 

@@ -197,7 +197,7 @@ void camber_networks_close(camber_networks *networks) {
 #endif
     camber_polylines_destroy(networks->polylines);
     if (session->context)
-        camber_lines_free(session->context, &networks->simplified);
+        camber_lines_destroy(&networks->simplified);
     camber_input_close(&networks->input);
     *networks = (camber_networks){0};
 }

@@ -10,9 +10,9 @@ camber_status camber_sight_read(camber_mesh *mesh, bool with_stages, camber_sigh
     return status == CAMBER_OK ? camber_mesh_read(mesh, &sight->mesh) : status;
 }
 
-void camber_sight_close(camber_context *context, camber_sight *sight) {
-    camber_mesh_data_free(context, &sight->mesh);
-    camber_stages_free(context, &sight->stages);
+void camber_sight_close(camber_sight *sight) {
+    camber_mesh_data_destroy(&sight->mesh);
+    camber_stages_destroy(&sight->stages);
 }
 
 static void place(camber_finding *finding, const camber_point_stages *point) {

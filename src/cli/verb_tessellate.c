@@ -135,7 +135,7 @@ int camber_verb_tessellate(camber_session *session) {
         status = print_json(&j);
     else if (status == CAMBER_EXIT_DONE)
         print_text(&j);
-    camber_mesh_data_free(session->context, &j.data);
+    camber_mesh_data_destroy(&j.data);
     free(j.paints);
     camber_mesh_destroy(j.mesh);
     camber_input_close(&j.input);

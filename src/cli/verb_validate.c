@@ -54,7 +54,7 @@ static int check_builtin(camber_validation *v, size_t number) {
         const camber_subject s = {
             .name = scene.name,
             .scene = scene.name,
-            .lines = {scene.points, scene.offsets, scene.point_count, scene.polyline_count},
+            .lines = {.points = scene.points, .offsets = scene.offsets, .point_count = scene.point_count, .polyline_count = scene.polyline_count},
             .rows = scene.rows,
             .polylines = polylines,
             .strokes = builtin_strokes,

@@ -42,6 +42,7 @@ static camber_status read_stages(camber_renderer *renderer, const camber_frame *
         return status;
     }
     *stages = (camber_drawing_stages){
+        .context = renderer->share.device->context,
         .shapes = r.stages.shapes,
         .shape_words = CAMBER_SHAPE_WORDS,
         .measure_words = CAMBER_SHAPE_MEASURES,
@@ -71,7 +72,10 @@ camber_status camber_drawing_stages_rasterize(camber_renderer *renderer, const c
     return read_stages(renderer, frame, true, stages);
 }
 
-void camber_drawing_stages_free(camber_context *context, camber_drawing_stages *stages) {
+void camber_drawing_stages_destroy(camber_drawing_stages *stages) {
+    camber_context *context = stages->context;
+    if (!context)
+        return;
     camber_free(context, stages->shapes);
     camber_free(context, stages->boxes);
     camber_free(context, stages->arc_lengths);

@@ -44,12 +44,12 @@ camber_status camber_lines_parse(camber_context *context, const void *bytes, siz
     const camber_status status = check_file(context, file, size_bytes, name);
     if (status != CAMBER_OK)
         return status;
-    camber_lines made = {.polyline_count = get_u32(file + 4), .point_count = get_u32(file + 8)};
+    camber_lines made = {.context = context, .polyline_count = get_u32(file + 4), .point_count = get_u32(file + 8)};
     made.offsets = camber_alloc(context, made.polyline_count + 1, sizeof *made.offsets);
     if (made.offsets)
         made.points = camber_alloc(context, made.point_count, 2 * sizeof *made.points);
     if (!made.points) {
-        camber_lines_free(context, &made);
+        camber_lines_destroy(&made);
         return CAMBER_ERROR_MEMORY;
     }
     for (size_t i = 0; i <= made.polyline_count; i++)
@@ -63,7 +63,11 @@ camber_status camber_lines_parse(camber_context *context, const void *bytes, siz
     return CAMBER_OK;
 }
 
-void camber_lines_free(camber_context *context, camber_lines *lines) {
+void camber_lines_destroy(camber_lines *lines) {
+    camber_context *context = lines->context;
+    if (!context)
+        return;
+    camber_free(context, lines->entries);
     camber_free(context, lines->offsets);
     camber_free(context, lines->points);
     *lines = (camber_lines){0};

@@ -121,7 +121,7 @@ camber_status camber_lines_simplify(camber_context *context, const camber_lines 
         longest = count > longest ? count : longest;
     }
     camber_status status = CAMBER_ERROR_MEMORY;
-    camber_lines made = {.polyline_count = lines->polyline_count};
+    camber_lines made = {.context = context, .polyline_count = lines->polyline_count};
     double *points;
     unsigned char *keep = NULL;
     if (!(points = camber_alloc(context, longest, 2 * sizeof *points)) || !(keep = camber_alloc(context, longest, 1)) ||
@@ -139,7 +139,7 @@ camber_status camber_lines_simplify(camber_context *context, const camber_lines 
     made = (camber_lines){0};
     status = CAMBER_OK;
 done:
-    camber_lines_free(context, &made);
+    camber_lines_destroy(&made);
     camber_free(context, keep);
     camber_free(context, points);
     return status;

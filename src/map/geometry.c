@@ -170,7 +170,7 @@ static void count_set(const camber_features *features, const camber_geometry *ge
                       camber_seen *seen) {
     uint32_t before = UINT32_MAX, counted = UINT32_MAX;
     for (size_t i = first; i < end; i++) {
-        const uint32_t polyline = geometry->polylines[seen->entries[i]];
+        const uint32_t polyline = geometry->polylines[seen->lines.entries[i]];
         if (polyline == before)
             continue;
         before = polyline;
@@ -190,10 +190,10 @@ static camber_status fill_rows(const camber_geometry *geometry, const camber_pla
               camber_alloc(geometry->context, geometry->set_count + 1, sizeof *seen->first_polylines)))
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < count; i++)
-        seen->rows[i] = plan->pair_rows[geometry->pairs[seen->entries[i]]];
+        seen->rows[i] = plan->pair_rows[geometry->pairs[seen->lines.entries[i]]];
     size_t at = 0;
     for (size_t s = 0; s <= geometry->set_count; s++) {
-        while (at < count && seen->entries[at] < geometry->first_entries[s])
+        while (at < count && seen->lines.entries[at] < geometry->first_entries[s])
             at++;
         seen->first_polylines[s] = at;
     }
@@ -204,7 +204,7 @@ camber_status camber_geometry_see(const camber_features *features, const camber_
                                   const camber_plan *plan, const camber_camera *camera,
                                   const camber_tessellation_desc *desc, camber_seen *seen) {
     *seen = (camber_seen){.context = geometry->context};
-    camber_status status = camber_network_project_lines(geometry->network, camera, desc, &seen->lines, &seen->entries);
+    camber_status status = camber_network_project_lines(geometry->network, camera, desc, &seen->lines);
     if (status == CAMBER_OK)
         status = fill_rows(geometry, plan, seen);
     for (size_t s = 0; status == CAMBER_OK && s < geometry->set_count; s++)
@@ -217,7 +217,6 @@ void camber_seen_destroy(camber_seen *seen) {
         return;
     camber_free(seen->context, seen->first_polylines);
     camber_free(seen->context, seen->rows);
-    camber_entries_free(seen->context, seen->entries);
-    camber_lines_free(seen->context, &seen->lines);
+    camber_lines_destroy(&seen->lines);
     *seen = (camber_seen){0};
 }

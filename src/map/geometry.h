@@ -26,7 +26,7 @@ void camber_geometry_destroy(camber_geometry *geometry);
 typedef struct camber_seen {
     camber_context *context;
     camber_lines lines;
-    uint32_t *entries, *rows; /* of the polylines; rows are the plan's */
+    uint32_t *rows; /* of the polylines: the plan's */
     size_t *first_polylines;  /* set_count + 1 */
     size_t feature_count;     /* of which something is seen, a set */
     size_t points_in;         /* of the polylines of which something is seen */

@@ -119,7 +119,7 @@ static camber_status read_part(camber_mesh *mesh, size_t which, part_records *pa
         memcpy(made.records, data.records + from->first_record, kept * sizeof *made.records);
     if (made.arc_lengths)
         memcpy(made.arc_lengths, data.arc_lengths + from->first_record, kept * sizeof *made.arc_lengths);
-    camber_mesh_data_free(context, &data);
+    camber_mesh_data_destroy(&data);
     *part = made;
     return made.records && (made.arc_lengths || !has_arc_length) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
 }

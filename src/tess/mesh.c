@@ -225,7 +225,7 @@ static camber_status read_part(camber_mesh *mesh, camber_mesh_part *part, camber
 camber_status camber_mesh_read(camber_mesh *mesh, camber_mesh_data *data) {
     camber_context *context = mesh->device->context;
     camber_status status = count_joins(mesh);
-    camber_mesh_data made = {.info = mesh->mesh_info};
+    camber_mesh_data made = {.context = context, .info = mesh->mesh_info};
     if (status != CAMBER_OK)
         return status;
     made.records = camber_alloc(context, made.info.record_count, sizeof *made.records);
@@ -241,7 +241,7 @@ camber_status camber_mesh_read(camber_mesh *mesh, camber_mesh_data *data) {
     if (status == CAMBER_OK)
         status = camber_mesh_expand(context, mesh->host_rows, &made);
     if (status != CAMBER_OK) {
-        camber_mesh_data_free(context, &made);
+        camber_mesh_data_destroy(&made);
         return status;
     }
     *data = made;

@@ -126,7 +126,6 @@ camber_status camber_network_project(const camber_network *network, const camber
 typedef struct pieces {
     const camber_polylines *slots;
     camber_lines lines;
-    uint32_t *entries;
 } pieces;
 
 static void put_slot(pieces *p, size_t slot) {
@@ -137,7 +136,7 @@ static void put_slot(pieces *p, size_t slot) {
 
 /* The slots [first, last] are a piece. */
 static void begin_piece(pieces *p, size_t entry) {
-    p->entries[p->lines.polyline_count] = (uint32_t)entry;
+    p->lines.entries[p->lines.polyline_count] = (uint32_t)entry;
     p->lines.offsets[p->lines.polyline_count++] = (uint32_t)p->lines.point_count;
 }
 
@@ -173,8 +172,7 @@ static void put_entry(pieces *p, size_t entry) {
 }
 
 camber_status camber_network_project_lines(const camber_network *network, const camber_camera *camera,
-                                           const camber_tessellation_desc *desc, camber_lines *lines,
-                                           uint32_t **entries) {
+                                           const camber_tessellation_desc *desc, camber_lines *lines) {
     camber_context *context = network->context;
     camber_polylines *slots = NULL;
     camber_status status = camber_network_project(network, camera, desc, &slots);
@@ -183,24 +181,19 @@ camber_status camber_network_project_lines(const camber_network *network, const 
     size_t count = 0;
     for (size_t i = 0; i < slots->slot_count; i++)
         count += (slots->info[i + 1] & CAMBER_POINT_FIRST) != 0;
-    pieces p = {.slots = slots};
+    pieces p = {.slots = slots, .lines = {.context = context}};
     status = CAMBER_ERROR_MEMORY;
     if ((p.lines.points = camber_alloc(context, slots->stats.kept_points, 2 * sizeof *p.lines.points)) &&
         (p.lines.offsets = camber_alloc(context, count + 1, sizeof *p.lines.offsets)) &&
-        (p.entries = camber_alloc(context, count, sizeof *p.entries))) {
+        (p.lines.entries = camber_alloc(context, count, sizeof *p.lines.entries))) {
         for (size_t i = 0; i < network->entry_count; i++)
             put_entry(&p, i);
         p.lines.offsets[p.lines.polyline_count] = (uint32_t)p.lines.point_count;
         status = CAMBER_OK;
         *lines = p.lines;
-        *entries = p.entries;
     } else {
-        camber_lines_free(context, &p.lines);
+        camber_lines_destroy(&p.lines);
     }
     camber_polylines_destroy(slots);
     return status;
-}
-
-void camber_entries_free(camber_context *context, uint32_t *entries) {
-    camber_free(context, entries);
 }

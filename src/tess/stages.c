@@ -72,7 +72,7 @@ static camber_status append_points(const camber_mesh *mesh, const camber_mesh_pa
 }
 
 camber_status camber_mesh_read_stages(camber_mesh *mesh, camber_stages *stages) {
-    camber_stages made = {0};
+    camber_stages made = {.context = mesh->device->context};
     camber_status status = CAMBER_OK;
     for (size_t i = 0; i < mesh->part_count && mesh->done && status == CAMBER_OK; i++) {
         camber_mesh_part *part = mesh->parts + i;
@@ -101,14 +101,15 @@ camber_status camber_mesh_read_stages(camber_mesh *mesh, camber_stages *stages) 
         unmap(mesh, part->course.places, seen.places);
     }
     if (status != CAMBER_OK) {
-        camber_stages_free(mesh->device->context, &made);
+        camber_stages_destroy(&made);
         return status;
     }
     *stages = made;
     return CAMBER_OK;
 }
 
-void camber_stages_free(camber_context *context, camber_stages *stages) {
-    camber_free(context, stages->points);
+void camber_stages_destroy(camber_stages *stages) {
+    if (stages->context)
+        camber_free(stages->context, stages->points);
     *stages = (camber_stages){0};
 }

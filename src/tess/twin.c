@@ -254,6 +254,8 @@ static camber_status run(camber_context *context, const camber_polylines *polyli
     camber_status status = camber_rows_create(context, polylines->row_count, desc, &rows);
     if (status != CAMBER_OK)
         return status;
+    if (stages)
+        stages->context = context;
     camber_arc_length *arc_lengths = NULL;
     camber_polylines *beside = NULL;
     if (desc->has_arc_length)
@@ -263,6 +265,7 @@ static camber_status run(camber_context *context, const camber_polylines *polyli
         if (beside)
             polylines = beside;
     }
+    data->context = context;
     data->info = (camber_mesh_info){
         .method = desc->method, .strips = desc->method == CAMBER_METHOD_STRIP, .has_arc_length = desc->has_arc_length};
     twin t = {.polylines = polylines,
@@ -289,9 +292,9 @@ static camber_status run(camber_context *context, const camber_polylines *polyli
     camber_free(context, rows);
     if (status == CAMBER_OK)
         return status;
-    camber_mesh_data_free(context, data);
+    camber_mesh_data_destroy(data);
     if (stages)
-        camber_stages_free(context, stages);
+        camber_stages_destroy(stages);
     return status;
 }
 
@@ -309,13 +312,16 @@ camber_status camber_stages_tessellate(camber_context *context, const camber_pol
     camber_mesh_data mesh = {0};
     camber_stages made = {0};
     const camber_status status = run(context, polylines, desc, &mesh, &made);
-    camber_mesh_data_free(context, &mesh);
+    camber_mesh_data_destroy(&mesh);
     if (status == CAMBER_OK)
         *stages = made;
     return status;
 }
 
-void camber_mesh_data_free(camber_context *context, camber_mesh_data *data) {
+void camber_mesh_data_destroy(camber_mesh_data *data) {
+    camber_context *context = data->context;
+    if (!context)
+        return;
     camber_free(context, data->indices);
     camber_free(context, data->vertices);
     camber_free(context, data->corners);

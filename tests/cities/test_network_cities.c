@@ -59,10 +59,10 @@ static size_t compare(bench *b, camber_network *network, const camber_camera *ca
         if (expected.info.index_count)
             assert_memory_equal(got.indices, expected.indices, expected.info.index_count * sizeof *got.indices);
     }
-    camber_stages_free(b->context, &expected_stages);
-    camber_stages_free(b->context, &got_stages);
-    camber_mesh_data_free(b->context, &expected);
-    camber_mesh_data_free(b->context, &got);
+    camber_stages_destroy(&expected_stages);
+    camber_stages_destroy(&got_stages);
+    camber_mesh_data_destroy(&expected);
+    camber_mesh_data_destroy(&got);
     camber_polylines_destroy(twin);
     return records;
 }

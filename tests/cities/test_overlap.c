@@ -102,7 +102,7 @@ static drawing drawing_make(studio *s, const camber_polylines *polylines, float 
     assert_int_equal(camber_mesh_tessellate(d.mesh, polylines, &desc), CAMBER_OK);
     assert_int_equal(camber_mesh_read(d.mesh, &data), CAMBER_OK);
     assert_true(camber_joins_find(&data, &stroke, &d.joins));
-    camber_mesh_data_free(s->context, &data);
+    camber_mesh_data_destroy(&data);
     return d;
 }
 

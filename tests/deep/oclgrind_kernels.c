@@ -108,10 +108,10 @@ static bool check(camber_context *context, camber_mesh *mesh, const camber_polyl
                       camber_mesh_data_tessellate(context, polylines, desc, &twin) == CAMBER_OK &&
                       camber_stages_tessellate(context, polylines, desc, &twin_stages) == CAMBER_OK &&
                       same_meshes(&device, &twin) && same_stages(&device_stages, &twin_stages);
-    camber_stages_free(context, &twin_stages);
-    camber_stages_free(context, &device_stages);
-    camber_mesh_data_free(context, &twin);
-    camber_mesh_data_free(context, &device);
+    camber_stages_destroy(&twin_stages);
+    camber_stages_destroy(&device_stages);
+    camber_mesh_data_destroy(&twin);
+    camber_mesh_data_destroy(&device);
     return good;
 }
 
@@ -195,8 +195,8 @@ static int check_networks(camber_context *context, camber_mesh *mesh, const scen
         if (!good)
             printf("not ok - camera %zu\n", i);
         failures += !good;
-        camber_stages_free(context, &device);
-        camber_stages_free(context, &twin);
+        camber_stages_destroy(&device);
+        camber_stages_destroy(&twin);
         camber_polylines_destroy(seen);
     }
     camber_network_destroy(network);
@@ -211,8 +211,8 @@ static bool check_counts(camber_context *context, camber_mesh *mesh, const cambe
                       camber_mesh_read(mesh, &device) == CAMBER_OK &&
                       camber_mesh_data_tessellate(context, polylines, desc, &twin) == CAMBER_OK &&
                       device.info.record_count == twin.info.record_count;
-    camber_mesh_data_free(context, &twin);
-    camber_mesh_data_free(context, &device);
+    camber_mesh_data_destroy(&twin);
+    camber_mesh_data_destroy(&device);
     return good;
 }
 

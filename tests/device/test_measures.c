@@ -63,7 +63,7 @@ static void test_against_doubles(void **state) {
         check_line(s.points + 2 * s.offsets[i], s.offsets[i + 1] - s.offsets[i], &data, &record);
     }
     assert_int_equal(record, data.info.record_count);
-    camber_mesh_data_free(b->context, &data);
+    camber_mesh_data_destroy(&data);
     camber_polylines_destroy(polylines);
     scene_free(&s);
 }
@@ -94,8 +94,8 @@ static void test_device_equals_twin(void **state) {
             assert_int_equal(camber_mesh_tessellate(b->mesh, polylines, &desc), CAMBER_OK);
             assert_int_equal(camber_mesh_read(b->mesh, &device), CAMBER_OK);
             assert_same(&twin, &device);
-            camber_mesh_data_free(b->context, &twin);
-            camber_mesh_data_free(b->context, &device);
+            camber_mesh_data_destroy(&twin);
+            camber_mesh_data_destroy(&device);
         }
         camber_polylines_destroy(polylines);
         scene_free(&s);
@@ -121,7 +121,7 @@ static void test_in_turn(void **state) {
     }
     assert_same(meshes + 1, meshes + 3);
     for (size_t i = 0; i < 4; i++)
-        camber_mesh_data_free(b->context, meshes + i);
+        camber_mesh_data_destroy(meshes + i);
     camber_polylines_destroy(polylines);
     scene_free(&s);
 }
@@ -214,8 +214,8 @@ static void test_networks(void **state) {
                 assert_true(fabs(along - (double)measure->along_px) <= 0.3 + 1e-5 * along);
                 cuts += (seen->info[slot] & CAMBER_POINT_FIRST) && along > 1;
             }
-        camber_mesh_data_free(b->context, &twin);
-        camber_mesh_data_free(b->context, &device);
+        camber_mesh_data_destroy(&twin);
+        camber_mesh_data_destroy(&device);
         camber_polylines_destroy(seen);
     }
     assert_true(cuts > 20);
@@ -268,7 +268,7 @@ static void test_parts_of_lines(void **state) {
             assert_int_equal(camber_mesh_read(mesh, data + 2), CAMBER_OK);
             if (b->rounds)
                 assert_same(data + 1, data + 2);
-            camber_mesh_data_free(b->context, data + 2);
+            camber_mesh_data_destroy(data + 2);
             camber_mesh_destroy(mesh);
             camber_device_destroy(device);
         }
@@ -287,7 +287,7 @@ static void test_parts_of_lines(void **state) {
             assert_true(fabs((double)part.along_px - along) <= 1e-5 * total);
         }
     for (int part = 0; part < 2; part++) {
-        camber_mesh_data_free(b->context, data + part);
+        camber_mesh_data_destroy(data + part);
         camber_polylines_destroy(seen[part]);
     }
 }

@@ -104,9 +104,9 @@ static result read_result(bench *b, camber_mesh *mesh) {
     return r;
 }
 
-static void free_result(bench *b, result *r) {
-    camber_mesh_data_free(b->context, &r->mesh);
-    camber_stages_free(b->context, &r->stages);
+static void free_result(result *r) {
+    camber_mesh_data_destroy(&r->mesh);
+    camber_stages_destroy(&r->stages);
 }
 
 static void assert_same(const result *a, const result *b) {
@@ -180,12 +180,12 @@ static void test_same_bytes(void **state) {
                 print_message("%llu bytes, method %d: %zu of %zu parts stay, %zu made again; %zu of OpenCL at most\n",
                               (unsigned long long)limits[i / 2], method, r.memory.resident_parts, r.memory.parts,
                               now.remade_parts, watch.most_bytes);
-            free_result(&b, &r);
+            free_result(&r);
         }
         bench_close(&b);
     }
     for (int method = 0; method < 3; method++)
-        free_result(&whole, wanted + method);
+        free_result(wanted + method);
     bench_close(&whole);
     scene_free(&s);
 }
@@ -209,14 +209,14 @@ static void test_keeps_what_fits(void **state) {
         camber_mesh_data data;
         camber_stages stages;
         assert_int_equal(camber_mesh_read_stages(b.mesh, &stages), CAMBER_OK);
-        camber_stages_free(b.context, &stages);
+        camber_stages_destroy(&stages);
         const camber_mesh_memory after = camber_mesh_get_memory(b.mesh);
         /* All that were not there, and of those that were at most the one whose place the others took. */
         const size_t gone = before.parts - before.resident_parts;
         assert_in_range(after.remade_parts, (size_t)round * (gone - 2), (size_t)round * (gone + 1));
         if (round == 3) {
             assert_int_equal(camber_mesh_read(b.mesh, &data), CAMBER_OK);
-            camber_mesh_data_free(b.context, &data);
+            camber_mesh_data_destroy(&data);
         }
     }
     camber_polylines_destroy(polylines);
@@ -292,8 +292,8 @@ static void test_networks(void **state) {
                 print_message("%llu bytes, %s: %zu sections, %zu of %zu parts stay; %zu of OpenCL at most\n",
                               (unsigned long long)limits[i / 2], i % 2 ? "copied" : "shared",
                               b.mesh->held->section_count, r.memory.resident_parts, r.memory.parts, watch.most_bytes);
-            free_result(&b, &r);
-            free_result(&whole, &wanted);
+            free_result(&r);
+            free_result(&wanted);
         }
         if (i < 2)
             assert_true(b.mesh->held->section_count > 8);
@@ -333,8 +333,8 @@ static void test_parts_join(void **state) {
         parts[k] = r.memory.parts;
         if (k > 3)
             assert_true(k == FRAMES - 1 || r.memory.resident_parts == r.memory.parts);
-        free_result(&b, &r);
-        free_result(&whole, &wanted);
+        free_result(&r);
+        free_result(&wanted);
     }
     print_message("%zu parts, %zu near by, %zu again; %zu sections\n", parts[0], parts[FRAMES - 2], parts[FRAMES - 1],
                   b.mesh->held->section_count);
@@ -386,7 +386,7 @@ static void test_meshes_share(void **state) {
         for (int i = 2; i >= 0; i--) {
             result r = read_result(&b, meshes[i]);
             assert_same(&r, &wanted);
-            free_result(&b, &r);
+            free_result(&r);
         }
     }
     uint64_t held = 0;
@@ -398,7 +398,7 @@ static void test_meshes_share(void **state) {
     camber_polylines_destroy(polylines);
     camber_network_destroy(network);
     bench_close(&b);
-    free_result(&whole, &wanted);
+    free_result(&wanted);
     bench_close(&whole);
     scene_free(&s);
 }
@@ -426,7 +426,7 @@ static void assert_goes_on(bench *b, const camber_tessellation_desc *desc) {
     camber_mesh_data data, twin;
     assert_int_equal(camber_mesh_read(b->mesh, &data), CAMBER_OK);
     assert_int_equal(data.info.vertex_count, 0);
-    camber_mesh_data_free(b->context, &data);
+    camber_mesh_data_destroy(&data);
     for (int i = 0; i < 40; i++)
         scene_point(&s, 3 * i, i % 3);
     scene_end(&s, 0);
@@ -436,8 +436,8 @@ static void assert_goes_on(bench *b, const camber_tessellation_desc *desc) {
     assert_int_equal(camber_mesh_data_tessellate(b->context, polylines, desc, &twin), CAMBER_OK);
     assert_int_equal(data.info.record_count, twin.info.record_count);
     assert_memory_equal(data.records, twin.records, twin.info.record_count * sizeof *twin.records);
-    camber_mesh_data_free(b->context, &data);
-    camber_mesh_data_free(b->context, &twin);
+    camber_mesh_data_destroy(&data);
+    camber_mesh_data_destroy(&twin);
     camber_polylines_destroy(polylines);
     scene_free(&s);
     assert_bounded(b->device);
@@ -528,7 +528,7 @@ static void test_refused_buffers(void **state) {
         const camber_status made = camber_mesh_tessellate(b.mesh, polylines, &desc);
         const camber_status read = made == CAMBER_OK ? camber_mesh_read_stages(b.mesh, &stages) : made;
         if (read == CAMBER_OK)
-            camber_stages_free(b.context, &stages);
+            camber_stages_destroy(&stages);
         if (!watch.refuse_in) {
             assert_int_equal(read, CAMBER_ERROR_MEMORY);
             assert_story(&b.h, "clCreateBuffer");
@@ -539,10 +539,10 @@ static void test_refused_buffers(void **state) {
             assert_int_equal(camber_mesh_tessellate(b.mesh, polylines, &desc), CAMBER_OK);
         result r = read_result(&b, b.mesh);
         assert_same(&r, &wanted);
-        free_result(&b, &r);
+        free_result(&r);
     }
     assert_true(refused > 5);
-    free_result(&b, &wanted);
+    free_result(&wanted);
     camber_polylines_destroy(polylines);
     bench_close(&b);
     scene_free(&s);
@@ -556,6 +556,7 @@ typedef struct attempt {
 } attempt;
 
 static camber_status try_parts(camber_context *context, void *user) {
+    (void)context;
     const attempt *a = user;
     camber_mesh *mesh = NULL;
     camber_mesh_data data;
@@ -567,7 +568,7 @@ static camber_status try_parts(camber_context *context, void *user) {
         if (status == CAMBER_OK)
             status = camber_mesh_read(mesh, &data);
         if (status == CAMBER_OK)
-            camber_mesh_data_free(context, &data);
+            camber_mesh_data_destroy(&data);
     }
     camber_mesh_destroy(mesh);
     return status;

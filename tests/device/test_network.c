@@ -189,8 +189,8 @@ static size_t compare(bench *b, size_t which, camber_network *network, const cam
         if (device.info.vertex_count)
             assert_memory_equal(device.vertices, twins.vertices, device.info.vertex_count * sizeof *twins.vertices);
     }
-    camber_mesh_data_free(b->context, &device);
-    camber_mesh_data_free(b->context, &twins);
+    camber_mesh_data_destroy(&device);
+    camber_mesh_data_destroy(&twins);
     const size_t slots = twin->first_slots[twin->polyline_count];
     camber_polylines_destroy(twin);
     return slots;
@@ -235,15 +235,13 @@ static void test_draws_a_dot(void **state) {
             const camber_camera camera = {
                 .scale_px = scales[k], .width = 64, .height = 32, .pitch_deg = k % 2 ? 60 : 0};
             camber_lines lines;
-            uint32_t *entries;
-            assert_int_equal(camber_network_project_lines(network, &camera, &desc, &lines, &entries), CAMBER_OK);
+            assert_int_equal(camber_network_project_lines(network, &camera, &desc, &lines), CAMBER_OK);
             assert_int_equal(lines.polyline_count, 1);
             for (size_t n = 0; n < lines.point_count; n++) {
                 assert_true(fabsf(lines.points[2 * n] - 32) < 0.01f);
                 assert_true(fabsf(lines.points[2 * n + 1] - 16) < 0.01f);
             }
-            camber_lines_free(b->context, &lines);
-            camber_entries_free(b->context, entries);
+            camber_lines_destroy(&lines);
             assert_true(compare(b, k % 3, network, &camera, &desc) > 0);
             assert_int_equal(camber_mesh_tessellate_network(b->meshes[0], network, &camera, &desc), CAMBER_OK);
             assert_true(camber_mesh_get_info(b->meshes[0]).triangle_count > 0);
@@ -356,9 +354,8 @@ static void test_sees_all_in_the_picture(void **state) {
             camber_camera camera = camera_make(&seed, i % 2 ? 6 : 30, 0);
             camera.pitch_deg = 0; /* test_pitch.c has pictures of others */
             camber_lines lines;
-            uint32_t *entries;
-            assert_int_equal(camber_network_project_lines(network, &camera, &desc, &lines, &entries), CAMBER_OK);
-            seen += check_seen(&w, &camera, &lines, entries);
+            assert_int_equal(camber_network_project_lines(network, &camera, &desc, &lines), CAMBER_OK);
+            seen += check_seen(&w, &camera, &lines, lines.entries);
             for (size_t k = 0; k < lines.point_count; k++)
                 for (size_t axis = 0; axis < 2; axis++) {
                     const float most = axis ? (float)camera.height : (float)camera.width,
@@ -371,15 +368,14 @@ static void test_sees_all_in_the_picture(void **state) {
                 const bool ring = first[0] == last[0] && first[1] == last[1];
                 const bool border = lies_on_border(first, &camera, 64) && lies_on_border(last, &camera, 64);
                 cut += border;
-                assert_true(ring || lies_on_border(first, &camera, 64) || is_end(&w, &camera, entries[k], first));
-                assert_true(ring || lies_on_border(last, &camera, 64) || is_end(&w, &camera, entries[k], last));
+                assert_true(ring || lies_on_border(first, &camera, 64) || is_end(&w, &camera, lines.entries[k], first));
+                assert_true(ring || lies_on_border(last, &camera, 64) || is_end(&w, &camera, lines.entries[k], last));
                 /* A seam is no end: a ring is whole, or cut at the border twice. */
                 if (which == 2 && !ring)
                     assert_true(border || lines.offsets[k + 1] - lines.offsets[k] == 1 ||
-                                w.offsets[entries[k] + 1] - w.offsets[entries[k]] <= 3);
+                                w.offsets[lines.entries[k] + 1] - w.offsets[lines.entries[k]] <= 3);
             }
-            camber_lines_free(b->context, &lines);
-            camber_entries_free(b->context, entries);
+            camber_lines_destroy(&lines);
         }
         camber_network_destroy(network);
         world_free(&w);
@@ -469,13 +465,11 @@ static camber_status make_and_look(camber_context *context, void *user) {
     const camber_camera camera = {.scale_px = 100, .width = 50, .height = 50};
     camber_network *network = NULL;
     camber_lines lines = {0};
-    uint32_t *entries = NULL;
     camber_status status = camber_network_create(context, user, &network);
     if (status == CAMBER_OK)
-        status = camber_network_project_lines(network, &camera, &desc, &lines, &entries);
+        status = camber_network_project_lines(network, &camera, &desc, &lines);
     camber_network_destroy(network);
-    camber_lines_free(context, &lines);
-    camber_entries_free(context, entries);
+    camber_lines_destroy(&lines);
     return status;
 }
 

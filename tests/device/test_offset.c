@@ -104,7 +104,7 @@ static line made_of(bench *b, const line *l, camber_stroke stroke) {
     assert_int_equal(camber_stages_tessellate(b->context, polylines, &desc, &stages), CAMBER_OK);
     for (size_t i = 0; i < stages.point_count; i++)
         add(&made, (double)stages.points[i].x, (double)stages.points[i].y);
-    camber_stages_free(b->context, &stages);
+    camber_stages_destroy(&stages);
     camber_polylines_destroy(polylines);
     return made;
 }
@@ -344,10 +344,10 @@ static void compare(bench *b, camber_mesh *mesh, const camber_polylines *polylin
     assert_same(&twin, &device);
     assert_int_equal(seen.point_count, wanted.point_count);
     assert_memory_equal(seen.points, wanted.points, seen.point_count * sizeof *seen.points);
-    camber_stages_free(b->context, &seen);
-    camber_stages_free(b->context, &wanted);
-    camber_mesh_data_free(b->context, &device);
-    camber_mesh_data_free(b->context, &twin);
+    camber_stages_destroy(&seen);
+    camber_stages_destroy(&wanted);
+    camber_mesh_data_destroy(&device);
+    camber_mesh_data_destroy(&twin);
 }
 
 /* Every scene, as one part of work-groups of 256, and in parts of other ones. */
@@ -499,7 +499,7 @@ static camber_stages seen_by(bench *b, const world *w, const camber_camera *came
         assert_int_equal(camber_mesh_read_stages(b->mesh, &device), CAMBER_OK);
         assert_int_equal(device.point_count, stages.point_count);
         assert_memory_equal(device.points, stages.points, device.point_count * sizeof *device.points);
-        camber_stages_free(b->context, &device);
+        camber_stages_destroy(&device);
     }
     camber_polylines_destroy(seen);
     return stages;
@@ -567,10 +567,10 @@ static void test_windows(void **state) {
                          few.points[i].y < 119.99f;
         assert_int_equal(inside[0], inside[1]);
         compared += inside[0];
-        camber_stages_free(b->context, &few);
+        camber_stages_destroy(&few);
     }
     assert_true(compared > 500);
-    camber_stages_free(b->context, &all);
+    camber_stages_destroy(&all);
     world_free(&w);
     scene_free(&s);
 }
@@ -596,7 +596,7 @@ static void test_cut_rings(void **state) {
         assert_true(p[0].x == p[stages.point_count - 1].x && p[0].y == p[stages.point_count - 1].y);
         assert_int_equal(p[0].join & 0xffffu, p[stages.point_count - 1].join & 0xffffu);
         assert_true((p[0].join >> 28) >= 3);
-        camber_stages_free(b->context, &stages);
+        camber_stages_destroy(&stages);
         world_free(&w);
         scene_free(&s);
     }
@@ -630,7 +630,7 @@ static void test_measures(void **state) {
                 assert_true(fabs((double)m.along_px - (x - 10)) < 0.01 || data.records[i].last & 16);
         }
         assert_true(fabs(before - total) < 0.01);
-        camber_mesh_data_free(b->context, &data);
+        camber_mesh_data_destroy(&data);
         camber_polylines_destroy(polylines);
     }
 }

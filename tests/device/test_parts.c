@@ -78,9 +78,9 @@ static result tessellate(bench *b, const scene *s, const camber_tessellation_des
     return read_result(b);
 }
 
-static void free_result(bench *b, result *r) {
-    camber_mesh_data_free(b->context, &r->mesh);
-    camber_stages_free(b->context, &r->stages);
+static void free_result(result *r) {
+    camber_mesh_data_destroy(&r->mesh);
+    camber_stages_destroy(&r->stages);
 }
 
 static void assert_same(const result *a, const result *b) {
@@ -143,8 +143,8 @@ static void test_same_bytes(void **state) {
             /* Not more parts than twice what the bytes take: each but the last is as full as whole polylines allow. */
             const uint64_t bytes = larger_buffer(&r.mesh.info);
             assert_true(r.parts >= bytes / limits[i] + 1 && r.parts <= 2 * (bytes / limits[i] + 1));
-            free_result(&b, &r);
-            free_result(&whole, &wanted);
+            free_result(&r);
+            free_result(&wanted);
         }
         print_message("%llu bytes: %zu, %zu, %zu parts, no buffer above %zu\n", (unsigned long long)limits[i], parts[0],
                       parts[1], parts[2], largest_buffer);
@@ -174,8 +174,8 @@ static void test_work_groups(void **state) {
                 result wanted = tessellate(&whole, &s, &desc), r = tessellate(&b, &s, &desc);
                 assert_same(&r, &wanted);
                 parts += i < 3 ? 0 : r.parts - 1;
-                free_result(&b, &r);
-                free_result(&whole, &wanted);
+                free_result(&r);
+                free_result(&wanted);
             }
             scene_free(&s);
         }
@@ -227,13 +227,13 @@ static void test_borders(void **state) {
                 tessellate(&b, &s, &(camber_tessellation_desc){strokes, SCENE_ROWS, (camber_method)method, 0, false});
             assert_same(&r, wanted + method);
             borders += r.parts - 1;
-            free_result(&b, &r);
+            free_result(&r);
         }
         bench_close(&b);
     }
     assert_true(borders > 500);
     for (int method = 0; method < 3; method++)
-        free_result(&whole, wanted + method);
+        free_result(wanted + method);
     bench_close(&whole);
     scene_free(&s);
 }
@@ -255,8 +255,8 @@ static void test_first_index(void **state) {
             assert_int_equal(camber_mesh_first_index(whole.mesh, i, &first_of_whole), CAMBER_OK);
             assert_true(first == first_of_whole);
         }
-        free_result(&b, &r);
-        free_result(&whole, &wanted);
+        free_result(&r);
+        free_result(&wanted);
     }
     bench_close(&b);
     bench_close(&whole);
@@ -278,7 +278,7 @@ static void test_nothing(void **state) {
             assert_int_equal(r.mesh.info.undrawn_dots, i);
             assert_int_equal(r.stages.point_count, i);
             assert_true(i ? r.parts > 1 : r.parts == 0);
-            free_result(&b, &r);
+            free_result(&r);
         }
         scene_point(&s, i, 0);
         scene_end(&s, 0);
@@ -338,8 +338,8 @@ static void test_again(void **state) {
                 assert_true(count >= 1 + 6 * parts);
             if (i == 4) /* what the fan needed is kept for the strip */
                 assert_true(same);
-            free_result(&b, &r);
-            free_result(&whole, &wanted);
+            free_result(&r);
+            free_result(&wanted);
         }
         for (size_t i = 0; i < 3; i++)
             camber_polylines_destroy(polylines[i]);
@@ -382,8 +382,8 @@ static void test_too_long(void **state) {
                 assert_int_equal(camber_mesh_read(b.mesh, &none), CAMBER_OK);
                 assert_int_equal(camber_mesh_read_stages(b.mesh, &no_stages), CAMBER_OK);
                 assert_int_equal(none.info.vertex_count + none.info.joins + no_stages.point_count, 0);
-                camber_mesh_data_free(b.context, &none);
-                camber_stages_free(b.context, &no_stages);
+                camber_mesh_data_destroy(&none);
+                camber_stages_destroy(&no_stages);
             }
             camber_stroke strokes[SCENE_ROWS];
             scene_strokes(strokes);
@@ -394,8 +394,8 @@ static void test_too_long(void **state) {
             assert_int_equal(camber_mesh_data_tessellate(b.context, others, &next, &twin), CAMBER_OK);
             assert_int_equal(mesh.info.vertex_count, twin.info.vertex_count);
             assert_memory_equal(mesh.indices, twin.indices, twin.info.index_count * sizeof *twin.indices);
-            camber_mesh_data_free(b.context, &mesh);
-            camber_mesh_data_free(b.context, &twin);
+            camber_mesh_data_destroy(&mesh);
+            camber_mesh_data_destroy(&twin);
         }
         camber_polylines_destroy(polylines);
         camber_polylines_destroy(others);
@@ -467,6 +467,7 @@ typedef struct attempt {
 } attempt;
 
 static camber_status try_parts(camber_context *context, void *user) {
+    (void)context;
     const attempt *a = user;
     camber_mesh *mesh = NULL;
     camber_mesh_data data;
@@ -477,11 +478,11 @@ static camber_status try_parts(camber_context *context, void *user) {
     if (status == CAMBER_OK)
         status = camber_mesh_read(mesh, &data);
     if (status == CAMBER_OK) {
-        camber_mesh_data_free(context, &data);
+        camber_mesh_data_destroy(&data);
         status = camber_mesh_read_stages(mesh, &stages);
     }
     if (status == CAMBER_OK)
-        camber_stages_free(context, &stages);
+        camber_stages_destroy(&stages);
     camber_mesh_destroy(mesh);
     return status;
 }

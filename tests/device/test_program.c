@@ -181,8 +181,8 @@ static bool tessellate_once(const char *cache_dir, camber_method method) {
     assert_int_equal(data.info.index_count, twin.info.index_count);
     assert_memory_equal(data.indices, twin.indices, twin.info.index_count * sizeof *twin.indices);
     assert_int_equal(h.errors, 0);
-    camber_mesh_data_free(context, &twin);
-    camber_mesh_data_free(context, &data);
+    camber_mesh_data_destroy(&twin);
+    camber_mesh_data_destroy(&data);
     camber_polylines_destroy(polylines);
     camber_mesh_destroy(mesh);
     camber_device_destroy(device);

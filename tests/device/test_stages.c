@@ -53,7 +53,7 @@ static void check_against_mesh(bench *b, const camber_polylines *polylines, cons
     }
     assert_int_equal(drawn + data.info.undrawn_dots, stages->point_count);
     assert_true(rings <= polylines->stats.rings);
-    camber_mesh_data_free(b->context, &data);
+    camber_mesh_data_destroy(&data);
 }
 
 static void test_device_equals_twin(void **state) {
@@ -71,9 +71,9 @@ static void test_device_equals_twin(void **state) {
             check_against_mesh(b, polylines, &device);
             if (b->rounds)
                 assert_int_equal(first_difference(&device, &twin), device.point_count);
-            camber_stages_free(b->context, &device);
+            camber_stages_destroy(&device);
             assert_null(device.points);
-            camber_stages_free(b->context, &twin);
+            camber_stages_destroy(&twin);
             camber_polylines_destroy(polylines);
         }
         scene_free(&s);
@@ -105,7 +105,7 @@ static void test_wrong_words_show(void **state) {
                 clEnqueueWriteBuffer(b->device->queue, mems[k], CL_TRUE, at, 4, &word, 0, NULL, NULL);
                 camber_stages bad = on_device(b);
                 assert_int_equal(first_difference(&good, &bad), k < 3 ? points[i] : points[i] / item * item);
-                camber_stages_free(b->context, &bad);
+                camber_stages_destroy(&bad);
                 word ^= 1u << bit;
                 clEnqueueWriteBuffer(b->device->queue, mems[k], CL_TRUE, at, 4, &word, 0, NULL, NULL);
             }
@@ -113,8 +113,8 @@ static void test_wrong_words_show(void **state) {
     }
     camber_stages again = on_device(b);
     assert_int_equal(first_difference(&good, &again), good.point_count);
-    camber_stages_free(b->context, &again);
-    camber_stages_free(b->context, &good);
+    camber_stages_destroy(&again);
+    camber_stages_destroy(&good);
     camber_polylines_destroy(polylines);
     scene_free(&s);
 }
@@ -147,7 +147,7 @@ static void test_ring_by_hand(void **state) {
     assert_int_equal(camber_join_kind(stages.points[0].join), CAMBER_KIND_SPLIT);
     assert_int_equal(camber_join_kind(stages.points[1].join), CAMBER_KIND_SPLIT);
     assert_int_equal(camber_join_kind(stages.points[2].join), CAMBER_KIND_CUT);
-    camber_stages_free(b->context, &stages);
+    camber_stages_destroy(&stages);
     camber_polylines_destroy(polylines);
     scene_free(&s);
 }
@@ -155,7 +155,7 @@ static void test_ring_by_hand(void **state) {
 static void assert_no_points(bench *b) {
     camber_stages stages = on_device(b);
     assert_int_equal(stages.point_count, 0);
-    camber_stages_free(b->context, &stages);
+    camber_stages_destroy(&stages);
 }
 
 static void test_nothing(void **state) {
@@ -174,13 +174,13 @@ static void test_nothing(void **state) {
     camber_stages stages = on_device(b), twin = on_host(b, dot, &desc);
     assert_int_equal(stages.point_count, 1); /* tessellated, and nothing drawn of it */
     assert_int_equal(first_difference(&stages, &twin), 1);
-    camber_stages_free(b->context, &stages);
-    camber_stages_free(b->context, &twin);
+    camber_stages_destroy(&stages);
+    camber_stages_destroy(&twin);
     assert_int_equal(camber_mesh_tessellate(b->mesh, none, &desc), CAMBER_OK);
     assert_no_points(b);
     twin = on_host(b, none, &desc);
     assert_int_equal(twin.point_count, 0);
-    camber_stages_free(b->context, &twin);
+    camber_stages_destroy(&twin);
     assert_int_equal(camber_mesh_tessellate(b->mesh, dot, &(camber_tessellation_desc){0}), CAMBER_ERROR_ARGUMENT);
     assert_no_points(b); /* of the last tessellation, which failed */
     const camber_stages untouched = {.point_count = 7};
@@ -214,9 +214,9 @@ static camber_status try_stages(camber_context *context, void *user) {
     if (status != CAMBER_OK)
         assert_memory_equal(&twin, &untouched, sizeof twin);
     else
-        camber_stages_free(context, &twin);
+        camber_stages_destroy(&twin);
     if (device.point_count != untouched.point_count)
-        camber_stages_free(context, &device);
+        camber_stages_destroy(&device);
     return status;
 }
 

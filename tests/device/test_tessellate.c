@@ -45,8 +45,8 @@ static void compare(bench *b, const camber_polylines *polylines, const camber_te
     camber_mesh_data device = on_device(b, polylines, desc), twin = on_host(b, polylines, desc);
     assert_same(&device, &twin);
     assert_int_equal(camber_mesh_get_info(b->mesh).vertex_count, twin.info.vertex_count); /* as scan counts them */
-    camber_mesh_data_free(b->context, &device);
-    camber_mesh_data_free(b->context, &twin);
+    camber_mesh_data_destroy(&device);
+    camber_mesh_data_destroy(&twin);
 }
 
 static void test_device_equals_twin(void **state) {
@@ -113,7 +113,7 @@ static void test_many_rows(void **state) {
         last = data.vertices[i].row;
     }
     assert_int_equal(last, 0);
-    camber_mesh_data_free(b->context, &data);
+    camber_mesh_data_destroy(&data);
     camber_polylines_destroy(polylines);
     scene_free(&s);
     free(strokes);
@@ -131,13 +131,13 @@ static void test_run_to_run(void **state) {
         for (int i = 0; i < 4; i++) {
             if (i % 2) { /* whatever the mesh held before */
                 camber_mesh_data between = on_device(b, others, &desc);
-                camber_mesh_data_free(b->context, &between);
+                camber_mesh_data_destroy(&between);
             }
             camber_mesh_data again = on_device(b, polylines, &desc);
             assert_same(&first, &again);
-            camber_mesh_data_free(b->context, &again);
+            camber_mesh_data_destroy(&again);
         }
-        camber_mesh_data_free(b->context, &first);
+        camber_mesh_data_destroy(&first);
     }
     camber_polylines_destroy(others);
     camber_polylines_destroy(polylines);
@@ -154,7 +154,7 @@ static void test_other_strokes_upload_nothing(void **state) {
     camber_polylines *polylines = scene_polylines(b->context, &s), *twin = scene_polylines(b->context, &s);
     camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0, false};
     camber_mesh_data data = on_device(b, polylines, &desc);
-    camber_mesh_data_free(b->context, &data);
+    camber_mesh_data_destroy(&data);
     memset(polylines->x, 0, polylines->slot_count * sizeof *polylines->x);
     for (int i = 0; i < SCENE_ROWS; i++)
         strokes[i].width_px = 1.0f + (float)i;
@@ -166,8 +166,8 @@ static void test_other_strokes_upload_nothing(void **state) {
     assert_int_equal(camber_mesh_tessellate(fresh, twin, &desc), CAMBER_OK);
     assert_int_equal(camber_mesh_read(fresh, &wanted), CAMBER_OK);
     assert_same(&data, &wanted);
-    camber_mesh_data_free(b->context, &wanted);
-    camber_mesh_data_free(b->context, &data);
+    camber_mesh_data_destroy(&wanted);
+    camber_mesh_data_destroy(&data);
     camber_mesh_destroy(fresh);
     camber_polylines_destroy(twin);
     camber_polylines_destroy(polylines);
@@ -179,7 +179,7 @@ static void assert_nothing(bench *b, size_t undrawn_dots) {
     assert_int_equal(camber_mesh_read(b->mesh, &data), CAMBER_OK);
     assert_int_equal(data.info.vertex_count + data.info.index_count + data.info.triangle_count + data.info.joins, 0);
     assert_int_equal(data.info.undrawn_dots, undrawn_dots);
-    camber_mesh_data_free(b->context, &data);
+    camber_mesh_data_destroy(&data);
 }
 
 static void test_nothing(void **state) {
@@ -281,7 +281,7 @@ static void test_first_index(void **state) {
                 uint64_t first = UINT64_MAX;
                 assert_int_equal(camber_mesh_first_index(b->mesh, i, &first), CAMBER_OK);
                 assert_true(first == twin.info.index_count);
-                camber_mesh_data_free(b->context, &twin);
+                camber_mesh_data_destroy(&twin);
                 camber_polylines_destroy(before);
             }
         }
@@ -346,7 +346,7 @@ static camber_status try_device(camber_context *context, void *user) {
         if (status == CAMBER_OK)
             status = camber_mesh_read(mesh, &data);
         if (status == CAMBER_OK)
-            camber_mesh_data_free(context, &data);
+            camber_mesh_data_destroy(&data);
         else
             assert_ptr_equal(data.indices, user);
         camber_mesh_destroy(mesh);

@@ -78,8 +78,8 @@ static void open_set(stage_set *s, bool parts, camber_method method) {
 }
 
 static void close_set(stage_set *s) {
-    camber_mesh_data_free(s->context, &s->wanted);
-    camber_stages_free(s->context, &s->stages);
+    camber_mesh_data_destroy(&s->wanted);
+    camber_stages_destroy(&s->stages);
     camber_polylines_destroy(s->others);
     camber_polylines_destroy(s->polylines);
     camber_device_destroy(s->device);
@@ -171,13 +171,13 @@ static camber_status read_mesh(stage_set *s, camber_device *device) {
         status = camber_mesh_read(mesh, &data);
     if (status == CAMBER_OK) {
         assert_wanted(s, &data);
-        camber_mesh_data_free(s->context, &data);
+        camber_mesh_data_destroy(&data);
         status = camber_mesh_read_stages(mesh, &stages);
     }
     if (status == CAMBER_OK) {
         assert_int_equal(stages.point_count, s->stages.point_count);
         assert_memory_equal(stages.points, s->stages.points, stages.point_count * sizeof *stages.points);
-        camber_stages_free(s->context, &stages);
+        camber_stages_destroy(&stages);
     }
     camber_mesh_destroy(mesh);
     return status;
@@ -223,14 +223,14 @@ static void assert_right(stage_set *s, camber_mesh *mesh) {
     camber_mesh_data data;
     assert_int_equal(camber_mesh_read(mesh, &data), CAMBER_OK);
     assert_wanted(s, &data);
-    camber_mesh_data_free(s->context, &data);
+    camber_mesh_data_destroy(&data);
 }
 
-static void assert_nothing(stage_set *s, camber_mesh *mesh) {
+static void assert_nothing(camber_mesh *mesh) {
     camber_mesh_data data;
     assert_int_equal(camber_mesh_read(mesh, &data), CAMBER_OK);
     assert_int_equal(data.info.vertex_count + data.info.index_count + data.info.joins, 0);
-    camber_mesh_data_free(s->context, &data);
+    camber_mesh_data_destroy(&data);
 }
 
 /* A failed tessellation leaves an empty mesh that works again, whether its polylines were there or are new. */
@@ -253,7 +253,7 @@ static void test_mesh_again(void **state) {
             if (status != CAMBER_OK) {
                 assert_int_equal(status, CAMBER_ERROR_MEMORY);
                 assert_story(&s.h, cl_fault.refused);
-                assert_nothing(&s, mesh);
+                assert_nothing(mesh);
                 assert_int_equal(camber_mesh_tessellate(mesh, s.polylines, &s.desc), CAMBER_OK);
             }
             assert_right(&s, mesh);
@@ -281,7 +281,7 @@ static void test_read_again(void **state) {
         cl_fault_disarm();
         assert_int_equal(status, cl_fault.refusals ? CAMBER_ERROR_MEMORY : CAMBER_OK);
         if (status == CAMBER_OK) {
-            camber_mesh_data_free(s.context, &data);
+            camber_mesh_data_destroy(&data);
             break;
         }
         assert_memory_equal(&data, &untouched, sizeof data);

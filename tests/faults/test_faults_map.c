@@ -293,7 +293,7 @@ static int set_up(void **state) {
 static int tear_down(void **state) {
     desk *d = *state;
     free(d->glb.bytes);
-    camber_mesh_data_free(d->context, &d->mesh);
+    camber_mesh_data_destroy(&d->mesh);
     camber_scene_destroy(d->scene);
     camber_features_destroy(d->features);
     camber_style_destroy(d->style);

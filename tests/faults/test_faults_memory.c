@@ -54,8 +54,8 @@ static camber_status try_lines(camber_context *context, void *user) {
         assert_memory_equal(again.bytes, d->file.bytes, again.size);
     }
     free(again.bytes);
-    camber_lines_free(context, &simplified);
-    camber_lines_free(context, &lines);
+    camber_lines_destroy(&simplified);
+    camber_lines_destroy(&lines);
     return status;
 }
 
@@ -92,19 +92,19 @@ static camber_status try_twin(camber_context *context, void *user) {
         return status;
     }
     assert_same_mesh(&mesh, &d->mesh);
-    camber_mesh_data_free(context, &mesh);
+    camber_mesh_data_destroy(&mesh);
     status = camber_stages_tessellate(context, d->polylines, &STRIPS, &stages);
     if (status != CAMBER_OK) {
         assert_true(stages.point_count == 7 && !stages.points);
         return status;
     }
     assert_same_stages(&stages, &d->stages);
-    camber_stages_free(context, &stages);
+    camber_stages_destroy(&stages);
     return status;
 }
 
 /* What a mesh of the device holds. */
-static camber_status read_all(camber_context *context, camber_mesh *mesh, const desk *d) {
+static camber_status read_all(camber_mesh *mesh, const desk *d) {
     camber_mesh_data data = {.indices = (uint32_t *)(uintptr_t)8};
     camber_stages stages = {.point_count = 7};
     camber_status status = camber_mesh_read(mesh, &data);
@@ -113,14 +113,14 @@ static camber_status read_all(camber_context *context, camber_mesh *mesh, const 
         return status;
     }
     assert_same_mesh(&data, &d->mesh);
-    camber_mesh_data_free(context, &data);
+    camber_mesh_data_destroy(&data);
     status = camber_mesh_read_stages(mesh, &stages);
     if (status != CAMBER_OK) {
         assert_true(stages.point_count == 7 && !stages.points);
         return status;
     }
     assert_same_stages(&stages, &d->stages);
-    camber_stages_free(context, &stages);
+    camber_stages_destroy(&stages);
     return status;
 }
 
@@ -135,7 +135,7 @@ static camber_status try_device(camber_context *context, void *user) {
     if (status == CAMBER_OK)
         status = camber_mesh_tessellate(mesh, d->polylines, &STRIPS);
     if (status == CAMBER_OK)
-        status = read_all(context, mesh, d);
+        status = read_all(mesh, d);
     camber_mesh_destroy(mesh);
     camber_device_destroy(device);
     return status;
@@ -275,7 +275,10 @@ static int set_up(void **state) {
     }
     for (size_t i = 0; i < 2 * d->lines.point_count; i++)
         d->lines.points[i] = fmodf(fabsf(d->lines.points[i]), i % 2 ? HEIGHT : WIDTH);
-    const camber_lines lines = {d->lines.points, d->lines.offsets, d->lines.point_count, d->lines.polyline_count};
+    const camber_lines lines = {.points = d->lines.points,
+                                .offsets = d->lines.offsets,
+                                .point_count = d->lines.point_count,
+                                .polyline_count = d->lines.polyline_count};
     d->file.refuse_at = d->png.refuse_at = SIZE_MAX;
     assert_int_equal(camber_lines_write(d->s.context, &lines, (camber_sink){byte_list_write, &d->file}), CAMBER_OK);
     d->polylines = scene_polylines(d->s.context, &d->lines);
@@ -290,8 +293,8 @@ static int set_up(void **state) {
 
 static int tear_down(void **state) {
     desk *d = *state;
-    camber_stages_free(d->s.context, &d->stages);
-    camber_mesh_data_free(d->s.context, &d->mesh);
+    camber_stages_destroy(&d->stages);
+    camber_mesh_data_destroy(&d->mesh);
     camber_polylines_destroy(d->polylines);
     scene_free(&d->lines);
     free(d->file.bytes);
@@ -401,7 +404,7 @@ static void test_same_objects(void **state) {
             h->refuse_count = 1;
             camber_status status = camber_mesh_tessellate(mesh, d->polylines, &STRIPS);
             if (status == CAMBER_OK)
-                status = read_all(d->s.context, mesh, d);
+                status = read_all(mesh, d);
             if (status == CAMBER_OK && d->known)
                 status = draw(renderer, mesh, d);
             reached = h->calls >= h->refuse_first;
@@ -411,7 +414,7 @@ static void test_same_objects(void **state) {
                 assert_story(h, "memory");
             }
             assert_int_equal(camber_mesh_tessellate(mesh, d->polylines, &STRIPS), CAMBER_OK);
-            assert_int_equal(read_all(d->s.context, mesh, d), CAMBER_OK);
+            assert_int_equal(read_all(mesh, d), CAMBER_OK);
             assert_int_equal(draw(renderer, mesh, d), CAMBER_OK);
             assert_int_equal(h->errors, 0);
             d->known = true;

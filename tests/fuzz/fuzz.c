@@ -205,7 +205,7 @@ static void check_stages(fuzz_run *run, const camber_polylines *polylines, const
     REQUIRE(offset ||
             kinds[CAMBER_KIND_CUT] + kinds[CAMBER_KIND_TIGHT] + kinds[CAMBER_KIND_SPLIT] == info->joins + stats.rings);
     REQUIRE(kinds[CAMBER_KIND_TIGHT] >= info->tight_joins && kinds[CAMBER_KIND_SPLIT] >= info->split_joins);
-    camber_stages_free(run->context, &stages);
+    camber_stages_destroy(&stages);
 }
 
 bool fuzz_tessellate(fuzz_run *run, const camber_polylines *polylines, const camber_tessellation_desc *desc,
@@ -226,7 +226,7 @@ bool fuzz_tessellate(fuzz_run *run, const camber_polylines *polylines, const cam
     if (keep)
         *keep = mesh;
     else
-        camber_mesh_data_free(run->context, &mesh);
+        camber_mesh_data_destroy(&mesh);
     return true;
 }
 

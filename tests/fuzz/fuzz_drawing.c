@@ -83,8 +83,8 @@ static void draw(const fuzz_easel *easel, const camber_stroke *strokes, size_t s
     REQUIRE(camber_renderer_read_stages(easel->renderer, &frame, &got) == CAMBER_OK);
     REQUIRE(camber_drawing_stages_rasterize(easel->renderer, &frame, &expected) == CAMBER_OK);
     compare(&got, &expected);
-    camber_drawing_stages_free(easel->context, &got);
-    camber_drawing_stages_free(easel->context, &expected);
+    camber_drawing_stages_destroy(&got);
+    camber_drawing_stages_destroy(&expected);
 }
 
 void fuzz_easel_draw(const fuzz_easel *easel, const camber_stroke *strokes, size_t stroke_count) {

@@ -265,7 +265,7 @@ static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
         fuzz_tessellate(run, polylines, &made.tessellation, &mesh)) {
         if (fuzz_done(run, camber_glb_write(run->context, &mesh, &made.glb, fuzz_sink(&file))))
             check_file(&file, &mesh, &made.glb);
-        camber_mesh_data_free(run->context, &mesh);
+        camber_mesh_data_destroy(&mesh);
     }
     camber_polylines_destroy(polylines);
     free(file.bytes);

@@ -207,16 +207,14 @@ static void check_chunks(fuzz_run *run, const camber_network *network, const inp
 /* Pieces are parts of entries, in their order. */
 static void check_lines(fuzz_run *run, const camber_network *network, const input *from) {
     camber_lines lines = {0};
-    uint32_t *entries = NULL;
-    if (!fuzz_done(run, camber_network_project_lines(network, &from->camera, &from->tessellation, &lines, &entries)))
+    if (!fuzz_done(run, camber_network_project_lines(network, &from->camera, &from->tessellation, &lines)))
         return;
     fuzz_check_lines(&lines);
     for (size_t i = 0; i < lines.polyline_count; i++) {
-        REQUIRE(lines.offsets[i] < lines.offsets[i + 1] && entries[i] < network->entry_count);
-        REQUIRE(i == 0 || entries[i - 1] <= entries[i]);
+        REQUIRE(lines.offsets[i] < lines.offsets[i + 1] && lines.entries[i] < network->entry_count);
+        REQUIRE(i == 0 || lines.entries[i - 1] <= lines.entries[i]);
     }
-    camber_lines_free(run->context, &lines);
-    camber_entries_free(run->context, entries);
+    camber_lines_destroy(&lines);
 }
 
 /* ---- On a device ---- */
@@ -240,8 +238,8 @@ static void check_device(const input *from) {
                 memcmp(got.records, expected.records, got.info.record_count * sizeof *got.records) == 0);
         fuzz_easel_draw(&easel, from->tessellation.strokes, from->tessellation.stroke_count);
     }
-    camber_mesh_data_free(easel.context, &got);
-    camber_mesh_data_free(easel.context, &expected);
+    camber_mesh_data_destroy(&got);
+    camber_mesh_data_destroy(&expected);
     camber_polylines_destroy(twin);
     camber_network_destroy(network);
 }

@@ -102,7 +102,7 @@ static void check_again(fuzz_run *run, const camber_polylines *polylines, const 
                 memcmp(mesh->records, again.records, mesh->info.record_count * sizeof *mesh->records) == 0);
         REQUIRE(memcmp(mesh->indices, again.indices, mesh->info.index_count * sizeof *mesh->indices) == 0);
     }
-    camber_mesh_data_free(run->context, &again);
+    camber_mesh_data_destroy(&again);
 }
 
 static fuzz_easel easel;
@@ -117,7 +117,7 @@ static void check_device(const input *from, const camber_mesh_data *expected) {
     REQUIRE(got.info.record_count == 0 ||
             memcmp(got.records, expected->records, got.info.record_count * sizeof *got.records) == 0);
     fuzz_easel_draw(&easel, from->strokes, from->stroke_count);
-    camber_mesh_data_free(easel.context, &got);
+    camber_mesh_data_destroy(&got);
     camber_polylines_destroy(polylines);
 }
 
@@ -140,7 +140,7 @@ static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
         write_glb(run, &mesh, &made);
         if (easel.mesh && !run->refuse_at)
             check_device(&made, &mesh);
-        camber_mesh_data_free(run->context, &mesh);
+        camber_mesh_data_destroy(&mesh);
     }
     camber_polylines_destroy(polylines);
     free(made.points);

@@ -277,7 +277,7 @@ static void test_ranges(void **state) {
     assert_int_equal(camber_renderer_count_overdraw(studio_any(s), &desc, &sum), CAMBER_ERROR_ARGUMENT);
     assert_story(&s->h, "0 x 64");
     assert_int_equal(sum.fragments, 1);
-    camber_mesh_data_free(s->context, &data);
+    camber_mesh_data_destroy(&data);
     camber_mesh_destroy(mesh);
     scene_free(&lines);
 }

@@ -446,8 +446,8 @@ static void test_network(void **state) {
         assert_true(d.drawn > 1000);
         picture_free(&uncut);
         picture_free(&cut);
-        camber_mesh_data_free(s->context, &of_twin);
-        camber_mesh_data_free(s->context, &of_device);
+        camber_mesh_data_destroy(&of_twin);
+        camber_mesh_data_destroy(&of_device);
         camber_polylines_destroy(twin);
     }
     camber_mesh_destroy(whole);
@@ -471,8 +471,7 @@ static void test_window(void **state) {
         const camber_camera camera = {
             .x = 0.5 * WIDE, .y = 0.5 * HIGH, .scale_px = 1, .width = WIDE, .height = HIGH, .pitch_deg = PITCHES[i]};
         camber_lines lines;
-        uint32_t *entries;
-        assert_int_equal(camber_network_project_lines(network, &camera, &desc, &lines, &entries), CAMBER_OK);
+        assert_int_equal(camber_network_project_lines(network, &camera, &desc, &lines), CAMBER_OK);
         assert_int_equal(lines.polyline_count, PITCHES[i] > 50 ? 2 : 1); /* the second one lies farther */
         for (size_t k = 0; k < lines.point_count; k++) {
             const double x = (double)lines.points[2 * k], y = (double)lines.points[2 * k + 1];
@@ -480,8 +479,7 @@ static void test_window(void **state) {
             const double depth = 1 - (y - 0.5 * HIGH) * sin(angle) / distance;
             assert_true(depth > 0 && depth < 15 && fabs(x) < 15 * WIDE);
         }
-        camber_entries_free(s->context, entries);
-        camber_lines_free(s->context, &lines);
+        camber_lines_destroy(&lines);
     }
     camber_network_destroy(network);
 }

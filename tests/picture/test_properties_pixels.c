@@ -54,7 +54,7 @@ static bool is_tied(easel *e, const property_case *c, int column, int row) {
     }
     camber_mesh_data mesh = property_mesh(e->studio.context, c);
     const bool tied = is_on_edge(&mesh, (double)c->stroke.width_px, x, y);
-    camber_mesh_data_free(e->studio.context, &mesh);
+    camber_mesh_data_destroy(&mesh);
     return tied;
 }
 
@@ -141,7 +141,7 @@ static bool is_plain(const easel *e, const property_case *c) {
     bool plain = true;
     for (size_t i = 0; i < stages.point_count; i++)
         plain = plain && camber_join_kind(stages.points[i].join) <= CAMBER_KIND_CUT;
-    camber_stages_free(e->studio.context, &stages);
+    camber_stages_destroy(&stages);
     return plain;
 }
 
@@ -229,8 +229,8 @@ static property_outcome check_device(void *user, const property_case *c, char st
                        memcmp(device.indices, twin.indices, twin.info.index_count * sizeof *twin.indices) == 0);
     if (!same)
         snprintf(story, PROPERTY_STORY, "device and twin differ");
-    camber_mesh_data_free(e->studio.context, &device);
-    camber_mesh_data_free(e->studio.context, &twin);
+    camber_mesh_data_destroy(&device);
+    camber_mesh_data_destroy(&twin);
     camber_polylines_destroy(polylines);
     return same ? PROPERTY_HOLDS : PROPERTY_BROKEN;
 }

@@ -155,7 +155,7 @@ static void test_sharing_paths_agree(void **state) {
                 picture_assert_same(&p, &wanted);
                 compared++;
                 picture_free(&p);
-                camber_mesh_data_free(s->context, &data);
+                camber_mesh_data_destroy(&data);
             } else {
                 wanted = p;
                 wanted_mesh = data;
@@ -164,7 +164,7 @@ static void test_sharing_paths_agree(void **state) {
             camber_renderer_destroy(renderer);
         }
         picture_free(&wanted);
-        camber_mesh_data_free(s->context, &wanted_mesh);
+        camber_mesh_data_destroy(&wanted_mesh);
     }
     scene_free(&lines);
     if (compared == 0)

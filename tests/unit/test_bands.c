@@ -27,7 +27,8 @@ static void test_bands(void **state) {
     }
     for (size_t i = 0; i < 2 * s.point_count; i++)
         s.points[i] /= 10; /* into the picture */
-    const camber_lines lines = {s.points, s.offsets, s.point_count, s.polyline_count};
+    const camber_lines lines = {
+        .points = s.points, .offsets = s.offsets, .point_count = s.point_count, .polyline_count = s.polyline_count};
     const camber_stroke strokes[] = {{.width_px = 3}, {.width_px = 1, .cap = CAMBER_CAP_ROUND}};
     static float truth[WIDTH * HEIGHT];
     static uint8_t pictures[PICTURES][WIDTH * HEIGHT]; /* the truth with a pixel wrong, and noise */

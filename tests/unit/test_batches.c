@@ -98,7 +98,7 @@ static void test_meshes(void **state) {
             assert_true(batches >= copied);
             assert_true(batches <= copied + copied / 50 + 1);
         }
-        camber_mesh_data_free(context, &mesh);
+        camber_mesh_data_destroy(&mesh);
     }
     camber_polylines_destroy(polylines);
     scene_free(&s);

@@ -160,11 +160,11 @@ static camber_status try_polylines(camber_context *context, void *user) {
 static camber_status try_parse(camber_context *context, void *user) {
     (void)user;
     const uint32_t file[] = {0x4c594c50u, 1, 2, 0, 2, 0, 0, 0x3f800000u, 0x3f800000u};
-    const camber_lines untouched = {(float *)(uintptr_t)8, (uint32_t *)(uintptr_t)16, 7, 9};
+    const camber_lines untouched = {.points = (float *)(uintptr_t)8, .offsets = (uint32_t *)(uintptr_t)16, .point_count = 7, .polyline_count = 9};
     camber_lines made = untouched;
     const camber_status status = camber_lines_parse(context, file, sizeof file, "file", &made);
     if (status == CAMBER_OK)
-        camber_lines_free(context, &made);
+        camber_lines_destroy(&made);
     else
         assert_memory_equal(&made, &untouched, sizeof made);
     return status;
@@ -180,7 +180,7 @@ static camber_status try_twin(camber_context *context, void *user) {
             assert_ptr_equal(made.vertices, (camber_vertex *)(uintptr_t)8);
             return status;
         }
-        camber_mesh_data_free(context, &made);
+        camber_mesh_data_destroy(&made);
         assert_null(made.vertices);
     }
     return CAMBER_OK;

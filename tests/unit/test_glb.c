@@ -319,7 +319,7 @@ static void test_random_lines(void **state) {
             json_decref(g.json);
             free(bytes.bytes);
         }
-        camber_mesh_data_free(f->context, &mesh);
+        camber_mesh_data_destroy(&mesh);
     }
 }
 
@@ -365,7 +365,7 @@ static void test_outline_by_hand(void **state) {
         assert_true(json_is_true(get(material, "doubleSided")));
         json_decref(g.json);
         free(bytes.bytes);
-        camber_mesh_data_free(f->context, &mesh);
+        camber_mesh_data_destroy(&mesh);
     }
 }
 
@@ -461,7 +461,7 @@ static void test_failures(void **state) {
     assert_int_equal(whole.size, before);
     free(whole.bytes);
     free(refused.bytes);
-    camber_mesh_data_free(f->context, &mesh);
+    camber_mesh_data_destroy(&mesh);
 }
 
 int main(int argc, char **argv) {

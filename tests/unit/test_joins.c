@@ -23,9 +23,9 @@ static found find(camber_context *context, const scene *lines, const camber_stro
     return f;
 }
 
-static void forget(camber_context *context, found *f) {
+static void forget(found *f) {
     camber_joins_free(&f->joins);
-    camber_mesh_data_free(context, &f->mesh);
+    camber_mesh_data_destroy(&f->mesh);
 }
 
 /* How many segments the triangles of a range carry, by where they end, one after the other. */
@@ -73,7 +73,7 @@ static void test_counts(void **state) {
             printf("scene %zu %-5s joins %6zu of %6zu  plain %5zu tight %5zu of %5zu split %5zu of %5zu seams %zu\n",
                    which, camber_method_get_name((camber_method)method), f.joins.count, info->joins, f.rooms[0],
                    f.rooms[1], info->tight_joins, f.rooms[2], info->split_joins, f.seams);
-            forget(context, &f);
+            forget(&f);
         }
         scene_free(&lines);
     }
@@ -95,7 +95,7 @@ static void test_ranges(void **state) {
                 assert_true(r.first_index + r.index_count <= f.mesh.info.index_count);
                 assert_int_equal(segments_in(&f.mesh, r), 2);
             }
-            forget(context, &f);
+            forget(&f);
         }
         scene_free(&lines);
     }
@@ -140,7 +140,7 @@ static void test_by_hand(void **state) {
             assert_true(!f.joins.items[i].seam);
         }
         assert_true(f.joins.items[2].x == 20 && f.joins.items[2].y == 10.5f);
-        forget(context, &f);
+        forget(&f);
         scene_free(&lines);
     }
     host_done(&h, context);
@@ -164,7 +164,7 @@ static void test_rings(void **state) {
         assert_int_equal(f.seams, seams);
         assert_int_equal(f.joins.count, 10 + seams);
         assert_int_equal(f.rooms[CAMBER_JOIN_PLAIN], f.joins.count);
-        forget(context, &f);
+        forget(&f);
         scene_free(&lines);
     }
     host_done(&h, context);

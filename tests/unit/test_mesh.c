@@ -116,7 +116,7 @@ static void test_any_mesh(void **state) {
             camber_mesh_data mesh = tessellate(context, polylines, strokes, (camber_method)method);
             assert_int_equal(mesh.info.strips, method == CAMBER_METHOD_STRIP);
             check_mesh(&mesh, SCENE_ROWS);
-            camber_mesh_data_free(context, &mesh);
+            camber_mesh_data_destroy(&mesh);
         }
         camber_polylines_destroy(polylines);
         scene_free(&s);
@@ -141,10 +141,10 @@ static void test_input_order(void **state) {
                 camber_mesh_data first = tessellate(context, some, strokes, (camber_method)method);
                 assert_memory_equal(all.vertices, first.vertices, first.info.vertex_count * sizeof *all.vertices);
                 assert_memory_equal(all.indices, first.indices, first.info.index_count * sizeof *all.indices);
-                camber_mesh_data_free(context, &first);
+                camber_mesh_data_destroy(&first);
                 camber_polylines_destroy(some);
             }
-            camber_mesh_data_free(context, &all);
+            camber_mesh_data_destroy(&all);
         }
         camber_polylines_destroy(polylines);
         scene_free(&s);
@@ -202,7 +202,7 @@ static void test_join_counts(void **state) {
             assert_int_equal(mesh.info.undrawn_dots, undrawn);
             assert_true(llabs((long long)mesh.info.tight_joins - (long long)counts.tight) <= (long long)counts.unsure);
             assert_true(llabs((long long)mesh.info.split_joins - (long long)counts.split) <= (long long)counts.unsure);
-            camber_mesh_data_free(context, &mesh);
+            camber_mesh_data_destroy(&mesh);
         }
         if (which != 3) /* there a third are exact reversals */
             assert_true(counts.unsure < 10 + counts.joins / 200);
@@ -263,7 +263,7 @@ static void test_winding(void **state) {
         const size_t count = each_triangle(&mesh, check_winding, &w);
         assert_int_equal(w.backward, 0);
         assert_true(w.flat < count / 50); /* joins that hardly turn */
-        camber_mesh_data_free(context, &mesh);
+        camber_mesh_data_destroy(&mesh);
     }
     camber_polylines_destroy(polylines);
     scene_free(&s);
@@ -298,7 +298,7 @@ static void test_two_vertices_a_point(void **state) {
             }
         }
     }
-    camber_mesh_data_free(context, &mesh);
+    camber_mesh_data_destroy(&mesh);
     camber_polylines_destroy(p);
     scene_free(&s);
     host_done(&h, context);
@@ -352,8 +352,8 @@ static void test_reversed_line(void **state) {
             assert_int_equal(a.info.tight_joins, b.info.tight_joins);
             assert_int_equal(a.info.split_joins, b.info.split_joins);
             assert_same_places(&a, &b, strokes);
-            camber_mesh_data_free(context, &a);
-            camber_mesh_data_free(context, &b);
+            camber_mesh_data_destroy(&a);
+            camber_mesh_data_destroy(&b);
         }
         camber_polylines_destroy(r);
         camber_polylines_destroy(p);
@@ -392,7 +392,7 @@ static void test_fan_tolerance(void **state) {
             assert_true(radius > reach - 1e-3 && radius < reach + 1.1 * tolerance);
             assert_true(at.x >= 1000 && at.y <= 0);
         }
-        camber_mesh_data_free(context, &mesh);
+        camber_mesh_data_destroy(&mesh);
     }
     camber_polylines_destroy(p);
     scene_free(&s);

@@ -4,7 +4,8 @@
 #include "validate/turns.h"
 
 static camber_lines lines_of(const scene *s) {
-    return (camber_lines){s->points, s->offsets, s->point_count, s->polyline_count};
+    return (camber_lines){
+        .points = s->points, .offsets = s->offsets, .point_count = s->point_count, .polyline_count = s->polyline_count};
 }
 
 static void test_classes(void **state) {
@@ -51,7 +52,7 @@ static void test_sums(void **state) {
             camber_mesh_data mesh;
             assert_int_equal(camber_mesh_data_tessellate(context, polylines, &desc, &mesh), CAMBER_OK);
             assert_int_equal(sum, mesh.info.joins);
-            camber_mesh_data_free(context, &mesh);
+            camber_mesh_data_destroy(&mesh);
             camber_polylines_destroy(polylines);
             scene_free(&s);
         }

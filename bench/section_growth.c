@@ -129,9 +129,11 @@ static camber_status draw_once(bench *b, const load *l, const camber_polylines *
     bench_series_add(&c->frame, frame_ms);
     bench_series_add(&c->tessellate, tessellated - begin);
     bench_series_add(&c->draw, stats.draw_ms);
-    bench_series_add(&c->shape, stats.shape_ms);
-    bench_series_add(&c->lists, stats.count_ms + stats.total_ms + stats.fill_ms);
-    bench_series_add(&c->cover, stats.cover_ms);
+    bench_series_add(&c->shape, camber_stage_times_get_ms(&stats.times, "setup"));
+    bench_series_add(&c->lists, camber_stage_times_get_ms(&stats.times, "bin_count") +
+                                    camber_stage_times_get_ms(&stats.times, "bin_scan") +
+                                    camber_stage_times_get_ms(&stats.times, "bin_scatter"));
+    bench_series_add(&c->cover, camber_stage_times_get_ms(&stats.times, "rasterize"));
     bench_series_add(&c->cores, (processor_ms() - busy) / frame_ms);
     return status;
 }

@@ -34,7 +34,10 @@ static camber_status tessellate(trial *t, double simplify_px) {
         if (status != CAMBER_OK || run < t->b->warm_ups)
             continue;
         const camber_mesh_info info = camber_mesh_get_info(t->b->mesh);
-        const double times[STAGES] = {info.survey_ms, info.project_ms, info.classify_ms, info.scan_ms, info.emit_ms};
+        const double times[STAGES] = {
+            camber_stage_times_get_ms(&info.times, "cull_count"), camber_stage_times_get_ms(&info.times, "cull_emit"),
+            camber_stage_times_get_ms(&info.times, "classify"), camber_stage_times_get_ms(&info.times, "scan"),
+            camber_stage_times_get_ms(&info.times, "emit")};
         for (int i = 0; i < STAGES; i++)
             bench_series_add(t->series + i, times[i]);
         bench_series_add(&t->all, ms);

@@ -35,6 +35,12 @@ typedef struct trial {
     bench_series drawn[DRAWN];
 } trial;
 
+static double offset_ms(camber_mesh_info info) {
+    return camber_stage_times_get_ms(&info.times, "offset_clip") +
+           camber_stage_times_get_ms(&info.times, "offset_count") +
+           camber_stage_times_get_ms(&info.times, "offset_emit");
+}
+
 static camber_status measure_offset(trial *t) {
     const camber_stroke stroke = {.width_px = t->width_px, .offset_px = OFFSET_PX};
     const camber_tessellation_desc desc = {.strokes = &stroke, .stroke_count = 1, .method = t->method};
@@ -43,7 +49,7 @@ static camber_status measure_offset(trial *t) {
     for (size_t run = 0; run < t->b->warm_ups + t->b->runs && status == CAMBER_OK; run++) {
         status = camber_mesh_tessellate(t->b->mesh, t->polylines, &desc);
         if (status == CAMBER_OK && run >= t->b->warm_ups)
-            bench_series_add(&t->offset, camber_mesh_get_info(t->b->mesh).offset_ms);
+            bench_series_add(&t->offset, offset_ms(camber_mesh_get_info(t->b->mesh)));
     }
     return status;
 }
@@ -57,10 +63,13 @@ static camber_status tessellate(trial *t) {
         if (status != CAMBER_OK || run < t->b->warm_ups)
             continue;
         const camber_mesh_info info = camber_mesh_get_info(t->b->mesh);
-        bench_series_add(t->series + 0, info.classify_ms);
-        bench_series_add(t->series + 1, info.scan_ms);
-        bench_series_add(t->series + 2, info.emit_ms);
-        bench_series_add(&t->all, info.classify_ms + info.scan_ms + info.emit_ms);
+        double all = 0;
+        for (int i = 0; i < STAGES; i++) {
+            const double ms = camber_stage_times_get_ms(&info.times, stages[i].name);
+            bench_series_add(t->series + i, ms);
+            all += ms;
+        }
+        bench_series_add(&t->all, all);
         t->info = info;
     }
     return status;
@@ -81,7 +90,10 @@ static camber_status measure_drawing(trial *t) {
         status = camber_renderer_render(b->covering, &frame, NULL, NULL, &stats);
         if (status != CAMBER_OK || run < b->warm_ups)
             continue;
-        const double ms[DRAWN] = {stats.shape_ms, stats.count_ms, stats.total_ms, stats.fill_ms, stats.cover_ms};
+        const double ms[DRAWN] = {
+            camber_stage_times_get_ms(&stats.times, "setup"), camber_stage_times_get_ms(&stats.times, "bin_count"),
+            camber_stage_times_get_ms(&stats.times, "bin_scan"), camber_stage_times_get_ms(&stats.times, "bin_scatter"),
+            camber_stage_times_get_ms(&stats.times, "rasterize")};
         for (int i = 0; i < DRAWN; i++)
             bench_series_add(t->drawn + i, ms[i]);
     }
@@ -134,10 +146,10 @@ static void report(trial *t, json_t *result) {
         add_stage(row, stages[i].name, bench_series_median(t->series + i), points, moved[i], t->copied_gb_s);
     add_stage(row, "all", ms, points, sum, t->copied_gb_s);
     if (t->offset.count) {
-        const double offset_ms = bench_series_median(&t->offset);
-        json_object_set_new(row, "offset_m_points_s", json_real(offset_ms > 0 ? points / offset_ms / 1e3 : 0));
+        const double beside_ms = bench_series_median(&t->offset);
+        json_object_set_new(row, "offset_m_points_s", json_real(beside_ms > 0 ? points / beside_ms / 1e3 : 0));
         bench_result_add_figure(result, &(bench_figure){t->scene->key, "offset of 6 px, 2 px wide", "kernels",
-                                                        offset_ms > 0 ? ms / offset_ms : 0, false});
+                                                        beside_ms > 0 ? ms / beside_ms : 0, false});
     }
     report_drawing(t, row, result);
     char what[64];

@@ -385,6 +385,24 @@ CAMBER_API const char *camber_rasterizer_get_name(camber_rasterizer draw);
 /* "cl_khr_gl_sharing", "zero copy" or "copy". */
 CAMBER_API const char *camber_sharing_get_name(camber_sharing sharing);
 
+/* ---- Times of stages -------------------------------------------------------------------------------- */
+
+/* How long a kernel took. Which stages there are, and their names, may change from version to version. */
+typedef struct camber_stage_time {
+    const char *name; /* the library's: "classify", ... */
+    double ms;
+} camber_stage_time;
+
+#define CAMBER_STAGE_TIMES_MAX 24
+
+typedef struct camber_stage_times {
+    size_t count;
+    camber_stage_time stages[CAMBER_STAGE_TIMES_MAX]; /* count, in the order in which they run */
+} camber_stage_times;
+
+/* The time of the stage of that name. 0: it did not run, or there is none. */
+CAMBER_API double camber_stage_times_get_ms(const camber_stage_times *times, const char *name);
+
 /* ---- Meshes ---------------------------------------------------------------------------------------- */
 
 typedef enum camber_method {
@@ -410,20 +428,18 @@ typedef struct camber_tessellation_desc {
 
 typedef struct camber_mesh_info {
     camber_method method;
-    bool strips;           /* triangle strips; else triangles */
-    bool has_arc_length;   /* as the tessellation was asked for */
-    size_t record_count;   /* camber_record */
-    size_t vertex_count;   /* of strips two a record, those between strips too */
-    size_t index_count;    /* of strips one a vertex, though none is kept */
-    size_t bytes;          /* all that is kept to draw from: records, and indices of kite and fan */
-    size_t triangle_count; /* not degenerate */
-    size_t joins;          /* points with a join, by kind: */
-    size_t tight_joins;    /* the inner side has no room: (h + pad) tan(turn / 2) > half the shorter neighbour */
-    size_t split_joins;    /* turns past 127 degrees */
-    size_t undrawn_dots;   /* dots with butt caps, which have no area */
-    double classify_ms, scan_ms, emit_ms; /* of the last tessellation, on the device's queue */
-    double survey_ms, project_ms;         /* of a network */
-    double offset_ms;                     /* of lines with an offset */
+    bool strips;              /* triangle strips; else triangles */
+    bool has_arc_length;      /* as the tessellation was asked for */
+    size_t record_count;      /* camber_record */
+    size_t vertex_count;      /* of strips two a record, those between strips too */
+    size_t index_count;       /* of strips one a vertex, though none is kept */
+    size_t bytes;             /* all that is kept to draw from: records, and indices of kite and fan */
+    size_t triangle_count;    /* not degenerate */
+    size_t joins;             /* points with a join, by kind: */
+    size_t tight_joins;       /* the inner side has no room: (h + pad) tan(turn / 2) > half the shorter neighbour */
+    size_t split_joins;       /* turns past 127 degrees */
+    size_t undrawn_dots;      /* dots with butt caps, which have no area */
+    camber_stage_times times; /* of the last tessellation's stages, on the device's queue */
 } camber_mesh_info;
 
 typedef struct camber_mesh camber_mesh;
@@ -579,8 +595,7 @@ typedef struct camber_frame_stats {
     size_t pieces;
     double draw_ms; /* clear, draw, finish; of a frame that overlaps others, what its calls take */
     double read_ms;
-    double shape_ms, count_ms, total_ms, fill_ms,
-        cover_ms; /* of CAMBER_RASTERIZER_OPENCL's kernels on the device's queue */
+    camber_stage_times times; /* of CAMBER_RASTERIZER_OPENCL's stages, on the device's queue */
 } camber_frame_stats;
 
 /* Takes row_count rows of width * 4 bytes, premultiplied RGBA8, from the top down; a return of false stops the

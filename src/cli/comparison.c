@@ -110,7 +110,9 @@ static camber_status time_runs(const trial *t) {
         if (status != CAMBER_OK || i < WARM_UPS)
             continue;
         const camber_mesh_info info = camber_mesh_get_info(c->mesh);
-        tessellate_ms[i - WARM_UPS] = info.classify_ms + info.scan_ms + info.emit_ms;
+        tessellate_ms[i - WARM_UPS] = camber_stage_times_get_ms(&info.times, "classify") +
+                                      camber_stage_times_get_ms(&info.times, "scan") +
+                                      camber_stage_times_get_ms(&info.times, "emit");
         draw_ms[i - WARM_UPS] = stats.draw_ms;
     }
     if (status == CAMBER_OK) {

@@ -54,21 +54,21 @@ static int time_run(job *j, run_times *times) {
         status = camber_input_tessellate(&j->input, j->mesh);
     times->tessellate = camber_clock_ms() - resident_ms;
     const camber_mesh_info info = camber_mesh_get_info(j->mesh);
-    times->tessellate -= info.survey_ms + info.project_ms; /* from classify on */
-    times->survey = info.survey_ms;
-    times->project = info.project_ms;
-    times->classify = info.classify_ms;
-    times->scan = info.scan_ms;
-    times->emit = info.emit_ms;
+    times->survey = camber_stage_times_get_ms(&info.times, "cull_count");
+    times->project = camber_stage_times_get_ms(&info.times, "cull_emit");
+    times->tessellate -= times->survey + times->project; /* from classify on */
+    times->classify = camber_stage_times_get_ms(&info.times, "classify");
+    times->scan = camber_stage_times_get_ms(&info.times, "scan");
+    times->emit = camber_stage_times_get_ms(&info.times, "emit");
     frame = camber_input_frame(&j->input, j->mesh); /* a scene's is valid until the next call on it */
     if (status == CAMBER_OK)
         status = camber_renderer_render(j->session->renderer, &frame, NULL, NULL, &j->stats);
     times->draw = j->stats.draw_ms;
-    times->shape = j->stats.shape_ms;
-    times->count = j->stats.count_ms;
-    times->total = j->stats.total_ms;
-    times->fill = j->stats.fill_ms;
-    times->cover = j->stats.cover_ms;
+    times->shape = camber_stage_times_get_ms(&j->stats.times, "setup");
+    times->count = camber_stage_times_get_ms(&j->stats.times, "bin_count");
+    times->total = camber_stage_times_get_ms(&j->stats.times, "bin_scan");
+    times->fill = camber_stage_times_get_ms(&j->stats.times, "bin_scatter");
+    times->cover = camber_stage_times_get_ms(&j->stats.times, "rasterize");
     return camber_report_status(j->session->report, status);
 }
 

@@ -1,8 +1,8 @@
 /* Frames that kernels draw: passes become runs of polylines, tables of rows and inks, and the picture is drawn an area
  * after the other. */
 #include "base/perspective.h"
-#include "raster/raster.h"
 #include "draw/renderer.h"
+#include "raster/raster.h"
 
 #include <string.h>
 
@@ -325,11 +325,11 @@ static camber_status take_area(camber_renderer *renderer, const camber_cover_are
 
 static void add_times(const camber_renderer *renderer, camber_frame_stats *stats) {
     const camber_cover_times times = camber_cover_get_times(renderer->cover);
-    stats->shape_ms += times.shape_ms;
-    stats->count_ms += times.count_ms;
-    stats->total_ms += times.total_ms;
-    stats->fill_ms += times.fill_ms;
-    stats->cover_ms += times.cover_ms;
+    camber_stage_times_add(&stats->times, CAMBER_STAGE_SETUP, times.shape_ms);
+    camber_stage_times_add(&stats->times, CAMBER_STAGE_BIN_COUNT, times.count_ms);
+    camber_stage_times_add(&stats->times, CAMBER_STAGE_BIN_SCAN, times.total_ms);
+    camber_stage_times_add(&stats->times, CAMBER_STAGE_BIN_SCATTER, times.fill_ms);
+    camber_stage_times_add(&stats->times, CAMBER_STAGE_RASTERIZE, times.cover_ms);
 }
 
 /* The areas of a band of rows, from left to right. */

@@ -319,7 +319,7 @@ static camber_status survey(camber_mesh *mesh, camber_mesh_part *part, const cam
     cl_int code;
     const cl_uint *counts =
         clEnqueueMapBuffer(device->queue, held->counts, CL_TRUE, CL_MAP_READ, 0, 4 * chunks, 0, NULL, NULL, &code);
-    camber_add_ms(event, &mesh->mesh_info.survey_ms);
+    camber_mesh_add_time(mesh, CAMBER_STAGE_CULL_COUNT, event);
     if (code != CL_SUCCESS)
         return camber_fail_cl(device->context, "clEnqueueMapBuffer", code);
     *slots = 0;

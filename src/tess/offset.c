@@ -222,7 +222,7 @@ camber_status camber_part_offset(camber_mesh *mesh, camber_mesh_part *part, bool
     for (size_t i = 0; i < 3; i++) {
         if (events[i] && status == CAMBER_OK)
             clWaitForEvents(1, events + i);
-        camber_add_ms(events[i], &mesh->mesh_info.offset_ms);
+        camber_mesh_add_time(mesh, (camber_stage_id)(CAMBER_STAGE_OFFSET_CLIP + i), events[i]);
     }
     return status;
 }

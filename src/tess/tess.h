@@ -3,6 +3,7 @@
 #define CAMBER_TESS_H
 
 #include "base/base.h"
+#include "base/stages.h"
 #include "camber_proof.h"
 #include "lines/lines.h"
 
@@ -278,6 +279,8 @@ typedef struct camber_stage {
 camber_status camber_stage_run(const camber_device *device, camber_stage stage, cl_event *event);
 /* Adds the time of a command to ms and releases the event, which may be NULL. */
 void camber_add_ms(cl_event event, double *ms);
+/* The same, to the stage's time in the mesh's info. */
+void camber_mesh_add_time(camber_mesh *mesh, camber_stage_id stage, cl_event event);
 camber_status camber_fail_stage(const camber_device *device, const char *call, const char *name, cl_int code);
 
 /* memory.c. So many eighths of what the device's meshes may hold. */

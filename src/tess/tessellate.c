@@ -73,6 +73,13 @@ void camber_add_ms(cl_event event, double *ms) {
     *ms += (double)(end - begin) * 1e-6;
 }
 
+void camber_mesh_add_time(camber_mesh *mesh, camber_stage_id stage, cl_event event) {
+    double ms = 0.0;
+    camber_add_ms(event, &ms);
+    if (event)
+        camber_stage_times_add(&mesh->mesh_info.times, stage, ms);
+}
+
 /* classify and scan: what the part's output takes. */
 static camber_status measure(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program) {
     const camber_device *device = mesh->device;
@@ -87,8 +94,8 @@ static camber_status measure(camber_mesh *mesh, camber_mesh_part *part, const ca
         status = camber_stage_run(device, (camber_stage){"scan", program->scan, scan, 5, item, slots}, events + 1);
     if (status == CAMBER_OK)
         status = scan_blocks(mesh, part);
-    camber_add_ms(events[0], &mesh->mesh_info.classify_ms);
-    camber_add_ms(events[1], &mesh->mesh_info.scan_ms);
+    camber_mesh_add_time(mesh, CAMBER_STAGE_CLASSIFY, events[0]);
+    camber_mesh_add_time(mesh, CAMBER_STAGE_SCAN, events[1]);
     return status;
 }
 
@@ -141,7 +148,7 @@ static camber_status emit(camber_mesh *mesh, camber_mesh_part *part, const cambe
     if (status == CAMBER_OK && code != CL_SUCCESS)
         status = camber_fail_cl(device->context, "clFinish", code);
     status = camber_part_finish(mesh, part, true, status);
-    camber_add_ms(event, &mesh->mesh_info.emit_ms);
+    camber_mesh_add_time(mesh, CAMBER_STAGE_EMIT, event);
     return status;
 }
 
@@ -200,7 +207,7 @@ static camber_status prepare(camber_mesh *mesh, camber_mesh_part *part, const ca
     if (status == CAMBER_OK && *fits && part->slot_count > 0)
         status = measure(mesh, part, program);
     if (mesh->held) {
-        camber_add_ms(mesh->held->projected, &mesh->mesh_info.project_ms);
+        camber_mesh_add_time(mesh, CAMBER_STAGE_CULL_EMIT, mesh->held->projected);
         mesh->held->projected = NULL;
     }
     return status;

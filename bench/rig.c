@@ -27,7 +27,8 @@ bool bench_open(bench *b) {
     if (status == CAMBER_OK)
         status = camber_surface_create(b->context, NULL, &b->surface);
     if (status == CAMBER_OK)
-        status = camber_device_create(b->context, NULL, b->surface, &b->device);
+        status = camber_device_create(b->context, &(camber_device_desc){.gl = camber_surface_get_handles(b->surface)},
+                                      &b->device);
     if (status == CAMBER_OK)
         status = open_renderer(b, CAMBER_RASTERIZER_GL, &b->renderer, &b->mesh);
     if (status == CAMBER_OK)

@@ -87,6 +87,8 @@ static camber_status fly_frame(flight *f, double share, double times[PARTS]) {
     times[PART_TESSELLATE] = made - moved;
     times[PART_DRAW] = stats.draw_ms;
     times[PART_READ] = stats.read_ms;
+    if (status == CAMBER_OK)
+        status = camber_scene_project(f->scene);
     if (status == CAMBER_OK) {
         f->draw_calls += (double)stats.draw_calls / (double)f->frames;
         f->points += (double)camber_scene_get_info(f->scene).points_in / (double)f->frames;
@@ -150,7 +152,7 @@ static camber_status open_flight(flight *f, const char *path) {
     if (status == CAMBER_OK)
         status = camber_scene_create(f->features, &whole, &f->scene);
     if (status == CAMBER_OK)
-        f->start = camber_scene_get_view(f->scene);
+        f->start = camber_scene_get_info(f->scene);
     f->picture = calloc((size_t)b->fly_width * b->fly_height, 4);
     if (!f->picture)
         status = CAMBER_ERROR_MEMORY;

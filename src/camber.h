@@ -227,14 +227,20 @@ typedef struct camber_device_info {
     bool gl_sharing;               /* cl_khr_gl_sharing */
 } camber_device_info;
 
-/* Returns CAMBER_ERROR_MEMORY where the process may have too little address space for drivers (ulimit -v).
- * Fills up to capacity infos and sets *count to the number of devices present, which may be larger and may
- * be 0. infos may be NULL where capacity is 0. */
-CAMBER_API camber_status camber_device_list(camber_context *context, size_t capacity, camber_device_info *infos,
-                                            size_t *count);
+/* Gives the n-th device, from 0, and NULL past the last. The first call of a context looks for devices. What it finds
+ * lives as long as the context.
+ * Returns CAMBER_ERROR_MEMORY, also where the process has too little address space for drivers (ulimit -v). */
+CAMBER_API camber_status camber_device_list(camber_context *context, size_t n, const camber_device_info **info);
 
 /* Whether match, as in camber_device_desc, names the device. */
 CAMBER_API bool camber_device_info_matches(const camber_device_info *info, const char *match);
+
+/* A GL context that a device can share buffers with, as camber_surface_get_handles tells it. Zero: there is none. */
+typedef struct camber_gl_handles {
+    intptr_t context, display;
+    intptr_t display_kind;         /* the name that OpenCL has for such displays: CL_EGL_DISPLAY_KHR, ... */
+    uint64_t largest_buffer_bytes; /* that the context's shaders can read. 0: no bound */
+} camber_gl_handles;
 
 typedef struct camber_device_desc {
     /* "cpu", "gpu", or part of a device's or platform's name, case ignored. NULL: a GPU, else a CPU. */
@@ -257,10 +263,11 @@ typedef struct camber_device_desc {
      * A renderer that draws in OpenCL takes a quarter of it while it is there, or 4 MB besides where that is less, for
      * segments and the lists of tiles; meshes have the rest. What takes more is drawn in slices, to the same bytes. */
     uint64_t memory_bytes;
+    /* The surface whose renderers will draw the device's meshes in GL. Zero: none; buffers are copied. */
+    camber_gl_handles gl;
 } camber_device_desc;
 
 typedef struct camber_device camber_device;
-typedef struct camber_surface camber_surface;
 
 /* Opens a device. surface may be NULL; where it is given, buffers can be shared with its GL context
  * (camber_renderer_create tells how). The kernels of a method are built, or loaded from the cache, when it is first
@@ -273,7 +280,7 @@ typedef struct camber_surface camber_surface;
  * Returns CAMBER_ERROR_DEVICE (no platform, no device that matches or not so many), CAMBER_ERROR_ARGUMENT (a work-group
  * size that is none of these, a largest buffer below 4096 bytes, memory below 65536), CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_device_create(camber_context *context, const camber_device_desc *desc,
-                                              camber_surface *surface, camber_device **device);
+                                              camber_device **device);
 CAMBER_API void camber_device_destroy(camber_device *device);
 
 typedef struct camber_warmed {
@@ -309,6 +316,8 @@ typedef enum camber_backend {
     CAMBER_BACKEND_OSMESA,
 } camber_backend;
 
+typedef struct camber_surface camber_surface;
+
 typedef struct camber_surface_desc {
     camber_backend backend;
     /* A GLES context of the caller's (EGLContext) and its initialised display (EGLDisplay): the surface's own context
@@ -335,6 +344,8 @@ CAMBER_API bool camber_surface_may_be_hardware(const camber_surface_desc *desc);
 CAMBER_API camber_status camber_surface_create(camber_context *context, const camber_surface_desc *desc,
                                                camber_surface **surface);
 CAMBER_API void camber_surface_destroy(camber_surface *surface);
+/* What camber_device_desc.gl takes. NULL gives zero. */
+CAMBER_API camber_gl_handles camber_surface_get_handles(const camber_surface *surface);
 /* Lets go of the GL context on the calling thread, so that another thread can use the surface. */
 CAMBER_API void camber_surface_release(camber_surface *surface);
 /* Whether the GL context is lost, as it is when the GPU is reset or its driver restarts. What needs it then returns

@@ -7,7 +7,8 @@
 #ifndef CAMBER_MAP_H
 #define CAMBER_MAP_H
 
-#include "camber_proof.h"
+#include "camber_files.h"
+#include "camber_network.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -31,10 +32,20 @@ CAMBER_API camber_status camber_style_parse(camber_context *context, const char 
 /* The built-in road style. */
 CAMBER_API camber_status camber_style_create_builtin(camber_context *context, camber_theme theme, camber_style **style);
 CAMBER_API void camber_style_destroy(camber_style *style);
-/* Whether its layers ask for no more than lines of one colour: none of those that a zoom shows (NAN: any zoom) names
- * dashes, gap widths, blurs, trims, gradients, borders or patterns. OpenCL draws such frames with kernels that have
- * less to do, so that a program can make ready which ones it will need. */
-CAMBER_API bool camber_style_is_plain(const camber_style *style, double zoom);
+/* What lines and backgrounds are drawn with besides a width and a colour. */
+typedef enum camber_style_effect {
+    CAMBER_STYLE_EFFECT_GAP = 1,
+    CAMBER_STYLE_EFFECT_BLUR = 2,
+    CAMBER_STYLE_EFFECT_DASH = 4,
+    CAMBER_STYLE_EFFECT_TRIM = 8,
+    CAMBER_STYLE_EFFECT_GRADIENT = 16,
+    CAMBER_STYLE_EFFECT_PATTERN = 32,
+    CAMBER_STYLE_EFFECT_BORDER = 64,
+} camber_style_effect;
+
+/* Gives the effects that the layers of a zoom name, as bits; 0: none. zoom NAN: the layers of any zoom. A program can
+ * prepare what it will draw with before it reads its data. */
+CAMBER_API uint32_t camber_style_get_effects(const camber_style *style, double zoom);
 
 /* Names of the styles that ship with camber: "roads", the built-in one; "openmaptiles", roads, rails, rivers and
  * borders in tiles of the OpenMapTiles schema, of openmaptiles.mbtiles in the working folder; "transit", lines of
@@ -210,7 +221,7 @@ typedef struct camber_scene_desc {
     /* A point is dropped where the line stays this close to it, device px; nodes that lines share go or stay in all of
      * them. 0: none */
     double simplify_px;
-    /* What the scene has on the host is made when it is asked for: camber_scene_tessellate does without. */
+    /* true: camber_scene_create leaves out camber_scene_project, which camber_scene_tessellate does not need. */
     bool on_device;
 } camber_scene_desc;
 
@@ -246,18 +257,19 @@ CAMBER_API camber_status camber_scene_tessellate(const camber_scene *scene, camb
 CAMBER_API camber_network *camber_scene_get_network(const camber_scene *scene, camber_camera *camera,
                                                     camber_tessellation_desc *desc);
 
-/* Where the view is, whether its background is opaque, and undrawn; other counts are 0. Makes nothing. */
-CAMBER_API camber_scene_info camber_scene_get_view(const camber_scene *scene);
-/* Counts are 0 where memory for the parts below ran out. */
+/* Makes what the view sees on the host, by the CPU twin: what the getters below give. Each stretch of a line that the
+ * view cuts becomes a polyline of its own, so lines have no dashes, gradients or trims when these are drawn. After
+ * camber_scene_move, and of a scene on the device, call it first; where all is there it does nothing.
+ * Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT. */
+CAMBER_API camber_status camber_scene_project(camber_scene *scene);
+/* layers, features, polylines and points are 0 until the scene is projected. */
 CAMBER_API camber_scene_info camber_scene_get_info(const camber_scene *scene);
-
-/* What the view sees, on the host and owned by the scene: made by the CPU twin, with each piece by itself, so that what
- * lies along lines (dashes, gradients, trims) is not drawn of these. After a move, and of a scene on the device, the
- * first of these calls makes it: NULL where memory ran out. */
+/* Of a projected scene, which owns all of these. */
 CAMBER_API const camber_polylines *camber_scene_get_polylines(const camber_scene *scene);
 CAMBER_API const camber_lines *camber_scene_get_lines(const camber_scene *scene);
-/* The row of each polyline, an index into the strokes. */
+/* The row of each polyline: an index into the strokes. */
 CAMBER_API const uint32_t *camber_scene_get_rows(const camber_scene *scene);
+/* Of any scene. */
 CAMBER_API const camber_stroke *camber_scene_get_strokes(const camber_scene *scene, size_t *count);
 /* The frame with all passes drawing mesh, which holds the scene as camber_scene_tessellate left it, or else its
  * polylines tessellated. Valid until the next call on this scene. */

@@ -31,6 +31,9 @@ struct camber_context {
     camber_spent spent;
     uint64_t next_serial; /* identifies polylines to meshes that keep them uploaded */
     const void *gdal;     /* source/load.c: what it found, NULL before */
+    /* The devices that camber_device_list has found; looked for once. */
+    camber_device_info *devices;
+    size_t device_count;
     bool saves_shared;    /* cache.c: files are saved for all users of the machine */
 };
 

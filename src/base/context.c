@@ -48,6 +48,7 @@ void camber_context_destroy(camber_context *context) {
     if (!context)
         return;
     const camber_context_desc desc = context->desc;
+    camber_free(context, context->devices);
     camber_free(context, (char *)(uintptr_t)desc.cache_dir);
     camber_free(context, (char *)(uintptr_t)desc.access.root);
     for (size_t i = 0; i < sizeof desc.access.outputs / sizeof *desc.access.outputs; i++)

@@ -152,16 +152,27 @@ static size_t find_devices(found_device found[DEVICES_MAX], failed_call *failed)
     return count;
 }
 
-camber_status camber_device_list(camber_context *context, size_t capacity, camber_device_info *infos, size_t *count) {
+static camber_status list_devices(camber_context *context) {
+    found_device found[DEVICES_MAX];
+    failed_call failed;
     const camber_status status = camber_budget_check_drivers(context);
     if (status != CAMBER_OK)
         return status;
-    found_device found[DEVICES_MAX];
-    failed_call failed;
-    *count = find_devices(found, &failed);
-    for (size_t i = 0; i < *count && i < capacity; i++)
-        infos[i] = found[i].info;
+    const size_t count = find_devices(found, &failed);
+    context->devices = camber_alloc(context, count, sizeof *context->devices);
+    if (!context->devices)
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < count; i++)
+        context->devices[i] = found[i].info;
+    context->device_count = count;
     return CAMBER_OK;
+}
+
+camber_status camber_device_list(camber_context *context, size_t n, const camber_device_info **info) {
+    const camber_status status = context->devices ? CAMBER_OK : list_devices(context);
+    if (status == CAMBER_OK)
+        *info = n < context->device_count ? context->devices + n : NULL;
+    return status;
 }
 
 static bool contains_ignoring_case(const char *text, const char *part) {
@@ -228,7 +239,7 @@ enum { LEAST_BUFFER_BYTES = 4096, LEAST_MEMORY_BYTES = 65536 };
 static const uint64_t LARGEST_BUFFER_BYTES = INT32_MAX;
 
 /* The desc's bounds on what the kernels are given. */
-static camber_status bound(camber_device *device, const camber_device_desc *desc, const camber_surface *surface) {
+static camber_status bound(camber_device *device, const camber_device_desc *desc) {
     const uint32_t size = desc->work_group_size;
     if (size != 0 && size != 64 && size != 128 && size != 256)
         return camber_fail(device->context, CAMBER_ERROR_ARGUMENT,
@@ -247,8 +258,8 @@ static camber_status bound(camber_device *device, const camber_device_desc *desc
     uint64_t *largest = &device->info.largest_buffer_bytes;
     if (*largest > LARGEST_BUFFER_BYTES)
         *largest = LARGEST_BUFFER_BYTES;
-    if (surface && *largest > camber_surface_largest_buffer_bytes(surface))
-        *largest = camber_surface_largest_buffer_bytes(surface);
+    if (desc->gl.largest_buffer_bytes && desc->gl.largest_buffer_bytes < *largest)
+        *largest = desc->gl.largest_buffer_bytes;
     if (desc->largest_buffer_bytes && desc->largest_buffer_bytes < *largest)
         *largest = desc->largest_buffer_bytes;
     return CAMBER_OK;
@@ -261,19 +272,17 @@ static void bound_memory(camber_device *device, const camber_device_desc *desc) 
         device->memory_bytes = device->info.memory_bytes / 4 * 3;
 }
 
-static camber_status open_cl(camber_device *device, camber_surface *surface) {
+static camber_status open_cl(camber_device *device, const camber_gl_handles *gl) {
     cl_int code;
-    const camber_gl_handles gl =
-        surface && device->info.gl_sharing ? camber_surface_handles(surface) : (camber_gl_handles){0};
     const cl_context_properties shared[] = {CL_CONTEXT_PLATFORM,
                                             (cl_context_properties)device->platform,
                                             CL_GL_CONTEXT_KHR,
-                                            gl.context,
-                                            gl.display_kind,
-                                            gl.display,
+                                            gl->context,
+                                            gl->display_kind,
+                                            gl->display,
                                             0};
     const cl_context_properties alone[] = {CL_CONTEXT_PLATFORM, (cl_context_properties)device->platform, 0};
-    if (gl.context) {
+    if (gl->context && device->info.gl_sharing) {
         device->cl = clCreateContext(shared, 1, &device->id, NULL, NULL, &code);
         device->gl_context = code == CL_SUCCESS;
     }
@@ -296,8 +305,7 @@ static camber_status open_cl(camber_device *device, camber_surface *surface) {
     return CAMBER_OK;
 }
 
-camber_status camber_device_create(camber_context *context, const camber_device_desc *desc, camber_surface *surface,
-                                   camber_device **device) {
+camber_status camber_device_create(camber_context *context, const camber_device_desc *desc, camber_device **device) {
     camber_device *made = camber_alloc_zero(context, 1, sizeof *made);
     if (!made)
         return CAMBER_ERROR_MEMORY;
@@ -307,9 +315,9 @@ camber_status camber_device_create(camber_context *context, const camber_device_
     if (status == CAMBER_OK)
         status = choose(made, full.match, full.number);
     if (status == CAMBER_OK)
-        status = bound(made, &full, surface);
+        status = bound(made, &full);
     if (status == CAMBER_OK)
-        status = open_cl(made, surface);
+        status = open_cl(made, &full.gl);
     if (status == CAMBER_OK)
         bound_memory(made, &full);
     if (status != CAMBER_OK) {

@@ -199,7 +199,7 @@ static void take_view(camber_input *input) {
 static void start_opening(const camber_input *input) {
     const camber_view_desc *view = &input->view;
     const double zoom = view->kind == CAMBER_VIEW_CENTER ? view->zoom : NAN;
-    const camber_outlook outlook = camber_style_is_plain(input->style, zoom) ? CAMBER_OUTLOOK_PLAIN
+    const camber_outlook outlook = camber_style_get_effects(input->style, zoom) == 0 ? CAMBER_OUTLOOK_PLAIN
                                    : view->kind == CAMBER_VIEW_CENTER        ? CAMBER_OUTLOOK_RICH
                                                                              : CAMBER_OUTLOOK_OPEN;
     camber_session_start(input->session, outlook, view->pitch_deg);
@@ -310,7 +310,7 @@ static bool knows_why_empty(const camber_input *input) {
     if (!input->features)
         return false;
     const size_t features = camber_features_get_stats(input->features).features;
-    return features ? camber_scene_get_view(input->scene).undrawn == features : input->session->options->where != NULL;
+    return features ? camber_scene_get_info(input->scene).undrawn == features : input->session->options->where != NULL;
 #else
     (void)input;
     return false;
@@ -327,7 +327,7 @@ void camber_input_warn_empty(const camber_input *input, const char *consequence)
 const camber_polylines *camber_input_polylines(const camber_input *input) {
 #ifdef CAMBER_MAP
     if (input->scene)
-        return camber_scene_get_polylines(input->scene);
+        return camber_scene_project(input->scene) == CAMBER_OK ? camber_scene_get_polylines(input->scene) : NULL;
 #endif
     return input->polylines;
 }
@@ -335,7 +335,7 @@ const camber_polylines *camber_input_polylines(const camber_input *input) {
 const camber_lines *camber_input_lines(const camber_input *input) {
 #ifdef CAMBER_MAP
     if (input->scene)
-        return camber_scene_get_lines(input->scene);
+        return camber_scene_project(input->scene) == CAMBER_OK ? camber_scene_get_lines(input->scene) : NULL;
 #endif
     return input->session->options->simplify_px > 0 ? &input->simplified : &input->lines;
 }
@@ -343,7 +343,7 @@ const camber_lines *camber_input_lines(const camber_input *input) {
 const uint32_t *camber_input_rows(const camber_input *input) {
 #ifdef CAMBER_MAP
     if (input->scene)
-        return camber_scene_get_rows(input->scene);
+        return camber_scene_project(input->scene) == CAMBER_OK ? camber_scene_get_rows(input->scene) : NULL;
 #endif
     (void)input;
     return NULL;
@@ -384,7 +384,7 @@ camber_frame camber_input_frame(camber_input *input, camber_mesh *mesh) {
 bool camber_input_opaque(const camber_input *input) {
 #ifdef CAMBER_MAP
     if (input->scene)
-        return camber_scene_get_view(input->scene).opaque;
+        return camber_scene_get_info(input->scene).opaque;
 #endif
     return input->polylines != NULL; /* on white */
 }

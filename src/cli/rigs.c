@@ -30,7 +30,8 @@ static camber_status open_device(const camber_rig *rig, camber_session *session,
     desc.match = session->options->device;
     desc.number = rig->number;
     desc.memory_bytes = session->options->memory_bytes;
-    return camber_device_create(session->context, &desc, surface, device);
+    desc.gl = camber_surface_get_handles(surface);
+    return camber_device_create(session->context, &desc, device);
 }
 
 camber_status camber_rig_open_small(const camber_rig *rig, camber_session *session, uint64_t largest_buffer_bytes,
@@ -159,26 +160,27 @@ static int open_rig(camber_rigs *rigs, camber_rig *rig, camber_session *session,
 }
 
 /* "NAME", or "NAME (2)" for the second of that name. */
-static void name_rig(camber_rig *rig, const camber_device_info *infos, size_t at) {
+static void name_rig(camber_rig *rig, camber_context *context, size_t at, const char *name) {
+    const camber_device_info *before = NULL;
     size_t twins = 0;
-    for (size_t i = 0; i < at; i++)
-        twins += strcmp(infos[i].name, infos[at].name) == 0;
+    for (size_t i = 0; i < at && camber_device_list(context, i, &before) == CAMBER_OK; i++)
+        twins += strcmp(before->name, name) == 0;
     if (twins)
-        snprintf(rig->name, sizeof rig->name, "%s (%zu)", infos[at].name, twins + 1);
+        snprintf(rig->name, sizeof rig->name, "%s (%zu)", name, twins + 1);
     else
-        snprintf(rig->name, sizeof rig->name, "%s", infos[at].name);
+        snprintf(rig->name, sizeof rig->name, "%s", name);
 }
 
-static int open_all(camber_rigs *rigs, camber_session *session, camber_verdicts *verdicts,
-                    const camber_device_info *infos, size_t count) {
+static int open_all(camber_rigs *rigs, camber_session *session, camber_verdicts *verdicts) {
     const char *match = session->options->device;
+    const camber_device_info *info = NULL;
     int status = CAMBER_EXIT_DONE;
     uint32_t number = 0;
-    for (size_t i = 0; i < count && status == CAMBER_EXIT_DONE; i++) {
-        if (!camber_device_info_matches(&infos[i], match))
+    for (size_t i = 0; camber_device_list(session->context, i, &info) == CAMBER_OK && info; i++) {
+        if (status != CAMBER_EXIT_DONE || !camber_device_info_matches(info, match))
             continue;
         camber_rig *rig = &rigs->list[rigs->count];
-        name_rig(rig, infos, i);
+        name_rig(rig, session->context, i, info->name);
         rig->number = ++number;
         status = open_rig(rigs, rig, session, verdicts);
     }
@@ -186,30 +188,23 @@ static int open_all(camber_rigs *rigs, camber_session *session, camber_verdicts 
         return status;
     /* None: opening one says why. */
     camber_device *none = NULL;
-    const camber_status made =
-        camber_device_create(session->context, &(camber_device_desc){.match = match}, NULL, &none);
+    const camber_status made = camber_device_create(session->context, &(camber_device_desc){.match = match}, &none);
     camber_device_destroy(none);
     return camber_report_status(session->report, made == CAMBER_OK ? CAMBER_ERROR_DEVICE : made);
 }
 
 int camber_rigs_open(camber_rigs *rigs, camber_session *session, camber_verdicts *verdicts) {
     *rigs = (camber_rigs){0};
+    const camber_device_info *info = NULL;
     size_t count = 0;
-    camber_status listed = camber_device_list(session->context, 0, NULL, &count);
-    camber_device_info *infos = calloc(count + 1, sizeof *infos);
+    camber_status listed = camber_device_list(session->context, 0, &info);
+    while (listed == CAMBER_OK && info)
+        listed = camber_device_list(session->context, ++count, &info);
     rigs->list = calloc(count + 1, sizeof *rigs->list);
-    if (listed == CAMBER_OK && infos && rigs->list) {
-        const size_t capacity = count;
-        listed = camber_device_list(session->context, capacity, infos, &count);
-        count = count < capacity ? count : capacity;
-    } else if (listed == CAMBER_OK) {
+    if (listed == CAMBER_OK && !rigs->list)
         listed = CAMBER_ERROR_MEMORY;
-    }
-    int status = camber_report_status(session->report, listed);
-    if (status == CAMBER_EXIT_DONE && infos && rigs->list)
-        status = open_all(rigs, session, verdicts, infos, count);
-    free(infos);
-    return status;
+    const int status = camber_report_status(session->report, listed);
+    return status == CAMBER_EXIT_DONE ? open_all(rigs, session, verdicts) : status;
 }
 
 void camber_rigs_close(camber_rigs *rigs) {

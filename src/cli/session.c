@@ -112,8 +112,10 @@ static camber_status open_drawing(camber_session *session, camber_context *conte
     if (needs >= CAMBER_NEEDS_RENDERER && !session->renderer && !session->surface)
         status = open_gl(session, context, report);
     if (status == CAMBER_OK && needs >= CAMBER_NEEDS_DEVICE && !session->device) {
-        const camber_device_desc desc = {.match = options->device, .memory_bytes = options->memory_bytes};
-        status = camber_device_create(context, &desc, session->surface, &session->device);
+        const camber_device_desc desc = {.match = options->device,
+                                         .memory_bytes = options->memory_bytes,
+                                         .gl = camber_surface_get_handles(session->surface)};
+        status = camber_device_create(context, &desc, &session->device);
     }
     if (status == CAMBER_OK && needs >= CAMBER_NEEDS_RENDERER && !session->renderer) {
         const camber_renderer_desc desc = {.sharing = (camber_sharing)options->sharing, .rasterizer = session->draw};

@@ -26,17 +26,14 @@ static json_t *take_error(camber_report *report, camber_status status) {
 static void add_devices(camber_session *session, json_t *object) {
     json_t *list = json_array();
     json_object_set_new(object, "devices", list);
-    size_t count = 0;
-    camber_status status = camber_device_list(session->context, 0, NULL, &count);
-    camber_device_info *infos = status == CAMBER_OK && count ? calloc(count, sizeof *infos) : NULL;
-    const size_t capacity = infos ? count : 0;
-    if (infos)
-        status = camber_device_list(session->context, capacity, infos, &count);
-    for (size_t i = 0; status == CAMBER_OK && i < count && i < capacity; i++)
-        json_array_append_new(list, device_json(&infos[i]));
+    const camber_device_info *info = NULL;
+    camber_status status = camber_device_list(session->context, 0, &info);
+    for (size_t i = 1; status == CAMBER_OK && info; i++) {
+        json_array_append_new(list, device_json(info));
+        status = camber_device_list(session->context, i, &info);
+    }
     if (status != CAMBER_OK)
         json_object_set_new(object, "devices_error", take_error(session->report, status));
-    free(infos);
 }
 
 static void add_backends(camber_session *session, json_t *object) {

@@ -1,4 +1,5 @@
 #include "cli/input.h"
+#include "camber_proof.h"
 #include "cli/verbs.h"
 
 #include <stdlib.h>
@@ -81,6 +82,7 @@ static int run(job *j) {
 
 static int print_json(const job *j) {
     const camber_session *session = j->session;
+    (void)camber_scene_project(j->input.scene); /* counts are 0 where memory for them ran out */
     const camber_scene_info scene = camber_scene_get_info(j->input.scene);
     const camber_mesh_info *mesh = &j->data.info;
     json_t *object = json_pack(
@@ -109,6 +111,7 @@ static int print_json(const job *j) {
 static void print_text(const job *j) {
     camber_session *session = j->session;
     camber_report *report = session->report;
+    (void)camber_scene_project(j->input.scene); /* counts are 0 where memory for them ran out */
     const camber_scene_info scene = camber_scene_get_info(j->input.scene);
     const char *path = session->options->output;
     const size_t triangles = j->data.info.triangle_count;

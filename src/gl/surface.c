@@ -240,10 +240,12 @@ void camber_surface_release(camber_surface *surface) {
     surface->ops->release(surface);
 }
 
-uint64_t camber_surface_largest_buffer_bytes(const camber_surface *surface) {
-    return (uint64_t)surface->records_max * sizeof(camber_record);
-}
-
-camber_gl_handles camber_surface_handles(const camber_surface *surface) {
-    return surface->ops->handles ? surface->ops->handles(surface) : (camber_gl_handles){0};
+camber_gl_handles camber_surface_get_handles(const camber_surface *surface) {
+    camber_gl_handles handles = {0};
+    if (!surface)
+        return handles;
+    if (surface->ops->handles)
+        handles = surface->ops->handles(surface);
+    handles.largest_buffer_bytes = (uint64_t)surface->records_max * sizeof(camber_record);
+    return handles;
 }

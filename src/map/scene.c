@@ -1,5 +1,6 @@
 #include "map/geometry.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -26,8 +27,8 @@ struct camber_scene {
     camber_stroke *pair_strokes;
     pass_list pair_passes;
 
-    /* On the host; nothing until asked for. */
-    bool is_seen;
+    /* On the host: nothing until camber_scene_project. */
+    bool is_projected;
     camber_seen seen;
     size_t layer_count; /* that draw something */
     camber_polylines *polylines;
@@ -247,7 +248,8 @@ static void forget(camber_scene *scene) {
     camber_seen_destroy(&scene->seen);
     scene->passes = (pass_list){0};
     scene->polylines = NULL;
-    scene->is_seen = false;
+    scene->is_projected = false;
+    scene->layer_count = 0;
 }
 
 static camber_status make_row_passes(camber_scene *scene) {
@@ -262,8 +264,8 @@ static camber_status make_row_passes(camber_scene *scene) {
     return status;
 }
 
-static camber_status see(camber_scene *scene) {
-    if (scene->is_seen)
+camber_status camber_scene_project(camber_scene *scene) {
+    if (scene->is_projected)
         return CAMBER_OK;
     const camber_camera camera = camera_of(scene);
     const camber_tessellation_desc strokes = desc_of(scene, CAMBER_METHOD_STRIP);
@@ -280,15 +282,10 @@ static camber_status see(camber_scene *scene) {
     if (status == CAMBER_OK)
         status = make_row_passes(scene);
     if (status == CAMBER_OK)
-        scene->is_seen = true;
+        scene->is_projected = true;
     else
         forget(scene);
     return status;
-}
-
-/* What is made when it is asked for is no change of the scene. */
-static bool is_seen(const camber_scene *scene) {
-    return see((camber_scene *)(uintptr_t)scene) == CAMBER_OK;
 }
 
 /* ---- The scene ---- */
@@ -379,7 +376,7 @@ camber_status camber_scene_create(const camber_features *features, const camber_
     *made = bare_scene(features, desc->simplify_px);
     camber_status status = look(made, &desc->view, &none);
     if (status == CAMBER_OK && !desc->on_device)
-        status = see(made);
+        status = camber_scene_project(made);
     if (status != CAMBER_OK) {
         camber_scene_destroy(made);
         return status;
@@ -432,7 +429,7 @@ void camber_scene_destroy(camber_scene *scene) {
 
 /* ---- What is told ---- */
 
-camber_scene_info camber_scene_get_view(const camber_scene *scene) {
+camber_scene_info camber_scene_get_info(const camber_scene *scene) {
     camber_scene_info info = {.zoom = scene->view.zoom,
                               .bearing_deg = scene->view.bearing_deg,
                               .pitch_deg = scene->view.pitch_deg,
@@ -441,13 +438,6 @@ camber_scene_info camber_scene_get_view(const camber_scene *scene) {
                               .opaque = scene->plan.background.a >= 1.0f,
                               .undrawn = scene->plan.undrawn};
     camber_view_center(&scene->view, &info.longitude, &info.latitude);
-    return info;
-}
-
-camber_scene_info camber_scene_get_info(const camber_scene *scene) {
-    camber_scene_info info = camber_scene_get_view(scene);
-    if (!is_seen(scene))
-        return info;
     info.layers = scene->layer_count;
     info.features = scene->seen.feature_count;
     info.polylines = scene->seen.lines.polyline_count;
@@ -457,15 +447,18 @@ camber_scene_info camber_scene_get_info(const camber_scene *scene) {
 }
 
 const camber_polylines *camber_scene_get_polylines(const camber_scene *scene) {
-    return is_seen(scene) ? scene->polylines : NULL;
+    assert(scene->is_projected);
+    return scene->polylines;
 }
 
 const uint32_t *camber_scene_get_rows(const camber_scene *scene) {
-    return is_seen(scene) ? scene->seen.rows : NULL;
+    assert(scene->is_projected);
+    return scene->seen.rows;
 }
 
 const camber_lines *camber_scene_get_lines(const camber_scene *scene) {
-    return is_seen(scene) ? &scene->seen.lines : NULL;
+    assert(scene->is_projected);
+    return &scene->seen.lines;
 }
 
 const camber_stroke *camber_scene_get_strokes(const camber_scene *scene, size_t *count) {
@@ -475,8 +468,7 @@ const camber_stroke *camber_scene_get_strokes(const camber_scene *scene, size_t 
 
 camber_frame camber_scene_get_frame(camber_scene *scene, camber_mesh *mesh) {
     const bool holds_network = mesh && camber_mesh_holds_network(mesh, scene->geometry.network);
-    if (!holds_network)
-        (void)is_seen(scene);
+    assert(holds_network || scene->is_projected);
     const pass_list *list = holds_network ? &scene->pair_passes : &scene->passes;
     for (size_t i = 0; i < list->count; i++)
         list->passes[i].mesh = list->passes[i].fill.color.a > 0.0f ? NULL : mesh;

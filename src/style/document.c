@@ -373,16 +373,25 @@ void camber_style_destroy(camber_style *style) {
     camber_free(context, style);
 }
 
-bool camber_style_is_plain(const camber_style *style, double zoom) {
-    static const camber_property_id more[] = {
-        CAMBER_LINE_GAP_WIDTH, CAMBER_LINE_BLUR,        CAMBER_LINE_DASHARRAY,    CAMBER_LINE_PATTERN,
-        CAMBER_LINE_GRADIENT,  CAMBER_LINE_TRIM_OFFSET, CAMBER_LINE_BORDER_WIDTH, CAMBER_BACKGROUND_PATTERN};
+uint32_t camber_style_get_effects(const camber_style *style, double zoom) {
+    static const struct {
+        camber_property_id property;
+        camber_style_effect effect;
+    } named[] = {{CAMBER_LINE_GAP_WIDTH, CAMBER_STYLE_EFFECT_GAP},
+                 {CAMBER_LINE_BLUR, CAMBER_STYLE_EFFECT_BLUR},
+                 {CAMBER_LINE_DASHARRAY, CAMBER_STYLE_EFFECT_DASH},
+                 {CAMBER_LINE_TRIM_OFFSET, CAMBER_STYLE_EFFECT_TRIM},
+                 {CAMBER_LINE_GRADIENT, CAMBER_STYLE_EFFECT_GRADIENT},
+                 {CAMBER_LINE_PATTERN, CAMBER_STYLE_EFFECT_PATTERN},
+                 {CAMBER_BACKGROUND_PATTERN, CAMBER_STYLE_EFFECT_PATTERN},
+                 {CAMBER_LINE_BORDER_WIDTH, CAMBER_STYLE_EFFECT_BORDER}};
+    uint32_t effects = 0;
     for (size_t i = 0; i < style->layer_count; i++) {
         const camber_style_layer *layer = style->layers + i;
         const bool out = zoom < layer->min_zoom || (zoom >= layer->max_zoom && layer->max_zoom < 24.0);
-        for (size_t k = 0; k < sizeof more / sizeof *more && layer->visible && !out; k++)
-            if (layer->properties[more[k]])
-                return false;
+        for (size_t k = 0; k < sizeof named / sizeof *named && layer->visible && !out; k++)
+            if (layer->properties[named[k].property])
+                effects |= (uint32_t)named[k].effect;
     }
-    return true;
+    return effects;
 }

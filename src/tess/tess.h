@@ -36,14 +36,6 @@ struct camber_device {
     camber_mesh *meshes;                           /* each knows the next */
 };
 
-/* What a surface tells OpenCL about its GL context, for cl_khr_gl_sharing. Zero: it cannot be told. */
-typedef struct camber_gl_handles {
-    cl_context_properties context, display, display_kind; /* kind: CL_EGL_DISPLAY_KHR */
-} camber_gl_handles;
-camber_gl_handles camber_surface_handles(const camber_surface *surface); /* src/gl/surface.c */
-/* As much as its shaders can read. */
-uint64_t camber_surface_largest_buffer_bytes(const camber_surface *surface);
-
 /* Logs "CALL: OpenCL error NAME (code); cure" and gives the status it stands for. */
 camber_status camber_fail_cl(camber_context *context, const char *call, cl_int code);
 

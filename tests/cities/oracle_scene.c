@@ -294,7 +294,8 @@ static bool open_core(core *c) {
     const camber_context_desc desc = {.log = print_log};
     return camber_context_create(&desc, &c->context) == CAMBER_OK &&
            camber_surface_create(c->context, NULL, &c->surface) == CAMBER_OK &&
-           camber_device_create(c->context, NULL, c->surface, &c->device) == CAMBER_OK &&
+           camber_device_create(c->context, &(camber_device_desc){.gl = camber_surface_get_handles(c->surface)},
+                                &c->device) == CAMBER_OK &&
            open_renderer(c, CAMBER_RASTERIZER_GL);
 }
 

@@ -332,7 +332,7 @@ static int check_drawing(camber_context *context, scene *s) {
     for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
         const camber_device_desc desc = {.largest_buffer_bytes = ways[i].largest_bytes};
         camber_device *device = NULL;
-        bool good = camber_device_create(context, &desc, NULL, &device) == CAMBER_OK;
+        bool good = camber_device_create(context, &desc, &device) == CAMBER_OK;
         if (good) {
             device->lanes = ways[i].lanes;
             good = draw(device, context, s, strokes, i ? seen : first);
@@ -352,7 +352,7 @@ static int check_device(camber_context *context, scene *s, const camber_device_d
     camber_mesh *mesh = NULL;
     camber_stroke strokes[ROWS];
     int failures = 1;
-    if (camber_device_create(context, desc, NULL, &device) == CAMBER_OK &&
+    if (camber_device_create(context, desc, &device) == CAMBER_OK &&
         camber_mesh_create(device, NULL, &mesh) == CAMBER_OK) {
         failures = 0;
         printf("%s, work-groups of %u, buffers of up to %llu bytes\n", camber_device_get_info(device).name,

@@ -363,7 +363,8 @@ static camber_status cycle_contexts(atelier *a, int backend) {
     if (status == CAMBER_OK)
         status = camber_surface_create(context, &(camber_surface_desc){BACKEND[backend]}, &surface);
     if (status == CAMBER_OK)
-        status = camber_device_create(context, NULL, surface, &device);
+        status =
+            camber_device_create(context, &(camber_device_desc){.gl = camber_surface_get_handles(surface)}, &device);
     if (status == CAMBER_OK)
         status = draw_on(a, context, device, surface);
     camber_device_destroy(device);

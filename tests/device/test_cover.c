@@ -221,7 +221,7 @@ static void compare_areas(const covering *e, double pitch_deg) {
 static uint32_t compare_on(const covering *e, const camber_device_desc *desc, drawing *d, size_t pass_count,
                            const picture *whole) {
     covering small = {.s = {.context = e->s.context}};
-    assert_int_equal(camber_device_create(e->s.context, desc, NULL, &small.s.device), CAMBER_OK);
+    assert_int_equal(camber_device_create(e->s.context, desc, &small.s.device), CAMBER_OK);
     assert_int_equal(camber_renderer_create(small.s.device, NULL, NULL, &small.cl), CAMBER_OK);
     picture p = draw_with(&small, small.cl, d, pass_count, CAMBER_METHOD_STRIP);
     const uint32_t slices = camber_cover_slices(small.cl->cover);
@@ -308,7 +308,7 @@ static void test_bound(void **state) {
         scene_end(&d.lines, (size_t)i % 3);
     }
     picture whole = draw_with(e, e->cl, &d, 3, CAMBER_METHOD_STRIP);
-    assert_int_equal(camber_device_create(e->s.context, &desc, NULL, &bound.s.device), CAMBER_OK);
+    assert_int_equal(camber_device_create(e->s.context, &desc, &bound.s.device), CAMBER_OK);
     assert_int_equal(camber_renderer_create(bound.s.device, NULL, NULL, &bound.cl), CAMBER_OK);
     assert_true(camber_device_get_memory(bound.s.device).allowed_bytes == allowed);
     picture p = draw_with(&bound, bound.cl, &d, 3, CAMBER_METHOD_STRIP);
@@ -358,7 +358,7 @@ static void test_lanes(void **state) {
     covering lanes = {.s = {.context = e->s.context}};
     const camber_device_desc desc = {.work_group_size = 64},
                              small = {.work_group_size = 64, .largest_buffer_bytes = 300 * 1024};
-    assert_int_equal(camber_device_create(e->s.context, &desc, NULL, &lanes.s.device), CAMBER_OK);
+    assert_int_equal(camber_device_create(e->s.context, &desc, &lanes.s.device), CAMBER_OK);
     assert_int_equal(lanes.s.device->lanes, 1);
     assert_int_equal(camber_renderer_create(lanes.s.device, NULL, NULL, &lanes.cl), CAMBER_OK);
     for (int which = 0; which < SCENES; which++) {

@@ -295,7 +295,7 @@ static void test_many_alphas(void **state) {
 static void compare_in_slices(const covering *e, drawing *d, const picture *whole) {
     const camber_device_desc desc = {.largest_buffer_bytes = 256 * 1024};
     covering small = {.s = {.context = e->s.context}};
-    assert_int_equal(camber_device_create(e->s.context, &desc, NULL, &small.s.device), CAMBER_OK);
+    assert_int_equal(camber_device_create(e->s.context, &desc, &small.s.device), CAMBER_OK);
     assert_int_equal(camber_renderer_create(small.s.device, NULL, NULL, &small.cl), CAMBER_OK);
     picture p = draw_with(&small, small.cl, d, CAMBER_METHOD_STRIP);
     assert_true(camber_cover_slices(small.cl->cover) > 1);

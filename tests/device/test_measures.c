@@ -261,7 +261,7 @@ static void test_parts_of_lines(void **state) {
         if (part) {
             camber_device *device = NULL;
             camber_mesh *mesh = NULL;
-            assert_int_equal(camber_device_create(b->context, &small, NULL, &device), CAMBER_OK);
+            assert_int_equal(camber_device_create(b->context, &small, &device), CAMBER_OK);
             assert_int_equal(camber_mesh_create(device, NULL, &mesh), CAMBER_OK);
             assert_int_equal(camber_mesh_tessellate_network(mesh, network, &camera, &desc), CAMBER_OK);
             assert_true(camber_mesh_get_memory(mesh).parts > 2);

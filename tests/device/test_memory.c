@@ -61,7 +61,7 @@ typedef struct bench {
 static void bench_open(bench *b, uint64_t memory_bytes, uint32_t work_group_size) {
     const camber_device_desc desc = {.work_group_size = work_group_size, .memory_bytes = memory_bytes};
     b->context = host_context(&b->h);
-    assert_int_equal(camber_device_create(b->context, &desc, NULL, &b->device), CAMBER_OK);
+    assert_int_equal(camber_device_create(b->context, &desc, &b->device), CAMBER_OK);
     assert_int_equal(camber_mesh_create(b->device, NULL, &b->mesh), CAMBER_OK);
     memset(&watch, 0, sizeof watch);
     watch.context = b->device->cl;
@@ -411,7 +411,7 @@ static void test_too_small(void **state) {
     static const uint64_t bad[] = {1, 65535};
     for (size_t i = 0; i < 2; i++) {
         camber_device *device = NULL;
-        assert_int_equal(camber_device_create(context, &(camber_device_desc){.memory_bytes = bad[i]}, NULL, &device),
+        assert_int_equal(camber_device_create(context, &(camber_device_desc){.memory_bytes = bad[i]}, &device),
                          CAMBER_ERROR_ARGUMENT);
         assert_null(device);
         assert_story(&h, "of memory for meshes; it must be 65536 or more");
@@ -623,10 +623,12 @@ static void easel_close(easel *e) {
 static bool easel_open(easel *e, uint64_t memory_bytes, camber_backend backend, camber_sharing sharing) {
     *e = (easel){0};
     e->context = host_context(&e->h);
-    const camber_device_desc desc = {.work_group_size = 64, .memory_bytes = memory_bytes};
+    camber_device_desc desc = {.work_group_size = 64, .memory_bytes = memory_bytes};
     memset(&watch, 0, sizeof watch);
-    if (camber_surface_create(e->context, &(camber_surface_desc){backend}, &e->surface) != CAMBER_OK ||
-        camber_device_create(e->context, &desc, e->surface, &e->device) != CAMBER_OK ||
+    const bool has_surface =
+        camber_surface_create(e->context, &(camber_surface_desc){backend}, &e->surface) == CAMBER_OK;
+    desc.gl = camber_surface_get_handles(e->surface);
+    if (!has_surface || camber_device_create(e->context, &desc, &e->device) != CAMBER_OK ||
         camber_renderer_create(e->device, e->surface,
                                &(camber_renderer_desc){.sharing = sharing, .rasterizer = CAMBER_RASTERIZER_GL},
                                &e->renderer) != CAMBER_OK) {

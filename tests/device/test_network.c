@@ -24,7 +24,7 @@ static int set_up(void **state) {
         return -1;
     b->context = host_context(&b->h);
     for (size_t i = 0; i < DEVICE_COUNT; i++)
-        if (camber_device_create(b->context, DEVICES + i, NULL, b->devices + i) != CAMBER_OK ||
+        if (camber_device_create(b->context, DEVICES + i, b->devices + i) != CAMBER_OK ||
             camber_mesh_create(b->devices[i], NULL, b->meshes + i) != CAMBER_OK)
             return -1;
     b->rounds = b->devices[0]->rounds_correctly;

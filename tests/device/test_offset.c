@@ -360,7 +360,7 @@ static void test_device_equals_twin(void **state) {
     camber_mesh *mesh = NULL;
     const camber_device_desc parts = {.work_group_size = 64, .memory_bytes = 64 << 20};
     offset_strokes(strokes);
-    assert_int_equal(camber_device_create(b->context, &parts, NULL, &small), CAMBER_OK);
+    assert_int_equal(camber_device_create(b->context, &parts, &small), CAMBER_OK);
     assert_int_equal(camber_mesh_create(small, NULL, &mesh), CAMBER_OK);
     for (size_t which = 0; which < SCENE_COUNT; which++) {
         scene s = scene_make(which);
@@ -396,7 +396,7 @@ static void test_parts(void **state) {
     for (size_t i = 0; i < sizeof descs / sizeof *descs; i++) {
         camber_device *device = NULL;
         camber_mesh *mesh = NULL;
-        assert_int_equal(camber_device_create(b->context, descs + i, NULL, &device), CAMBER_OK);
+        assert_int_equal(camber_device_create(b->context, descs + i, &device), CAMBER_OK);
         assert_int_equal(camber_mesh_create(device, NULL, &mesh), CAMBER_OK);
         for (int again = 0; again < 2; again++)
             compare(b, mesh, polylines, &desc);

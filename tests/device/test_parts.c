@@ -42,7 +42,7 @@ typedef struct bench {
 static void bench_open(bench *b, uint64_t largest_buffer_bytes, uint32_t work_group_size) {
     const camber_device_desc desc = {.work_group_size = work_group_size, .largest_buffer_bytes = largest_buffer_bytes};
     b->context = host_context(&b->h);
-    assert_int_equal(camber_device_create(b->context, &desc, NULL, &b->device), CAMBER_OK);
+    assert_int_equal(camber_device_create(b->context, &desc, &b->device), CAMBER_OK);
     assert_int_equal(camber_mesh_create(b->device, NULL, &b->mesh), CAMBER_OK);
     watched = b->device->cl;
     largest_buffer = 0;
@@ -440,18 +440,18 @@ static void test_descriptions(void **state) {
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         camber_device *const untouched = (camber_device *)(void *)&h;
         camber_device *device = untouched;
-        assert_int_equal(camber_device_create(context, bad + i, NULL, &device), CAMBER_ERROR_ARGUMENT);
+        assert_int_equal(camber_device_create(context, bad + i, &device), CAMBER_ERROR_ARGUMENT);
         assert_ptr_equal(device, untouched);
         assert_story(&h, "; it must be ");
     }
     camber_device *device = NULL;
-    assert_int_equal(camber_device_create(context, NULL, NULL, &device), CAMBER_OK);
+    assert_int_equal(camber_device_create(context, NULL, &device), CAMBER_OK);
     const uint64_t own = camber_device_get_info(device).largest_buffer_bytes;
     camber_device_destroy(device);
     const uint64_t asked[] = {4096, own - 1, own, own + 1, UINT64_MAX};
     for (size_t i = 0; i < 5; i++) {
         const camber_device_desc desc = {.largest_buffer_bytes = asked[i]};
-        assert_int_equal(camber_device_create(context, &desc, NULL, &device), CAMBER_OK);
+        assert_int_equal(camber_device_create(context, &desc, &device), CAMBER_OK);
         assert_true(camber_device_get_info(device).largest_buffer_bytes == (asked[i] < own ? asked[i] : own));
         camber_device_destroy(device);
     }
@@ -519,14 +519,15 @@ typedef struct drawing {
 static bool draw(uint64_t limit, camber_backend backend, camber_sharing sharing, const scene *s, drawing *d) {
     host h;
     camber_context *context = host_context(&h);
-    const camber_device_desc device_desc = {.largest_buffer_bytes = limit};
+    camber_device_desc device_desc = {.largest_buffer_bytes = limit};
     const camber_surface_desc surface_desc = {backend};
     const camber_renderer_desc renderer_desc = {.sharing = sharing, .rasterizer = CAMBER_RASTERIZER_GL};
     camber_surface *surface = NULL;
     camber_device *device = NULL;
     camber_renderer *renderer = NULL;
-    const bool there = camber_surface_create(context, &surface_desc, &surface) == CAMBER_OK &&
-                       camber_device_create(context, &device_desc, surface, &device) == CAMBER_OK &&
+    const bool has_surface = camber_surface_create(context, &surface_desc, &surface) == CAMBER_OK;
+    device_desc.gl = camber_surface_get_handles(surface);
+    const bool there = has_surface && camber_device_create(context, &device_desc, &device) == CAMBER_OK &&
                        camber_renderer_create(device, surface, &renderer_desc, &renderer) == CAMBER_OK;
     if (there) {
         watched = device->cl;

@@ -329,7 +329,7 @@ static camber_status try_device(camber_context *context, void *user) {
     const float points[] = {0, 0, 9, 9, 9, 0};
     const uint32_t offsets[] = {0, 3};
     camber_polylines *polylines = NULL;
-    camber_status status = camber_device_create(context, NULL, NULL, &device);
+    camber_status status = camber_device_create(context, NULL, &device);
     if (status != CAMBER_OK) {
         assert_ptr_equal(device, user);
         return status;

@@ -93,7 +93,8 @@ static void *work(void *user) {
     if (t->status == CAMBER_OK && t->where != IN_CL)
         t->status = camber_surface_create(context, &surface_desc, &surface);
     if (t->status == CAMBER_OK)
-        t->status = camber_device_create(context, NULL, surface, &device);
+        t->status =
+            camber_device_create(context, &(camber_device_desc){.gl = camber_surface_get_handles(surface)}, &device);
     if (t->status == CAMBER_OK)
         t->status = camber_renderer_create(device, surface, &renderer_desc, &renderer);
     if (t->status == CAMBER_OK)

@@ -61,7 +61,7 @@ static void open_set(stage_set *s, bool parts, camber_method method) {
     *s = (stage_set){.before = cl_fault.live};
     s->context = host_context(&s->h);
     const camber_device_desc device_desc = {.largest_buffer_bytes = parts && !cl_fault.largest_bytes ? 6000 : 0};
-    assert_int_equal(camber_device_create(s->context, &device_desc, NULL, &s->device), CAMBER_OK);
+    assert_int_equal(camber_device_create(s->context, &device_desc, &s->device), CAMBER_OK);
     s->polylines = make_lines(s->context, 3, 60);
     s->others = make_lines(s->context, 4, 30);
     scene_strokes(s->strokes);
@@ -140,7 +140,7 @@ static void each_call_fails(stage_set *s, attempt_fn *attempt, void *user, const
 static camber_status try_device(stage_set *s, void *user) {
     (void)user;
     camber_device *device = NULL;
-    const camber_status status = camber_device_create(s->context, NULL, NULL, &device);
+    const camber_status status = camber_device_create(s->context, NULL, &device);
     assert_true((status == CAMBER_OK) == (device != NULL));
     if (status == CAMBER_OK) {
         const camber_device_info info = camber_device_get_info(device), wanted = camber_device_get_info(s->device);
@@ -201,7 +201,7 @@ static void test_mesh(void **state) {
 static camber_status try_program(stage_set *s, void *user) {
     (void)user;
     camber_device *device = NULL;
-    camber_status status = camber_device_create(s->context, NULL, NULL, &device);
+    camber_status status = camber_device_create(s->context, NULL, &device);
     if (status == CAMBER_OK)
         status = read_mesh(s, device);
     camber_device_destroy(device);
@@ -310,7 +310,7 @@ static void test_build_log(void **state) {
     camber_device *device = NULL;
     camber_mesh *mesh = NULL;
     open_set(&s, false, CAMBER_METHOD_STRIP);
-    assert_int_equal(camber_device_create(s.context, NULL, NULL, &device), CAMBER_OK);
+    assert_int_equal(camber_device_create(s.context, NULL, &device), CAMBER_OK);
     assert_int_equal(camber_mesh_create(device, NULL, &mesh), CAMBER_OK);
     const cl_objects live = cl_fault.live;
     char long_log[20000];
@@ -346,7 +346,7 @@ static camber_status try_cached(stage_set *s, void *user) {
     camber_device *device = NULL;
     camber_program *program = NULL;
     assert_int_equal(camber_context_create(&context_desc, &context), CAMBER_OK);
-    camber_status status = camber_device_create(context, NULL, NULL, &device);
+    camber_status status = camber_device_create(context, NULL, &device);
     if (status == CAMBER_OK)
         status = camber_device_program(device, (camber_program_desc){s->desc.method, s->desc.has_arc_length, true},
                                        &program);
@@ -547,7 +547,7 @@ static camber_status try_covered(stage_set *s, void *user) {
     const sheet *of = user;
     uint8_t rgba[4 * SIDE_PX * SIDE_PX];
     camber_device *made = NULL;
-    camber_status status = of->device ? CAMBER_OK : camber_device_create(s->context, NULL, NULL, &made);
+    camber_status status = of->device ? CAMBER_OK : camber_device_create(s->context, NULL, &made);
     if (status == CAMBER_OK)
         status = draw_covered(s, of->device ? of->device : made, rgba);
     if (status == CAMBER_OK)
@@ -590,7 +590,7 @@ static void test_covered(void **state) {
     assert_int_equal(draw_covered(&s, s.device, whole.wanted), CAMBER_OK);
     assert_true(refuse(&s, try_covered, &whole, NULL, 0, false) > 100);
     sheet sliced = whole;
-    assert_int_equal(camber_device_create(s.context, &small, NULL, &sliced.device), CAMBER_OK);
+    assert_int_equal(camber_device_create(s.context, &small, &sliced.device), CAMBER_OK);
     assert_int_equal(try_covered(&s, &sliced), CAMBER_OK);
     refuse_some(&s, &sliced, false);
     camber_device_destroy(sliced.device);

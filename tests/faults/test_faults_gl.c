@@ -135,7 +135,7 @@ static bool set_up_easel(easel *e, camber_backend backend, camber_sharing sharin
     camber_context_desc desc = host_desc(&e->h);
     desc.cache_dir = ""; /* or linked shaders are loaded, and fewer calls are made */
     assert_int_equal(camber_context_create(&desc, &e->context), CAMBER_OK);
-    assert_int_equal(camber_device_create(e->context, NULL, NULL, &e->device), CAMBER_OK);
+    assert_int_equal(camber_device_create(e->context, NULL, &e->device), CAMBER_OK);
     scene lines = {0};
     uint64_t seed = 3;
     for (size_t i = 0; i < 12; i++) {

@@ -129,7 +129,7 @@ static camber_status try_device(camber_context *context, void *user) {
     desk *d = user;
     camber_device *device = NULL;
     camber_mesh *mesh = NULL;
-    camber_status status = camber_device_create(context, NULL, NULL, &device);
+    camber_status status = camber_device_create(context, NULL, &device);
     if (status == CAMBER_OK)
         status = camber_mesh_create(device, NULL, &mesh);
     if (status == CAMBER_OK)

@@ -14,7 +14,7 @@ void fuzz_easel_open(fuzz_easel *easel) {
         return;
 #endif
     if (camber_context_create(NULL, &easel->context) != CAMBER_OK ||
-        camber_device_create(easel->context, &(camber_device_desc){0}, NULL, &device) != CAMBER_OK)
+        camber_device_create(easel->context, &(camber_device_desc){0}, &device) != CAMBER_OK)
         return;
     REQUIRE(camber_renderer_create(device, NULL, &desc, &easel->renderer) == CAMBER_OK);
     REQUIRE(camber_mesh_create(device, easel->renderer, &easel->mesh) == CAMBER_OK);

@@ -364,7 +364,7 @@ static void test_many_layers(void **state) {
     const camber_scene_desc desc = {.on_device = true};
     assert_int_equal(camber_scene_create(m.features, &desc, &m.scene), CAMBER_OK);
     /* What a frame evaluates: another zoom of the same features. */
-    const camber_scene_info info = camber_scene_get_view(m.scene);
+    const camber_scene_info info = camber_scene_get_info(m.scene);
     const camber_view_desc view = {
         .kind = CAMBER_VIEW_CENTER, .longitude = info.longitude, .latitude = info.latitude, .zoom = info.zoom + 0.25};
     const double before_ms = cpu_ms();

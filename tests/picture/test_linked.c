@@ -18,7 +18,7 @@ static picture draw_anew(const char *cache_dir, camber_backend backend, size_t *
     camber_mesh *mesh = NULL;
     camber_polylines *polylines = NULL;
     assert_int_equal(camber_context_create(&context_desc, &context), CAMBER_OK);
-    assert_int_equal(camber_device_create(context, NULL, NULL, &device), CAMBER_OK);
+    assert_int_equal(camber_device_create(context, NULL, &device), CAMBER_OK);
     assert_int_equal(camber_surface_create(context, &(camber_surface_desc){backend}, &surface), CAMBER_OK);
     assert_int_equal(
         camber_renderer_create(device, surface, &(camber_renderer_desc){.rasterizer = CAMBER_RASTERIZER_GL}, &renderer),

@@ -401,9 +401,8 @@ static void test_parts(void **state) {
     camber_device *small = NULL;
     camber_renderer *renderers[2] = {studio_any(s), NULL};
     camber_surface *surface = NULL;
-    assert_int_equal(
-        camber_device_create(s->context, &(camber_device_desc){.largest_buffer_bytes = 1 << 15}, NULL, &small),
-        CAMBER_OK);
+    assert_int_equal(camber_device_create(s->context, &(camber_device_desc){.largest_buffer_bytes = 1 << 15}, &small),
+                     CAMBER_OK);
     assert_int_equal(camber_surface_create(s->context, NULL, &surface), CAMBER_OK);
     assert_int_equal(camber_renderer_create(small, surface, &(camber_renderer_desc){.rasterizer = CAMBER_RASTERIZER_GL},
                                             &renderers[1]),

@@ -1,5 +1,6 @@
 /* test_glb [FOLDER]: also writes its files there, for validate_glb.mjs. */
 #include "base/base.h"
+#include "camber_proof.h"
 #include "camber_map.h"
 
 #include <jansson.h>

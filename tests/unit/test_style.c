@@ -376,15 +376,15 @@ static void test_plain(void **state) {
                  "{\"id\": \"b\", \"type\": \"line\", \"minzoom\": 5, \"maxzoom\": 9, \"paint\": {%s}}]}",
                  more[i]);
         assert_int_equal(parse(&f, json), CAMBER_OK);
-        assert_false(camber_style_is_plain(f.style, (double)NAN));
-        assert_false(camber_style_is_plain(f.style, 5));
-        assert_true(camber_style_is_plain(f.style, 4.9));
-        assert_true(camber_style_is_plain(f.style, 9));
+        assert_int_not_equal(camber_style_get_effects(f.style, (double)NAN), 0);
+        assert_int_not_equal(camber_style_get_effects(f.style, 5), 0);
+        assert_int_equal(camber_style_get_effects(f.style, 4.9), 0);
+        assert_int_equal(camber_style_get_effects(f.style, 9), 0);
         teardown(&f);
     }
     setup(&f);
     assert_int_equal(camber_style_create_builtin(f.context, CAMBER_THEME_LIGHT, &f.style), CAMBER_OK);
-    assert_true(camber_style_is_plain(f.style, (double)NAN));
+    assert_int_equal(camber_style_get_effects(f.style, (double)NAN), 0);
     teardown(&f);
 }
 

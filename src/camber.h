@@ -567,9 +567,14 @@ typedef enum camber_coverage {
     CAMBER_COVERAGE_LINEAR,    /* a ramp one pixel wide across the edge: cheaper, about twice the error */
 } camber_coverage;
 
-/* Draws polylines [first_polyline, first_polyline + polyline_count) of a mesh, in order; or fills the picture. */
+typedef enum camber_pass_kind {
+    CAMBER_PASS_LINES = 0, /* draws polylines of a mesh, in order */
+    CAMBER_PASS_FILL,      /* fills the picture; takes fill, images and opacity, and nothing else of the pass */
+} camber_pass_kind;
+
 typedef struct camber_pass {
-    camber_mesh *mesh; /* NULL: the pass is a fill, and of what else is here only the images matter */
+    camber_pass_kind kind;
+    camber_mesh *mesh; /* of the renderer that draws; not NULL for lines */
     size_t first_polyline;
     size_t polyline_count;      /* 0: to the last */
     const camber_paint *paints; /* paint_count; a row at or past it is not drawn */

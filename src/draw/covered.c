@@ -239,7 +239,7 @@ static camber_status add_fill(tables *t, const camber_pass *pass) {
 
 static camber_status add_pass(tables *t, const camber_pass *pass) {
     const camber_mesh *mesh = pass->mesh;
-    if (!mesh)
+    if (pass->kind == CAMBER_PASS_FILL)
         return add_fill(t, pass);
     const bool fades = pass->opacity > 0.0f && pass->opacity < 1.0f;
     size_t end = pass->polyline_count ? pass->first_polyline + pass->polyline_count : mesh->polyline_count;

@@ -36,7 +36,10 @@ static camber_status read_stages(camber_renderer *renderer, const camber_frame *
                                  camber_drawing_stages *stages) {
     reading r = {.on_host = on_host};
     assert(renderer->cover);
-    const camber_status status = camber_covered_each(renderer, frame, read_area, &r);
+    camber_frame checked;
+    camber_status status = camber_frame_check(renderer, frame, &checked);
+    if (status == CAMBER_OK)
+        status = camber_covered_each(renderer, &checked, read_area, &r);
     if (status != CAMBER_OK) {
         camber_cover_stages_free(renderer->share.device->context, &r.stages);
         return status;

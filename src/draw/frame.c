@@ -50,7 +50,27 @@ static camber_status check_paints(const camber_renderer *renderer, const camber_
     return CAMBER_OK;
 }
 
-camber_status camber_frame_check(camber_renderer *renderer, const camber_frame *frame) {
+/* The pitch of the camera that the meshes were tessellated for, where one was. */
+static camber_status find_pitch(const camber_renderer *renderer, camber_frame *frame) {
+    const double own_deg = frame->pitch_deg;
+    bool found = own_deg > 0.0;
+    for (size_t i = 0; i < frame->pass_count; i++) {
+        const camber_pass *pass = frame->passes + i;
+        if (pass->kind != CAMBER_PASS_LINES || !pass->mesh->has_camera)
+            continue;
+        const double pitch_deg = pass->mesh->pitch_deg;
+        if (found && (pitch_deg < frame->pitch_deg || pitch_deg > frame->pitch_deg))
+            return camber_fail(renderer->share.device->context, CAMBER_ERROR_ARGUMENT,
+                               "a mesh that was tessellated for a pitch of %g degrees, in a picture of %g; tessellate "
+                               "all meshes of a picture for one camera",
+                               pitch_deg, frame->pitch_deg);
+        frame->pitch_deg = pitch_deg;
+        found = true;
+    }
+    return CAMBER_OK;
+}
+
+camber_status camber_frame_check(camber_renderer *renderer, const camber_frame *frame, camber_frame *checked) {
     if (frame->width < 1 || frame->width > SIDE_MAX_PX || frame->height < 1 || frame->height > SIDE_MAX_PX)
         return camber_fail(renderer->share.device->context, CAMBER_ERROR_ARGUMENT,
                            "a picture of %u x %u px; each side must be 1 to %d", frame->width, frame->height,
@@ -59,17 +79,18 @@ camber_status camber_frame_check(camber_renderer *renderer, const camber_frame *
         return camber_fail(renderer->share.device->context, CAMBER_ERROR_ARGUMENT,
                            "a picture with a pitch of %g degrees; choose 0 to %g", frame->pitch_deg,
                            CAMBER_PITCH_MAX_DEG);
+    *checked = *frame;
     for (size_t i = 0; i < frame->pass_count; i++) {
         const camber_pass *pass = frame->passes + i;
-        assert(!pass->mesh || pass->mesh->renderer == renderer);
+        assert(pass->kind == CAMBER_PASS_FILL || (pass->mesh && pass->mesh->renderer == renderer));
         assert(pass->paint_count == 0 || pass->paints);
         camber_status status = check_images(renderer, pass);
-        if (status == CAMBER_OK && pass->mesh)
+        if (status == CAMBER_OK && pass->kind == CAMBER_PASS_LINES)
             status = check_paints(renderer, pass);
         if (status != CAMBER_OK)
             return status;
     }
-    return CAMBER_OK;
+    return find_pitch(renderer, checked);
 }
 
 /* The largest piece: whole rows where the target reaches, and no more memory than needed. */
@@ -257,12 +278,13 @@ camber_status camber_renderer_render(camber_renderer *renderer, const camber_fra
                                      void *user, camber_frame_stats *stats) {
     assert(renderer->flight_count == 0);
     camber_flight flight = {0};
-    camber_status status = camber_frame_check(renderer, frame);
+    camber_frame checked;
+    camber_status status = camber_frame_check(renderer, frame, &checked);
     if (status == CAMBER_OK && renderer->cover) {
-        status = camber_covered_render(renderer, frame, rows, user, &flight.stats);
+        status = camber_covered_render(renderer, &checked, rows, user, &flight.stats);
     } else {
         if (status == CAMBER_OK)
-            status = begin(renderer, frame, CAMBER_TARGET_PICTURE, &flight);
+            status = begin(renderer, &checked, CAMBER_TARGET_PICTURE, &flight);
         if (status == CAMBER_OK)
             status = end(renderer, &flight, rows, user);
     }
@@ -312,10 +334,11 @@ camber_status camber_renderer_begin(camber_renderer *renderer, const camber_fram
         renderer->first_flight = 0;
     const size_t at = (renderer->first_flight + renderer->flight_count) % CAMBER_FRAMES_IN_FLIGHT;
     camber_flight *flight = renderer->flights + at;
-    camber_status status = camber_frame_check(renderer, frame);
+    camber_frame checked;
+    camber_status status = camber_frame_check(renderer, frame, &checked);
     if (status == CAMBER_OK)
-        status = renderer->cover ? camber_covered_begin(renderer, frame, flight)
-                                 : begin(renderer, frame, targets[at], flight);
+        status = renderer->cover ? camber_covered_begin(renderer, &checked, flight)
+                                 : begin(renderer, &checked, targets[at], flight);
     if (status != CAMBER_OK)
         return status;
     if (!has_one_piece(flight))

@@ -341,7 +341,7 @@ static camber_status draw_fill(camber_renderer *renderer, const camber_pass *pas
 
 camber_status camber_renderer_draw_pass(camber_renderer *renderer, const camber_pass *pass, const camber_piece *piece) {
     const camber_mesh *mesh = pass->mesh;
-    if (!mesh)
+    if (pass->kind == CAMBER_PASS_FILL)
         return draw_fill(renderer, pass, piece);
     if (mesh->empty)
         return CAMBER_OK;

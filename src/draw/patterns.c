@@ -175,7 +175,7 @@ static camber_status try_to_hold(camber_renderer *renderer, const camber_pass *p
     float texels[8];
     camber_status status = CAMBER_OK;
     *full = false;
-    if (!pass->mesh) {
+    if (pass->kind == CAMBER_PASS_FILL) {
         status = find_place(renderer, pass, camber_image_use_of_fill(pass), texels, full);
         return status == CAMBER_OK && !*full ? find_place(renderer, pass, camber_image_mean_of_fill(pass), texels, full)
                                              : status;

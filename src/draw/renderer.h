@@ -373,7 +373,7 @@ void camber_renderer_draw_indices(camber_renderer *renderer, const camber_mesh *
 
 /* frame.c: drops what is in flight. */
 void camber_frames_forget(camber_renderer *renderer, bool is_current);
-camber_status camber_frame_check(camber_renderer *renderer, const camber_frame *frame);
+camber_status camber_frame_check(camber_renderer *renderer, const camber_frame *frame, camber_frame *checked);
 /* Draws all of a frame in GL, as one piece, into a target. */
 camber_status camber_frame_draw(camber_renderer *renderer, const camber_frame *frame, int target);
 

@@ -152,17 +152,18 @@ static void end(camber_renderer *renderer, void **drawn) {
 camber_status camber_renderer_render_texture(camber_renderer *renderer, const camber_frame *frame,
                                              const camber_texture *texture, void **drawn) {
     assert(renderer->flight_count == 0);
-    camber_status status = camber_frame_check(renderer, frame);
+    camber_frame checked;
+    camber_status status = camber_frame_check(renderer, frame, &checked);
     if (status == CAMBER_OK)
-        status = check_size(renderer, frame);
+        status = check_size(renderer, &checked);
     if (status == CAMBER_OK)
         status = camber_surface_make_current(renderer->share.surface);
     if (status != CAMBER_OK)
         return status;
     renderer->share.frames_begun++;
-    status = check_texture(renderer, frame, texture);
+    status = check_texture(renderer, &checked, texture);
     if (status == CAMBER_OK)
-        status = draw(renderer, frame, texture);
+        status = draw(renderer, &checked, texture);
     if (status == CAMBER_OK)
         end(renderer, drawn);
     else

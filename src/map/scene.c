@@ -189,8 +189,10 @@ static camber_status make_passes(camber_context *context, const numbering *n, si
                                         .ramps = n->plan->ramps,
                                         .ramp_count = n->plan->ramp_count,
                                         .opacity = runs[i].opacity};
-        if (runs[i].fill)
+        if (runs[i].fill) {
+            list->passes[i].kind = CAMBER_PASS_FILL;
             list->passes[i].fill = runs[i].fill->fill;
+        }
         paints += runs[i].end_paint;
     }
     list->count = count;
@@ -471,7 +473,7 @@ camber_frame camber_scene_get_frame(camber_scene *scene, camber_mesh *mesh) {
     assert(holds_network || scene->is_projected);
     const pass_list *list = holds_network ? &scene->pair_passes : &scene->passes;
     for (size_t i = 0; i < list->count; i++)
-        list->passes[i].mesh = list->passes[i].fill.color.a > 0.0f ? NULL : mesh;
+        list->passes[i].mesh = mesh;
     return (camber_frame){.width = scene->view.width,
                           .height = scene->view.height,
                           .background = scene->plan.background,

@@ -165,7 +165,9 @@ struct camber_mesh {
     bool flat_caps;     /* a row has butt or square caps */
     bool round_caps;    /* a row has round caps */
     bool done;          /* the last tessellation succeeded */
-    bool empty;         /* nothing to draw: nothing tessellated yet, it failed, or nothing came of it */
+    bool has_camera;    /* the last tessellation was of a network; pitch_deg is its camera's */
+    double pitch_deg;
+    bool empty; /* nothing to draw: nothing tessellated yet, it failed, or nothing came of it */
 };
 
 enum { CAMBER_BUFFER_RECORDS, CAMBER_BUFFER_INDICES };

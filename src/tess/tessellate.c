@@ -333,6 +333,8 @@ static camber_status tessellate(camber_mesh *mesh, const source *from, const cam
         mesh->round_caps |= desc->strokes[i].cap == CAMBER_CAP_ROUND;
     }
     mesh->mesh_info = nothing;
+    mesh->has_camera = from->camera != NULL;
+    mesh->pitch_deg = from->camera ? from->camera->pitch_deg : 0.0;
     mesh->remade_parts = 0;
     for (size_t i = 0; i < mesh->part_capacity; i++)
         mesh->parts[i].made = false;

@@ -292,21 +292,23 @@ static bool draw(camber_device *device, camber_context *context, const scene *s,
                 camber_mesh_create(device, renderer, &mesh) == CAMBER_OK &&
                 camber_mesh_tessellate(mesh, polylines, &strips) == CAMBER_OK;
     const camber_pass passes[] = {{.mesh = mesh, .paints = paints[0], .paint_count = ROWS},
-                                  {.fill = {.color = {0, 1, 0, 0.3f}}},
+                                  {.kind = CAMBER_PASS_FILL, .fill = {.color = {0, 1, 0, 0.3f}}},
                                   {.mesh = mesh, .paints = paints[1], .paint_count = ROWS, .opacity = 0.5f}};
     static const uint8_t texels[4 * 5 * 3] = {9, 0, 0, 9, 40, 50, 60, 200};
     const camber_image image = {texels, 5, 3, 0};
-    const camber_pass rich_passes[] = {
-        {.fill = {.color = {0, 0, 0, 1}, .pattern = 1, .bearing_deg = 30}, .images = &image, .image_count = 1},
-        {.mesh = mesh,
-         .paints = paints[2],
-         .paint_count = ROWS,
-         .dashes = &dash,
-         .dash_count = 1,
-         .ramps = &ramp,
-         .ramp_count = 1,
-         .images = &image,
-         .image_count = 1}};
+    const camber_pass rich_passes[] = {{.kind = CAMBER_PASS_FILL,
+                                        .fill = {.color = {0, 0, 0, 1}, .pattern = 1, .bearing_deg = 30},
+                                        .images = &image,
+                                        .image_count = 1},
+                                       {.mesh = mesh,
+                                        .paints = paints[2],
+                                        .paint_count = ROWS,
+                                        .dashes = &dash,
+                                        .dash_count = 1,
+                                        .ramps = &ramp,
+                                        .ramp_count = 1,
+                                        .images = &image,
+                                        .image_count = 1}};
     camber_frame frame = {.width = PICTURE_WIDTH, .height = PICTURE_HEIGHT, .passes = passes, .pass_count = 3};
     good = good && camber_renderer_render(renderer, &frame, take_rows, pictures[0], NULL) == CAMBER_OK;
     frame.pitch_deg = 75;

@@ -102,7 +102,8 @@ static picture draw_with(const covering *e, camber_renderer *renderer, drawing *
     camber_mesh *mesh = make_mesh(e, renderer, d, CAMBER_METHOD_STRIP);
     for (size_t i = 0; i < 4; i++) {
         camber_pass *pass = d->passes + i;
-        pass->mesh = i % 2 ? mesh : NULL;
+        pass->kind = i % 2 ? CAMBER_PASS_LINES : CAMBER_PASS_FILL;
+        pass->mesh = mesh;
         pass->paints = d->paints[i / 2];
         pass->paint_count = i % 2 ? SCENE_ROWS : 0;
         pass->dashes = &dash;
@@ -143,7 +144,10 @@ static void compare_with_twin(const covering *e, const drawing *d, camber_mesh *
     }
     for (uint32_t i = ROWS; i < ALL; i++) {
         bool is_opaque;
-        const camber_pass fill = {.images = d->images, .image_count = IMAGES, .fill = d->passes[2 * (i - ROWS)].fill};
+        const camber_pass fill = {.kind = CAMBER_PASS_FILL,
+                                  .images = d->images,
+                                  .image_count = IMAGES,
+                                  .fill = d->passes[2 * (i - ROWS)].fill};
         more[i].features = CAMBER_FEATURE_IMAGE;
         assert_int_equal(camber_covered_put_fill(e->cl, &images, &fill, &more[i].image, &is_opaque), CAMBER_OK);
         assert_int_equal(is_opaque, fill.fill.pattern % 2);

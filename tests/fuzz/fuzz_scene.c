@@ -21,7 +21,7 @@ static void check_frame(camber_scene *scene) {
     check_color(frame.background);
     for (size_t i = 0; i < frame.pass_count; i++) {
         const camber_pass *pass = frame.passes + i;
-        if (!pass->mesh && pass->polyline_count == 0) { /* a fill */
+        if (pass->kind == CAMBER_PASS_FILL) {
             REQUIRE(pass->paint_count == 0);
             check_color(pass->fill.color);
             continue;

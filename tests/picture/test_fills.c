@@ -31,7 +31,8 @@ static void put_lines(drawing *d, size_t paints) {
 }
 
 static void put_fill(drawing *d, camber_color color, float opacity) {
-    d->passes[d->frame.pass_count++] = (camber_pass){.fill = {.color = color}, .opacity = opacity};
+    d->passes[d->frame.pass_count++] =
+        (camber_pass){.kind = CAMBER_PASS_FILL, .fill = {.color = color}, .opacity = opacity};
 }
 
 static picture draw(const studio *s, camber_renderer *renderer, drawing *d, uint32_t piece_px) {

@@ -374,7 +374,8 @@ static void test_fill_color(void **state) {
     d.paint.pattern = 0;
     camber_mesh *mesh = make_mesh(*state, &d, true);
     const camber_pass line = {.mesh = mesh, .paints = &d.paint, .paint_count = 1};
-    const camber_pass veil = {.fill = {.color = {0, 1, 0, 0.5f}}}, nothing = {0};
+    const camber_pass veil = {.kind = CAMBER_PASS_FILL, .fill = {.color = {0, 1, 0, 0.5f}}},
+                      nothing = {.kind = CAMBER_PASS_FILL};
     const camber_pass passes[] = {line, veil, nothing};
     picture p = fill(*state, passes, 3, 0), q = fill(*state, (const camber_pass[]){veil, line}, 2, 50);
     assert_color(&p, 1, "\x00\x80\x80");  /* over the background */
@@ -387,7 +388,7 @@ static void test_fill_color(void **state) {
 }
 
 static void check_fill(studio *s, const camber_image *image, camber_fill fill_as, uint32_t piece_px) {
-    const camber_pass pass = {.images = image, .image_count = 1, .fill = fill_as};
+    const camber_pass pass = {.kind = CAMBER_PASS_FILL, .images = image, .image_count = 1, .fill = fill_as};
     picture p = fill(s, &pass, 1, piece_px);
     const double w = fill_as.width_px > 0 ? (double)fill_as.width_px : image->width;
     const double h = fill_as.height_px > 0 ? (double)fill_as.height_px : image->height;
@@ -429,7 +430,8 @@ static void test_fill_images(void **state) {
                    0);
     }
     make_sheet(&s, 64, 64, CHECKED);
-    const camber_pass fine = {.images = &s.image,
+    const camber_pass fine = {.kind = CAMBER_PASS_FILL,
+                              .images = &s.image,
                               .image_count = 1,
                               .fill = {.color = {0, 0, 0, 1}, .pattern = 1, .width_px = 13, .height_px = 9}};
     picture p = fill(*state, &fine, 1, 0);
@@ -486,6 +488,7 @@ static void test_pitched_fill(void **state) {
         const double pitch_deg = fine ? 75 : 60;
         make_sheet(&made, fine ? 64 : 4, fine ? 64 : 4, fine ? CHECKED : SMOOTH);
         const camber_pass pass = {
+            .kind = CAMBER_PASS_FILL,
             .images = &made.image,
             .image_count = 1,
             .fill = {.color = {0, 0, 0, 1}, .pattern = 1, .width_px = 32, .height_px = 32, .x_px = 5, .y_px = 9}};
@@ -565,8 +568,10 @@ static void test_memory(void **state) {
     for (uint32_t i = 0; i < 20; i++) {
         make_sheet(made + i, 11 + i, 9, CLEAR);
         images[i] = made[i].image;
-        passes[i] =
-            (camber_pass){.images = images, .image_count = 20, .fill = {.color = {0, 0, 0, 1}, .pattern = i + 1}};
+        passes[i] = (camber_pass){.kind = CAMBER_PASS_FILL,
+                                  .images = images,
+                                  .image_count = 20,
+                                  .fill = {.color = {0, 0, 0, 1}, .pattern = i + 1}};
     }
     const camber_frame frame = {.width = SIDE, .height = SIDE, .passes = passes, .pass_count = 20};
     attempt all = {s, &frame};

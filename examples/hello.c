@@ -56,6 +56,7 @@ static bool draw(camber_context *context, camber_mesh *mesh, camber_renderer *re
            camber_mesh_tessellate(mesh, polylines, &desc) == CAMBER_OK &&
            camber_renderer_render(renderer, &frame, write_rows, png, NULL) == CAMBER_OK;
 }
+/* README ends */
 
 int main(void) {
     const camber_context_desc log = {.log = print_message, .log_user = stderr};
@@ -76,4 +77,3 @@ int main(void) {
                       draw(context, mesh, renderer, png) && camber_png_finish(png) == CAMBER_OK;
     return done && fclose(file) == 0 ? 0 : 1; /* a program that goes on destroys what it made: the mesh first */
 }
-/* README ends */

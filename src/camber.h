@@ -6,7 +6,7 @@
  * This header is the manual of libcamber. libcamber-map (camber_map.h) stands on it.
  *
  * Errors. What can fail returns a camber_status. Results go to the last parameter, which is left
- * untouched on failure. The story of a failure (what, where, and the cure, in one line) goes to the
+ * untouched on failure. The message of a failure (what, where, and the cure, in one line) goes to the
  * log callback of the context. Misuse (a NULL object, a count that contradicts a pointer) asserts.
  *
  * Ownership. X_create makes an object, X_destroy frees it and accepts NULL. Inputs are read during the
@@ -17,9 +17,9 @@
  *
  * Threads. A context and all that was made from it may be used by one thread at a time; different
  * contexts are independent, and threads may make and use them, and all that is made from them, at once.
- * There is no global state but that of drivers and GDAL, whose first set-up camber guards by a lock; a
- * host that asks them itself makes sure that it does not do so beside camber's first call. PoCL sets
- * HWLOC_PLUGINS_PATH when devices are first looked for: set it before other threads read the environment.
+ * There is no global state but that of drivers and GDAL, whose first set-up camber guards by a lock. A
+ * host that calls them itself does not do so while camber's first call runs. Drivers read and set environment
+ * variables when devices are first looked for: until then no other thread may read or change the environment.
  * A surface's GL context is made current on the calling thread by each call that needs it, and stays so
  * until camber_surface_release.
  *
@@ -106,7 +106,7 @@ typedef struct camber_access {
 /* ---- Context: allocator, log, cache -------------------------------------------------------------- */
 
 typedef enum camber_log_level {
-    CAMBER_LOG_ERROR = 0, /* the story of a failure that a status reports */
+    CAMBER_LOG_ERROR = 0, /* the message of a failure that a status reports */
     CAMBER_LOG_WARNING,   /* something was left out or repaired; said once a cause */
     CAMBER_LOG_INFO,      /* what was chosen and how long it took */
 } camber_log_level;
@@ -171,7 +171,7 @@ typedef struct camber_polylines camber_polylines;
 /* Cleans and copies polylines into the form that the kernels read. A polyline that is split at invalid
  * points keeps its index and its row.
  * Returns CAMBER_ERROR_INPUT (offsets not ascending from 0 to point_count, a row of 2^24 or more),
- * CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT (more than 2.5 * 10^9 points). Cost: one pass, about 2 ns a point. */
+ * CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT (more than 2.5 * 10^9 points). Cost: one pass. */
 CAMBER_API camber_status camber_polylines_create(camber_context *context, const camber_polylines_desc *desc,
                                                  camber_polylines **polylines);
 CAMBER_API void camber_polylines_destroy(camber_polylines *polylines);
@@ -248,20 +248,19 @@ typedef struct camber_device_desc {
     /* Of the devices that match, in the order of camber_device_list, the one to open: 1 is the first. 0: the first
      * GPU, else the first CPU. */
     uint32_t number;
-    /* Points a work-group takes: 64, 128 or 256, eight a work-item, and what draws has a work-item a pixel. 0: 256, and
-     * on a CPU one work-item takes them, and sixteen pixels. What comes out is the same bytes. */
+    /* Work-group size of all kernels: 64, 128 or 256 points. 0 (recommended): chosen for the device. It affects speed
+     * only; the output is the same bytes. */
     uint32_t work_group_size;
-    /* No buffer is made larger: a mesh that needs more is made in parts of whole polylines, and what is read or drawn
-     * of it is the same. 4096 at least. 0, or more than that: the device's own limit, and below 2^31 for GL's sake. */
+    /* No buffer is made larger. A mesh that needs more is made in parts of whole polylines; what is read or drawn is
+     * the same. At least 4096. 0, or more than the device allows: the device's own limit, below 2^31 bytes. */
     uint64_t largest_buffer_bytes;
-    /* What all meshes of the device may hold at once: buffers of points, joins, records and indices (copied ones
-     * twice), strokes, networks on a device with memory of its own, and counts a part. Not the polylines that a mesh
-     * keeps, what is read back, or pictures (largest_piece_px bounds those). Meshes are made in parts then, of an
-     * eighth of it or less; what does not fit is tessellated again when it is read or drawn, and is the same bytes and
-     * pixels. No polyline may take more than half of it: about 50 bytes a point that is seen. 65536 at least. 0: three
-     * quarters of the device's memory; no bound where that is the host's.
-     * A renderer that draws in OpenCL takes a quarter of it while it is there, or 4 MB besides where that is less, for
-     * segments and the lists of tiles; meshes have the rest. What takes more is drawn in slices, to the same bytes. */
+    /* The memory that all meshes of the device may hold at once: points, joins, records, indices (twice where they are
+     * copied), strokes and networks. Not counted are polylines on the host, what is read back, and pictures.
+     * A mesh is made in parts of an eighth of it or less. A part that does not fit is tessellated again when it is
+     * read or drawn, to the same bytes and pixels. A polyline may take half of it: about 50 bytes a point that is seen.
+     * A renderer that draws in OpenCL reserves a quarter of it, or 4 MB besides where that is less; it draws what
+     * needs more in slices, to the same bytes.
+     * At least 65536. 0: three quarters of the device's memory; no bound where that is the host's. */
     uint64_t memory_bytes;
     /* The surface whose renderers will draw the device's meshes in GL. Zero: none; buffers are copied. */
     camber_gl_handles gl;
@@ -269,14 +268,8 @@ typedef struct camber_device_desc {
 
 typedef struct camber_device camber_device;
 
-/* Opens a device. surface may be NULL; where it is given, buffers can be shared with its GL context
- * (camber_renderer_create tells how). The kernels of a method are built, or loaded from the cache, when it is first
- * used.
- *
- * PoCL's threads are best pinned: POCL_AFFINITY=1 in the environment before the first OpenCL call of the process, where
- * there are no more threads than cores and the process may use them all (PoCL aborts else). That call sets
- * HWLOC_PLUGINS_PATH: a program with threads sets it to /dev/null before them.
- *
+/* Opens a device. The kernels of a method are built, or loaded from the cache, when it is first used.
+ * desc may be NULL.
  * Returns CAMBER_ERROR_DEVICE (no platform, no device that matches or not so many), CAMBER_ERROR_ARGUMENT (a work-group
  * size that is none of these, a largest buffer below 4096 bytes, memory below 65536), CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_device_create(camber_context *context, const camber_device_desc *desc,
@@ -291,12 +284,11 @@ typedef struct camber_warmed {
 } camber_warmed;
 
 /* Builds all kernels that the device can be asked for and saves those that the cache lacks, so that later runs load
- * them: in the folder camber-kernels beside the library, which all users of the machine read, or where this user may
- * not write there, in the user's cache. What was built for another device, driver or version of camber is left alone.
- * Several processes can do it side by side, each its share of so many shares; 0 of 1 is all.
+ * them. They go to the folder camber-kernels beside the library, which all users of the machine read, or to the user's
+ * cache where that folder cannot be written. Kernels of other devices, drivers or versions of camber are left alone.
+ * share, shares: several processes can build at once, each its share of all; 0 of 1 is everything.
  * Returns CAMBER_ERROR_ARGUMENT (no such share), CAMBER_ERROR_DEVICE (kernels that do not build),
- * CAMBER_ERROR_MEMORY. Cost: some ten seconds of a CPU's compiler, once. PoCL's kernels are kept where
- * POCL_WORK_GROUP_SPECIALIZATION=0 was in the environment before the first OpenCL call; else kept stays 0. */
+ * CAMBER_ERROR_MEMORY. Some drivers do not let their kernels be saved; kept stays 0 then. */
 CAMBER_API camber_status camber_device_warm(camber_device *device, unsigned share, unsigned shares,
                                             camber_warmed *warmed);
 CAMBER_API camber_device_info camber_device_get_info(const camber_device *device);
@@ -429,8 +421,9 @@ typedef struct camber_tessellation_desc {
     size_t stroke_count;
     camber_method method;
     float fan_tolerance_px; /* farthest that a fan's chord lies from its arc, up to 64 chords a half turn. 0: 0.25 */
-    bool has_arc_length; /* records say how far along their polyline they lie, as dashes, trims, ramps and patterns need
-                          * it: 32 bytes a record */
+    /* Records say how far along their polyline they lie, as dashes, trims, ramps and patterns need it. A record takes
+     * 32 bytes then. */
+    bool has_arc_length;
 } camber_tessellation_desc;
 
 /* How far the geometry reaches past the stroke's edge, so that every pixel an edge touches is shaded: exact
@@ -465,11 +458,11 @@ CAMBER_API void camber_mesh_destroy(camber_mesh *mesh);
  * Returns CAMBER_ERROR_ARGUMENT (a width or a limit that is not a number or out of range, a row without a
  * stroke), CAMBER_ERROR_LIMIT (more than 2^30 records of strips or 2^25 of kite and fan, or a polyline that needs
  * more than the largest buffer, or than half of what the device's meshes may hold), CAMBER_ERROR_MEMORY,
- * CAMBER_ERROR_DEVICE (a kernel that does not build: the log has the build log). Cost: 1 s the first time a method is
- * used, 3 ms from the cache; then about 10 ns a point on two cores. */
+ * CAMBER_ERROR_DEVICE (a kernel that does not build: the log has the build log). Cost: the first use of a method
+ * compiles its kernels or loads them from the cache; then linear in the points. */
 CAMBER_API camber_status camber_mesh_tessellate(camber_mesh *mesh, const camber_polylines *polylines,
                                                 const camber_tessellation_desc *desc);
-/* The counts of joins and triangles are made at the first call after a tessellation: about 1 ns a point. */
+/* The first call after a tessellation counts joins and triangles: one pass over the points. */
 CAMBER_API camber_mesh_info camber_mesh_get_info(camber_mesh *mesh);
 
 typedef struct camber_mesh_memory {
@@ -497,11 +490,11 @@ typedef struct camber_paint {
     float translate_x_px, translate_y_px; /* where it is drawn, from where its polyline lies */
     uint32_t dash;                        /* 0: none; else one of the pass's dashes, counted from 1 */
     float dash_unit_px;                   /* that the dash's lengths are given in. 0: 1 */
-    /* Shares of its line's length, of a mesh that is measured: from the one to the other it is not drawn. What is
+    /* Shares of its line's length, of a mesh with arc lengths: from the one to the other it is not drawn. What is
      * trimmed at an end takes the cap too. trim_end not above trim_start: it is whole. */
     float trim_start, trim_end;
     uint32_t ramp; /* 0: none; else one of the pass's ramps, counted from 1, that color is multiplied by */
-    /* 0: none; else one of the pass's images, counted from 1, of a mesh that is measured: in place of the colour, whose
+    /* 0: none; else one of the pass's images, counted from 1, of a mesh with arc lengths: in place of the colour, whose
      * alpha it takes. It is as high as the stroke is wide, a gap with it, its top to the right of the line's direction,
      * and follows upon itself from where the line begins. */
     uint32_t pattern;
@@ -522,7 +515,7 @@ typedef struct camber_ramp_stop {
     camber_color color;
 } camber_ramp_stop;
 
-/* Colours along a line, of a mesh that is measured: between stops mixed as premultiplied ones, before the first and
+/* Colours along a line, of a mesh with arc lengths: between stops mixed as premultiplied ones, before the first and
  * behind the last as there. Two stops at one place are a step, whose edge has the exact area of the pixel. */
 typedef struct camber_ramp {
     const camber_ramp_stop *stops;
@@ -579,9 +572,9 @@ typedef struct camber_pass {
     size_t polyline_count;      /* 0: to the last */
     const camber_paint *paints; /* paint_count; a row at or past it is not drawn */
     size_t paint_count;
-    const camber_dash *dashes; /* dash_count, of a mesh that is measured. NULL: none */
+    const camber_dash *dashes; /* dash_count, of a mesh with arc lengths. NULL: none */
     size_t dash_count;
-    const camber_ramp *ramps; /* ramp_count, of a mesh that is measured. NULL: none */
+    const camber_ramp *ramps; /* ramp_count, of a mesh with arc lengths. NULL: none */
     size_t ramp_count;
     const camber_image *images; /* image_count. NULL: none */
     size_t image_count;
@@ -599,10 +592,12 @@ typedef struct camber_frame {
     /* The picture is drawn in pieces where a side is longer than this. 0: the largest target, or less where
      * that would take more than 64 MB; a layer that is united takes 128 MB more. */
     uint32_t largest_piece_px;
-    /* 0 to 85: polylines lie in a plane that is seen at this angle, from straight above at 0. The camera looks at the
-     * picture's centre, where a px of the plane is one of the picture, and sees 36.87 degrees from the bottom to the
-     * top. Widths, dashes and translations lie in the plane; blurs do not. What is farther than 6.7 times the distance
-     * of the centre is not drawn: at 85 % of the way from there to the horizon. */
+    /* 0 to 85: the angle at which the plane of the polylines is seen, from straight above at 0. Meshes of a network
+     * bring the pitch of their camera (camber_camera.pitch_deg), which a frame then need not name: 0 takes theirs. It
+     * is for frames of fills, and of meshes of polylines. The camera looks at the picture's centre, where a px of the
+     * plane is one of the picture, and sees 36.87 degrees from the bottom to the top. Widths, dashes and translations
+     * lie in the plane; blurs do not. What is farther than 6.7 times the distance of the centre is not drawn: at 85 %
+     * of the way from there to the horizon. */
     double pitch_deg;
 } camber_frame;
 
@@ -618,9 +613,10 @@ typedef struct camber_frame_stats {
  * drawing. */
 typedef bool camber_rows_fn(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count);
 
-/* Draws a frame and hands its rows over. rows may be NULL: the frame is drawn and finished, not read back.
- * stats may be NULL. Returns CAMBER_ERROR_ARGUMENT (a size or a pitch out of range, a dash, a ramp or an image that is
- * none, dashes, ramps, trims or patterns of a mesh that is not measured),
+/* Draws a frame and hands its rows over.
+ * rows may be NULL: the frame is drawn and finished, not read back. stats may be NULL.
+ * Returns CAMBER_ERROR_ARGUMENT (a size or a pitch out of range, meshes of cameras with different pitches, a dash, a
+ * ramp or an image that is none, dashes, ramps, trims or patterns of a mesh without arc lengths),
  * CAMBER_ERROR_LIMIT (more rows of strokes and paints, or images of one pass, than textures hold, or in OpenCL images
  * of one frame than a buffer), CAMBER_ERROR_DEVICE (a shader or a kernel does not build, or GL or OpenCL reported an
  * error), CAMBER_ERROR_MEMORY, CAMBER_ERROR_IO (rows returned false). */

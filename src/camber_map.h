@@ -146,7 +146,7 @@ CAMBER_API camber_status camber_features_create(camber_context *context, const c
  * Returns CAMBER_ERROR_NOT_FOUND, CAMBER_ERROR_INPUT (unreadable, cut off, no line layer, no such layer),
  * CAMBER_ERROR_ARGUMENT (where does not parse, or names a field that no layer has), CAMBER_ERROR_IO (also where GDAL
  * cannot be loaded), CAMBER_ERROR_MEMORY. Cost: the first call of a process does what camber_gdal_load does, and
- * registers GDAL's drivers (3 ms). */
+ * registers GDAL's drivers. */
 CAMBER_API camber_status camber_features_read(camber_features *features, const camber_source_desc *desc);
 CAMBER_API void camber_features_destroy(camber_features *features);
 CAMBER_API camber_features_stats camber_features_get_stats(const camber_features *features);
@@ -160,7 +160,7 @@ CAMBER_API const char *camber_features_get_attribution(const camber_features *fe
 CAMBER_API bool camber_source_needs_gdal(const camber_source_desc *desc);
 /* Loads GDAL, which the first file that is read does else. It is half as long again once drivers have threads, so a
  * program that opens a device or a surface first may want it before. Returns CAMBER_ERROR_IO where GDAL or camber's
- * module for it is missing. Cost: 35 ms once a process; nothing in the static library, where GDAL is linked. */
+ * module for it is missing. Cost: once a process; nothing in the static library, where GDAL is linked. */
 CAMBER_API camber_status camber_gdal_load(camber_context *context);
 /* "GPKG", ... the short name of OGR's n-th vector driver that reads files without an allowance (camber_access), NULL
  * past the last or where GDAL cannot be loaded. The string is OGR's. */
@@ -249,7 +249,8 @@ CAMBER_API void camber_scene_destroy(camber_scene *scene);
 
 /* Another view of the same features. Evaluates the style for its zoom; the network stays, on the device too, where
  * filters still draw the same features, and the picture does not come to another copy of the world. The scene is as
- * before where this fails. Cost: some microseconds a class of features; else about 30 ns a point. */
+ * before where this fails. Cost: an evaluation a class of
+ * features; where another network is needed, one pass over the points. */
 CAMBER_API camber_status camber_scene_move(camber_scene *scene, const camber_view_desc *view);
 /* camber_mesh_tessellate_network of what the view sees. */
 CAMBER_API camber_status camber_scene_tessellate(const camber_scene *scene, camber_mesh *mesh, camber_method method);

@@ -24,8 +24,8 @@ typedef struct camber_record {
     uint32_t last; /* row << 8 | flags: CAMBER_POINT_* and CAMBER_RECORD_* there */
 } camber_record;
 
-/* How far along its polyline a record of a measured mesh lies: the arc length over all of the polyline's points, those
- * of a network also where the camera leaves points out or cuts. */
+/* How far along its polyline a record lies, in a mesh with arc lengths: the arc length over all of the polyline's
+ * points, those of a network also where the camera leaves points out or cuts. */
 typedef struct camber_arc_length {
     float along_px, total_px; /* from its first point, and to its last */
 } camber_arc_length;
@@ -71,7 +71,7 @@ typedef struct camber_mesh_data {
     /* What the device has: info.record_count, and of kite and fan info.index_count, record << 7 | corner
      * (CAMBER_CORNER_* in kernels/layout.h); NULL of strips. */
     camber_record *records;
-    camber_arc_length *arc_lengths; /* as many, of measured meshes. NULL: not measured */
+    camber_arc_length *arc_lengths; /* as many. NULL: the mesh has none */
     uint32_t *corners;
     /* What is drawn by it: info.vertex_count, and info.index_count. Of strips these are two indices a record, both
      * CAMBER_RESTART_INDEX where it lies between two strips. At a tight join two records follow each other that have
@@ -116,7 +116,7 @@ typedef struct camber_point_stages {
 
 /* What a call makes is freed by camber_stages_destroy. */
 typedef struct camber_stages {
-    camber_context *context; /* which allocated the array. NULL: nothing is there */
+    camber_context *context;     /* which allocated the array. NULL: nothing is there */
     camber_point_stages *points; /* point_count, in input order; rings have their first point again at the end */
     size_t point_count;
 } camber_stages;

@@ -27,7 +27,7 @@ int camber_output_open(camber_output *output, camber_report *report, camber_guar
 /* Whether info is of the file that this one is written to or will replace, which must not be read as well. */
 bool camber_output_is(const camber_output *output, const struct stat *info);
 camber_sink camber_output_sink(camber_output *output);
-/* The story of a failed call that wrote here: the file's, if writing is what failed, else status's. */
+/* The message of a failed call that wrote here: the file's, if writing is what failed, else status's. */
 int camber_output_status(camber_output *output, camber_status status);
 int camber_output_publish(camber_output *output);
 /* Removes what was written, unless published; also frees the output. */

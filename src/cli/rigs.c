@@ -17,7 +17,7 @@ static const camber_sharing paths[CAMBER_RIG_PATHS] = {CAMBER_SHARING_GL, CAMBER
 
 static const uint32_t group_sizes[CAMBER_RIG_GROUPS] = {64, 128};
 
-/* A failed call's story becomes the reason of a skip. */
+/* A failed call's message becomes the reason of a skip. */
 static void skip(camber_verdicts *verdicts, camber_check check, camber_status status) {
     camber_report *report = verdicts->report;
     camber_verdicts_skip(verdicts, check, report->error[0] ? report->error : camber_status_get_name(status));

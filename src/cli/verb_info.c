@@ -16,7 +16,7 @@ static json_t *device_json(const camber_device_info *info) {
                      (json_int_t)info->largest_buffer_bytes, "gl_sharing", info->gl_sharing);
 }
 
-/* The story of the last failure, which must not be told twice. */
+/* The message of the last failure, which must not be told twice. */
 static json_t *take_error(camber_report *report, camber_status status) {
     json_t *text = camber_json_text(report->error[0] ? report->error : camber_status_get_name(status));
     report->error[0] = 0;

@@ -45,7 +45,7 @@ static camber_status check_paints(const camber_renderer *renderer, const camber_
         const bool has_arc_length = pass->mesh->mesh_info.has_arc_length || pass->mesh->empty;
         if (!has_arc_length && (paint->dash || paint->ramp || paint->pattern || trims))
             return camber_fail(context, CAMBER_ERROR_ARGUMENT,
-                               "%s of a mesh that is not measured; tessellate it measured", what);
+                               "%s of a mesh without arc lengths; tessellate it with has_arc_length", what);
     }
     return CAMBER_OK;
 }

@@ -72,7 +72,7 @@ static camber_status draw_area(camber_renderer *renderer, const camber_cover_sce
         return status;
     status = camber_cover_draw_into(renderer->cover, scene, area, pixels->mem);
     camber_soft_log kept = {0};
-    const bool told = status != CAMBER_OK; /* another error would be a second story */
+    const bool told = status != CAMBER_OK; /* another error would be a second message */
     if (told)
         camber_log_soften(renderer->share.device->context, &kept);
     /* Where memory was short, meshes of another surface may have let buffers go. */

@@ -43,7 +43,7 @@ camber_status camber_surface_make_current(camber_surface *surface);
 /* The same for what frees: nothing is logged. false: GL's objects went with the context, or go with it. */
 bool camber_surface_try_current(camber_surface *surface);
 
-/* What GL has reported since the last look, as a status, its story logged: what failed is named by what. */
+/* What GL has reported since the last look, as a status, its message logged: what failed is named by what. */
 camber_status camber_surface_check(camber_surface *surface, const char *what);
 /* Leaves what GL has reported behind: after a failure that is told already. */
 void camber_surface_forget_errors(camber_surface *surface);

@@ -385,7 +385,7 @@ camber_status camber_network_aim(const camber_network *network, const camber_cam
         return status;
     if (desc->has_arc_length && !network->lengths && network->point_count)
         return camber_fail(network->context, CAMBER_ERROR_ARGUMENT,
-                           "a measured mesh of a network that is not; make the network measured");
+                           "a mesh with arc lengths of a network without them; create the network with has_arc_length");
     const double angle = fmod(camera->bearing_deg, 360.0) * (3.14159265358979323846 / 180.0);
     const bool quarters = remainder(camera->bearing_deg, 90.0) == 0.0; /* axis-parallel lines stay so */
     const double cosine = quarters ? round(cos(angle)) : cos(angle), sine = quarters ? round(sin(angle)) : sin(angle);

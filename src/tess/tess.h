@@ -307,7 +307,7 @@ camber_status camber_mesh_make_room(camber_mesh *mesh, const camber_mesh_part *k
 /* Where no room is left for so many bytes, gives a part without buffers those of the part that would have to go. */
 void camber_part_adopt(camber_mesh *mesh, camber_mesh_part *part, uint64_t wanted_bytes);
 
-/* Ends what ops->begin began on a part's output. Gives status where that is a failure, whose story is told. */
+/* Ends what ops->begin began on a part's output. Gives status where that is a failure, whose message is logged. */
 camber_status camber_part_finish(const camber_mesh *mesh, camber_mesh_part *part, bool written, camber_status status);
 
 /* OpenCL calls that log. camber_make_buffer leaves *mem alone on failure. */

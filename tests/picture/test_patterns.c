@@ -528,7 +528,7 @@ static void test_misuse(void **state) {
         .mesh = unmeasured, .paints = &d.paint, .paint_count = 1, .images = &made.image, .image_count = 1};
     const camber_frame frame = {.width = SIDE, .height = SIDE, .passes = &pass, .pass_count = 1};
     assert_int_equal(camber_renderer_render(studio_any(s), &frame, NULL, NULL, NULL), CAMBER_ERROR_ARGUMENT);
-    assert_story(&s->h, "measured");
+    assert_story(&s->h, "arc lengths");
     pass.mesh = mesh;
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         pass.images = bad + i;

@@ -282,7 +282,7 @@ static void test_refused(void **state) {
         const camber_pass pass = {.mesh = mesh, .paints = &paint, .paint_count = 1, .ramps = &ramp, .ramp_count = 1};
         const camber_frame frame = {.width = 64, .height = 64, .passes = &pass, .pass_count = 1};
         assert_int_equal(camber_renderer_render(studio_any(s), &frame, NULL, NULL, NULL), CAMBER_ERROR_ARGUMENT);
-        assert_story(&s->h, i < 5 ? "ramp 0" : "ramps of a mesh that is not measured");
+        assert_story(&s->h, i < 5 ? "ramp 0" : "ramps of a mesh without arc lengths");
     }
     camber_mesh_destroy(mesh);
     camber_polylines_destroy(polylines);

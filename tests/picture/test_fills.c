@@ -109,7 +109,7 @@ static void test_order(void **state) {
     d.frame.pass_count--;
     d.passes[0].fill.color.a = 0; /* not of the others' alpha, but of none */
     picture p = draw(s, studio_any(s), &d, 0);
-    d.passes[0] = (camber_pass){0};
+    d.passes[0] = (camber_pass){.kind = CAMBER_PASS_FILL};
     picture q = draw(s, studio_any(s), &d, 0);
     picture_assert_same(&p, &q);
     picture_free(&q);

@@ -1,6 +1,6 @@
-# The target `lint`: formatting, clang-tidy, every kernel and every public header by itself. It counts with the clang of
-# .ci/pinned: another one formats otherwise and has other checks. Such a clang-format or clang-tidy is left out, and what
-# such a clang warns of is information.
+# The target `lint`: the rules of the tree (tests/lint/lint_tree.py), formatting, clang-tidy, every kernel and every public
+# header by itself. It counts with the clang of .ci/pinned: another one formats otherwise and has other checks. Such a
+# clang-format or clang-tidy is left out, and what such a clang warns of is information.
 set(lint_notes)
 set(lint_missing)
 foreach(tool clang clang-format clang-tidy)
@@ -22,6 +22,10 @@ foreach(tool clang clang-format clang-tidy)
     list(APPEND lint_notes COMMAND ${CMAKE_COMMAND} -E echo "lint: ${tool} ${CMAKE_MATCH_1}, made for ${pinned_clang}: skipped")
   endif()
 endforeach()
+find_program(PYTHON3 python3)
+if(NOT PYTHON3)
+  list(APPEND lint_missing python3)
+endif()
 if(lint_missing)
   list(JOIN lint_missing ", " lint_missing)
   add_custom_target(lint COMMAND ${CMAKE_COMMAND} -E echo "lint: not here: ${lint_missing}, see ./dev setup"
@@ -46,6 +50,12 @@ function(lint_step name)
   set(done ${done} ${stamps}/${name} PARENT_SCOPE)
 endfunction()
 file(MAKE_DIRECTORY ${stamps})
+
+# Layers are checked in the object files that have been built. As it takes a second, it runs each time: there is no stamp.
+add_custom_command(OUTPUT ${stamps}/tree
+  COMMAND ${PYTHON3} ${CMAKE_CURRENT_LIST_DIR}/lint/lint_tree.py ${PROJECT_SOURCE_DIR} ${CMAKE_BINARY_DIR} VERBATIM)
+set_source_files_properties(${stamps}/tree PROPERTIES SYMBOLIC TRUE)
+list(APPEND done ${stamps}/tree)
 
 add_custom_target(lint_format ${lint_notes})
 if(CLANG_FORMAT_IS_PINNED)
@@ -101,9 +111,13 @@ foreach(source IN LISTS lint_sources)
   if(name MATCHES "^src/(style|source|map)/" AND NOT CAMBER_MAP)
     continue()
   endif()
+  set(made)
+  if(name MATCHES "^src/source/") # clang-tidy reads the headers that protoc-c makes
+    set(made ${CMAKE_BINARY_DIR}/src/messages/vector_tile.pb-c.h)
+  endif()
   string(REPLACE "/" "_" name ${name})
   lint_step(tidy_${name} COMMAND ${CLANG_TIDY} --quiet --warnings-as-errors=* -p ${CMAKE_BINARY_DIR} ${source}
-            DEPENDS ${source} ${lint_headers} ${PROJECT_SOURCE_DIR}/.clang-tidy)
+            DEPENDS ${source} ${lint_headers} ${made} ${PROJECT_SOURCE_DIR}/.clang-tidy)
 endforeach()
 
 add_custom_target(lint ${lint_notes} DEPENDS ${done})

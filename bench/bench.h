@@ -1,7 +1,7 @@
 /* The benchmark: sections that measure, each into rows and figures of one JSON document, from which tables, plots,
  * comparisons and the README's numbers are made. */
-#ifndef CAMBER_BENCH_H
-#define CAMBER_BENCH_H
+#ifndef CAMBER_BENCH_BENCH_H
+#define CAMBER_BENCH_BENCH_H
 
 #include "camber_files.h"
 #include "camber_network.h"

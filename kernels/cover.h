@@ -1,7 +1,7 @@
 /* Drawing in OpenCL: what a segment covers of a pixel, and how what is covered is put together. shaders/stroke.vert,
  * stroke.frag and flatten.frag say the same of triangles. */
-#ifndef CAMBER_COVER_MATHS_H
-#define CAMBER_COVER_MATHS_H
+#ifndef CAMBER_KERNELS_COVER_H
+#define CAMBER_KERNELS_COVER_H
 
 #include "cover_shapes.h"
 

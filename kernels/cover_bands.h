@@ -1,7 +1,7 @@
 /* What frames have that CAMBER_COVER_RICH draws: strokes of two bands, that fade, are dashed, drawn in part, or change
  * their colour along them. stroke.frag says the same of fragments. */
-#ifndef CAMBER_COVER_BANDS_H
-#define CAMBER_COVER_BANDS_H
+#ifndef CAMBER_KERNELS_COVER_BANDS_H
+#define CAMBER_KERNELS_COVER_BANDS_H
 
 #include "cover.h"
 

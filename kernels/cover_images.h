@@ -1,7 +1,7 @@
 /* Images that CAMBER_COVER_RICH draws with, along lines and side by side over the picture. image_at of stroke.frag and
  * images_over of flatten.frag say the same of fragments. */
-#ifndef CAMBER_COVER_IMAGES_H
-#define CAMBER_COVER_IMAGES_H
+#ifndef CAMBER_KERNELS_COVER_IMAGES_H
+#define CAMBER_KERNELS_COVER_IMAGES_H
 
 #include "cover_bands.h"
 

@@ -4,8 +4,8 @@
  * A distance in the plane from a line, n . p - n . a, is linear in the picture once it is divided by the depth there:
  * straight edges of the plane are straight edges of the picture, and where the ends of a segment are far there is
  * nothing else to see. */
-#ifndef CAMBER_COVER_PITCH_MATHS_H
-#define CAMBER_COVER_PITCH_MATHS_H
+#ifndef CAMBER_KERNELS_COVER_PITCH_H
+#define CAMBER_KERNELS_COVER_PITCH_H
 
 #include "cover_pitch_shapes.h"
 

@@ -1,8 +1,8 @@
 /* Strokes of two bands, that fade, are dashed, drawn in part, or change their colour along them, in a plane that is
  * seen at an angle: kernels/cover_bands.h says the same of one that is not, stroke.frag under PITCHED of fragments.
  * What lies along a line is measured in the plane; a blur is px of the picture. */
-#ifndef CAMBER_COVER_PITCH_BANDS_H
-#define CAMBER_COVER_PITCH_BANDS_H
+#ifndef CAMBER_KERNELS_COVER_PITCH_BANDS_H
+#define CAMBER_KERNELS_COVER_PITCH_BANDS_H
 
 #include "cover_bands.h"
 #include "cover_pitch.h"

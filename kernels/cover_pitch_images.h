@@ -1,6 +1,6 @@
 /* Images that lie in a plane that is seen at an angle: of which of it a pixel shows how much. */
-#ifndef CAMBER_COVER_PITCH_IMAGES_H
-#define CAMBER_COVER_PITCH_IMAGES_H
+#ifndef CAMBER_KERNELS_COVER_PITCH_IMAGES_H
+#define CAMBER_KERNELS_COVER_PITCH_IMAGES_H
 
 #include "cover_images.h"
 #include "cover_pitch.h"

@@ -5,8 +5,8 @@
  *
  * A distance in the plane from a line, n . p - n . a, by the depth there is linear in the picture: straight edges of
  * the plane are straight edges of the picture, and where the ends of a segment are far nothing else is drawn. */
-#ifndef CAMBER_COVER_PITCH_SHAPES_H
-#define CAMBER_COVER_PITCH_SHAPES_H
+#ifndef CAMBER_KERNELS_COVER_PITCH_SHAPES_H
+#define CAMBER_KERNELS_COVER_PITCH_SHAPES_H
 
 #include "cover.h"
 

@@ -1,8 +1,8 @@
 /* Drawing in OpenCL: a segment as tiles and pixels read it, and the tiles that it meets. Only + - * / sqrt and
  * comparisons, so that device and twin agree to the last bit; a camber_real is sixteen segments, or the sixteen pixels
  * of a cell, on the device and one of them in the twin. */
-#ifndef CAMBER_COVER_SHAPES_H
-#define CAMBER_COVER_SHAPES_H
+#ifndef CAMBER_KERNELS_COVER_SHAPES_H
+#define CAMBER_KERNELS_COVER_SHAPES_H
 
 #include "layout.h"
 

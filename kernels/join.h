@@ -8,8 +8,8 @@
  *     tan(t/4) = s / (1 + c)    in -1 to 1 for every turn: what is stored, as 16 bits
  *     1 / c                     the miter length over the width
  */
-#ifndef CAMBER_JOIN_MATHS_H
-#define CAMBER_JOIN_MATHS_H
+#ifndef CAMBER_KERNELS_JOIN_H
+#define CAMBER_KERNELS_JOIN_H
 
 #include "layout.h"
 

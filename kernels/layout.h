@@ -1,7 +1,7 @@
 /* Layouts that host and device share. Scalar C that both compilers read; the build declares the dialect
  * (__OPENCL_VERSION__ is OpenCL's own). Sizes are asserted on both sides. */
-#ifndef CAMBER_LAYOUT_H
-#define CAMBER_LAYOUT_H
+#ifndef CAMBER_KERNELS_LAYOUT_H
+#define CAMBER_KERNELS_LAYOUT_H
 
 #ifdef __OPENCL_VERSION__
 #pragma OPENCL FP_CONTRACT OFF

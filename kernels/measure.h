@@ -3,8 +3,8 @@
  * Lengths of segments are rounded to fixed point and added up as integers. Sums of those do not depend on their order,
  * so chunks are summed up by themselves, the host carries the sums from chunk to chunk, and the twin, which knows of no
  * chunks, finds the same bits. */
-#ifndef CAMBER_MEASURE_MATHS_H
-#define CAMBER_MEASURE_MATHS_H
+#ifndef CAMBER_KERNELS_MEASURE_H
+#define CAMBER_KERNELS_MEASURE_H
 
 #include "layout.h"
 

@@ -15,8 +15,8 @@
  *             +--------------------b---/----+
  *                               A4-'               (pictured: two sides of one window)
  */
-#ifndef CAMBER_NETWORK_MATHS_H
-#define CAMBER_NETWORK_MATHS_H
+#ifndef CAMBER_KERNELS_NETWORK_H
+#define CAMBER_KERNELS_NETWORK_H
 
 #include "layout.h"
 

@@ -14,8 +14,8 @@
  * interval of a leg; the line before hides the leg's beginning up to there, that behind its end. What is left is linked
  * in the order of the line. So a line has no more pieces than it had, and what lies farther along it than its reach
  * does not count: a line that crosses itself is drawn through. */
-#ifndef CAMBER_OFFSET_MATHS_H
-#define CAMBER_OFFSET_MATHS_H
+#ifndef CAMBER_KERNELS_OFFSET_H
+#define CAMBER_KERNELS_OFFSET_H
 
 #include "join.h"
 

@@ -1,6 +1,6 @@
 /* The points of what is left of a line beside another, in the order of the line. */
-#ifndef CAMBER_OFFSET_PIECES_H
-#define CAMBER_OFFSET_PIECES_H
+#ifndef CAMBER_KERNELS_OFFSET_PIECES_H
+#define CAMBER_KERNELS_OFFSET_PIECES_H
 
 #include "offset_spans.h"
 

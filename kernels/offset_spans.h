@@ -1,6 +1,6 @@
 /* What of a leg and of an arc is left where the line passes nearer to it than the offset: offset.h says the rule. */
-#ifndef CAMBER_OFFSET_SPANS_H
-#define CAMBER_OFFSET_SPANS_H
+#ifndef CAMBER_KERNELS_OFFSET_SPANS_H
+#define CAMBER_KERNELS_OFFSET_SPANS_H
 
 #include "offset.h"
 

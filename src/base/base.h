@@ -1,6 +1,6 @@
 /* What every layer needs: memory through the context's allocator, the log, text, files, clock. */
-#ifndef CAMBER_BASE_H
-#define CAMBER_BASE_H
+#ifndef CAMBER_BASE_BASE_H
+#define CAMBER_BASE_BASE_H
 
 #include "camber_files.h"
 

@@ -1,6 +1,6 @@
 /* Text files that the build embeds (src/embed.cmake), each with a 0 behind its end. */
-#ifndef CAMBER_EMBEDDED_H
-#define CAMBER_EMBEDDED_H
+#ifndef CAMBER_BASE_EMBEDDED_H
+#define CAMBER_BASE_EMBEDDED_H
 
 extern const char camber_kernels_source[]; /* kernels/ as one program */
 extern const unsigned long camber_kernels_source_size;

@@ -4,8 +4,8 @@
  *     x, y   px of the plane, from the centre, y down          seen_x = x / depth
  *     depth  1 - fall * y: 1 in the middle, more behind it     seen_y = cosine * y / depth
  */
-#ifndef CAMBER_PERSPECTIVE_H
-#define CAMBER_PERSPECTIVE_H
+#ifndef CAMBER_BASE_PERSPECTIVE_H
+#define CAMBER_BASE_PERSPECTIVE_H
 
 #include <math.h>
 #include <stdbool.h>

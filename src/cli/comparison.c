@@ -13,13 +13,13 @@
 #define WARM_UPS 3
 
 _Static_assert(CAMBER_FIGURE_TIGHT_JOINS - CAMBER_FIGURE_TURNS == CAMBER_TURN_CLASSES, "a figure a class of turns");
-_Static_assert(CAMBER_MEASURE_REPEATED_ELSEWHERE - CAMBER_MEASURE_REPEATED_AT_PLAIN == CAMBER_JOIN_ROOMS,
+_Static_assert(CAMBER_METRIC_REPEATED_ELSEWHERE - CAMBER_METRIC_REPEATED_AT_PLAIN == CAMBER_JOIN_ROOMS,
                "a measure a room of joins");
 _Static_assert(CAMBER_METHODS <= CAMBER_PICTURES_MAX, "a picture a method");
 
 const camber_method camber_methods_shown[CAMBER_METHODS] = {CAMBER_METHOD_FAN, CAMBER_METHOD_KITE, CAMBER_METHOD_STRIP};
 
-const camber_measure_info camber_figures[CAMBER_FIGURE_COUNT] = {
+const camber_metric_info camber_figures[CAMBER_FIGURE_COUNT] = {
     {"polylines", "polylines", 10, 0}, {"segments", "segments", 10, 0},
     {"joins", "joins", 10, 0},         {"0-30", "0-30", 9, 0},
     {"30-60", "30-60", 7, 0},          {"60-90", "60-90", 7, 0},
@@ -28,7 +28,7 @@ const camber_measure_info camber_figures[CAMBER_FIGURE_COUNT] = {
     {"split_joins", "split", 7, 0},
 };
 
-const camber_measure_info camber_measures[CAMBER_MEASURE_COUNT] = {
+const camber_metric_info camber_metrics[CAMBER_METRIC_COUNT] = {
     {"vertices", "vertices", 11, 0},
     {"triangles", "triangles", 11, 0},
     {"bytes", "bytes", 13, 0},
@@ -114,8 +114,8 @@ static camber_status time_runs(const trial *t) {
         draw_ms[i - WARM_UPS] = stats.draw_ms;
     }
     if (status == CAMBER_OK) {
-        t->row->measures[t->method][CAMBER_MEASURE_TESSELLATE_MS] = camber_statistics_median(tessellate_ms, runs);
-        t->row->measures[t->method][CAMBER_MEASURE_DRAW_MS] = camber_statistics_median(draw_ms, runs);
+        t->row->metrics[t->method][CAMBER_METRIC_TESSELLATE_MS] = camber_statistics_median(tessellate_ms, runs);
+        t->row->metrics[t->method][CAMBER_METRIC_DRAW_MS] = camber_statistics_median(draw_ms, runs);
     }
     free(tessellate_ms);
     free(draw_ms);
@@ -123,12 +123,12 @@ static camber_status time_runs(const trial *t) {
 }
 
 static void count_mesh(const trial *t, const camber_mesh_data *mesh) {
-    double *measures = t->row->measures[t->method], *figures = t->row->figures;
+    double *metrics = t->row->metrics[t->method], *figures = t->row->figures;
     const camber_mesh_info *info = &mesh->info;
-    measures[CAMBER_MEASURE_VERTICES] = (double)info->vertex_count;
-    measures[CAMBER_MEASURE_TRIANGLES] = (double)info->triangle_count;
-    measures[CAMBER_MEASURE_BYTES] = (double)info->bytes;
-    measures[CAMBER_MEASURE_DRAW_CALLS_16_BIT] = (double)camber_batches_count(mesh, CAMBER_BATCH_VERTICES);
+    metrics[CAMBER_METRIC_VERTICES] = (double)info->vertex_count;
+    metrics[CAMBER_METRIC_TRIANGLES] = (double)info->triangle_count;
+    metrics[CAMBER_METRIC_BYTES] = (double)info->bytes;
+    metrics[CAMBER_METRIC_DRAW_CALLS_16_BIT] = (double)camber_batches_count(mesh, CAMBER_BATCH_VERTICES);
     figures[CAMBER_FIGURE_TIGHT_JOINS] = (double)info->tight_joins;
     figures[CAMBER_FIGURE_SPLIT_JOINS] = (double)info->split_joins;
 }
@@ -169,36 +169,36 @@ static camber_status count_joins(const trial *t, const camber_joins *joins, camb
         status = count_ranges(t, ranges, count, c->at_joins, &overdraw);
     for (size_t i = 0; i < (size_t)c->networks.width * c->networks.height && count > 0; i++)
         c->repeated[i] = c->at_joins[i] ? 0 : c->repeated[i];
-    t->row->measures[t->method][CAMBER_MEASURE_REPEATED_AT_PLAIN + (int)room] = (double)overdraw.repeated_pixels;
+    t->row->metrics[t->method][CAMBER_METRIC_REPEATED_AT_PLAIN + (int)room] = (double)overdraw.repeated_pixels;
     free(ranges);
     return status;
 }
 
 static camber_status count_pixels(const trial *t, const camber_mesh_data *mesh) {
     camber_comparison *c = t->comparison;
-    double *measures = t->row->measures[t->method];
+    double *metrics = t->row->metrics[t->method];
     camber_joins joins = {0};
     camber_overdraw overdraw = {0};
     camber_status status = count_ranges(t, NULL, 0, c->repeated, &overdraw);
-    measures[CAMBER_MEASURE_FRAGMENTS] = (double)overdraw.fragments;
-    measures[CAMBER_MEASURE_DRAWN_PIXELS] = (double)overdraw.drawn_pixels;
-    measures[CAMBER_MEASURE_REPEATED_PIXELS] = (double)overdraw.repeated_pixels;
+    metrics[CAMBER_METRIC_FRAGMENTS] = (double)overdraw.fragments;
+    metrics[CAMBER_METRIC_DRAWN_PIXELS] = (double)overdraw.drawn_pixels;
+    metrics[CAMBER_METRIC_REPEATED_PIXELS] = (double)overdraw.repeated_pixels;
     if (status == CAMBER_OK && !camber_joins_find(mesh, t->network->strokes, &joins))
         status = CAMBER_ERROR_MEMORY;
     for (int room = 0; room < CAMBER_JOIN_ROOMS && status == CAMBER_OK; room++)
         status = count_joins(t, &joins, (camber_join_room)room);
     for (size_t i = 0; i < (size_t)c->networks.width * c->networks.height; i++)
-        measures[CAMBER_MEASURE_REPEATED_ELSEWHERE] += c->repeated[i];
+        metrics[CAMBER_METRIC_REPEATED_ELSEWHERE] += c->repeated[i];
     camber_joins_free(&joins);
     return status;
 }
 
 /* What kernels have no such thing of. */
 static void leave_out_gl(const trial *t) {
-    double *measures = t->row->measures[t->method];
-    measures[CAMBER_MEASURE_DRAW_CALLS_16_BIT] = measures[CAMBER_MEASURE_DRAW_CALLS] = NAN;
-    for (int i = CAMBER_MEASURE_OF_PIXELS; i < CAMBER_MEASURE_COUNT; i++)
-        measures[i] = NAN;
+    double *metrics = t->row->metrics[t->method];
+    metrics[CAMBER_METRIC_DRAW_CALLS_16_BIT] = metrics[CAMBER_METRIC_DRAW_CALLS] = NAN;
+    for (int i = CAMBER_METRIC_OF_PIXELS; i < CAMBER_METRIC_COUNT; i++)
+        metrics[i] = NAN;
 }
 
 static camber_status try_method(const trial *t) {
@@ -207,7 +207,7 @@ static camber_status try_method(const trial *t) {
     camber_status status = time_runs(t);
     if (status == CAMBER_OK)
         status = draw(t, true, &stats);
-    t->row->measures[t->method][CAMBER_MEASURE_DRAW_CALLS] = (double)stats.draw_calls;
+    t->row->metrics[t->method][CAMBER_METRIC_DRAW_CALLS] = (double)stats.draw_calls;
     if (status == CAMBER_OK)
         status = camber_mesh_read(t->comparison->mesh, &mesh);
     if (status != CAMBER_OK)
@@ -257,8 +257,8 @@ static camber_status measure_errors(const camber_comparison *c, const camber_net
     if (!camber_bands_measure(&job, differences))
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < job.picture_count; i++) {
-        row->measures[methods[i]][CAMBER_MEASURE_MEAN_ERROR] = camber_difference_mean(&differences[i]);
-        row->measures[methods[i]][CAMBER_MEASURE_MAX_ERROR] = differences[i].max;
+        row->metrics[methods[i]][CAMBER_METRIC_MEAN_ERROR] = camber_difference_mean(&differences[i]);
+        row->metrics[methods[i]][CAMBER_METRIC_MAX_ERROR] = differences[i].max;
         row->max_at[methods[i]] = differences[i].max_at;
     }
     return CAMBER_OK;
@@ -301,10 +301,10 @@ static void average(camber_comparison *c) {
         for (int k = 0; k < CAMBER_FIGURE_COUNT; k++)
             sum->figures[k] += c->rows[i].figures[k] / count;
         for (int method = 0; method < CAMBER_METHODS; method++)
-            for (int k = 0; k < CAMBER_MEASURE_COUNT; k++) {
-                const double measure = c->rows[i].measures[method][k];
-                double *to = &sum->measures[method][k];
-                *to = k != CAMBER_MEASURE_MAX_ERROR ? *to + measure / count : measure > *to ? measure : *to;
+            for (int k = 0; k < CAMBER_METRIC_COUNT; k++) {
+                const double measure = c->rows[i].metrics[method][k];
+                double *to = &sum->metrics[method][k];
+                *to = k != CAMBER_METRIC_MAX_ERROR ? *to + measure / count : measure > *to ? measure : *to;
             }
     }
 }
@@ -354,9 +354,9 @@ void camber_comparison_close(camber_comparison *comparison) {
 
 double camber_comparison_ratio(const camber_comparison *comparison, int method, int measure) {
     for (int i = 0; i < CAMBER_METHODS; i++) {
-        const double kite = comparison->average.measures[i][measure];
+        const double kite = comparison->average.metrics[i][measure];
         if (camber_methods_shown[i] == CAMBER_METHOD_KITE && kite > 0)
-            return comparison->average.measures[method][measure] / kite;
+            return comparison->average.metrics[method][measure] / kite;
     }
     return NAN;
 }

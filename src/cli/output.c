@@ -3,7 +3,7 @@
 #include "cli/output.h"
 
 #include "cli/environment.h"
-#include "cli/leftovers.h"
+#include "cli/temp_files.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -49,7 +49,7 @@ static int create_beside(camber_guard *guard, const char *path, const char *suff
             cause = EMFILE;
         }
         camber_guard_unlock(guard);
-        if (descriptor >= 0 && camber_leftovers_spare(descriptor)) {
+        if (descriptor >= 0 && camber_temp_files_spare(descriptor)) {
             *made = name;
             return descriptor;
         }
@@ -140,7 +140,7 @@ int camber_output_open(camber_output *output, camber_report *report, camber_guar
         return cannot_create(output, ENOMEM);
     if (output->target[strlen(output->target) - 1] == '/')
         return camber_report_fail(report, CAMBER_EXIT_CREATE, "%s: names a folder; name a file in it", path);
-    camber_leftovers_remove(output->target);
+    camber_temp_files_remove(output->target);
     const int descriptor = create_beside(guard, output->target, ".tmp", 0666, &output->temporary);
     output->mark = descriptor >= 0 ? fcntl(descriptor, F_DUPFD_CLOEXEC, STDERR_FILENO + 1) : 0;
     if (descriptor >= 0 && mode)
@@ -276,7 +276,7 @@ int camber_spool_input(camber_report *report, camber_guard *guard, camber_spool 
     if (ferror(stdin))
         return camber_report_input(report, errno);
     snprintf(beside, sizeof beside, "%s/", camber_environment_temporary());
-    camber_leftovers_remove(beside);
+    camber_temp_files_remove(beside);
     const int descriptor = create_beside(guard, beside, suffix_of(block, size), 0600, &spool->path);
     FILE *file = descriptor < 0 ? NULL : fdopen(descriptor, "wb");
     int unread = 0, unwritten = file ? 0 : errno;

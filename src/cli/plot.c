@@ -122,14 +122,14 @@ typedef struct panel {
 
 enum { COLUMNS = 4, ROWS = 2 };
 static const panel panels[COLUMNS * ROWS] = {
-    {CAMBER_MEASURE_VERTICES, "vertices"},
-    {CAMBER_MEASURE_BYTES, "bytes"},
-    {CAMBER_MEASURE_DRAW_CALLS_16_BIT, "draw calls, 16-bit indices"},
-    {CAMBER_MEASURE_FRAGMENTS, "fragments shaded"},
-    {CAMBER_MEASURE_REPEATED_PIXELS, "repeated pixels"},
-    {CAMBER_MEASURE_MEAN_ERROR, "mean error, of 255"},
-    {CAMBER_MEASURE_TESSELLATE_MS, "kernels, ms"},
-    {CAMBER_MEASURE_DRAW_MS, "drawing, ms"},
+    {CAMBER_METRIC_VERTICES, "vertices"},
+    {CAMBER_METRIC_BYTES, "bytes"},
+    {CAMBER_METRIC_DRAW_CALLS_16_BIT, "draw calls, 16-bit indices"},
+    {CAMBER_METRIC_FRAGMENTS, "fragments shaded"},
+    {CAMBER_METRIC_REPEATED_PIXELS, "repeated pixels"},
+    {CAMBER_METRIC_MEAN_ERROR, "mean error, of 255"},
+    {CAMBER_METRIC_TESSELLATE_MS, "kernels, ms"},
+    {CAMBER_METRIC_DRAW_MS, "drawing, ms"},
 };
 
 /* Grey, orange, blue: told apart by people who see fewer colours, and in print. */
@@ -151,7 +151,7 @@ static void put_panel(const camber_comparison *c, const panel *p, FILE *script) 
     int bars = 0;
     fputs("$bars << END\n", script);
     for (int i = 0; i < CAMBER_METHODS; i++) {
-        const double measure = c->average.measures[i][p->measure], value = isnan(measure) ? 0 : measure;
+        const double measure = c->average.metrics[i][p->measure], value = isnan(measure) ? 0 : measure;
         char text[32] = "of GL alone";
         if (!c->shown[i])
             continue;

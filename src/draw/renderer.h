@@ -1,6 +1,6 @@
 /* The renderer: shader variants, targets, and the frame. */
-#ifndef CAMBER_RENDERER_H
-#define CAMBER_RENDERER_H
+#ifndef CAMBER_DRAW_RENDERER_H
+#define CAMBER_DRAW_RENDERER_H
 
 #include "gl/share.h"
 

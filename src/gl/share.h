@@ -1,6 +1,6 @@
 /* How OpenCL's output reaches GL: one file a path (share_gl.c, share_zero_copy.c, share_copy.c). */
-#ifndef CAMBER_SHARE_H
-#define CAMBER_SHARE_H
+#ifndef CAMBER_GL_SHARE_H
+#define CAMBER_GL_SHARE_H
 
 #include "gl/surface.h"
 

@@ -1,6 +1,6 @@
 /* Surfaces: one file a back end (surface_egl.c, surface_osmesa.c), and nothing else knows that it exists. */
-#ifndef CAMBER_SURFACE_H
-#define CAMBER_SURFACE_H
+#ifndef CAMBER_GL_SURFACE_H
+#define CAMBER_GL_SURFACE_H
 
 #include "gl/gl.h"
 #include "tess/tess.h"

@@ -1,6 +1,6 @@
 /* The step of Douglas and Peucker 1973 that simplification and importance share. */
-#ifndef CAMBER_FARTHEST_H
-#define CAMBER_FARTHEST_H
+#ifndef CAMBER_LINES_FARTHEST_H
+#define CAMBER_LINES_FARTHEST_H
 
 #include <stddef.h>
 

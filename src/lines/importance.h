@@ -1,6 +1,6 @@
 /* How much each point of a set of polylines matters, so that any tolerance keeps points by one comparison. */
-#ifndef CAMBER_IMPORTANCE_H
-#define CAMBER_IMPORTANCE_H
+#ifndef CAMBER_LINES_IMPORTANCE_H
+#define CAMBER_LINES_IMPORTANCE_H
 
 #include "base/base.h"
 

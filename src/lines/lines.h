@@ -1,6 +1,6 @@
 /* Polylines in the form that the kernels read: kernels/layout.h tells the words. */
-#ifndef CAMBER_LINES_H
-#define CAMBER_LINES_H
+#ifndef CAMBER_LINES_LINES_H
+#define CAMBER_LINES_LINES_H
 
 #include "base/base.h"
 #include "kernels/layout.h"

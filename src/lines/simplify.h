@@ -1,6 +1,6 @@
 /* Drops points that a line does not need at this scale. */
-#ifndef CAMBER_SIMPLIFY_H
-#define CAMBER_SIMPLIFY_H
+#ifndef CAMBER_LINES_SIMPLIFY_H
+#define CAMBER_LINES_SIMPLIFY_H
 
 #include <stddef.h>
 

@@ -1,6 +1,6 @@
 /* What a plan draws, as a network, and on the host the part of it that a camera sees. */
-#ifndef CAMBER_GEOMETRY_H
-#define CAMBER_GEOMETRY_H
+#ifndef CAMBER_MAP_GEOMETRY_H
+#define CAMBER_MAP_GEOMETRY_H
 
 #include "map/plan.h"
 

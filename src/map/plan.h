@@ -3,8 +3,8 @@
  *     layers (in drawing order) -> sets (layers that draw the same polylines) -> rows (a stroke and its paints in a
  * set)
  */
-#ifndef CAMBER_PLAN_H
-#define CAMBER_PLAN_H
+#ifndef CAMBER_MAP_PLAN_H
+#define CAMBER_MAP_PLAN_H
 
 #include "map/patterns.h"
 #include "source/features.h"

@@ -1,6 +1,6 @@
 /* The camera: world coordinates to device pixels, in double until the view's origin is subtracted. */
-#ifndef CAMBER_VIEW_H
-#define CAMBER_VIEW_H
+#ifndef CAMBER_MAP_VIEW_H
+#define CAMBER_MAP_VIEW_H
 
 #include "base/base.h"
 #include "camber_map.h"

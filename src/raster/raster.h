@@ -10,8 +10,8 @@
  *
  * In kernels a variant is what #if CAMBER_COVER_RICH and #if CAMBER_COVER_PITCHED leave; the twin has all of them and
  * goes by the scene. */
-#ifndef CAMBER_COVER_H
-#define CAMBER_COVER_H
+#ifndef CAMBER_RASTER_RASTER_H
+#define CAMBER_RASTER_RASTER_H
 
 #include "tess/tess.h"
 

@@ -1,6 +1,6 @@
 /* What draws on a device, for the steps of it that lie in files of their own. */
-#ifndef CAMBER_COVER_DEVICE_H
-#define CAMBER_COVER_DEVICE_H
+#ifndef CAMBER_RASTER_RASTERIZER_H
+#define CAMBER_RASTER_RASTERIZER_H
 
 #include "raster/raster.h"
 

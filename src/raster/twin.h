@@ -1,6 +1,6 @@
 /* What the parts of the CPU twin share. */
-#ifndef CAMBER_TWIN_H
-#define CAMBER_TWIN_H
+#ifndef CAMBER_RASTER_TWIN_H
+#define CAMBER_RASTER_TWIN_H
 
 #include "raster/raster.h"
 

@@ -1,6 +1,6 @@
 /* Chains of pieces whose ends are partners: what joining tile pieces and merging lines have in common. */
-#ifndef CAMBER_CHAINS_H
-#define CAMBER_CHAINS_H
+#ifndef CAMBER_SOURCE_CHAINS_H
+#define CAMBER_SOURCE_CHAINS_H
 
 #include "base/base.h"
 

@@ -1,6 +1,6 @@
 /* SQLite files: what lies beside them, and what may be read of them without leaving anything there. */
-#ifndef CAMBER_DATABASE_H
-#define CAMBER_DATABASE_H
+#ifndef CAMBER_SOURCE_DATABASE_H
+#define CAMBER_SOURCE_DATABASE_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -3,8 +3,8 @@
  * Features that agree in layer, geometry kind and every kept attribute form one class, so that a style's
  * filters are evaluated once a class and not once a feature: a city of 50,000 ways has a few hundred.
  */
-#ifndef CAMBER_FEATURES_H
-#define CAMBER_FEATURES_H
+#ifndef CAMBER_SOURCE_FEATURES_H
+#define CAMBER_SOURCE_FEATURES_H
 
 #include "camber_map.h"
 #include "style/style.h"

@@ -1,6 +1,6 @@
 /* Filling a set of features, whatever they are read from. Failures are logged. */
-#ifndef CAMBER_FILL_H
-#define CAMBER_FILL_H
+#ifndef CAMBER_SOURCE_FILL_H
+#define CAMBER_SOURCE_FILL_H
 
 #include "source/features.h"
 

@@ -1,6 +1,6 @@
 /* GeoJSON sources of a style: every property as it stands, ids, nothing of it split or simplified. */
-#ifndef CAMBER_GEOJSON_H
-#define CAMBER_GEOJSON_H
+#ifndef CAMBER_SOURCE_GEOJSON_H
+#define CAMBER_SOURCE_GEOJSON_H
 
 #include "source/fill.h"
 

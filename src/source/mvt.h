@@ -1,6 +1,6 @@
 /* One vector tile after the other into a set: lines and outlines of the wanted layers, cut at the tiles' borders. */
-#ifndef CAMBER_MVT_H
-#define CAMBER_MVT_H
+#ifndef CAMBER_SOURCE_MVT_H
+#define CAMBER_SOURCE_MVT_H
 
 #include "source/fill.h"
 #include "source/pool.h"

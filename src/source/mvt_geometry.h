@@ -1,6 +1,6 @@
 /* The geometry of a vector tile's feature: commands to parts. */
-#ifndef CAMBER_MVT_GEOMETRY_H
-#define CAMBER_MVT_GEOMETRY_H
+#ifndef CAMBER_SOURCE_MVT_GEOMETRY_H
+#define CAMBER_SOURCE_MVT_GEOMETRY_H
 
 #include "source/features.h"
 #include "source/tiles.h"

@@ -1,7 +1,7 @@
 /* One order of things that several lists have in orders of their own: which line of two neighbouring tiles lies on top.
  */
-#ifndef CAMBER_ORDER_H
-#define CAMBER_ORDER_H
+#ifndef CAMBER_SOURCE_ORDER_H
+#define CAMBER_SOURCE_ORDER_H
 
 #include "base/base.h"
 

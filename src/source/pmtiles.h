@@ -1,6 +1,6 @@
 /* What a PMTiles file is made of, for its reader and its tests. */
-#ifndef CAMBER_PMTILES_H
-#define CAMBER_PMTILES_H
+#ifndef CAMBER_SOURCE_PMTILES_H
+#define CAMBER_SOURCE_PMTILES_H
 
 #include "base/base.h"
 

@@ -1,7 +1,7 @@
 /* Memory for messages of vector tiles: given back all at once, and bounded, since a few bytes of a hostile tile can ask
  * for megabytes. */
-#ifndef CAMBER_POOL_H
-#define CAMBER_POOL_H
+#ifndef CAMBER_SOURCE_POOL_H
+#define CAMBER_SOURCE_POOL_H
 
 #include "base/base.h"
 

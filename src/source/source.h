@@ -1,6 +1,6 @@
 /* What the files that need GDAL share: geometry of one feature, an open file, fields. */
-#ifndef CAMBER_SOURCE_H
-#define CAMBER_SOURCE_H
+#ifndef CAMBER_SOURCE_SOURCE_H
+#define CAMBER_SOURCE_SOURCE_H
 
 #include "source/fill.h"
 #include "source/tiles.h"

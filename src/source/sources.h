@@ -1,6 +1,6 @@
 /* The sources of a style's line layers: opened, GeoJSON read at once, tiles as a view sees them. */
-#ifndef CAMBER_SOURCES_H
-#define CAMBER_SOURCES_H
+#ifndef CAMBER_SOURCE_SOURCES_H
+#define CAMBER_SOURCE_SOURCES_H
 
 #include "source/tile_cover.h"
 

@@ -1,6 +1,6 @@
 /* Sprites of a style: sheets of pictures (PNG) and where each lies on its sheet (JSON). */
-#ifndef CAMBER_SPRITE_H
-#define CAMBER_SPRITE_H
+#ifndef CAMBER_SOURCE_SPRITE_H
+#define CAMBER_SOURCE_SPRITE_H
 
 #include "style/style.h"
 

@@ -1,6 +1,6 @@
 /* Tiles of a set into features, their pieces joined. */
-#ifndef CAMBER_TILE_READER_H
-#define CAMBER_TILE_READER_H
+#ifndef CAMBER_SOURCE_TILE_READER_H
+#define CAMBER_SOURCE_TILE_READER_H
 
 #include "source/mvt.h"
 #include "source/tile_set.h"

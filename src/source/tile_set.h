@@ -1,6 +1,6 @@
 /* An open set of vector tiles: files by a template, MBTiles, PMTiles. */
-#ifndef CAMBER_TILE_SET_H
-#define CAMBER_TILE_SET_H
+#ifndef CAMBER_SOURCE_TILE_SET_H
+#define CAMBER_SOURCE_TILE_SET_H
 
 #include "base/base.h"
 

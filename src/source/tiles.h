@@ -1,6 +1,6 @@
 /* Features in pieces, cut by vector tiles: tiles.c cuts them at the tiles' borders, join.c joins them again. */
-#ifndef CAMBER_TILES_H
-#define CAMBER_TILES_H
+#ifndef CAMBER_SOURCE_TILES_H
+#define CAMBER_SOURCE_TILES_H
 
 #include "source/fill.h"
 

@@ -1,6 +1,6 @@
 /* Where a style's URLs lead on this machine. */
-#ifndef CAMBER_URL_H
-#define CAMBER_URL_H
+#ifndef CAMBER_SOURCE_URL_H
+#define CAMBER_SOURCE_URL_H
 
 #include "base/base.h"
 

@@ -1,6 +1,6 @@
 /* Memory for values that live and die together: handed out in pieces, freed at once. */
-#ifndef CAMBER_ARENA_H
-#define CAMBER_ARENA_H
+#ifndef CAMBER_STYLE_ARENA_H
+#define CAMBER_STYLE_ARENA_H
 
 #include "base/base.h"
 

@@ -1,6 +1,6 @@
 /* JSON to expressions: where in the document we are, types, nodes. Only src/style includes this. */
-#ifndef CAMBER_COMPILER_H
-#define CAMBER_COMPILER_H
+#ifndef CAMBER_STYLE_COMPILER_H
+#define CAMBER_STYLE_COMPILER_H
 
 #include "style/expression.h"
 #include "style/json.h"

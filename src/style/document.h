@@ -1,6 +1,6 @@
 /* A style document while it is read. Only document.c, layer.c and check.c include this. */
-#ifndef CAMBER_DOCUMENT_H
-#define CAMBER_DOCUMENT_H
+#ifndef CAMBER_STYLE_DOCUMENT_H
+#define CAMBER_STYLE_DOCUMENT_H
 
 #include "style/properties.h"
 

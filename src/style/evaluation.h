@@ -1,7 +1,7 @@
 /* What the files that evaluate share. Only expression.c, convert.c, texts.c, curves.c and maths.c include this, and the
  * compiler, to fold constants. */
-#ifndef CAMBER_EVALUATION_H
-#define CAMBER_EVALUATION_H
+#ifndef CAMBER_STYLE_EVALUATION_H
+#define CAMBER_STYLE_EVALUATION_H
 
 #include "style/expression.h"
 

@@ -5,8 +5,8 @@
  *
  * A new operator is a row in a table of operators*.c, a value of camber_op and its case where its kind is evaluated.
  */
-#ifndef CAMBER_EXPRESSION_H
-#define CAMBER_EXPRESSION_H
+#ifndef CAMBER_STYLE_EXPRESSION_H
+#define CAMBER_STYLE_EXPRESSION_H
 
 #include "style/arena.h"
 #include "style/number.h"

@@ -1,7 +1,7 @@
 /* Letters of Unicode in UTF-8: their case, their diacritics and their order, for the scripts of maps that have these.
  */
-#ifndef CAMBER_LETTERS_H
-#define CAMBER_LETTERS_H
+#ifndef CAMBER_STYLE_LETTERS_H
+#define CAMBER_STYLE_LETTERS_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,6 +1,6 @@
 /* The operators of expressions: how each is compiled. */
-#ifndef CAMBER_OPERATORS_H
-#define CAMBER_OPERATORS_H
+#ifndef CAMBER_STYLE_OPERATORS_H
+#define CAMBER_STYLE_OPERATORS_H
 
 #include "style/compiler.h"
 

@@ -1,6 +1,6 @@
 /* The table of what a layer may have in its layout and paint. */
-#ifndef CAMBER_PROPERTIES_H
-#define CAMBER_PROPERTIES_H
+#ifndef CAMBER_STYLE_PROPERTIES_H
+#define CAMBER_STYLE_PROPERTIES_H
 
 #include "style/compiler.h"
 

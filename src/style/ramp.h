@@ -1,6 +1,6 @@
 /* A line-gradient as stops. */
-#ifndef CAMBER_RAMP_H
-#define CAMBER_RAMP_H
+#ifndef CAMBER_STYLE_RAMP_H
+#define CAMBER_STYLE_RAMP_H
 
 #include "style/style.h"
 

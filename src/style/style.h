@@ -1,6 +1,6 @@
 /* The compiled style: what the map layer asks of it. */
-#ifndef CAMBER_STYLE_H
-#define CAMBER_STYLE_H
+#ifndef CAMBER_STYLE_STYLE_H
+#define CAMBER_STYLE_STYLE_H
 
 #include "base/base.h"
 #include "camber_map.h"

@@ -1,6 +1,6 @@
 /* The types that expressions have before they are evaluated. */
-#ifndef CAMBER_TYPING_H
-#define CAMBER_TYPING_H
+#ifndef CAMBER_STYLE_TYPING_H
+#define CAMBER_STYLE_TYPING_H
 
 #include "style/value.h"
 

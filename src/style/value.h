@@ -1,6 +1,6 @@
 /* Values of expressions and of features' properties. */
-#ifndef CAMBER_VALUE_H
-#define CAMBER_VALUE_H
+#ifndef CAMBER_STYLE_VALUE_H
+#define CAMBER_STYLE_VALUE_H
 
 #include "base/base.h"
 

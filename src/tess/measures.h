@@ -1,6 +1,6 @@
 /* How far along its polyline each point lies. */
-#ifndef CAMBER_MEASURES_H
-#define CAMBER_MEASURES_H
+#ifndef CAMBER_TESS_MEASURES_H
+#define CAMBER_TESS_MEASURES_H
 
 #include "tess/tess.h"
 

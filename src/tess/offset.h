@@ -1,6 +1,6 @@
 /* Lines that lie beside others. */
-#ifndef CAMBER_OFFSET_H
-#define CAMBER_OFFSET_H
+#ifndef CAMBER_TESS_OFFSET_H
+#define CAMBER_TESS_OFFSET_H
 
 #include "tess/tess.h"
 

@@ -1,6 +1,6 @@
 /* Tessellation: OpenCL devices and programs, the three stages, meshes, and the CPU twin. */
-#ifndef CAMBER_TESS_H
-#define CAMBER_TESS_H
+#ifndef CAMBER_TESS_TESS_H
+#define CAMBER_TESS_TESS_H
 
 #include "base/base.h"
 #include "camber_proof.h"

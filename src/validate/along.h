@@ -1,6 +1,6 @@
 /* The truth about lines that change along them: 256 samples a pixel, each by the place of the line that is nearest. */
-#ifndef CAMBER_PROOF_ALONG_H
-#define CAMBER_PROOF_ALONG_H
+#ifndef CAMBER_VALIDATE_ALONG_H
+#define CAMBER_VALIDATE_ALONG_H
 
 #include "validate/truth.h"
 

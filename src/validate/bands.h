@@ -1,7 +1,7 @@
 /* Pictures held against the truth over their whole area: band by band, since the samples of a whole picture would take
  * 32 bytes a pixel, on as many threads as there are cores. */
-#ifndef CAMBER_PROOF_BANDS_H
-#define CAMBER_PROOF_BANDS_H
+#ifndef CAMBER_VALIDATE_BANDS_H
+#define CAMBER_VALIDATE_BANDS_H
 
 #include "validate/truth.h"
 

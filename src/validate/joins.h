@@ -1,7 +1,7 @@
 /* The joins of a mesh, found from its triangles alone and judged by arithmetic of their own, so that it can be counted
  * whether neighbouring segments draw a pixel twice. */
-#ifndef CAMBER_PROOF_JOINS_H
-#define CAMBER_PROOF_JOINS_H
+#ifndef CAMBER_VALIDATE_JOINS_H
+#define CAMBER_VALIDATE_JOINS_H
 
 #include "camber_proof.h"
 

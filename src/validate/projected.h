@@ -1,8 +1,8 @@
 /* What a camera over a network should show, from the definition alone: in double precision, a segment at a time, cut
  * far outside the picture. Shares no formula with kernels/network.h but the steps that coordinates are rounded to,
  * which camber.h states. */
-#ifndef CAMBER_PROOF_PROJECTED_H
-#define CAMBER_PROOF_PROJECTED_H
+#ifndef CAMBER_VALIDATE_PROJECTED_H
+#define CAMBER_VALIDATE_PROJECTED_H
 
 #include "camber_proof.h"
 

@@ -1,6 +1,6 @@
 /* What a picture of lines should be, pixel by pixel, and how far one is from it. */
-#ifndef CAMBER_PROOF_TRUTH_H
-#define CAMBER_PROOF_TRUTH_H
+#ifndef CAMBER_VALIDATE_TRUTH_H
+#define CAMBER_VALIDATE_TRUTH_H
 
 #include "validate/oracle.h"
 

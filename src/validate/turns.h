@@ -1,6 +1,6 @@
 /* The joins of polylines by how much they turn: what a network is made of, whatever draws it. */
-#ifndef CAMBER_PROOF_TURNS_H
-#define CAMBER_PROOF_TURNS_H
+#ifndef CAMBER_VALIDATE_TURNS_H
+#define CAMBER_VALIDATE_TURNS_H
 
 #include "camber_files.h"
 

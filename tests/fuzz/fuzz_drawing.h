@@ -1,6 +1,6 @@
 /* What a device draws of a mesh, against the twin. */
-#ifndef CAMBER_FUZZ_DRAWING_H
-#define CAMBER_FUZZ_DRAWING_H
+#ifndef CAMBER_TESTS_FUZZ_FUZZ_DRAWING_H
+#define CAMBER_TESTS_FUZZ_FUZZ_DRAWING_H
 
 #include "fuzz.h"
 

@@ -1,6 +1,6 @@
 /* A set of vector tiles in one file, read as camber reads any. */
-#ifndef CAMBER_FUZZ_TILE_FILE_H
-#define CAMBER_FUZZ_TILE_FILE_H
+#ifndef CAMBER_TESTS_FUZZ_FUZZ_TILE_FILE_H
+#define CAMBER_TESTS_FUZZ_FUZZ_TILE_FILE_H
 
 #include "fuzz_scene.h"
 

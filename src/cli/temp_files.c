@@ -1,4 +1,4 @@
-#include "cli/leftovers.h"
+#include "cli/temp_files.h"
 
 #include <dirent.h>
 #include <fcntl.h>
@@ -10,7 +10,7 @@
 
 /* The mark is an advisory lock: the system takes it off whatever ends the process. Where a file system has none, files
  * are neither marked nor removed. */
-bool camber_leftovers_spare(int descriptor) {
+bool camber_temp_files_spare(int descriptor) {
     struct stat info;
     (void)flock(descriptor, LOCK_EX); /* waits for no longer than remove_one takes */
     return fstat(descriptor, &info) != 0 || info.st_nlink > 0;
@@ -47,7 +47,7 @@ static void remove_one(int folder, const char *name) {
     close(descriptor);
 }
 
-void camber_leftovers_remove(const char *path) {
+void camber_temp_files_remove(const char *path) {
     const char *slash = strrchr(path, '/');
     char *name = slash ? strndup(path, (size_t)(slash - path) + 1) : strdup(".");
     DIR *folder = name ? opendir(name) : NULL;

@@ -1,6 +1,7 @@
 /* The tool `camber`. */
 #define _XOPEN_SOURCE 700 /* SIGXFSZ */
 
+#include "cli/completion.h"
 #include "cli/environment.h"
 #include "cli/stack.h"
 #include "cli/verbs.h"
@@ -62,6 +63,9 @@ int main(int argc, char **argv) {
         status = camber_report_flush(&report);
     } else if (options.version) {
         printf("camber %s\n", camber_version());
+        status = camber_report_flush(&report);
+    } else if (options.completion >= 0) {
+        camber_completion_print((camber_shell)options.completion, stdout);
         status = camber_report_flush(&report);
     } else {
         camber_session session = {.options = &options, .report = &report, .start_ms = start_ms};

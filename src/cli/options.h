@@ -45,7 +45,8 @@ typedef struct camber_options {
     const char *where;       /* the first */
     const char *root;        /* folder beyond which a style reaches no file. NULL: anywhere */
     bool allow_remote, allow_vrt;
-    int format; /* 0: png, 1: glb */
+    int completion; /* of a shell, to be printed. 0: bash, 1: zsh */
+    int format;     /* 0: png, 1: glb */
     int theme, method, coverage, backend, sharing, draw;
     camber_view_desc view; /* width and height are set by camber_options_parse */
     bool has_bbox, has_center;

@@ -16,6 +16,9 @@ cp -a "$folder/usr" "$folder/installed"
 for file in LICENSE README.md CHANGELOG.md; do
     cmp "$source/$file" "$folder/usr/share/doc/camber/$file"
 done
+# Completion, where the shells look for it.
+bash -n "$folder/usr/share/bash-completion/completions/camber"
+grep -qx '#compdef camber' "$folder/usr/share/zsh/site-functions/_camber"
 
 cat >"$folder/core.c" <<'C'
 #include <camber_proof.h>

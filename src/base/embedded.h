@@ -1,16 +1,16 @@
-/* Text files that the build embeds (src/embed.cmake), each with a 0 behind its end. */
+/* Text files that the build embeds in the library (src/embed.cmake). Each text ends with a 0. */
 #ifndef CAMBER_BASE_EMBEDDED_H
 #define CAMBER_BASE_EMBEDDED_H
 
-extern const char camber_kernels_source[]; /* kernels/ as one program */
+extern const char camber_kernels_source[]; /* the kernels of tessellation, as one program */
 extern const unsigned long camber_kernels_source_size;
-extern const char camber_network_kernels_source[]; /* those of networks, as another */
+extern const char camber_network_kernels_source[]; /* the kernels that project networks */
 extern const unsigned long camber_network_kernels_source_size;
-extern const char camber_measure_kernels_source[]; /* those of measures */
+extern const char camber_measure_kernels_source[]; /* the kernels that sum arc lengths */
 extern const unsigned long camber_measure_kernels_source_size;
-extern const char camber_offset_kernels_source[]; /* those of offsets */
+extern const char camber_offset_kernels_source[]; /* the kernels that offset lines */
 extern const unsigned long camber_offset_kernels_source_size;
-extern const char camber_cover_kernels_source[]; /* those that draw */
+extern const char camber_cover_kernels_source[]; /* the kernels that rasterize */
 extern const unsigned long camber_cover_kernels_source_size;
 extern const char camber_edge_glsl[]; /* shaders/ without their #version line */
 extern const unsigned long camber_edge_glsl_size;

@@ -1,3 +1,6 @@
+/* The comparison of the methods fan, kite and strip. Each network is tessellated and drawn by each method several times
+ * for the times, once more for the picture, and its triangles again to count repeated pixels. The pictures are compared
+ * with the exact coverage of the lines. The results are rows of figures and metrics, and their average. */
 #include "cli/comparison.h"
 #include "cli/levels.h"
 #include "validate/bands.h"
@@ -14,7 +17,7 @@
 
 _Static_assert(CAMBER_FIGURE_TIGHT_JOINS - CAMBER_FIGURE_TURNS == CAMBER_TURN_CLASSES, "a figure a class of turns");
 _Static_assert(CAMBER_METRIC_REPEATED_ELSEWHERE - CAMBER_METRIC_REPEATED_AT_PLAIN == CAMBER_JOIN_ROOMS,
-               "a measure a room of joins");
+               "a metric for each kind of joins");
 _Static_assert(CAMBER_METHODS <= CAMBER_PICTURES_MAX, "a picture a method");
 
 const camber_method camber_methods_shown[CAMBER_METHODS] = {CAMBER_METHOD_FAN, CAMBER_METHOD_KITE, CAMBER_METHOD_STRIP};
@@ -49,13 +52,14 @@ const camber_metric_info camber_metrics[CAMBER_METRIC_COUNT] = {
 
 /* ---- Progress ---- */
 
-/* How far all is: networks of equal shares, in each the methods and then the truth. */
-typedef struct place {
+/* How far the comparison is: networks have equal shares, and in each come first the methods, then the exact coverage.
+ */
+typedef struct position {
     camber_comparison *comparison;
     size_t network;
-} place;
+} position;
 
-static void tell(const place *p, double fraction) {
+static void tell(const position *p, double fraction) {
     camber_comparison *c = p->comparison;
     camber_report_progress(c->session->report, "comparing",
                            ((double)p->network + fraction) / (double)c->networks.count);
@@ -67,46 +71,46 @@ static void tell_truth(void *user, double fraction) {
 
 /* ---- A method on a network ---- */
 
-typedef struct trial {
+typedef struct experiment {
     camber_comparison *comparison;
     const camber_network *network;
-    camber_paint *paints; /* black, of the strokes' widths */
+    camber_paint *paints; /* black, as wide as the strokes */
     camber_comparison_row *row;
-    int method; /* of camber_methods_shown */
-} trial;
+    int method; /* index in camber_methods_shown */
+} experiment;
 
-static camber_status tessellate(const trial *t) {
-    const camber_tessellation_desc desc = {.strokes = t->network->strokes,
-                                           .stroke_count = t->network->stroke_count,
-                                           .method = camber_methods_shown[t->method],
+static camber_status tessellate(const experiment *e) {
+    const camber_tessellation_desc desc = {.strokes = e->network->strokes,
+                                           .stroke_count = e->network->stroke_count,
+                                           .method = camber_methods_shown[e->method],
                                            .fan_tolerance_px =
-                                               (float)t->comparison->session->options->fan_tolerance_px};
-    return camber_tessellate(t->comparison->mesh, t->network->polylines, &desc);
+                                               (float)e->comparison->session->options->fan_tolerance_px};
+    return camber_tessellate(e->comparison->mesh, e->network->polylines, &desc);
 }
 
-static camber_status draw(const trial *t, bool keep, camber_frame_stats *stats) {
-    camber_comparison *c = t->comparison;
-    const camber_pass pass = {.mesh = c->mesh, .paints = t->paints, .paint_count = t->network->stroke_count};
+static camber_status draw(const experiment *e, bool keep, camber_frame_stats *stats) {
+    camber_comparison *c = e->comparison;
+    const camber_pass pass = {.mesh = c->mesh, .paints = e->paints, .paint_count = e->network->stroke_count};
     const camber_frame frame = {.width = c->networks.width,
                                 .height = c->networks.height,
                                 .passes = &pass,
                                 .pass_count = 1,
                                 .coverage = (camber_coverage)c->session->options->coverage};
-    /* Black on nothing has its coverage as alpha. */
-    camber_levels to = {c->levels[t->method], frame.width, 3};
+    /* Black on a transparent picture: the alpha of a pixel is its coverage. */
+    camber_levels to = {c->levels[e->method], frame.width, 3};
     return camber_render(c->session->renderer, &frame, keep ? camber_levels_take : NULL, &to, stats);
 }
 
-static camber_status time_runs(const trial *t) {
-    camber_comparison *c = t->comparison;
+static camber_status time_runs(const experiment *e) {
+    camber_comparison *c = e->comparison;
     const size_t runs = c->session->options->runs;
     double *tessellate_ms = calloc(runs, sizeof *tessellate_ms), *draw_ms = calloc(runs, sizeof *draw_ms);
     camber_status status = tessellate_ms && draw_ms ? CAMBER_OK : CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < WARM_UPS + runs && status == CAMBER_OK; i++) {
         camber_frame_stats stats;
-        status = tessellate(t);
+        status = tessellate(e);
         if (status == CAMBER_OK)
-            status = draw(t, false, &stats);
+            status = draw(e, false, &stats);
         if (status != CAMBER_OK || i < WARM_UPS)
             continue;
         const camber_mesh_info info = camber_mesh_get_info(c->mesh);
@@ -114,16 +118,16 @@ static camber_status time_runs(const trial *t) {
         draw_ms[i - WARM_UPS] = stats.draw_ms;
     }
     if (status == CAMBER_OK) {
-        t->row->metrics[t->method][CAMBER_METRIC_TESSELLATE_MS] = camber_statistics_median(tessellate_ms, runs);
-        t->row->metrics[t->method][CAMBER_METRIC_DRAW_MS] = camber_statistics_median(draw_ms, runs);
+        e->row->metrics[e->method][CAMBER_METRIC_TESSELLATE_MS] = camber_statistics_median(tessellate_ms, runs);
+        e->row->metrics[e->method][CAMBER_METRIC_DRAW_MS] = camber_statistics_median(draw_ms, runs);
     }
     free(tessellate_ms);
     free(draw_ms);
     return status;
 }
 
-static void count_mesh(const trial *t, const camber_mesh_data *mesh) {
-    double *metrics = t->row->metrics[t->method], *figures = t->row->figures;
+static void count_mesh(const experiment *e, const camber_mesh_data *mesh) {
+    double *metrics = e->row->metrics[e->method], *figures = e->row->figures;
     const camber_mesh_info *info = &mesh->info;
     metrics[CAMBER_METRIC_VERTICES] = (double)info->vertex_count;
     metrics[CAMBER_METRIC_TRIANGLES] = (double)info->triangle_count;
@@ -135,19 +139,19 @@ static void count_mesh(const trial *t, const camber_mesh_data *mesh) {
 
 /* ---- Pixels ---- */
 
-/* Counts ranges, each by itself; map takes where they repeat. */
-static camber_status count_ranges(const trial *t, const camber_index_range *ranges, size_t count, uint8_t *map,
+/* Draws ranges of indices and counts, for each by itself, how often it draws a pixel again. map receives where. */
+static camber_status count_ranges(const experiment *e, const camber_index_range *ranges, size_t count, uint8_t *map,
                                   camber_overdraw *overdraw) {
-    camber_comparison *c = t->comparison;
+    camber_comparison *c = e->comparison;
     const camber_overdraw_desc desc = {.width = c->networks.width,
                                        .height = c->networks.height,
                                        .mesh = c->mesh,
-                                       .paints = t->paints,
-                                       .paint_count = t->network->stroke_count,
+                                       .paints = e->paints,
+                                       .paint_count = e->network->stroke_count,
                                        .ranges = ranges,
                                        .range_count = count,
                                        .map = map};
-    /* Its progress would stand where that of the whole does. */
+    /* The bar shows the progress of the whole comparison, so this step reports none. */
     const bool bars = c->session->report->bars;
     c->session->report->bars = false;
     const camber_status status = camber_overdraw_count(c->session->renderer, &desc, overdraw);
@@ -155,9 +159,9 @@ static camber_status count_ranges(const trial *t, const camber_index_range *rang
     return status;
 }
 
-/* What the joins of a room repeat; c->repeated keeps what no join has repeated. */
-static camber_status count_joins(const trial *t, const camber_joins *joins, camber_join_room room) {
-    camber_comparison *c = t->comparison;
+/* Counts the pixels that the joins of a kind draw again; c->repeated keeps those that no join draws again. */
+static camber_status count_joins(const experiment *e, const camber_joins *joins, camber_join_room room) {
+    camber_comparison *c = e->comparison;
     camber_index_range *ranges = malloc((joins->count + 1) * sizeof *ranges);
     size_t count = 0;
     for (size_t i = 0; i < joins->count && ranges; i++)
@@ -166,58 +170,58 @@ static camber_status count_joins(const trial *t, const camber_joins *joins, camb
     camber_overdraw overdraw = {0};
     camber_status status = ranges ? CAMBER_OK : CAMBER_ERROR_MEMORY;
     if (count > 0)
-        status = count_ranges(t, ranges, count, c->at_joins, &overdraw);
+        status = count_ranges(e, ranges, count, c->at_joins, &overdraw);
     for (size_t i = 0; i < (size_t)c->networks.width * c->networks.height && count > 0; i++)
         c->repeated[i] = c->at_joins[i] ? 0 : c->repeated[i];
-    t->row->metrics[t->method][CAMBER_METRIC_REPEATED_AT_PLAIN + (int)room] = (double)overdraw.repeated_pixels;
+    e->row->metrics[e->method][CAMBER_METRIC_REPEATED_AT_PLAIN + (int)room] = (double)overdraw.repeated_pixels;
     free(ranges);
     return status;
 }
 
-static camber_status count_pixels(const trial *t, const camber_mesh_data *mesh) {
-    camber_comparison *c = t->comparison;
-    double *metrics = t->row->metrics[t->method];
+static camber_status count_pixels(const experiment *e, const camber_mesh_data *mesh) {
+    camber_comparison *c = e->comparison;
+    double *metrics = e->row->metrics[e->method];
     camber_joins joins = {0};
     camber_overdraw overdraw = {0};
-    camber_status status = count_ranges(t, NULL, 0, c->repeated, &overdraw);
+    camber_status status = count_ranges(e, NULL, 0, c->repeated, &overdraw);
     metrics[CAMBER_METRIC_FRAGMENTS] = (double)overdraw.fragments;
     metrics[CAMBER_METRIC_DRAWN_PIXELS] = (double)overdraw.drawn_pixels;
     metrics[CAMBER_METRIC_REPEATED_PIXELS] = (double)overdraw.repeated_pixels;
-    if (status == CAMBER_OK && !camber_joins_find(mesh, t->network->strokes, &joins))
+    if (status == CAMBER_OK && !camber_joins_find(mesh, e->network->strokes, &joins))
         status = CAMBER_ERROR_MEMORY;
     for (int room = 0; room < CAMBER_JOIN_ROOMS && status == CAMBER_OK; room++)
-        status = count_joins(t, &joins, (camber_join_room)room);
+        status = count_joins(e, &joins, (camber_join_room)room);
     for (size_t i = 0; i < (size_t)c->networks.width * c->networks.height; i++)
         metrics[CAMBER_METRIC_REPEATED_ELSEWHERE] += c->repeated[i];
     camber_joins_free(&joins);
     return status;
 }
 
-/* What kernels have no such thing of. */
-static void leave_out_gl(const trial *t) {
-    double *metrics = t->row->metrics[t->method];
+/* Leaves out the numbers that only GL has: kernels have no draw calls and no fragments. */
+static void leave_out_gl(const experiment *e) {
+    double *metrics = e->row->metrics[e->method];
     metrics[CAMBER_METRIC_DRAW_CALLS_16_BIT] = metrics[CAMBER_METRIC_DRAW_CALLS] = NAN;
     for (int i = CAMBER_METRIC_OF_PIXELS; i < CAMBER_METRIC_COUNT; i++)
         metrics[i] = NAN;
 }
 
-static camber_status try_method(const trial *t) {
+static camber_status try_method(const experiment *e) {
     camber_frame_stats stats = {0};
     camber_mesh_data mesh;
-    camber_status status = time_runs(t);
+    camber_status status = time_runs(e);
     if (status == CAMBER_OK)
-        status = draw(t, true, &stats);
-    t->row->metrics[t->method][CAMBER_METRIC_DRAW_CALLS] = (double)stats.draw_calls;
+        status = draw(e, true, &stats);
+    e->row->metrics[e->method][CAMBER_METRIC_DRAW_CALLS] = (double)stats.draw_calls;
     if (status == CAMBER_OK)
-        status = camber_mesh_read(t->comparison->mesh, &mesh);
+        status = camber_mesh_read(e->comparison->mesh, &mesh);
     if (status != CAMBER_OK)
         return status;
-    count_mesh(t, &mesh);
-    if (t->comparison->session->draw == CAMBER_DRAW_GL)
-        status = count_pixels(t, &mesh);
+    count_mesh(e, &mesh);
+    if (e->comparison->session->draw == CAMBER_DRAW_GL)
+        status = count_pixels(e, &mesh);
     else
-        leave_out_gl(t);
-    camber_mesh_data_free(t->comparison->session->context, &mesh);
+        leave_out_gl(e);
+    camber_mesh_data_free(e->comparison->session->context, &mesh);
     return status;
 }
 
@@ -235,7 +239,7 @@ static void count_network(const camber_network *network, camber_comparison_row *
     }
 }
 
-static camber_status measure_errors(const camber_comparison *c, const camber_network *network, place *here,
+static camber_status measure_errors(const camber_comparison *c, const camber_network *network, position *here,
                                     camber_comparison_row *row) {
     camber_bands_desc job = {.truth = {.lines = network->lines,
                                        .rows = network->rows,
@@ -265,7 +269,7 @@ static camber_status measure_errors(const camber_comparison *c, const camber_net
 }
 
 static int measure_network(camber_comparison *c, size_t i) {
-    place here = {c, i};
+    position here = {c, i};
     camber_network network;
     const int projected = camber_networks_project(&c->networks, i, &network);
     if (projected != CAMBER_EXIT_DONE)
@@ -280,10 +284,10 @@ static int measure_network(camber_comparison *c, size_t i) {
     for (size_t k = 0; k < network.stroke_count && paints; k++)
         paints[k] = (camber_paint){.width_px = network.strokes[k].width_px, .color = {0, 0, 0, 1}};
     for (int method = 0; method < CAMBER_METHODS && status == CAMBER_OK; method++) {
-        const trial t = {c, &network, paints, row, method};
+        const experiment e = {c, &network, paints, row, method};
         tell(&here, method * 0.5 / CAMBER_METHODS);
         if (c->shown[method])
-            status = try_method(&t);
+            status = try_method(&e);
     }
     if (status == CAMBER_OK)
         status = measure_errors(c, &network, &here, row);
@@ -302,9 +306,9 @@ static void average(camber_comparison *c) {
             sum->figures[k] += c->rows[i].figures[k] / count;
         for (int method = 0; method < CAMBER_METHODS; method++)
             for (int k = 0; k < CAMBER_METRIC_COUNT; k++) {
-                const double measure = c->rows[i].metrics[method][k];
+                const double metric = c->rows[i].metrics[method][k];
                 double *to = &sum->metrics[method][k];
-                *to = k != CAMBER_METRIC_MAX_ERROR ? *to + measure / count : measure > *to ? measure : *to;
+                *to = k != CAMBER_METRIC_MAX_ERROR ? *to + metric / count : metric > *to ? metric : *to;
             }
     }
 }
@@ -352,11 +356,11 @@ void camber_comparison_close(camber_comparison *comparison) {
     *comparison = (camber_comparison){0};
 }
 
-double camber_comparison_ratio(const camber_comparison *comparison, int method, int measure) {
+double camber_comparison_ratio(const camber_comparison *comparison, int method, int metric) {
     for (int i = 0; i < CAMBER_METHODS; i++) {
-        const double kite = comparison->average.metrics[i][measure];
+        const double kite = comparison->average.metrics[i][metric];
         if (camber_methods_shown[i] == CAMBER_METHOD_KITE && kite > 0)
-            return comparison->average.metrics[method][measure] / kite;
+            return comparison->average.metrics[method][metric] / kite;
     }
     return NAN;
 }

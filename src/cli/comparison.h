@@ -1,10 +1,10 @@
-/* What compare metrics: figures of a network, and metrics of a method on it. */
+/* The numbers of a comparison: figures of a network, and metrics of a method on it. */
 #ifndef CAMBER_CLI_COMPARISON_H
 #define CAMBER_CLI_COMPARISON_H
 
 #include "cli/networks.h"
 
-/* Of a network, whatever the method. */
+/* Figures: they belong to a network, whatever the method. */
 enum {
     CAMBER_FIGURE_POLYLINES,
     CAMBER_FIGURE_SEGMENTS,
@@ -15,7 +15,7 @@ enum {
     CAMBER_FIGURE_COUNT,
 };
 
-/* Of a method on a network: the mesh and its picture, then what the GPU does for it. */
+/* Metrics: they belong to a method on a network. First the mesh and its picture, then the work of the GPU. */
 enum {
     CAMBER_METRIC_VERTICES,
     CAMBER_METRIC_TRIANGLES,
@@ -63,19 +63,19 @@ typedef struct camber_comparison {
     camber_session *session;
     camber_networks networks;
     camber_mesh *mesh;
-    bool shown[CAMBER_METHODS];      /* which the options ask for */
+    bool shown[CAMBER_METHODS];      /* the methods that the options ask for */
     camber_comparison_row *rows;     /* of each network */
     camber_comparison_row average;   /* of the networks; maxima: the largest */
     uint8_t *levels[CAMBER_METHODS]; /* of each pixel, as drawn */
     uint8_t *repeated, *at_joins;    /* how often a pixel is repeated: by polylines, by joins */
 } camber_comparison;
 
-/* Opens the renderer, reads and metrics. Returns an exit status, its line printed; the comparison can be closed in any
- * case. */
+/* Opens the renderer, reads the networks and measures them. Returns an exit status, its line printed; the comparison
+ * can be closed in any case. */
 int camber_comparison_run(camber_comparison *comparison, camber_session *session);
 void camber_comparison_close(camber_comparison *comparison);
 
-/* What a method has to one of the kite's, the paper's method; NAN where that has none. */
-double camber_comparison_ratio(const camber_comparison *comparison, int method, int measure);
+/* A method's metric divided by the kite's, the paper's method. NAN: the kite has none. */
+double camber_comparison_ratio(const camber_comparison *comparison, int method, int metric);
 
 #endif

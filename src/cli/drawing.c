@@ -4,7 +4,7 @@
 
 #include <stdlib.h>
 
-/* Freed with free. NULL: out of memory. */
+/* Returns paints to be freed with free. NULL: out of memory. */
 static camber_paint *make_paints(const camber_drawing *drawing) {
     camber_paint *paints = calloc(drawing->stroke_count + 1, sizeof *paints);
     for (size_t row = 0; paints && row < drawing->stroke_count; row++)

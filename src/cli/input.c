@@ -1,3 +1,6 @@
+/* The input of a verb: a map (files, a style, a view of them) or a file of polylines in pixels. Opening reads it;
+ * projecting makes the polylines, strokes and rows that the kernels read. The functions at the end give either kind in
+ * the same form. Standard input goes to a temporary file first, because OGR seeks. */
 #include "cli/input.h"
 
 #include <errno.h>
@@ -8,7 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define WIDTH_PX 2.0 /* of --polylines without --width-px */
+#define WIDTH_PX 2.0 /* the width of --polylines without --width-px */
 
 /* ---- Polylines in pixels ---- */
 
@@ -174,7 +177,7 @@ static int open_style(camber_input *input) {
     return camber_report_status(session->report, parsed);
 }
 
-/* What the options leave open is the style's. */
+/* Takes from the style the parts of the view that the options leave open. */
 static void take_view(camber_input *input) {
     const camber_options *options = input->session->options;
     const camber_view_desc own = camber_style_get_view(input->style);
@@ -194,7 +197,8 @@ static void take_view(camber_input *input) {
     }
 }
 
-/* What is read decides the zoom of a view that fits. */
+/* Opens the device while files are read. A view that fits the data has no zoom yet, so the kernels that it will need
+ * are unknown. */
 static void start_opening(const camber_input *input) {
     const camber_view_desc *view = &input->view;
     const double zoom = view->kind == CAMBER_VIEW_CENTER ? view->zoom : NAN;
@@ -303,7 +307,7 @@ int camber_input_project(camber_input *input) {
     return camber_report_status(input->session->report, status);
 }
 
-/* The library has told why there is nothing: no feature passed the filter, or the style draws none. */
+/* Whether the library has already said why nothing is drawn: no feature passed the filter, or the style draws none. */
 static bool knows_why_empty(const camber_input *input) {
 #ifdef CAMBER_MAP
     if (!input->features)
@@ -385,14 +389,14 @@ bool camber_input_opaque(const camber_input *input) {
     if (input->scene)
         return camber_scene_get_view(input->scene).opaque;
 #endif
-    return input->polylines != NULL; /* on white */
+    return input->polylines != NULL; /* polylines are drawn on white */
 }
 
 camber_status camber_input_tessellate(const camber_input *input, camber_mesh *mesh) {
     camber_tessellation_desc desc = {.method = camber_session_method(input->session)};
     camber_guard_go_first(input->session->guard);
 #ifdef CAMBER_MAP
-    /* What is drawn is made on the device; what proves something, of the polylines that it is held against. */
+    /* Verbs that draw project on the device. Verbs that prove something use the polylines, which they compare with. */
     const camber_verb verb = input->session->options->verb;
     if (input->scene && (verb == CAMBER_VERB_RENDER || verb == CAMBER_VERB_BENCH))
         return camber_scene_tessellate(input->scene, mesh, desc.method);

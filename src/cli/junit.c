@@ -1,3 +1,5 @@
+/* Writes the results of validate as JUnit XML. A suite is a device and a back end; a test case is a check. Text from
+ * drivers is made valid XML: characters that XML cannot hold are replaced. */
 #include "cli/junit.h"
 
 #include <stdarg.h>
@@ -82,13 +84,13 @@ static bool same_suite(const camber_check *a, const camber_check *b) {
     return same_text(a->device, b->device) && same_text(a->backend, b->backend);
 }
 
-/* What a suite or the whole document counts. */
+/* The counts of a suite or of the whole document. */
 typedef struct counts {
     size_t tests, failures, skipped;
     double ms;
 } counts;
 
-/* Of the checks that belong to the suite of one; NULL: of all. */
+/* Counts the checks in the same suite as the given one; with NULL, all checks. */
 static counts count_checks(const camber_verdicts *verdicts, const camber_check *one) {
     counts sum = {0};
     for (size_t i = 0; i < verdicts->count; i++) {
@@ -108,7 +110,7 @@ static void put_counts(writer *w, counts sum) {
                sum.failures, sum.skipped, sum.ms / 1e3);
 }
 
-/* The suite that the check opens; nothing where an earlier check has done so. */
+/* Writes the suite that a check opens; writes nothing if an earlier check has opened it. */
 static void put_suite(writer *w, const camber_verdicts *verdicts, size_t opener) {
     const camber_check *one = &verdicts->list[opener];
     for (size_t i = 0; i < opener; i++)

@@ -131,11 +131,11 @@ static bool parse_bytes(const char *text, double least, double most, uint64_t *b
 
 static int parse_choice(const parser *p, const camber_option_spec *spec, const char *text, int *value) {
     const size_t size = strlen(text);
-    int place = 0;
-    for (const char *word = spec->argument ? spec->argument : ""; *word; place++) {
+    int index = 0;
+    for (const char *word = spec->argument ? spec->argument : ""; *word; index++) {
         const size_t length = strcspn(word, "|");
         if (length == size && strncmp(word, text, size) == 0) {
-            *value = place;
+            *value = index;
             return CAMBER_EXIT_DONE;
         }
         word += length + (word[length] == '|');

@@ -14,7 +14,7 @@ static bool write_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint
     w->status = camber_png_write_rows(w->png, rgba, row_count);
     w->write_ms += camber_clock_ms() - start_ms;
     camber_report_progress(w->report, "writing", (double)(first_row + row_count) / w->height);
-    /* That the drawing stops for want of a writer is no story of its own. */
+    /* The error that the drawing stops is not reported: the failed write has been. */
     w->report->sealed = w->status != CAMBER_OK;
     return w->status == CAMBER_OK;
 }

@@ -8,8 +8,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* The mark is an advisory lock: the system takes it off whatever ends the process. Where a file system has none, files
- * are neither marked nor removed. */
+/* A file in use has an advisory lock, which the system releases however the process ends. On a file system without
+ * locks, files are neither marked nor removed. */
 bool camber_temp_files_spare(int descriptor) {
     struct stat info;
     (void)flock(descriptor, LOCK_EX); /* waits for no longer than remove_one takes */

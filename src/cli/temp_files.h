@@ -1,16 +1,16 @@
-/* Temporary files of runs that were killed. */
+/* Removes temporary files that killed runs have left behind. */
 #ifndef CAMBER_CLI_TEMP_FILES_H
 #define CAMBER_CLI_TEMP_FILES_H
 
 #include <stdbool.h>
 
-/* Marks a file that has just been created as that of a run that lives, until all descriptors of it are closed. false:
- * it has been taken for a leftover meanwhile, and is gone. */
+/* Marks a new file as in use until all its descriptors are closed. false: another run has taken it for abandoned and
+ * has removed it. */
 bool camber_temp_files_spare(int descriptor);
 
-/* Removes the leftovers in the folder of path: files of this user's that are named as camber's are, .camber-PID-N.tmp,
- * or .in and the like where they are copies of standard input, and that no run has marked. A process's number would not
- * do: it is another's in another container. */
+/* Removes abandoned files in the folder of path: this user's files that are named like camber's (.camber-PID-N.tmp, or
+ * .in and the like for copies of standard input) and that no run has marked. The process number in the name proves
+ * nothing: another container may use it. */
 void camber_temp_files_remove(const char *path);
 
 #endif

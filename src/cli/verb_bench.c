@@ -1,3 +1,5 @@
+/* Runs `camber bench`: draws the input several times and prints minimum, median and maximum of every stage, as a table
+ * or JSON. On request it writes the picture and the polylines. */
 #include "cli/picture.h"
 #include "cli/verbs.h"
 #include "validate/statistics.h"
@@ -7,10 +9,10 @@
 
 #define WARM_UPS 3
 
-/* Times of a run; every member is a series. */
+/* The times of a run in ms; every member becomes a series. */
 typedef struct run_times {
     double tessellate, draw, frame, survey, project, classify, scan, emit;
-    double shape, count, total, fill, cover; /* of kernels that draw */
+    double shape, count, total, fill, cover; /* kernels that rasterize */
 } run_times;
 
 #define TIMES (sizeof(run_times) / sizeof(double))
@@ -38,7 +40,8 @@ static bool keep_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint3
     return true;
 }
 
-/* A whole frame, from the lines to pixels in memory, and then its parts alone with their input resident. */
+/* Times a whole frame, from the lines to pixels in memory, and then its stages alone with their input already on the
+ * device. */
 static int time_run(job *j, run_times *times) {
     const double start_ms = camber_clock_ms();
     const int projected = camber_input_project(&j->input);
@@ -60,7 +63,7 @@ static int time_run(job *j, run_times *times) {
     times->classify = info.classify_ms;
     times->scan = info.scan_ms;
     times->emit = info.emit_ms;
-    frame = camber_input_frame(&j->input, j->mesh); /* a scene's is valid until the next call on it */
+    frame = camber_input_frame(&j->input, j->mesh); /* a scene's frame is valid until the next call on the scene */
     if (status == CAMBER_OK)
         status = camber_render(j->session->renderer, &frame, NULL, NULL, &j->stats);
     times->draw = j->stats.draw_ms;
@@ -140,7 +143,7 @@ static int run(job *j) {
             camber_report_status(session->report, camber_mesh_create(session->device, session->renderer, &j->mesh));
     if (status == CAMBER_EXIT_DONE)
         status = measure(j);
-    /* A scene that was moved makes them once more. */
+    /* A scene that has moved makes its polylines again. */
     if (status == CAMBER_EXIT_DONE && !camber_input_polylines(&j->input))
         status = camber_report_status(session->report, CAMBER_ERROR_MEMORY);
     if (status == CAMBER_EXIT_DONE && session->options->dump)
@@ -187,7 +190,7 @@ static int print_json(const job *j) {
     json_object_set_new(object, "draw_ms", summary_json(&j->summaries[1]));
     json_object_set_new(object, "frame_ms", summary_json(&j->summaries[2]));
     json_t *stages = json_object();
-    /* The kernels that draw are there where they drew. */
+    /* The last rows are for the kernels that rasterize, if they drew. */
     static const char *const names[] = {"survey", "project", "classify", "scan", "emit",
                                         "shape",  "count",   "total",    "fill", "cover"};
     const size_t count = camber_renderer_get_draw(session->renderer) == CAMBER_DRAW_CL ? 10 : 5;
@@ -197,7 +200,7 @@ static int print_json(const job *j) {
     return camber_report_json(session->report, object);
 }
 
-/* The table is what the verb is for: on standard output, unless the picture or the polylines go there. */
+/* The table goes to standard output, unless the picture or the polylines go there. */
 static int print_text(const job *j) {
     camber_session *session = j->session;
     const camber_options *options = session->options;

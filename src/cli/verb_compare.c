@@ -1,3 +1,5 @@
+/* Runs `camber compare`: runs the comparison and prints its networks, metrics and averages, as a table or JSON. On
+ * request the averages become a plot. */
 #include "cli/plot.h"
 #include "cli/verbs.h"
 
@@ -14,7 +16,7 @@ static json_t *number_json(double value, int decimals) {
     return decimals == 0 && value == floor(value) ? json_integer((json_int_t)value) : json_real(value);
 }
 
-static json_t *measures_json(const double *metrics) {
+static json_t *metrics_json(const double *metrics) {
     json_t *object = json_object();
     for (int i = 0; i < CAMBER_METRIC_COUNT; i++) {
         const bool ms = i == CAMBER_METRIC_TESSELLATE_MS || i == CAMBER_METRIC_DRAW_MS;
@@ -32,13 +34,13 @@ static json_t *row_json(const camber_comparison *c, const camber_comparison_row 
     }
     for (int i = 0; i < CAMBER_METHODS; i++)
         if (c->shown[i])
-            json_object_set_new(methods, camber_method_name(camber_methods_shown[i]), measures_json(row->metrics[i]));
+            json_object_set_new(methods, camber_method_name(camber_methods_shown[i]), metrics_json(row->metrics[i]));
     json_object_set_new(object, "joins_by_turn_deg", turns);
     json_object_set_new(object, "methods", methods);
     return object;
 }
 
-/* Where to look: the pixel of each method's maximum error. */
+/* Adds where to look: the pixel of each method's maximum error. */
 static void put_places(const camber_comparison *c, const camber_comparison_row *row, json_t *methods) {
     for (int i = 0; i < CAMBER_METHODS; i++) {
         const json_int_t at = (json_int_t)row->max_at[i], width = (json_int_t)c->networks.width;
@@ -93,7 +95,7 @@ static int print_json(const camber_comparison *c) {
 
 /* ---- A table ---- */
 
-/* Right-aligned, thousands set apart by commas. */
+/* Prints a number right-aligned, with commas between thousands. */
 static void put_number(double value, int decimals, int width) {
     char digits[64], text[96];
     if (isnan(value)) {
@@ -112,7 +114,7 @@ static void put_number(double value, int decimals, int width) {
     printf("%*s", width, text);
 }
 
-/* A count's average has a decimal where it is small. */
+/* The average of a count has a decimal if it is small. */
 static int decimals_of(const camber_metric_info *info, double value) {
     return info->decimals == 0 && value != floor(value) && value < 1000 ? 1 : info->decimals;
 }
@@ -131,7 +133,7 @@ static int name_width(const camber_comparison *c) {
     return width < NAME_COLUMNS ? (int)width : NAME_COLUMNS;
 }
 
-/* The networks, and their average where there are several. */
+/* Row i: a network, or behind them their average if there are several. */
 static const camber_comparison_row *row_at(const camber_comparison *c, size_t i) {
     return i < c->networks.count ? &c->rows[i] : &c->average;
 }
@@ -156,8 +158,8 @@ static void print_figures(const camber_comparison *c, int width) {
          "degrees");
 }
 
-/* Measures first to end - 1: a row a network and method, and then the ratios. */
-static void print_measures(const camber_comparison *c, int width, int first, int end) {
+/* Prints metrics first to end - 1: a row for each network and method, and then the ratios. */
+static void print_metrics(const camber_comparison *c, int width, int first, int end) {
     printf("\n%-*s  %-7s", width, "network", "method");
     for (int k = first; k < end; k++)
         printf("%*s", camber_metrics[k].width, camber_metrics[k].head);
@@ -193,7 +195,7 @@ static int print_text(const camber_comparison *c) {
         printf(" at zoom %.2f", networks->info.zoom);
     printf(", lines %g px wide, round joins, butt caps; runs: %u\n", networks->width_px, c->session->options->runs);
     print_figures(c, width);
-    print_measures(c, width, 0, CAMBER_METRIC_OF_PIXELS);
+    print_metrics(c, width, 0, CAMBER_METRIC_OF_PIXELS);
     puts("16-bit: batches of 65,535 vertices; times: medians, tess. is the kernels; error: mean absolute difference "
          "from 256\n"
          "samples a pixel, in 255ths, over the pixels that lines or picture touch; max: the largest");
@@ -203,7 +205,7 @@ static int print_text(const camber_comparison *c) {
              "triangles repeat are GL's alone (--draw gl)");
         return camber_report_flush(c->session->report);
     }
-    print_measures(c, width, CAMBER_METRIC_OF_PIXELS, CAMBER_METRIC_COUNT);
+    print_metrics(c, width, CAMBER_METRIC_OF_PIXELS, CAMBER_METRIC_COUNT);
     puts("fragments: shaded; drawn: pixels, once a polyline; repeated: more than once within a polyline; at plain, "
          "tight, split\n"
          "joins: by the two segments that meet, once a join; elsewhere: by no join, where a line comes back to itself");

@@ -1,9 +1,9 @@
+/* Runs `camber info`: prints devices, GL back ends, the path by which buffers are shared, versions and formats, as text
+ * or JSON. A missing part is no failure: the reason is printed in its place. */
 #include "cli/verbs.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-/* Whatever is missing is part of the answer, not a failure: the reason stands where the thing would. */
 
 static json_t *device_json(const camber_device_info *info) {
     const char *type = info->type == CAMBER_DEVICE_TYPE_CPU   ? "cpu"
@@ -16,7 +16,7 @@ static json_t *device_json(const camber_device_info *info) {
                      (json_int_t)info->largest_buffer_bytes, "gl_sharing", info->gl_sharing);
 }
 
-/* The story of the last failure, which must not be told twice. */
+/* Takes the message of the last failure, so that it is not printed again. */
 static json_t *take_error(camber_report *report, camber_status status) {
     json_t *text = camber_json_text(report->error[0] ? report->error : camber_status_name(status));
     report->error[0] = 0;
@@ -67,7 +67,7 @@ static void add_backends(camber_session *session, json_t *object) {
     }
 }
 
-/* What a picture would be drawn with, and why. */
+/* Adds what a picture would be drawn with, and why. */
 static void add_choice(camber_session *session, json_t *object) {
     const camber_status status = camber_session_open(session, CAMBER_NEEDS_RENDERER);
     camber_session_describe(session, object);
@@ -87,7 +87,7 @@ static void add_formats(json_t *object) {
         json_array_append_new(list, camber_json_text(name));
         has_pmtiles |= strcmp(name, "PMTiles") == 0;
     }
-    if (!has_pmtiles) /* which camber reads by itself where GDAL does not */
+    if (!has_pmtiles) /* camber reads them by itself if GDAL does not */
         json_array_append_new(list, json_string("PMTiles"));
 #endif
 }

@@ -1,3 +1,5 @@
+/* Runs `camber render`: reads the input, projects and tessellates it, and draws it into a PNG. A summary of counts and
+ * times goes to standard error, or to standard output as JSON. */
 #include "cli/picture.h"
 #include "cli/verbs.h"
 
@@ -14,8 +16,8 @@ typedef struct job {
     size_t written_bytes;
 } job;
 
-/* What is not a stage's: libraries, the device and its kernels, as far as they take longer than what is read beside.
- * The stages and this are the whole. */
+/* The time that belongs to no stage: libraries, the device and its kernels, as far as they take longer than reading,
+ * which goes on beside. Together with the stages it is the whole. */
 static double start_ms(const job *j) {
     const camber_frame_stats *frame = &j->times.frame;
     return j->total_ms - j->input.read_ms - j->input.scene_ms - j->tessellate_ms - frame->draw_ms - frame->read_ms -
@@ -101,7 +103,7 @@ static int print_json(const job *j) {
     return camber_report_json(session->report, object);
 }
 
-/* Kernels draw without draw calls. */
+/* Prints the counts; kernels have no draw calls. */
 static void print_counts(const job *j, const camber_scene_info *scene) {
     const camber_mesh_info mesh = camber_mesh_get_info(j->mesh);
     const size_t calls = j->times.frame.draw_calls;

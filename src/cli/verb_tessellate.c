@@ -1,3 +1,5 @@
+/* Runs `camber tessellate`: reads the input, projects and tessellates it, and writes the mesh with its paints as a
+ * binary glTF. */
 #include "cli/input.h"
 #include "cli/verbs.h"
 
@@ -16,12 +18,13 @@ typedef struct job {
     size_t written_bytes;
 } job;
 
-/* What is not a stage's: libraries, the device and its kernels. The stages and this are the whole. */
+/* The time that belongs to no stage: libraries, the device and its kernels. Together with the stages it is the whole.
+ */
 static double start_ms(const job *j) {
     return j->total_ms - j->input.read_ms - j->input.scene_ms - j->tessellate_ms - j->write_ms;
 }
 
-/* A row's paint is that of the topmost pass that draws it: the fill where there is a casing. */
+/* A row gets the paint of the topmost pass that draws it: the fill, if there is a casing. */
 static bool gather_paints(job *j, size_t count) {
     j->paints = calloc(count ? count : 1, sizeof *j->paints);
     if (!j->paints)

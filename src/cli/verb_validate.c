@@ -22,7 +22,8 @@ static int check_subject(camber_validation *v, const camber_subject *s) {
     return status;
 }
 
-/* Of all widths at which a kernel or a shader does something else; pictures leave out what would cover all of them. */
+/* Strokes of all widths at which a kernel or a shader takes another path. Pictures leave out strokes that would cover
+ * everything. */
 static const camber_stroke builtin_strokes[CAMBER_SCENE_ROWS] = {
     {.width_px = 0.3f, .miter_limit = 1},
     {.width_px = 2, .miter_limit = 0},

@@ -1,4 +1,5 @@
-/* The interchange file: little-endian uint32 magic, n, p; n + 1 uint32 offsets; p pairs of float32. */
+/* Reads and writes the interchange file of polylines in pixels: little-endian uint32 magic, n polylines, p points; n +
+ * 1 uint32 offsets; p pairs of float32. A file is checked as a whole before anything of it is used. */
 #include "lines/lines.h"
 
 #include <string.h>
@@ -69,7 +70,7 @@ void camber_lines_free(camber_context *context, camber_lines *lines) {
     *lines = (camber_lines){0};
 }
 
-/* Words through a block, little-endian whatever the host is. */
+/* Writes words little-endian, whatever the host's order is, a block at a time. */
 static bool write_words(camber_sink sink, const void *words, size_t count) {
     unsigned char block[4096];
     const char *from = words;

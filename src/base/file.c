@@ -3,14 +3,12 @@
 #define _XOPEN_SOURCE 700 /* realpath */
 
 #include "base/base.h"
+#include "base/open_file.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 camber_status camber_file_fail(camber_context *context, const char *path, int cause) {
     if (cause == EMFILE || cause == ENFILE)
@@ -97,22 +95,18 @@ camber_status camber_file_check(camber_context *context, const char *path, cambe
     return status;
 }
 
-/* O_NONBLOCK: opening a pipe without a writer must not wait. The check looks at the opened file, so that nobody can
- * swap it. */
 camber_status camber_file_open(camber_context *context, const char *path, camber_file_naming naming, int *file,
                                uint64_t *size_bytes) {
-    struct stat about = {0};
+    struct stat about;
     camber_status status = check_root(context, path, naming);
     if (status != CAMBER_OK)
         return status;
-    const int opened = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
-    if (opened < 0 || fstat(opened, &about) != 0)
-        status = camber_file_fail(context, path, errno);
-    else
-        status = check_access(context, path, &about);
+    const int opened = camber_open_file(path, &about);
+    if (opened < 0)
+        return camber_file_fail(context, path, errno);
+    status = check_access(context, path, &about);
     if (status != CAMBER_OK) {
-        if (opened >= 0)
-            close(opened);
+        close(opened);
         return status;
     }
     *file = opened;

@@ -3,25 +3,24 @@
  * the same form. Standard input goes to a temporary file first, because OGR seeks. */
 #include "cli/input.h"
 
+#include "base/open_file.h"
+
 #include <errno.h>
-#include <fcntl.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #define WIDTH_PX 2.0 /* the width of --polylines without --width-px */
 
 /* ---- Polylines in pixels ---- */
 
-/* Opening a pipe without a writer does not wait, and a device has no end. NULL with errno, 0 where it is no file. */
+/* NULL with errno; errno is 0 for a device or a pipe, which may have no end. A folder fails when it is read. */
 static FILE *open_regular(const char *path) {
     struct stat about;
-    const int opened = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+    const int opened = camber_open_file(path, &about);
     if (opened < 0)
         return NULL;
-    if (fstat(opened, &about) == 0 && (S_ISREG(about.st_mode) || S_ISDIR(about.st_mode)))
+    if (S_ISREG(about.st_mode) || S_ISDIR(about.st_mode))
         return fdopen(opened, "rb");
     close(opened);
     errno = 0;

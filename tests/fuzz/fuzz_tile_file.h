@@ -4,8 +4,8 @@
 
 #include "fuzz_scene.h"
 
-void fuzz_write_file(const char *path, const void *bytes, size_t size);
-/* Reads the file as an input, and through a style's source; what is read becomes a scene. scheme: as in mbtiles://. */
-void fuzz_read_tiles(fuzz_run *run, const char *path, const char *scheme);
+/* Writes the bytes to a file, and reads that as an input and through a style's source; scheme is mbtiles or pmtiles.
+ * Each time a scene is made of the lines. */
+void fuzz_read_tiles(fuzz_run *run, const void *bytes, size_t size, const char *scheme);
 
 #endif

@@ -130,8 +130,8 @@ static camber_status read_bytes(camber_context *context, int file, const char *p
 /* A file that grows while it is read is read up to the size that it had when it was opened. */
 camber_status camber_read_file(camber_context *context, const char *path, camber_file_naming naming, char **bytes,
                                size_t *size_bytes) {
-    int file;
-    uint64_t size;
+    int file = -1;
+    uint64_t size = 0;
     size_t done = 0;
     camber_status status = camber_file_open(context, path, naming, &file, &size);
     if (status != CAMBER_OK)

@@ -3,8 +3,8 @@
 
     test_completion.py CAMBER
 
-In bash the function is called as bash calls it. In zsh a completion is asked for in a terminal, and what zsh is about to
-offer is printed. Exits with 77, and a reason, where there is no zsh; bash has been tested by then.
+In bash the function is called as bash calls it. In zsh a completion is asked for in a terminal, and the list that zsh
+shows is read. Exits with 77, and a reason, where there is no zsh; bash has been tested by then.
 """
 
 import os

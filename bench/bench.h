@@ -185,7 +185,8 @@ void bench_document_print(const json_t *document, FILE *to);
 bool bench_plot_mosaic(const json_t *document, const char *path);
 /* Measures again what looks like a loss against old. Gives the losses that stay; -1: the two cannot be compared. */
 int bench_compare(bench *b, const json_t *document, const json_t *old, FILE *to);
-/* Rewrites what lies between the markers in the README at path. */
+/* Rewrites the numbers between the markers of a document at path: README.md has the table of frames,
+ * docs/performance.md the rest. false: it has no such markers, or cannot be written; the reason is printed. */
 bool bench_readme_write(const json_t *document, const char *json_path, const char *path);
 
 #endif

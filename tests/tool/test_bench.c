@@ -209,19 +209,33 @@ static void write_text(const char *path, const char *text) {
     assert_int_equal(fclose(file), 0);
 }
 
-static void test_readme(void **state) {
-    (void)state;
-    write_text(README, "# head\n<!-- measured: made by ./dev bench --readme -->\nold\n<!-- /measured -->\n# tail\n");
+/* Publishes MADE into a file of that text, and reads it back. */
+static void publish(const char *before, char *after, size_t size) {
+    write_text(README, before);
     assert_int_equal(run("--readme '" MADE "' '" README "'"), 0);
-    char text[16384];
     FILE *file = fopen(README, "r");
     assert_non_null(file);
-    text[fread(text, 1, sizeof text - 1, file)] = 0;
+    after[fread(after, 1, size - 1, file)] = 0;
     fclose(file);
-    assert_true(strncmp(text, "# head\n<!-- measured", 20) == 0 && !strstr(text, "\nold\n"));
+    assert_null(strstr(after, "\nold\n"));
+    assert_null(strstr(after, "nan"));
+    for (const char *line = after; *line; line += strcspn(line, "\n") + 1)
+        assert_in_range(strcspn(line, "\n"), 0, 120);
+}
+
+static void test_readme(void **state) {
+    (void)state;
+    char text[16384];
+    publish("# head\n<!-- frames: made by ./dev bench --readme -->\nold\n<!-- /frames -->\n# tail\n", text,
+            sizeof text);
+    assert_true(strncmp(text, "# head\n<!-- frames", 18) == 0);
     assert_non_null(strstr(text, "| long walks, 8 px | 617 |"));
+    assert_non_null(strstr(text, "<!-- /frames -->\n# tail\n"));
+    publish("# head\n<!-- measured: made by ./dev bench --readme -->\nold\n<!-- /measured -->\n# tail\n", text,
+            sizeof text);
+    assert_non_null(strstr(text, "### Tessellation\n"));
+    assert_null(strstr(text, "| long walks, 8 px | 617 |"));
     assert_non_null(strstr(text, "<!-- /measured -->\n# tail\n"));
-    assert_null(strstr(text, "nan"));
     write_text(README, "# head\n# tail\n");
     assert_int_equal(run("--readme '" MADE "' '" README "'"), 1);
     assert_true(said("lacks one of the lines"));

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# The README's recipes, each as it stands there, in a fresh Debian with the packages that it names and no other.
+# The documents' recipes, each as it stands there, in a fresh Debian with the packages that it names and no other.
 #
 #   recipes.sh [DEBIAN...]      bookworm and trixie where none is named; RECIPES="build ci" chooses from build, core, ci, demo
 #
-# A recipe is the block below a line <!-- recipe: NAME --> of README.md: shell, or steps of GitHub Actions, whose `run` is
+# A recipe is the block below a line <!-- recipe: NAME --> of README.md or docs/*.md: shell, or steps of GitHub Actions, whose `run` is
 # run and whose `checkout` is a copy of this tree. Needs root, debootstrap and Debian's mirror; ends with 77 where one is
 # not to be had. Fresh systems and packages are kept in CAMBER_CHROOTS (/var/cache/camber-chroots) for the next time.
 # All mounts lie in a namespace of their own: they go with it, however this ends.
@@ -56,14 +56,14 @@ inside() { unshare --mount --pid --fork --kill-child bash "${BASH_SOURCE[0]}" in
 
 # ---- Outside ----
 
-# The block of README.md below a recipe's mark.
+# The block of README.md or docs/*.md below a recipe's mark.
 block() { # NAME
     awk -v mark="<!-- recipe: $1 -->" '
         $0 == mark { found = 1; next }
         found && /^```/ { if (fenced) exit; fenced = 1; next }
         found && fenced { print; next }
         found && /^    / { print substr($0, 5); indented = 1; next }
-        found && indented { exit }' "$source/README.md"
+        found && indented { exit }' "$source/README.md" "$source"/docs/*.md
 }
 
 # Steps of GitHub Actions as shell.

@@ -13,7 +13,7 @@ manifest=$build/install_manifest.txt
 trap 'rm -f "$manifest"; [ ! -f "$folder/manifest" ] || mv "$folder/manifest" "$manifest"; rm -rf "$folder"' EXIT
 cmake --install "$build" --prefix "$folder/usr" >"$folder/log" || { cat "$folder/log"; exit 1; }
 cp -a "$folder/usr" "$folder/installed"
-for file in LICENSE README.md CHANGELOG.md; do
+for file in LICENSE README.md CHANGELOG.md docs/glossary.md; do
     cmp "$source/$file" "$folder/usr/share/doc/camber/$file"
 done
 

@@ -1,5 +1,5 @@
 /* The benchmark: sections that measure, each into rows and figures of one JSON document, from which tables, plots,
- * comparisons and the README's numbers are made. */
+ * comparisons and the numbers of the documents are made. */
 #ifndef CAMBER_BENCH_H
 #define CAMBER_BENCH_H
 

@@ -19,11 +19,16 @@
 #define SAID CAMBER_BENCH_OUT "/said.txt"
 #define README CAMBER_BENCH_OUT "/README.md"
 
+/* Gives the exit status of a shell command. */
+static int shell(const char *command) {
+    const int status = system(command);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
 static int run(const char *arguments) {
     char command[2048];
     snprintf(command, sizeof command, "'%s' %s > '%s' 2>&1", CAMBER_BENCH, arguments, SAID);
-    const int status = system(command);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return shell(command);
 }
 
 static json_t *load(const char *path) {
@@ -241,13 +246,26 @@ static void test_readme(void **state) {
     assert_true(said("lacks one of the lines"));
 }
 
+/* The numbers of a document of the tree are what the results of the tree say: made again, it is the same. */
+static void test_documents(void **state) {
+    static const char *const paths[] = {"README.md", "docs/performance.md"};
+    (void)state;
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
+        char command[4096];
+        snprintf(command, sizeof command,
+                 "cd '%s' && cp '%s' '%s' && '%s' --readme bench/results/xeon-2-cores.json '%s' && cmp '%s' '%s'",
+                 CAMBER_TEST_DATA "/../..", paths[i], README, CAMBER_BENCH, README, paths[i], README);
+        assert_int_equal(shell(command), 0);
+    }
+}
+
 int main(void) {
     if (run("--tiny --section stages") == 69) {
         printf("no OpenCL device or no GL here\n");
         return 77;
     }
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_document), cmocka_unit_test(test_loss),
-                                       cmocka_unit_test(test_gain), cmocka_unit_test(test_incomparable),
-                                       cmocka_unit_test(test_readme)};
+                                       cmocka_unit_test(test_gain),     cmocka_unit_test(test_incomparable),
+                                       cmocka_unit_test(test_readme),   cmocka_unit_test(test_documents)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

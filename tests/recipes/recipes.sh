@@ -82,7 +82,7 @@ steps() {
          END                               { flush() }'
 }
 
-# What is to be true after a recipe.
+# A recipe as a script, with the checks that follow it.
 script_of() { # NAME
     case $1 in
     build)

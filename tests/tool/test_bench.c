@@ -64,7 +64,7 @@ static bool said(const char *text) {
     return found;
 }
 
-/* ---- What it measures ---- */
+/* ---- Measurements ---- */
 
 static void check_stages(const json_t *document) {
     const json_t *rows = json_object_get(section_of(document, "stages"), "rows"), *row;

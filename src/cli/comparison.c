@@ -1,10 +1,10 @@
 #include "cli/comparison.h"
-#include "cli/levels.h"
-#include "validate/bands.h"
 #include "validate/batches.h"
-#include "validate/joins.h"
+#include "validate/levels.h"
+#include "validate/mesh_joins.h"
+#include "validate/picture_error.h"
 #include "validate/statistics.h"
-#include "validate/turns.h"
+#include "validate/turn_classes.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -69,7 +69,7 @@ static void tell_truth(void *user, double fraction) {
 
 typedef struct trial {
     camber_comparison *comparison;
-    const camber_network *network;
+    const camber_compared_network *network;
     camber_paint *paints; /* black, of the strokes' widths */
     camber_comparison_row *row;
     int method; /* of camber_methods_shown */
@@ -156,7 +156,7 @@ static camber_status count_ranges(const trial *t, const camber_index_range *rang
 }
 
 /* What the joins of a room repeat; c->repeated keeps what no join has repeated. */
-static camber_status count_joins(const trial *t, const camber_joins *joins, camber_join_room room) {
+static camber_status count_joins(const trial *t, const camber_mesh_joins *joins, camber_join_room room) {
     camber_comparison *c = t->comparison;
     camber_index_range *ranges = malloc((joins->count + 1) * sizeof *ranges);
     size_t count = 0;
@@ -177,19 +177,19 @@ static camber_status count_joins(const trial *t, const camber_joins *joins, camb
 static camber_status count_pixels(const trial *t, const camber_mesh_data *mesh) {
     camber_comparison *c = t->comparison;
     double *measures = t->row->measures[t->method];
-    camber_joins joins = {0};
+    camber_mesh_joins joins = {0};
     camber_overdraw overdraw = {0};
     camber_status status = count_ranges(t, NULL, 0, c->repeated, &overdraw);
     measures[CAMBER_MEASURE_FRAGMENTS] = (double)overdraw.fragments;
     measures[CAMBER_MEASURE_DRAWN_PIXELS] = (double)overdraw.drawn_pixels;
     measures[CAMBER_MEASURE_REPEATED_PIXELS] = (double)overdraw.repeated_pixels;
-    if (status == CAMBER_OK && !camber_joins_find(mesh, t->network->strokes, &joins))
+    if (status == CAMBER_OK && !camber_mesh_joins_find(mesh, t->network->strokes, &joins))
         status = CAMBER_ERROR_MEMORY;
     for (int room = 0; room < CAMBER_JOIN_ROOMS && status == CAMBER_OK; room++)
         status = count_joins(t, &joins, (camber_join_room)room);
     for (size_t i = 0; i < (size_t)c->networks.width * c->networks.height; i++)
         measures[CAMBER_MEASURE_REPEATED_ELSEWHERE] += c->repeated[i];
-    camber_joins_free(&joins);
+    camber_mesh_joins_free(&joins);
     return status;
 }
 
@@ -223,7 +223,7 @@ static camber_status try_method(const trial *t) {
 
 /* ---- A network ---- */
 
-static void count_network(const camber_network *network, camber_comparison_row *row) {
+static void count_network(const camber_compared_network *network, camber_comparison_row *row) {
     const camber_polylines_stats stats = camber_polylines_get_stats(network->polylines);
     size_t turns[CAMBER_TURN_CLASSES] = {0};
     camber_turns_count(network->lines, network->keep_open, turns);
@@ -235,18 +235,18 @@ static void count_network(const camber_network *network, camber_comparison_row *
     }
 }
 
-static camber_status measure_errors(const camber_comparison *c, const camber_network *network, place *here,
+static camber_status measure_errors(const camber_comparison *c, const camber_compared_network *network, place *here,
                                     camber_comparison_row *row) {
-    camber_bands_desc job = {.truth = {.lines = network->lines,
-                                       .rows = network->rows,
-                                       .strokes = network->strokes,
-                                       .keep_open = network->keep_open,
-                                       .kind = CAMBER_TRUTH_UNION},
-                             .width = (int)c->networks.width,
-                             .height = (int)c->networks.height,
-                             .threads = c->session->options->threads,
-                             .progress = tell_truth,
-                             .user = here};
+    camber_picture_error_desc job = {.truth = {.lines = network->lines,
+                                               .rows = network->rows,
+                                               .strokes = network->strokes,
+                                               .keep_open = network->keep_open,
+                                               .kind = CAMBER_TRUTH_UNION},
+                                     .width = (int)c->networks.width,
+                                     .height = (int)c->networks.height,
+                                     .threads = c->session->options->threads,
+                                     .progress = tell_truth,
+                                     .user = here};
     int methods[CAMBER_METHODS] = {0};
     for (int i = 0; i < CAMBER_METHODS; i++)
         if (c->shown[i]) {
@@ -254,7 +254,7 @@ static camber_status measure_errors(const camber_comparison *c, const camber_net
             job.pictures[job.picture_count++] = c->levels[i];
         }
     camber_difference differences[CAMBER_PICTURES_MAX];
-    if (!camber_bands_measure(&job, differences))
+    if (!camber_picture_errors_measure(&job, differences))
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < job.picture_count; i++) {
         row->measures[methods[i]][CAMBER_MEASURE_MEAN_ERROR] = camber_difference_mean(&differences[i]);
@@ -266,8 +266,8 @@ static camber_status measure_errors(const camber_comparison *c, const camber_net
 
 static int measure_network(camber_comparison *c, size_t i) {
     place here = {c, i};
-    camber_network network;
-    const int projected = camber_networks_project(&c->networks, i, &network);
+    camber_compared_network network;
+    const int projected = camber_compared_networks_project(&c->networks, i, &network);
     if (projected != CAMBER_EXIT_DONE)
         return projected;
     camber_comparison_row *row = &c->rows[i];
@@ -330,7 +330,7 @@ int camber_comparison_run(camber_comparison *comparison, camber_session *session
     *comparison = (camber_comparison){.session = session};
     int status = camber_session_need(session, CAMBER_NEEDS_RENDERER);
     if (status == CAMBER_EXIT_DONE)
-        status = camber_networks_open(&comparison->networks, session);
+        status = camber_compared_networks_open(&comparison->networks, session);
     if (status == CAMBER_EXIT_DONE)
         status = prepare(comparison);
     for (size_t i = 0; i < comparison->networks.count && status == CAMBER_EXIT_DONE; i++)
@@ -347,7 +347,7 @@ void camber_comparison_close(camber_comparison *comparison) {
     free(comparison->repeated);
     free(comparison->at_joins);
     camber_mesh_destroy(comparison->mesh);
-    camber_networks_close(&comparison->networks);
+    camber_compared_networks_close(&comparison->networks);
     free(comparison->rows);
     *comparison = (camber_comparison){0};
 }

@@ -2,7 +2,7 @@
 #ifndef CAMBER_CLI_COMPARISON_H
 #define CAMBER_CLI_COMPARISON_H
 
-#include "cli/networks.h"
+#include "cli/compared_networks.h"
 
 /* Of a network, whatever the method. */
 enum {
@@ -61,7 +61,7 @@ typedef struct camber_comparison_row {
 
 typedef struct camber_comparison {
     camber_session *session;
-    camber_networks networks;
+    camber_compared_networks networks;
     camber_mesh *mesh;
     bool shown[CAMBER_METHODS];      /* which the options ask for */
     camber_comparison_row *rows;     /* of each network */

@@ -55,12 +55,12 @@ static void put_details(writer *w, const camber_finding *finding) {
 static void put_case(writer *w, const camber_check *check) {
     put_format(w, "    <testcase classname=\"camber.validate\" time=\"%.3f\"", check->ms / 1e3);
     put_attribute(w, "name", check->name);
-    if (check->verdict == CAMBER_VERDICT_PASSED) {
+    if (check->verdict == CAMBER_RESULT_PASSED) {
         put_format(w, "/>\n");
         return;
     }
     put_format(w, ">\n      ");
-    if (check->verdict == CAMBER_VERDICT_SKIPPED) {
+    if (check->verdict == CAMBER_RESULT_SKIPPED) {
         put_format(w, "<skipped");
         put_attribute(w, "message", check->reason);
         put_format(w, "/>");
@@ -89,15 +89,15 @@ typedef struct counts {
 } counts;
 
 /* Of the checks that belong to the suite of one; NULL: of all. */
-static counts count_checks(const camber_verdicts *verdicts, const camber_check *one) {
+static counts count_checks(const camber_results *verdicts, const camber_check *one) {
     counts sum = {0};
     for (size_t i = 0; i < verdicts->count; i++) {
         const camber_check *check = &verdicts->list[i];
         if (one && !same_suite(check, one))
             continue;
         sum.tests++;
-        sum.failures += check->verdict == CAMBER_VERDICT_FAILED;
-        sum.skipped += check->verdict == CAMBER_VERDICT_SKIPPED;
+        sum.failures += check->verdict == CAMBER_RESULT_FAILED;
+        sum.skipped += check->verdict == CAMBER_RESULT_SKIPPED;
         sum.ms += check->ms;
     }
     return sum;
@@ -109,7 +109,7 @@ static void put_counts(writer *w, counts sum) {
 }
 
 /* The suite that the check opens; nothing where an earlier check has done so. */
-static void put_suite(writer *w, const camber_verdicts *verdicts, size_t opener) {
+static void put_suite(writer *w, const camber_results *verdicts, size_t opener) {
     const camber_check *one = &verdicts->list[opener];
     for (size_t i = 0; i < opener; i++)
         if (same_suite(&verdicts->list[i], one))
@@ -126,7 +126,7 @@ static void put_suite(writer *w, const camber_verdicts *verdicts, size_t opener)
     put_format(w, "  </testsuite>\n");
 }
 
-int camber_junit_write(const camber_verdicts *verdicts, camber_output *output) {
+int camber_junit_write(const camber_results *verdicts, camber_output *output) {
     writer w = {.sink = camber_output_sink(output)};
     put_format(&w, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"camber validate\"");
     put_counts(&w, count_checks(verdicts, NULL));

@@ -3,10 +3,10 @@
 #define CAMBER_CLI_JUNIT_H
 
 #include "cli/output.h"
-#include "cli/verdicts.h"
+#include "validate/results.h"
 
 /* Writes to an open output and publishes it: a suite for each device and back end. Returns an exit status, its line
  * printed. */
-int camber_junit_write(const camber_verdicts *verdicts, camber_output *output);
+int camber_junit_write(const camber_results *verdicts, camber_output *output);
 
 #endif

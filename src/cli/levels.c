@@ -1,4 +1,4 @@
-#include "cli/levels.h"
+#include "validate/levels.h"
 
 bool camber_levels_take(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
     const camber_levels *to = user;

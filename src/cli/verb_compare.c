@@ -182,7 +182,7 @@ static void print_measures(const camber_comparison *c, int width, int first, int
 }
 
 static int print_text(const camber_comparison *c) {
-    const camber_networks *networks = &c->networks;
+    const camber_compared_networks *networks = &c->networks;
     const camber_device_info device = camber_device_get_info(c->session->device);
     int width = name_width(c);
     width = width < 16 ? 16 : width;

@@ -1,24 +1,24 @@
 /* camber validate: every check on everything that is here. */
-#include "cli/checks.h"
 #include "cli/input.h"
 #include "cli/junit.h"
-#include "cli/scenes.h"
 #include "cli/verbs.h"
+#include "validate/checks.h"
+#include "validate/scenes.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 static int check_subject(camber_validation *v, const camber_subject *s) {
-    camber_verdicts_group(&v->verdicts, "%s: meshes as the CPU twin's", s->name);
+    camber_results_group(&v->verdicts, "%s: meshes as the CPU twin's", s->name);
     int status = camber_check_meshes(v, s);
-    camber_verdicts_group(&v->verdicts, "%s: pictures as the CPU twin's", s->name);
+    camber_results_group(&v->verdicts, "%s: pictures as the CPU twin's", s->name);
     if (status == CAMBER_EXIT_DONE)
         status = camber_check_drawing(v, s);
-    camber_verdicts_group(&v->verdicts, "%s: pixels as the oracle's", s->name);
+    camber_results_group(&v->verdicts, "%s: pixels as the oracle's", s->name);
     if (status == CAMBER_EXIT_DONE)
         status = camber_check_pixels(v, s);
-    camber_verdicts_group(&v->verdicts, "%s: networks under five cameras", s->name);
+    camber_results_group(&v->verdicts, "%s: networks under five cameras", s->name);
     return status;
 }
 
@@ -38,7 +38,7 @@ static const camber_stroke builtin_drawn_strokes[CAMBER_SCENE_ROWS] = {
     {.width_px = 1, .miter_limit = 2}};
 
 static int check_builtin(camber_validation *v, size_t number) {
-    camber_builtin scene;
+    camber_made_scene scene;
     camber_polylines *polylines = NULL;
     camber_status made = CAMBER_ERROR_MEMORY;
     if (camber_builtin_make(number, &scene)) {
@@ -99,18 +99,18 @@ static int check_input(camber_validation *v, camber_input *input) {
 static int check_all(camber_validation *v, camber_input *input) {
     camber_session *session = v->session;
     const bool bars = !v->verdicts.tap || !isatty(STDOUT_FILENO); /* lines of TAP are progress enough */
-    camber_verdicts_group(&v->verdicts, "devices and back ends");
-    int status = camber_rigs_open(&v->rigs, session, &v->verdicts);
+    camber_results_group(&v->verdicts, "devices and back ends");
+    int status = camber_checked_devices_open(&v->rigs, session, &v->verdicts);
     const size_t count = input ? 1 : camber_builtin_count();
     for (size_t i = 0; i < count && status == CAMBER_EXIT_DONE; i++) {
         if (bars)
             camber_report_progress(session->report, "checking", (double)i / (double)count);
         status = input ? check_input(v, input) : check_builtin(v, i);
     }
-    camber_verdicts_group(&v->verdicts, "lines beside others");
+    camber_results_group(&v->verdicts, "lines beside others");
     if (status == CAMBER_EXIT_DONE && !input)
         status = camber_check_offsets(v);
-    camber_verdicts_group(&v->verdicts, "along lines: pixels");
+    camber_results_group(&v->verdicts, "along lines: pixels");
     if (status == CAMBER_EXIT_DONE && !input)
         status = camber_check_along(v);
     camber_report_erase_bar(session->report);
@@ -150,19 +150,19 @@ int camber_verb_validate(camber_session *session) {
     if (status == CAMBER_EXIT_DONE && given)
         status = open_input(&input, session);
     if (status == CAMBER_EXIT_DONE) {
-        camber_verdicts_open(&v.verdicts, session->report, !options->json, options->verbose);
+        camber_results_open(&v.verdicts, session->report, !options->json, options->verbose);
         status = check_all(&v, given ? &input : NULL);
         if (status != CAMBER_EXIT_DONE)
-            camber_verdicts_bail(&v.verdicts);
+            camber_results_bail(&v.verdicts);
     }
     if (status == CAMBER_EXIT_DONE && options->junit)
         status = camber_junit_write(&v.verdicts, &junit);
     if (status == CAMBER_EXIT_DONE)
-        status = camber_verdicts_print(&v.verdicts);
+        status = camber_results_print(&v.verdicts);
     if (v.rigs.count && (status == CAMBER_EXIT_DONE || status == CAMBER_EXIT_CHECK))
         say_what_was_left(&v);
-    camber_verdicts_close(&v.verdicts);
-    camber_rigs_close(&v.rigs);
+    camber_results_close(&v.verdicts);
+    camber_checked_devices_close(&v.rigs);
     camber_input_close(&input);
     camber_output_discard(&junit);
     return status;

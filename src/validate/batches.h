@@ -1,6 +1,6 @@
 /* How many draw calls a mesh takes where an index has 16 bits, as in older GL and WebGL renderers. */
-#ifndef CAMBER_PROOF_BATCHES_H
-#define CAMBER_PROOF_BATCHES_H
+#ifndef CAMBER_VALIDATE_BATCHES_H
+#define CAMBER_VALIDATE_BATCHES_H
 
 #include "camber_proof.h"
 

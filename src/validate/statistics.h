@@ -1,6 +1,6 @@
 /* What a series of measurements comes to. */
-#ifndef CAMBER_PROOF_STATISTICS_H
-#define CAMBER_PROOF_STATISTICS_H
+#ifndef CAMBER_VALIDATE_STATISTICS_H
+#define CAMBER_VALIDATE_STATISTICS_H
 
 #include <stddef.h>
 

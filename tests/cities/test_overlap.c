@@ -3,7 +3,7 @@
 #include "picture.h"
 
 #include "camber_map.h"
-#include "validate/joins.h"
+#include "validate/mesh_joins.h"
 
 enum { SIDE_PX = 1024 };
 
@@ -89,7 +89,7 @@ static void streets_forget(streets *it) {
 typedef struct drawing {
     camber_renderer *renderer;
     camber_mesh *mesh;
-    camber_joins joins;
+    camber_mesh_joins joins;
     float width_px;
 } drawing;
 
@@ -101,13 +101,13 @@ static drawing drawing_make(studio *s, const camber_polylines *polylines, float 
     assert_int_equal(camber_mesh_create(s->device, d.renderer, &d.mesh), CAMBER_OK);
     assert_int_equal(camber_tessellate(d.mesh, polylines, &desc), CAMBER_OK);
     assert_int_equal(camber_mesh_read(d.mesh, &data), CAMBER_OK);
-    assert_true(camber_joins_find(&data, &stroke, &d.joins));
+    assert_true(camber_mesh_joins_find(&data, &stroke, &d.joins));
     camber_mesh_data_free(s->context, &data);
     return d;
 }
 
 static void drawing_free(drawing *d) {
-    camber_joins_free(&d->joins);
+    camber_mesh_joins_free(&d->joins);
     camber_mesh_destroy(d->mesh);
 }
 

@@ -2,6 +2,7 @@
 #include "validate/along_truth.h"
 #include "validate/checks.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -122,40 +123,41 @@ static bool find(const float *truth, const channels *drawn, camber_check *check)
     return true;
 }
 
-static int check_row(camber_validation *v, const camber_checked_device *rig, const camber_checked_drawer *easel,
-                     camber_method method, size_t number) {
+static camber_status check_row(camber_validation *v, const camber_checked_device *checked,
+                               const camber_checked_drawer *drawer, camber_method method, size_t number) {
     static const camber_window window = {0, 0, SIDE_PX, SIDE_PX};
-    camber_check check = camber_check_start(rig->name, easel->name, "along lines: %s: %s: pixels, on %s, %s",
-                                            camber_method_name(method), rows[number].name, rig->name, easel->name);
+    camber_check check = camber_check_start(checked->name, drawer->name, "along lines: %s: %s: pixels, on %s, %s",
+                                            camber_method_name(method), rows[number].name, checked->name, drawer->name);
     float *truth = calloc(2 * PIXELS, sizeof *truth);
     channels *drawn = calloc(1, sizeof *drawn);
     check.most = rows[number].bounds;
     camber_status made = CAMBER_ERROR_MEMORY;
     if (truth && drawn) {
         make_truth(number, truth);
-        made = draw(v->session->context, &easel->paths[0], number, method, drawn);
+        made = draw(v->desc->context, &drawer->paths[0], number, method, drawn);
     }
-    int status = camber_report_status(v->session->report, made);
-    if (status == CAMBER_EXIT_DONE && find(truth, drawn, &check)) {
-        check.verdict = CAMBER_RESULT_FAILED;
+    camber_status status = made;
+    if (status == CAMBER_OK && find(truth, drawn, &check)) {
+        check.result = CAMBER_RESULT_FAILED;
         status = camber_failure_image_write(v, window, truth, drawn->levels, &check.finding);
     }
-    if (status == CAMBER_EXIT_DONE)
-        camber_results_add(&v->verdicts, &check);
+    if (status == CAMBER_OK)
+        camber_results_add(&v->results, &check);
     free(drawn);
     free(truth);
     return status;
 }
 
-int camber_check_along(camber_validation *v) {
-    const camber_options *options = v->session->options;
-    int status = CAMBER_EXIT_DONE;
-    for (size_t r = 0; r < v->rigs.count; r++)
-        for (size_t e = 0; e < v->rigs.list[r].easel_count && v->rigs.list[r].easels[e].surface; e++)
+camber_status camber_check_along(camber_validation *v) {
+    const camber_validation_desc *desc = v->desc;
+    camber_status status = CAMBER_OK;
+    for (size_t r = 0; r < v->devices.count; r++)
+        for (size_t e = 0; e < v->devices.list[r].drawer_count && v->devices.list[r].drawers[e].in_gl; e++)
             for (int method = 0; method < 3; method++)
-                for (size_t i = 0; i < sizeof rows / sizeof *rows && status == CAMBER_EXIT_DONE; i++)
-                    if ((options->method < 0 || options->method == method) &&
-                        camber_draws_method(options, (camber_method)method) && !v->rigs.list[r].broken[method])
-                        status = check_row(v, &v->rigs.list[r], &v->rigs.list[r].easels[e], (camber_method)method, i);
+                for (size_t i = 0; i < sizeof rows / sizeof *rows && status == CAMBER_OK; i++)
+                    if ((desc->method < 0 || desc->method == method) &&
+                        camber_draws_method(desc, (camber_method)method) && !v->devices.list[r].broken[method])
+                        status =
+                            check_row(v, &v->devices.list[r], &v->devices.list[r].drawers[e], (camber_method)method, i);
     return status;
 }

@@ -1,6 +1,7 @@
 /* The kernels that draw against their CPU twin, stage by stage and byte for byte. */
 #include "validate/checks.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -30,10 +31,10 @@ static camber_color color_of(size_t row, size_t pass) {
     return (camber_color){0.2f * (float)(i % 6), 1.0f - 0.2f * (float)(i % 5), 0.25f * (float)(i % 4), alphas[pass]};
 }
 
-static bool make_frame(const camber_subject *s, const camber_options *options, camber_mesh *mesh, int variant,
+static bool make_frame(const camber_subject *s, const camber_validation_desc *desc, camber_mesh *mesh, int variant,
                        drawn *d) {
     static const float widths[PASSES] = {1.0f, 0.6f, 0.3f};
-    const uint32_t side = s->scene && !options->full ? PART_PX : SIDE_PX;
+    const uint32_t side = s->scene && !desc->full ? PART_PX : SIDE_PX;
     *d = (drawn){.paints = calloc(PASSES * s->stroke_count + 1, sizeof *d->paints)};
     if (!d->paints)
         return false;
@@ -55,7 +56,7 @@ static bool make_frame(const camber_subject *s, const camber_options *options, c
                               .background = {0.2f, 0.3f, 0.4f, 0.5f},
                               .passes = d->passes,
                               .pass_count = PASSES,
-                              .coverage = (camber_coverage)options->coverage,
+                              .coverage = (camber_coverage)desc->coverage,
                               .pitch_deg = variants[variant].pitch_deg};
     return true;
 }
@@ -154,90 +155,89 @@ static bool stages_differ(const camber_drawing_stages *got, const camber_drawing
 
 static camber_status compare(const camber_validation *v, const camber_subject *s, const camber_drawing_path *path,
                              int variant, camber_check *check) {
-    camber_context *context = v->session->context;
+    camber_context *context = v->desc->context;
     camber_drawing_stages got = {0}, expected = {0};
     drawn d;
-    if (!make_frame(s, v->session->options, path->mesh, variant, &d))
+    if (!make_frame(s, v->desc, path->mesh, variant, &d))
         return CAMBER_ERROR_MEMORY;
     camber_status status = camber_drawing_read_stages(path->renderer, &d.frame, &got);
     if (status == CAMBER_OK)
         status = camber_drawing_stages_on_host(path->renderer, &d.frame, &expected);
     if (status == CAMBER_OK && stages_differ(&got, &expected, &check->finding))
-        check->verdict = CAMBER_RESULT_FAILED;
+        check->result = CAMBER_RESULT_FAILED;
     camber_drawing_stages_free(context, &got);
     camber_drawing_stages_free(context, &expected);
     free(d.paints);
     return status;
 }
 
-/* What draws: the rig's easel, or its device in the shape that a GPU's kernels have, as other work-groups do. */
-typedef struct drawer {
-    const char *easel, *how;
+/* Kernels that draw: the device's own, or those in the shape that a GPU's have, as other work-groups do. */
+typedef struct kernels {
+    const char *name, *how;
     camber_drawing_path path;
     int variant;
-} drawer;
+} kernels;
 
-static int check_method(camber_validation *v, const camber_subject *s, const camber_checked_device *rig,
-                        const drawer *on, camber_method method) {
+static camber_status check_method(camber_validation *v, const camber_subject *s, const camber_checked_device *checked,
+                                  const kernels *on, camber_method method) {
     const camber_tessellation_desc desc = {s->strokes, s->stroke_count, method, 0, false};
     camber_check check =
-        camber_check_start(rig->name, on->easel, "%s: %s%s: drawn as by the CPU twin%s, on %s", s->name,
-                           camber_method_name(method), variants[on->variant].name, on->how, rig->name);
-    if (rig->broken[method]) {
-        camber_results_skip(&v->verdicts, check, "the mesh is not the CPU twin's");
-        return CAMBER_EXIT_DONE;
+        camber_check_start(checked->name, on->name, "%s: %s%s: drawn as by the CPU twin%s, on %s", s->name,
+                           camber_method_name(method), variants[on->variant].name, on->how, checked->name);
+    if (checked->broken[method]) {
+        camber_results_skip(&v->results, check, "the mesh is not the CPU twin's");
+        return CAMBER_OK;
     }
     camber_status made = camber_subject_tessellate(s, on->path.mesh, &desc);
     if (made == CAMBER_OK && camber_mesh_get_info(on->path.mesh).record_count > RECORDS_MAX) {
-        camber_results_skip(&v->verdicts, check, "there are more than a million points, which take the twin minutes");
-        return CAMBER_EXIT_DONE;
+        camber_results_skip(&v->results, check, "there are more than a million points, which take the twin minutes");
+        return CAMBER_OK;
     }
     if (made == CAMBER_OK)
         made = compare(v, s, &on->path, on->variant, &check);
-    const int status = camber_report_status(v->session->report, made);
-    if (status == CAMBER_EXIT_DONE)
-        camber_results_add(&v->verdicts, &check);
+    const camber_status status = made;
+    if (status == CAMBER_OK)
+        camber_results_add(&v->results, &check);
     return status;
 }
 
-static int check_methods(camber_validation *v, const camber_subject *s, const camber_checked_device *rig,
-                         const drawer *on) {
-    int status = CAMBER_EXIT_DONE;
-    for (int m = CAMBER_METHOD_STRIP; m <= CAMBER_METHOD_FAN && status == CAMBER_EXIT_DONE; m++)
-        if (camber_subject_takes(s, v->session->options, (camber_method)m) &&
-            camber_draws_method(v->session->options, (camber_method)m))
-            status = check_method(v, s, rig, on, (camber_method)m);
+static camber_status check_methods(camber_validation *v, const camber_subject *s, const camber_checked_device *checked,
+                                   const kernels *on) {
+    camber_status status = CAMBER_OK;
+    for (int m = CAMBER_METHOD_STRIP; m <= CAMBER_METHOD_FAN && status == CAMBER_OK; m++)
+        if (camber_subject_takes(s, v->desc, (camber_method)m) && camber_draws_method(v->desc, (camber_method)m))
+            status = check_method(v, s, checked, on, (camber_method)m);
     return status;
 }
 
-static int check_groups(camber_validation *v, const camber_subject *s, const camber_checked_device *rig,
-                        const char *easel) {
-    camber_device *device = rig->groups[0].device;
-    drawer on = {.easel = easel, .how = ", a pixel a work-item"};
+static camber_status check_groups(camber_validation *v, const camber_subject *s, const camber_checked_device *checked,
+                                  const char *name) {
+    camber_device *device = checked->groups[0].device;
+    kernels on = {.name = name, .how = ", a pixel a work-item"};
     camber_status made = camber_renderer_create(device, NULL, NULL, &on.path.renderer);
     if (made == CAMBER_OK)
         made = camber_mesh_create(device, on.path.renderer, &on.path.mesh);
-    int status = camber_report_status(v->session->report, made);
-    if (status == CAMBER_EXIT_DONE)
-        status = check_methods(v, s, rig, &on);
+    camber_status status = made;
+    if (status == CAMBER_OK)
+        status = check_methods(v, s, checked, &on);
     camber_mesh_destroy(on.path.mesh);
     camber_renderer_destroy(on.path.renderer);
     return status;
 }
 
-int camber_check_drawing(camber_validation *v, const camber_subject *s) {
-    int status = CAMBER_EXIT_DONE;
-    for (size_t r = 0; r < v->rigs.count; r++)
-        for (size_t e = 0; e < v->rigs.list[r].easel_count && status == CAMBER_EXIT_DONE; e++) {
-            const camber_checked_device *rig = v->rigs.list + r;
-            const camber_checked_drawer *easel = rig->easels + e;
-            if (easel->draw != CAMBER_DRAW_CL)
+camber_status camber_check_drawing(camber_validation *v, const camber_subject *s) {
+    camber_status status = CAMBER_OK;
+    for (size_t r = 0; r < v->devices.count; r++)
+        for (size_t e = 0; e < v->devices.list[r].drawer_count && status == CAMBER_OK; e++) {
+            const camber_checked_device *checked = v->devices.list + r;
+            const camber_checked_drawer *drawer = checked->drawers + e;
+            if (drawer->in_gl)
                 continue;
-            for (int i = 0; i < VARIANTS && status == CAMBER_EXIT_DONE; i++)
-                status = check_methods(v, s, rig, &(drawer){easel->name, "", easel->paths[0], i});
-            const bool is_cpu = camber_device_get_info(rig->device).type == CAMBER_DEVICE_TYPE_CPU;
-            if (status == CAMBER_EXIT_DONE && (!is_cpu || v->session->options->full))
-                status = check_groups(v, s, rig, easel->name);
+            for (int i = 0; i < VARIANTS && status == CAMBER_OK; i++)
+                status = check_methods(v, s, checked, &(kernels){drawer->name, "", drawer->paths[0], i});
+            const bool is_cpu = camber_device_get_info(checked->device).type == CAMBER_DEVICE_TYPE_CPU;
+            if (status == CAMBER_OK && (!is_cpu || v->desc->full))
+                status = check_groups(v, s, checked, drawer->name);
         }
     return status;
 }

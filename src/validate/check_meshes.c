@@ -2,6 +2,7 @@
  * work-groups, in parts. */
 #include "validate/checks.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -31,36 +32,36 @@ camber_status camber_subject_tessellate(const camber_subject *s, camber_mesh *me
                       : camber_tessellate(mesh, s->polylines, desc);
 }
 
-bool camber_subject_takes(const camber_subject *s, const camber_options *options, camber_method method) {
-    return s->network ? s->method == method : options->method < 0 || options->method == (int)method;
+bool camber_subject_takes(const camber_subject *s, const camber_validation_desc *desc, camber_method method) {
+    return s->network ? s->method == method : desc->method < 0 || desc->method == (int)method;
 }
 
-bool camber_draws_method(const camber_options *options, camber_method method) {
-    return options->full || (int)method == (options->method < 0 ? CAMBER_METHOD_STRIP : options->method);
+bool camber_draws_method(const camber_validation_desc *desc, camber_method method) {
+    return desc->full || (int)method == (desc->method < 0 ? CAMBER_METHOD_STRIP : desc->method);
 }
 
 /* ---- What is looked at ---- */
 
 static camber_status see_twin(camber_validation *v, const camber_subject *s, const camber_tessellation_desc *desc,
-                              camber_mesh_state *sight) {
-    camber_context *context = v->session->context;
-    const camber_status status = camber_stages_on_host(context, s->polylines, desc, &sight->stages);
-    sight->has_stages = status == CAMBER_OK;
-    return status == CAMBER_OK ? camber_tessellate_on_host(context, s->polylines, desc, &sight->mesh) : status;
+                              camber_mesh_state *state) {
+    camber_context *context = v->desc->context;
+    const camber_status status = camber_stages_on_host(context, s->polylines, desc, &state->stages);
+    state->has_stages = status == CAMBER_OK;
+    return status == CAMBER_OK ? camber_tessellate_on_host(context, s->polylines, desc, &state->mesh) : status;
 }
 
 static camber_status see_mesh(camber_mesh *mesh, const camber_subject *s, const camber_tessellation_desc *desc,
-                              bool with_stages, camber_mesh_state *sight) {
+                              bool with_stages, camber_mesh_state *state) {
     const camber_status status = camber_subject_tessellate(s, mesh, desc);
-    sight->of_network = s->network != NULL;
-    return status == CAMBER_OK ? camber_mesh_state_read(mesh, with_stages, sight) : status;
+    state->of_network = s->network != NULL;
+    return status == CAMBER_OK ? camber_mesh_state_read(mesh, with_stages, state) : status;
 }
 
-/* A subject on a rig with a method. */
+/* A subject on a checked with a method. */
 typedef struct job {
     camber_validation *v;
     const camber_subject *s;
-    camber_checked_device *rig;
+    camber_checked_device *checked;
     camber_tessellation_desc desc;
 } job;
 
@@ -70,8 +71,8 @@ static camber_status compare_mesh(job *j, camber_mesh *mesh, const camber_mesh_s
     camber_mesh_state got = {0};
     const camber_status status = see_mesh(mesh, j->s, &j->desc, with_stages, &got);
     if (status == CAMBER_OK && camber_mesh_states_differ(&got, expected, &check->finding))
-        check->verdict = CAMBER_RESULT_FAILED;
-    camber_mesh_state_close(j->v->session->context, &got);
+        check->result = CAMBER_RESULT_FAILED;
+    camber_mesh_state_close(j->v->desc->context, &got);
     return status;
 }
 
@@ -96,7 +97,7 @@ static camber_stroke *style(job *j, camber_style_fn *styled, size_t number) {
     return strokes;
 }
 
-static int check_twin(job *j, size_t number) {
+static camber_status check_twin(job *j, size_t number) {
     camber_stroke *strokes = style(j, every_join_and_cap, number);
     camber_mesh_state twin = {0};
     char styled[64] = "";
@@ -105,21 +106,21 @@ static int check_twin(job *j, size_t number) {
     else if (!j->s->network)
         snprintf(styled, sizeof styled, ", %s joins, %s caps", camber_join_name((camber_join)(number / 3 % 3)),
                  camber_cap_name((camber_cap)(number % 3)));
-    camber_check check = camber_check_start(j->rig->name, NULL, "%s: %s%s: as the CPU twin, on %s", j->s->name,
-                                            camber_method_name(j->desc.method), styled, j->rig->name);
+    camber_check check = camber_check_start(j->checked->name, NULL, "%s: %s%s: as the CPU twin, on %s", j->s->name,
+                                            camber_method_name(j->desc.method), styled, j->checked->name);
     camber_status made = strokes ? see_twin(j->v, j->s, &j->desc, &twin) : CAMBER_ERROR_MEMORY;
     if (made == CAMBER_OK)
-        made = compare_mesh(j, j->rig->mesh, &twin, true, &check);
-    int status = camber_report_status(j->v->session->report, made);
-    if (status == CAMBER_EXIT_DONE && check.verdict == CAMBER_RESULT_FAILED) {
+        made = compare_mesh(j, j->checked->mesh, &twin, true, &check);
+    camber_status status = made;
+    if (status == CAMBER_OK && check.result == CAMBER_RESULT_FAILED) {
         /* One picture: what breaks one style mostly breaks all of them. */
-        if (!j->rig->broken[j->desc.method])
-            status = camber_failure_image_of_mesh(j->v, j->rig, j->s, &j->desc, &check.finding);
-        j->rig->broken[j->desc.method] = true;
+        if (!j->checked->broken[j->desc.method])
+            status = camber_failure_image_of_mesh(j->v, j->checked, j->s, &j->desc, &check.finding);
+        j->checked->broken[j->desc.method] = true;
     }
-    if (status == CAMBER_EXIT_DONE)
-        camber_results_add(&j->v->verdicts, &check);
-    camber_mesh_state_close(j->v->session->context, &twin);
+    if (status == CAMBER_OK)
+        camber_results_add(&j->v->results, &check);
+    camber_mesh_state_close(j->v->desc->context, &twin);
     free(strokes);
     return status;
 }
@@ -139,6 +140,8 @@ void camber_style_kept(camber_stroke *stroke, size_t row, size_t number) {
 
 /* What a device takes at least: camber_device_desc. */
 enum { LEAST_BUFFER_BYTES = 4096 };
+
+enum { REASON_BYTES = 501 }; /* of a message that becomes a reason */
 
 /* A limit that the largest polyline fits in and the whole mesh does not. 0: there is none. */
 static uint64_t part_bytes(const camber_mesh_state *whole, size_t stroke_count) {
@@ -173,28 +176,26 @@ static uint64_t network_part_bytes(const camber_subject *s) {
 
 /* In parts, which only a mesh of several polylines has. */
 static camber_status compare_parts(job *j, const camber_mesh_state *whole, camber_check *check) {
-    const bool broken = j->rig->broken[j->desc.method];
+    const bool broken = j->checked->broken[j->desc.method];
     const uint64_t most = broken ? 0 : part_bytes(whole, j->s->stroke_count);
     const uint64_t network_most = broken || !j->s->network ? 0 : network_part_bytes(j->s);
     const uint64_t limit = most > network_most ? most : network_most;
     camber_device *device = NULL;
     camber_mesh *mesh = NULL;
     if (limit == 0) {
-        check->verdict = CAMBER_RESULT_SKIPPED;
+        check->result = CAMBER_RESULT_SKIPPED;
         snprintf(check->reason, sizeof check->reason, "%s",
                  broken          ? "the mesh is not the CPU twin's"
                  : j->s->network ? "the network fits the smallest buffer"
                                  : "one polyline is most of it, and parts are of whole ones");
         return CAMBER_OK;
     }
-    camber_status status = camber_checked_device_open_small(j->rig, j->v->session, limit, &device, &mesh);
+    camber_status status = camber_checked_device_open_small(j->checked, j->v, limit, &device, &mesh);
     if (status == CAMBER_OK)
         status = compare_mesh(j, mesh, whole, false, check);
     if (status == CAMBER_ERROR_LIMIT && j->s->network) {
-        camber_report *report = j->v->session->report;
-        check->verdict = CAMBER_RESULT_SKIPPED;
-        snprintf(check->reason, sizeof check->reason, "%.500s", report->error);
-        report->error[0] = 0;
+        check->result = CAMBER_RESULT_SKIPPED;
+        j->v->desc->host.take_message(j->v->desc->host.user, check->reason, REASON_BYTES);
         status = CAMBER_OK;
     }
     camber_mesh_destroy(mesh);
@@ -202,53 +203,53 @@ static camber_status compare_parts(job *j, const camber_mesh_state *whole, cambe
     return status;
 }
 
-enum { AGAIN, IN_GROUPS, IN_PARTS = IN_GROUPS + CAMBER_RIG_GROUPS, WAYS };
+enum { AGAIN, IN_GROUPS, IN_PARTS = IN_GROUPS + CAMBER_CHECKED_GROUPS, WAYS };
 
 /* Once more, in one of the ways. */
-static int check_way(job *j, int way, const camber_mesh_state *first) {
+static camber_status check_way(job *j, int way, const camber_mesh_state *first) {
     char what[64] = "from run to run";
     if (way == IN_PARTS)
         snprintf(what, sizeof what, "in parts");
     else if (way >= IN_GROUPS)
-        snprintf(what, sizeof what, "in work-groups of %u", j->rig->groups[way - IN_GROUPS].size);
-    camber_check check = camber_check_start(j->rig->name, NULL, "%s: %s: the same bytes %s, on %s", j->s->name,
-                                            camber_method_name(j->desc.method), what, j->rig->name);
-    camber_mesh *mesh = way == AGAIN || way == IN_PARTS ? j->rig->mesh : j->rig->groups[way - IN_GROUPS].mesh;
+        snprintf(what, sizeof what, "in work-groups of %u", j->checked->groups[way - IN_GROUPS].size);
+    camber_check check = camber_check_start(j->checked->name, NULL, "%s: %s: the same bytes %s, on %s", j->s->name,
+                                            camber_method_name(j->desc.method), what, j->checked->name);
+    camber_mesh *mesh = way == AGAIN || way == IN_PARTS ? j->checked->mesh : j->checked->groups[way - IN_GROUPS].mesh;
     const camber_status compared =
         way == IN_PARTS ? compare_parts(j, first, &check) : compare_mesh(j, mesh, first, false, &check);
-    const int status = camber_report_status(j->v->session->report, compared);
-    if (status == CAMBER_EXIT_DONE)
-        camber_results_add(&j->v->verdicts, &check);
+    const camber_status status = compared;
+    if (status == CAMBER_OK)
+        camber_results_add(&j->v->results, &check);
     return status;
 }
 
-static int check_ways(job *j) {
+static camber_status check_ways(job *j) {
     camber_stroke *strokes = style(j, camber_style_mixed, (size_t)j->desc.method);
     camber_mesh_state first = {0};
-    const camber_status seen = strokes ? see_mesh(j->rig->mesh, j->s, &j->desc, true, &first) : CAMBER_ERROR_MEMORY;
-    int status = camber_report_status(j->v->session->report, seen);
-    for (int way = 0; way < WAYS && status == CAMBER_EXIT_DONE; way++)
+    const camber_status seen = strokes ? see_mesh(j->checked->mesh, j->s, &j->desc, true, &first) : CAMBER_ERROR_MEMORY;
+    camber_status status = seen;
+    for (int way = 0; way < WAYS && status == CAMBER_OK; way++)
         status = check_way(j, way, &first);
-    camber_mesh_state_close(j->v->session->context, &first);
+    camber_mesh_state_close(j->v->desc->context, &first);
     free(strokes);
     return status;
 }
 
-int camber_check_meshes(camber_validation *validation, const camber_subject *subject) {
+camber_status camber_check_meshes(camber_validation *validation, const camber_subject *subject) {
     const size_t styles = subject->network ? 1 : STYLES;
-    int status = CAMBER_EXIT_DONE;
-    for (size_t r = 0; r < validation->rigs.count; r++)
-        for (int method = 0; method < 3 && status == CAMBER_EXIT_DONE; method++) {
+    camber_status status = CAMBER_OK;
+    for (size_t r = 0; r < validation->devices.count; r++)
+        for (int method = 0; method < 3 && status == CAMBER_OK; method++) {
             job j = {validation,
                      subject,
-                     &validation->rigs.list[r],
+                     &validation->devices.list[r],
                      {.stroke_count = subject->stroke_count, .method = (camber_method)method}};
-            if (!camber_subject_takes(subject, validation->session->options, (camber_method)method))
+            if (!camber_subject_takes(subject, validation->desc, (camber_method)method))
                 continue;
-            j.rig->broken[method] = false;
-            for (size_t number = 0; number < styles && status == CAMBER_EXIT_DONE; number++)
+            j.checked->broken[method] = false;
+            for (size_t number = 0; number < styles && status == CAMBER_OK; number++)
                 status = check_twin(&j, number);
-            if (status == CAMBER_EXIT_DONE)
+            if (status == CAMBER_OK)
                 status = check_ways(&j);
         }
     return status;

@@ -5,6 +5,7 @@
 #include "validate/network_truth.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -76,7 +77,7 @@ static camber_status make_own(job *j) {
         offsets[i + 1] = lines->offsets[i + 1];
         entries[i] = (camber_network_entry){.polyline = (uint32_t)i, .row = j->s->rows ? j->s->rows[i] : 0};
     }
-    return camber_network_create(j->v->session->context, &j->desc, &j->network);
+    return camber_network_create(j->v->desc->context, &j->desc, &j->network);
 }
 
 /* ---- Aiming ---- */
@@ -141,14 +142,13 @@ static double reach_of(const job *j) {
 }
 
 /* What camber_tessellate_network promises of the window, of all that the twin sees. */
-static int check_window(job *j, const camber_subject *s) {
+static camber_status check_window(job *j, const camber_subject *s) {
     camber_check check = camber_check_start(NULL, NULL, "%s: no point far outside the picture", s->name);
     const camber_tessellation_desc desc = {j->strokes, j->stroke_count, s->method, 0, false};
     const double most = 64 + 16 + reach_of(j) + s->camera.translate_px;
     camber_stages stages = {0};
-    const int status = camber_report_status(
-        j->v->session->report, camber_stages_on_host(j->v->session->context, s->polylines, &desc, &stages));
-    if (status != CAMBER_EXIT_DONE)
+    const camber_status status = camber_stages_on_host(j->v->desc->context, s->polylines, &desc, &stages);
+    if (status != CAMBER_OK)
         return status;
     for (size_t i = 0; i < stages.point_count; i++) {
         const camber_point_stages *at = stages.points + i;
@@ -156,7 +156,7 @@ static int check_window(job *j, const camber_subject *s) {
         const double out = fmax(fmax(-x, x - s->width), fmax(-y, y - s->height));
         if (out <= most)
             continue;
-        check.verdict = CAMBER_RESULT_FAILED;
+        check.result = CAMBER_RESULT_FAILED;
         check.finding =
             (camber_finding){"project", true, at->polyline, at->point, x, y, "distance", out, most, "", NULL};
         snprintf(check.finding.what, sizeof check.finding.what,
@@ -164,30 +164,29 @@ static int check_window(job *j, const camber_subject *s) {
                  at->polyline, at->point, x, y, out, most);
         break;
     }
-    camber_stages_free(j->v->session->context, &stages);
-    camber_results_add(&j->v->verdicts, &check);
+    camber_stages_free(j->v->desc->context, &stages);
+    camber_results_add(&j->v->results, &check);
     return status;
 }
 
 /* The subject is what the camera sees. Zoomed out, what is smaller than a pixel has no shape to hold pixels to. */
-static int check_seen(job *j, camber_subject *s, bool has_shape) {
+static camber_status check_seen(job *j, camber_subject *s, bool has_shape) {
     const camber_tessellation_desc desc = {j->strokes, j->stroke_count, s->method, 0, false};
     camber_polylines *twin = NULL;
-    int status =
-        camber_report_status(j->v->session->report, camber_network_project(j->network, &s->camera, &desc, &twin));
+    camber_status status = camber_network_project(j->network, &s->camera, &desc, &twin);
     s->polylines = twin;
-    if (status == CAMBER_EXIT_DONE)
+    if (status == CAMBER_OK)
         status = camber_check_meshes(j->v, s);
-    if (status == CAMBER_EXIT_DONE)
+    if (status == CAMBER_OK)
         status = check_window(j, s);
-    if (status == CAMBER_EXIT_DONE && j->is_own && has_shape)
+    if (status == CAMBER_OK && j->is_own && has_shape)
         status = camber_check_pixels(j->v, s);
     camber_polylines_destroy(twin);
     return status;
 }
 
-static int check_camera(job *j, size_t number) {
-    const int wanted = j->v->session->options->method;
+static camber_status check_camera(job *j, size_t number) {
+    const int wanted = j->v->desc->method;
     char name[512];
     snprintf(name, sizeof name, "%.400s: network, %s", j->s->name, cameras[number].name);
     camber_projected seen = {0};
@@ -200,16 +199,17 @@ static int check_camera(job *j, size_t number) {
     s.camera = aim(j, number);
     s.method = wanted < 0 ? (camber_method)(number % 3) : (camber_method)wanted;
     if (j->is_own && !camber_projected_make(&j->desc, &s.camera, 1000 + 2 * reach_of(j), &seen))
-        return camber_report_status(j->v->session->report, CAMBER_ERROR_MEMORY);
+        return CAMBER_ERROR_MEMORY;
     s.lines = seen.lines;
     s.rows = seen.rows;
-    const int status = check_seen(j, &s, cameras[number].times >= 1);
+    const camber_status status = check_seen(j, &s, cameras[number].times >= 1);
     camber_projected_free(&seen);
     return status;
 }
 
-int camber_check_networks(camber_validation *validation, const camber_subject *subject, camber_network *network,
-                          const camber_camera *camera, const camber_tessellation_desc *desc) {
+camber_status camber_check_networks(camber_validation *validation, const camber_subject *subject,
+                                    camber_network *network, const camber_camera *camera,
+                                    const camber_tessellation_desc *desc) {
     job j = {.v = validation, .s = subject, .network = network};
     const camber_stroke *strokes = network ? desc->strokes : subject->drawn_strokes;
     j.stroke_count = network ? desc->stroke_count : subject->stroke_count;
@@ -221,9 +221,9 @@ int camber_check_networks(camber_validation *validation, const camber_subject *s
                                          .width = subject->width,
                                          .height = subject->height};
     if (!j.strokes)
-        return camber_report_status(validation->session->report, CAMBER_ERROR_MEMORY);
-    int status = camber_report_status(validation->session->report, network ? CAMBER_OK : make_own(&j));
-    for (size_t i = 0; i < sizeof cameras / sizeof *cameras && status == CAMBER_EXIT_DONE; i++)
+        return CAMBER_ERROR_MEMORY;
+    camber_status status = network ? CAMBER_OK : make_own(&j);
+    for (size_t i = 0; i < sizeof cameras / sizeof *cameras && status == CAMBER_OK; i++)
         status = check_camera(&j, i);
     close_own(&j);
     free(j.strokes);

@@ -57,7 +57,7 @@ static double distance_to(const path *p, double x, double y) {
 }
 
 static void fail(camber_check *check, const camber_point_stages *at, const char *field, double got, double expected) {
-    check->verdict = CAMBER_RESULT_FAILED;
+    check->result = CAMBER_RESULT_FAILED;
     check->finding = (camber_finding){"offset", true, at->polyline, at->point, (double)at->x, (double)at->y,
                                       field,    got,  expected,     "",        NULL};
     snprintf(check->finding.what, sizeof check->finding.what,
@@ -85,7 +85,7 @@ static void check_points(const bend *b, const path *p, double offset, const camb
         fail(check, last, "end", missed, 0);
 }
 
-static int check_bend(camber_validation *v, const bend *b, double offset) {
+static camber_status check_bend(camber_validation *v, const bend *b, double offset) {
     const path p = make_path(b);
     const camber_stroke stroke = {.width_px = 3, .offset_px = (float)offset};
     const camber_tessellation_desc desc = {.strokes = &stroke, .stroke_count = 1};
@@ -95,27 +95,27 @@ static int check_bend(camber_validation *v, const bend *b, double offset) {
                                             b->turn * offset > 0 ? "inside" : "outside", b->name);
     camber_polylines *polylines = NULL;
     camber_stages stages = {0};
-    camber_status made = camber_polylines_create(v->session->context, &given, &polylines);
+    camber_status made = camber_polylines_create(v->desc->context, &given, &polylines);
     if (made == CAMBER_OK)
-        made = camber_stages_on_host(v->session->context, polylines, &desc, &stages);
+        made = camber_stages_on_host(v->desc->context, polylines, &desc, &stages);
     if (made == CAMBER_OK && stages.point_count > 1) {
         check_points(b, &p, offset, &stages, &check);
     } else if (made == CAMBER_OK) {
-        check.verdict = CAMBER_RESULT_FAILED;
+        check.result = CAMBER_RESULT_FAILED;
         snprintf(check.finding.what, sizeof check.finding.what, "offset: the line is gone");
     }
-    camber_stages_free(v->session->context, &stages);
+    camber_stages_free(v->desc->context, &stages);
     camber_polylines_destroy(polylines);
-    const int status = camber_report_status(v->session->report, made);
-    if (status == CAMBER_EXIT_DONE)
-        camber_results_add(&v->verdicts, &check);
+    const camber_status status = made;
+    if (status == CAMBER_OK)
+        camber_results_add(&v->results, &check);
     return status;
 }
 
-int camber_check_offsets(camber_validation *validation) {
-    int status = CAMBER_EXIT_DONE;
+camber_status camber_check_offsets(camber_validation *validation) {
+    camber_status status = CAMBER_OK;
     for (size_t i = 0; i < sizeof bends / sizeof *bends; i++)
-        for (int side = -1; side < 2 && status == CAMBER_EXIT_DONE; side += 2)
+        for (int side = -1; side < 2 && status == CAMBER_OK; side += 2)
             status = check_bend(validation, bends + i, side * OFFSET_PX);
     return status;
 }

@@ -1,16 +1,18 @@
 /* Pictures: against the oracle on sampled windows, the sharing paths against each other, the GL back ends and OpenCL
  * against each other. */
+#include "validate/levels.h"
 #include "validate/samples.h"
 #include "validate/scenes.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* A subject in one style: its truth, and its pictures on one rig with one method. */
+/* A subject in one style: its truth, and its pictures on one checked with one method. */
 typedef struct job {
     camber_validation *v;
     const camber_subject *s;
-    const camber_checked_device *rig;
+    const camber_checked_device *checked;
     camber_tessellation_desc desc;
     char style[64]; /* "round joins, butt caps" */
     bool is_drawn_once;
@@ -22,7 +24,7 @@ typedef struct job {
 
 /* A few straight edges of a ramp can be off by more than many; what a camera sees does not depend on it. */
 static camber_coverage coverage_of(const job *j) {
-    return j->s->network ? CAMBER_COVERAGE_EXACT : (camber_coverage)j->v->session->options->coverage;
+    return j->s->network ? CAMBER_COVERAGE_EXACT : (camber_coverage)j->v->desc->coverage;
 }
 
 static camber_drawing drawing_of(const job *j, camber_overlap overlap) {
@@ -42,12 +44,12 @@ static camber_status draw(const job *j, const camber_drawing_path *path, camber_
 
 /* ---- Against the truth ---- */
 
-static int check_truth(job *j, camber_check *check, camber_truth_kind kind, const uint8_t *levels) {
+static camber_status check_truth(job *j, camber_check *check, camber_truth_kind kind, const uint8_t *levels) {
     size_t worst = 0;
-    int status = CAMBER_EXIT_DONE;
+    camber_status status = CAMBER_OK;
     camber_finding *finding = &check->finding;
     if (j->samples.count == 0) {
-        camber_results_skip(&j->v->verdicts, *check, "no point lies in the picture");
+        camber_results_skip(&j->v->results, *check, "no point lies in the picture");
         return status;
     }
     check->has_error = true;
@@ -57,7 +59,7 @@ static int check_truth(job *j, camber_check *check, camber_truth_kind kind, cons
         check->most = camber_bounds_of_few(check->most, &check->error);
     if (camber_bounds_are_passed(&check->error.of, &check->most, finding)) {
         const camber_sample *sample = &j->samples.list[worst];
-        check->verdict = CAMBER_RESULT_FAILED;
+        check->result = CAMBER_RESULT_FAILED;
         finding->stage = "pixels";
         finding->has_point = true;
         finding->polyline = sample->polyline;
@@ -70,20 +72,21 @@ static int check_truth(job *j, camber_check *check, camber_truth_kind kind, cons
                  sample->window.x0, sample->window.y0, sample->polyline, sample->point);
         uint8_t *cut = calloc((size_t)sample->window.width, (size_t)sample->window.height);
         if (!cut)
-            return camber_report_status(j->v->session->report, CAMBER_ERROR_MEMORY);
+            return CAMBER_ERROR_MEMORY;
         camber_sample_cut(sample, levels, j->s->width, cut);
         status = camber_failure_image_write(j->v, sample->window, sample->truths[kind], cut, finding);
         free(cut);
     }
-    if (status == CAMBER_EXIT_DONE)
-        camber_results_add(&j->v->verdicts, check);
+    if (status == CAMBER_OK)
+        camber_results_add(&j->v->results, check);
     return status;
 }
 
 /* ---- Pictures against each other ---- */
 
 /* The window about the first pixel that differs, the first picture as the truth. */
-static int show_pixel(job *j, const uint8_t *first, const uint8_t *second, size_t at, camber_finding *finding) {
+static camber_status show_pixel(job *j, const uint8_t *first, const uint8_t *second, size_t at,
+                                camber_finding *finding) {
     enum { SIDE_PX = 48 };
     const int width = (int)j->s->width, height = (int)j->s->height;
     const int x = (int)(at % j->s->width) - SIDE_PX / 2, y = (int)(at / j->s->width) - SIDE_PX / 2;
@@ -118,13 +121,13 @@ static bool first_pixel(const job *j, const uint8_t *first, const uint8_t *secon
     return false;
 }
 
-static camber_status meshes_differ(job *j, camber_checked_drawer *easel, size_t path, camber_finding *finding,
+static camber_status meshes_differ(job *j, camber_checked_drawer *drawer, size_t path, camber_finding *finding,
                                    bool *differ) {
-    camber_context *context = j->v->session->context;
+    camber_context *context = j->v->desc->context;
     camber_mesh_state first = {0}, other = {0};
-    camber_status status = camber_mesh_state_read(easel->paths[0].mesh, true, &first);
+    camber_status status = camber_mesh_state_read(drawer->paths[0].mesh, true, &first);
     if (status == CAMBER_OK)
-        status = camber_mesh_state_read(easel->paths[path].mesh, false, &other);
+        status = camber_mesh_state_read(drawer->paths[path].mesh, false, &other);
     if (status == CAMBER_OK)
         *differ = camber_mesh_states_differ(&other, &first, finding);
     camber_mesh_state_close(context, &first);
@@ -133,17 +136,18 @@ static camber_status meshes_differ(job *j, camber_checked_drawer *easel, size_t 
 }
 
 /* A sharing path against the first: the mesh's bytes and the picture's. */
-static int check_path(job *j, camber_checked_drawer *easel, size_t path) {
-    camber_check check = camber_check_start(j->rig->name, easel->name, "%s: %s, %s: %s as %s, on %s, %s", j->s->name,
-                                            camber_method_name(j->desc.method), j->style, easel->paths[path].name,
-                                            easel->paths[0].name, j->rig->name, easel->name);
+static camber_status check_path(job *j, camber_checked_drawer *drawer, size_t path) {
+    camber_check check =
+        camber_check_start(j->checked->name, drawer->name, "%s: %s, %s: %s as %s, on %s, %s", j->s->name,
+                           camber_method_name(j->desc.method), j->style, drawer->paths[path].name,
+                           drawer->paths[0].name, j->checked->name, drawer->name);
     bool differ = false;
     size_t pixel = 0;
-    camber_status drawn = draw(j, &easel->paths[path], CAMBER_OVERLAP_FLATTEN, j->other);
+    camber_status drawn = draw(j, &drawer->paths[path], CAMBER_OVERLAP_FLATTEN, j->other);
     if (drawn == CAMBER_OK)
-        drawn = meshes_differ(j, easel, path, &check.finding, &differ);
-    int status = camber_report_status(j->v->session->report, drawn);
-    if (status != CAMBER_EXIT_DONE)
+        drawn = meshes_differ(j, drawer, path, &check.finding, &differ);
+    camber_status status = drawn;
+    if (status != CAMBER_OK)
         return status;
     if (!differ) {
         check.finding.stage = "sharing";
@@ -151,113 +155,113 @@ static int check_path(job *j, camber_checked_drawer *easel, size_t path) {
         if (differ)
             status = show_pixel(j, j->own, j->other, pixel, &check.finding);
     }
-    check.verdict = differ ? CAMBER_RESULT_FAILED : CAMBER_RESULT_PASSED;
-    if (status == CAMBER_EXIT_DONE)
-        camber_results_add(&j->v->verdicts, &check);
+    check.result = differ ? CAMBER_RESULT_FAILED : CAMBER_RESULT_PASSED;
+    if (status == CAMBER_OK)
+        camber_results_add(&j->v->results, &check);
     return status;
 }
 
 /* What one draws against what the first does. */
-static int check_drawer(job *j, const camber_checked_drawer *easel) {
-    camber_check check = camber_check_start(j->rig->name, easel->name, "%s: %s, %s: %s as %s, on %s", j->s->name,
-                                            camber_method_name(j->desc.method), j->style, easel->name,
-                                            j->rig->easels[0].name, j->rig->name);
+static camber_status check_drawer(job *j, const camber_checked_drawer *drawer) {
+    camber_check check = camber_check_start(j->checked->name, drawer->name, "%s: %s, %s: %s as %s, on %s", j->s->name,
+                                            camber_method_name(j->desc.method), j->style, drawer->name,
+                                            j->checked->drawers[0].name, j->checked->name);
     size_t pixel = 0;
     check.has_error = true;
-    check.most = camber_bounds_of_drawers(easel->draw == j->rig->easels[0].draw);
-    int status = camber_report_status(
-        j->v->session->report, camber_pictures_compare(j->first, j->own, j->s->width, j->s->height, &check.error));
+    check.most = camber_bounds_of_drawers(drawer->in_gl == j->checked->drawers[0].in_gl);
+    camber_status status = camber_pictures_compare(j->first, j->own, j->s->width, j->s->height, &check.error);
     camber_finding past = {0};
-    if (status == CAMBER_EXIT_DONE && camber_bounds_are_passed(&check.error.of, &check.most, &past)) {
-        check.verdict = CAMBER_RESULT_FAILED;
+    if (status == CAMBER_OK && camber_bounds_are_passed(&check.error.of, &check.most, &past)) {
+        check.result = CAMBER_RESULT_FAILED;
         check.finding.stage = "back ends";
         if (first_pixel(j, j->first, j->own, &check.finding, &pixel))
             status = show_pixel(j, j->first, j->own, pixel, &check.finding);
     }
-    if (status == CAMBER_EXIT_DONE)
-        camber_results_add(&j->v->verdicts, &check);
+    if (status == CAMBER_OK)
+        camber_results_add(&j->v->results, &check);
     return status;
 }
 
 /* ---- All of it ---- */
 
 /* The layers of translucent lines, drawn opaque: against the union of all lines. */
-static int check_united(job *j, const camber_checked_drawer *easel) {
-    camber_check check = camber_check_start(j->rig->name, easel->name, "%s: %s, %s: united, on %s, %s", j->s->name,
-                                            camber_method_name(j->desc.method), j->style, j->rig->name, easel->name);
-    const int status =
-        camber_report_status(j->v->session->report, draw(j, &easel->paths[0], CAMBER_OVERLAP_UNITE, j->other));
-    return status == CAMBER_EXIT_DONE ? check_truth(j, &check, CAMBER_TRUTH_UNION, j->other) : status;
+static camber_status check_united(job *j, const camber_checked_drawer *drawer) {
+    camber_check check =
+        camber_check_start(j->checked->name, drawer->name, "%s: %s, %s: united, on %s, %s", j->s->name,
+                           camber_method_name(j->desc.method), j->style, j->checked->name, drawer->name);
+    const camber_status status = draw(j, &drawer->paths[0], CAMBER_OVERLAP_UNITE, j->other);
+    return status == CAMBER_OK ? check_truth(j, &check, CAMBER_TRUTH_UNION, j->other) : status;
 }
 
 /* Neighbouring segments share their edges to the last bit. */
-static int check_once(job *j, const camber_checked_drawer *easel) {
+static camber_status check_once(job *j, const camber_checked_drawer *drawer) {
     camber_check check =
-        camber_check_start(j->rig->name, easel->name, "%s: %s, %s: each pixel once, on %s, %s", j->s->name,
-                           camber_method_name(j->desc.method), j->style, j->rig->name, easel->name);
+        camber_check_start(j->checked->name, drawer->name, "%s: %s, %s: each pixel once, on %s, %s", j->s->name,
+                           camber_method_name(j->desc.method), j->style, j->checked->name, drawer->name);
     camber_overdraw sum = {0};
     camber_finding *finding = &check.finding;
     const camber_drawing drawing = drawing_of(j, CAMBER_OVERLAP_FLATTEN);
-    const int status = camber_report_status(j->v->session->report, camber_draw_count(&easel->paths[0], &drawing, &sum));
-    if (status != CAMBER_EXIT_DONE)
+    const camber_status status = camber_draw_count(&drawer->paths[0], &drawing, &sum);
+    if (status != CAMBER_OK)
         return status;
     if (sum.repeated_pixels > 0) {
-        check.verdict = CAMBER_RESULT_FAILED;
+        check.result = CAMBER_RESULT_FAILED;
         *finding = (camber_finding){.stage = "pixels", .field = "repeated_pixels", .got = (double)sum.repeated_pixels};
         snprintf(finding->what, sizeof finding->what, "pixels: of %llu, %llu are drawn again by their line, not 0",
                  (unsigned long long)sum.drawn_pixels, (unsigned long long)sum.repeated_pixels);
     }
-    camber_results_add(&j->v->verdicts, &check);
+    camber_results_add(&j->v->results, &check);
     return status;
 }
 
-static int check_easel(job *j, size_t which) {
-    camber_checked_drawer *easel = (camber_checked_drawer *)&j->rig->easels[which];
-    camber_check check = camber_check_start(j->rig->name, easel->name, "%s: %s, %s: pixels, on %s, %s", j->s->name,
-                                            camber_method_name(j->desc.method), j->style, j->rig->name, easel->name);
-    int status = camber_report_status(j->v->session->report, draw(j, &easel->paths[0], CAMBER_OVERLAP_FLATTEN, j->own));
-    if (status == CAMBER_EXIT_DONE)
+static camber_status check_drawn(job *j, size_t which) {
+    camber_checked_drawer *drawer = (camber_checked_drawer *)&j->checked->drawers[which];
+    camber_check check =
+        camber_check_start(j->checked->name, drawer->name, "%s: %s, %s: pixels, on %s, %s", j->s->name,
+                           camber_method_name(j->desc.method), j->style, j->checked->name, drawer->name);
+    camber_status status = draw(j, &drawer->paths[0], CAMBER_OVERLAP_FLATTEN, j->own);
+    if (status == CAMBER_OK)
         status = check_truth(j, &check, CAMBER_TRUTH_OVER, j->own);
-    if (status == CAMBER_EXIT_DONE && j->desc.method == CAMBER_METHOD_STRIP && !j->s->network)
-        status = check_united(j, easel);
-    const bool counts = easel->draw == CAMBER_DRAW_GL && j->desc.method != CAMBER_METHOD_FAN;
-    if (status == CAMBER_EXIT_DONE && j->is_drawn_once && counts)
-        status = check_once(j, easel);
+    if (status == CAMBER_OK && j->desc.method == CAMBER_METHOD_STRIP && !j->s->network)
+        status = check_united(j, drawer);
+    const bool counts = drawer->in_gl && j->desc.method != CAMBER_METHOD_FAN;
+    if (status == CAMBER_OK && j->is_drawn_once && counts)
+        status = check_once(j, drawer);
     /* Kernels draw any mesh as strips are. */
-    const bool alike = easel->draw == j->rig->easels[0].draw;
-    if (status == CAMBER_EXIT_DONE && which > 0 && (alike || j->desc.method == CAMBER_METHOD_STRIP))
-        status = check_drawer(j, easel);
-    for (size_t path = 1; path < easel->path_count && j->is_shared && status == CAMBER_EXIT_DONE; path++)
-        status = check_path(j, easel, path);
+    const bool alike = drawer->in_gl == j->checked->drawers[0].in_gl;
+    if (status == CAMBER_OK && which > 0 && (alike || j->desc.method == CAMBER_METHOD_STRIP))
+        status = check_drawer(j, drawer);
+    for (size_t path = 1; path < drawer->path_count && j->is_shared && status == CAMBER_OK; path++)
+        status = check_path(j, drawer, path);
     if (which == 0)
         memcpy(j->first, j->own, (size_t)j->s->width * j->s->height);
     return status;
 }
 
-static int check_rig(job *j) {
-    int status = CAMBER_EXIT_DONE;
+static camber_status check_device(job *j) {
+    camber_status status = CAMBER_OK;
     /* Wrong indices can take a GPU minutes, or down. */
-    if (j->rig->broken[j->desc.method]) {
-        camber_results_skip(&j->v->verdicts,
-                            camber_check_start(j->rig->name, NULL, "%s: %s, %s: pixels, on %s", j->s->name,
-                                               camber_method_name(j->desc.method), j->style, j->rig->name),
+    if (j->checked->broken[j->desc.method]) {
+        camber_results_skip(&j->v->results,
+                            camber_check_start(j->checked->name, NULL, "%s: %s, %s: pixels, on %s", j->s->name,
+                                               camber_method_name(j->desc.method), j->style, j->checked->name),
                             "the mesh is not the CPU twin's");
         return status;
     }
-    for (size_t e = 0; e < j->rig->easel_count && status == CAMBER_EXIT_DONE; e++)
-        status = check_easel(j, e);
+    for (size_t e = 0; e < j->checked->drawer_count && status == CAMBER_OK; e++)
+        status = check_drawn(j, e);
     return status;
 }
 
-static int check_style(job *j) {
-    int status = CAMBER_EXIT_DONE;
-    for (size_t r = 0; r < j->v->rigs.count; r++)
-        for (int method = 0; method < 3 && status == CAMBER_EXIT_DONE; method++) {
-            j->rig = &j->v->rigs.list[r];
+static camber_status check_style(job *j) {
+    camber_status status = CAMBER_OK;
+    for (size_t r = 0; r < j->v->devices.count; r++)
+        for (int method = 0; method < 3 && status == CAMBER_OK; method++) {
+            j->checked = &j->v->devices.list[r];
             j->desc.method = (camber_method)method;
-            if (camber_subject_takes(j->s, j->v->session->options, j->desc.method) &&
-                camber_draws_method(j->v->session->options, j->desc.method))
-                status = check_rig(j);
+            if (camber_subject_takes(j->s, j->v->desc, j->desc.method) &&
+                camber_draws_method(j->v->desc, j->desc.method))
+                status = check_device(j);
         }
     return status;
 }
@@ -280,7 +284,7 @@ static void set_style(camber_stroke *stroke, size_t row, size_t number) {
 
 /* With the share of tight and split joins, which the twin tells. */
 static camber_status find_bounds(job *j) {
-    camber_context *context = j->v->session->context;
+    camber_context *context = j->v->desc->context;
     camber_mesh_data twin = {0};
     const camber_status status = camber_tessellate_on_host(context, j->s->polylines, &j->desc, &twin);
     const double joins = (double)(twin.info.joins ? twin.info.joins : 1);
@@ -292,7 +296,7 @@ static camber_status find_bounds(job *j) {
     return status;
 }
 
-static int check_number(job *j, size_t number) {
+static camber_status check_number(job *j, size_t number) {
     const camber_subject *s = j->s;
     const bool styled = s->scene && !s->network;
     camber_stroke *strokes =
@@ -309,9 +313,9 @@ static int check_number(job *j, size_t number) {
     if (strokes)
         made = find_bounds(j);
     if (made == CAMBER_OK)
-        made = camber_samples_make(s, strokes, j->v->session->options->windows, &j->samples);
-    int status = camber_report_status(j->v->session->report, made);
-    if (status == CAMBER_EXIT_DONE)
+        made = camber_samples_make(s, strokes, j->v->desc->windows, &j->samples);
+    camber_status status = made;
+    if (status == CAMBER_OK)
         status = check_style(j);
     camber_samples_free(&j->samples);
     free(strokes);
@@ -319,18 +323,18 @@ static int check_number(job *j, size_t number) {
 }
 
 /* The truth of pixels is that of the lines themselves. */
-static int skip_offsets(camber_validation *v, const camber_subject *s) {
+static camber_status skip_offsets(camber_validation *v, const camber_subject *s) {
     camber_check check = camber_check_start(NULL, NULL, "%s: pixels", s->name);
-    check.verdict = CAMBER_RESULT_SKIPPED;
+    check.result = CAMBER_RESULT_SKIPPED;
     snprintf(check.reason, sizeof check.reason, "lines have offsets, and are drawn beside where they lie");
-    camber_results_add(&v->verdicts, &check);
-    return CAMBER_EXIT_DONE;
+    camber_results_add(&v->results, &check);
+    return CAMBER_OK;
 }
 
-int camber_check_pixels(camber_validation *validation, const camber_subject *subject) {
+camber_status camber_check_pixels(camber_validation *validation, const camber_subject *subject) {
     const size_t area = (size_t)subject->width * subject->height;
     job j = {.v = validation, .s = subject, .desc = {.stroke_count = subject->stroke_count}};
-    int status = CAMBER_EXIT_DONE;
+    camber_status status = CAMBER_OK;
     if (!camber_bounds_of_pixels(subject->scene, 0, CAMBER_COVERAGE_EXACT, &j.bounds))
         return status;
     for (size_t i = 0; i < subject->stroke_count; i++)
@@ -340,9 +344,9 @@ int camber_check_pixels(camber_validation *validation, const camber_subject *sub
     j.own = malloc(area);
     j.other = malloc(area);
     if (!j.first || !j.own || !j.other)
-        status = camber_report_status(validation->session->report, CAMBER_ERROR_MEMORY);
+        status = CAMBER_ERROR_MEMORY;
     const size_t count = !subject->scene || subject->network ? 1 : sizeof styles / sizeof *styles;
-    for (size_t number = 0; number < count && status == CAMBER_EXIT_DONE; number++)
+    for (size_t number = 0; number < count && status == CAMBER_OK; number++)
         status = check_number(&j, number);
     free(j.other);
     free(j.own);

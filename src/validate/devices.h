@@ -1,31 +1,30 @@
-/* What the checks of validate run on: every OpenCL device, alone, with every GL back end and every sharing path, and
- * drawing itself. */
+/* Every OpenCL device that checks run on, opened in each way that they need: alone, with other work-group sizes, and
+ * once for each drawer, with every path on which a mesh may reach it. */
 #ifndef CAMBER_VALIDATE_DEVICES_H
 #define CAMBER_VALIDATE_DEVICES_H
 
-#include "cli/session.h"
-#include "validate/results.h"
+#include "validate/fixture.h"
+#include "validate/validation.h"
 
-enum { CAMBER_RIG_EASELS = 3, CAMBER_RIG_PATHS = 3, CAMBER_RIG_GROUPS = 2 };
+enum { CAMBER_CHECKED_PATHS = 3, CAMBER_CHECKED_GROUPS = 2 };
 
-/* A way for a mesh to reach what draws it. */
-typedef struct camber_drawing_path {
-    const char *name;
+/* A path on which a mesh reaches what draws it. */
+struct camber_drawing_path {
+    const char *name; /* "gl", "zero-copy", "copy", as camber_sharing has them, or "no sharing" */
     camber_renderer *renderer;
     camber_mesh *mesh;
-} camber_drawing_path;
+};
 
 /* A GL back end, or OpenCL without any, with the device opened once more for it. */
 typedef struct camber_checked_drawer {
     const char *name; /* "EGL", "OSMesa", "OpenCL" */
-    camber_draw draw;
-    camber_surface *surface; /* NULL: OpenCL draws */
-    camber_device *device;
-    camber_drawing_path paths[CAMBER_RIG_PATHS]; /* path_count, those that work; never none */
+    bool in_gl;
+    camber_fixture fixture;
+    camber_drawing_path paths[CAMBER_CHECKED_PATHS]; /* path_count, those that work; never none */
     size_t path_count;
 } camber_checked_drawer;
 
-typedef struct camber_checked_device {
+struct camber_checked_device {
     char name[160];  /* of the device, and which of several of that name */
     uint32_t number; /* camber_device_desc's */
     camber_device *device;
@@ -34,25 +33,21 @@ typedef struct camber_checked_device {
         uint32_t size;
         camber_device *device;
         camber_mesh *mesh;
-    } groups[CAMBER_RIG_GROUPS];                     /* other work-group sizes */
-    camber_checked_drawer easels[CAMBER_RIG_EASELS]; /* easel_count */
-    size_t easel_count;
-    bool broken[3]; /* by camber_method: meshes of the subject at hand differ from the twin's, and are not drawn */
-} camber_checked_device;
+    } groups[CAMBER_CHECKED_GROUPS];                       /* other work-group sizes */
+    camber_checked_drawer drawers[CAMBER_FIXTURE_DRAWERS]; /* drawer_count */
+    size_t drawer_count;
+    /* By camber_method: meshes of the subject at hand differ from the twin's, and are not drawn. */
+    bool broken[3];
+};
 
-typedef struct camber_checked_devices {
-    camber_checked_device *list; /* count */
-    size_t count;
-} camber_checked_devices;
+/* Opens what the options allow. What is not there becomes a skip. No device at all, or not the one that was asked for,
+ * is CAMBER_ERROR_DEVICE. Closed by the caller in any case. */
+camber_status camber_checked_devices_open(camber_validation *validation);
+void camber_checked_devices_close(camber_checked_devices *devices);
 
-/* Opens what --device, --draw and --backend allow. What is not there becomes a skip; no device at all, or not the one
- * that was asked for, is CAMBER_EXIT_UNAVAILABLE, its line printed. Can be closed in any case. */
-int camber_checked_devices_open(camber_checked_devices *rigs, camber_session *session, camber_results *verdicts);
-void camber_checked_devices_close(camber_checked_devices *rigs);
-
-/* The rig's device with no buffer larger than this, and a mesh on it. */
-camber_status camber_checked_device_open_small(const camber_checked_device *rig, camber_session *session,
-                                               uint64_t largest_buffer_bytes, camber_device **device,
-                                               camber_mesh **mesh);
+/* Opens the same device with no buffer larger than this, and a mesh on it. */
+camber_status camber_checked_device_open_small(const camber_checked_device *checked,
+                                               const camber_validation *validation, uint64_t largest_buffer_bytes,
+                                               camber_device **device, camber_mesh **mesh);
 
 #endif

@@ -1,92 +1,27 @@
-/* Pictures of failures: truth, drawn and their difference beside each other. */
+/* Pictures of failures: truth, drawn and their difference beside each other. The host writes them where it likes. */
 #include "validate/checks.h"
+#include "validate/levels.h"
 
-#include <dirent.h>
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
-enum { PICTURES_MAX = 32, SCALE = 8, SIDE_PX = 96 };
-
-static bool is_empty(const char *folder) {
-    DIR *directory = opendir(folder);
-    bool empty = true;
-    for (const struct dirent *entry; directory && (entry = readdir(directory)) != NULL;)
-        empty = empty && (strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0);
-    if (directory)
-        closedir(directory);
-    return empty;
-}
-
-int camber_evidence_check(const camber_session *session) {
-    const char *folder = session->options->pictures;
-    struct stat info;
-    if (!folder)
-        return CAMBER_EXIT_DONE;
-    if (stat(folder, &info) != 0) {
-        /* It is made for the first picture, so that a run without failures leaves nothing. */
-        const int made = mkdir(folder, 0777);
-        if (made == 0)
-            rmdir(folder);
-        return made == 0
-                   ? CAMBER_EXIT_DONE
-                   : camber_report_fail(session->report, CAMBER_EXIT_CREATE,
-                                        "%s: cannot be made (%s); name a folder that can", folder, strerror(errno));
-    }
-    if (!S_ISDIR(info.st_mode))
-        return camber_report_fail(session->report, CAMBER_EXIT_CREATE, "%s: is no folder; name one", folder);
-    if (access(folder, W_OK | X_OK) != 0)
-        return camber_report_fail(session->report, CAMBER_EXIT_CREATE,
-                                  "%s: cannot be written to (%s); name a folder that you may write to", folder,
-                                  strerror(errno));
-    if (!session->options->force && !is_empty(folder))
-        return camber_report_fail(session->report, CAMBER_EXIT_CREATE,
-                                  "%s: is not empty; name another folder, or replace what is there with --force",
-                                  folder);
-    return CAMBER_EXIT_DONE;
-}
+enum { PICTURES_MAX = 32, SIDE_PX = 96 };
 
 static bool is_wanted(const camber_validation *v) {
-    return v->session->options->pictures && v->picture_count < PICTURES_MAX;
+    return v->desc->host.write_image && v->picture_count < PICTURES_MAX;
 }
 
-int camber_failure_image_write(camber_validation *v, camber_window window, const float *truth, const uint8_t *drawn,
-                               camber_finding *finding) {
-    camber_session *session = v->session;
-    const char *folder = session->options->pictures;
+camber_status camber_failure_image_write(camber_validation *v, camber_window window, const float *truth,
+                                         const uint8_t *drawn, camber_finding *finding) {
+    const camber_failure_image image = {v->results.count + 1, window, truth, drawn};
     if (!is_wanted(v))
-        return CAMBER_EXIT_DONE;
-    const size_t size = strlen(folder) + 32;
-    char *path = malloc(size);
-    if (!path)
-        return camber_report_status(session->report, CAMBER_ERROR_MEMORY);
-    snprintf(path, size, "%s/check-%04zu.png", folder, v->verdicts.count + 1);
-    if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
-        free(path);
-        return camber_report_fail(session->report, CAMBER_EXIT_CREATE,
-                                  "%s: cannot be made (%s); name a folder that can", folder, strerror(errno));
-    }
-    camber_output output = {0};
-    int status = camber_output_open(&output, session->report, session->guard, path, session->options->force);
-    if (status == CAMBER_EXIT_DONE) {
-        const camber_status written =
-            camber_difference_write(session->context, window, truth, drawn, SCALE, camber_output_sink(&output));
-        status = written == CAMBER_OK ? camber_output_publish(&output) : camber_output_status(&output, written);
-    }
-    camber_output_discard(&output);
-    if (status != CAMBER_EXIT_DONE) {
-        free(path);
-        return status;
-    }
-    v->picture_count++;
-    finding->picture = path;
-    return CAMBER_EXIT_DONE;
+        return CAMBER_OK;
+    const camber_status status = v->desc->host.write_image(v->desc->host.user, &image, &finding->picture);
+    v->picture_count += status == CAMBER_OK;
+    return status;
 }
 
-/* ---- Of a mesh ---- */
+/* ---- A mesh ---- */
 
 /* The lines with a point moved to the middle of the window, by whole pixels. */
 static bool shift_lines(const camber_lines *lines, const camber_finding *finding, float **points) {
@@ -117,17 +52,17 @@ static camber_status draw_subject(camber_validation *v, const camber_drawing_pat
                                     .stroke_count = desc->stroke_count,
                                     .width = SIDE_PX,
                                     .height = SIDE_PX,
-                                    .coverage = (camber_coverage)v->session->options->coverage};
+                                    .coverage = (camber_coverage)v->desc->coverage};
     camber_status status = camber_subject_tessellate(subject, path->mesh, desc);
     bool sound = false;
     if (status == CAMBER_OK)
-        status = look_at_indices(v->session->context, path->mesh, &sound);
+        status = look_at_indices(v->desc->context, path->mesh, &sound);
     if (status == CAMBER_OK && sound)
         status = camber_draw_levels(path, &drawing, levels);
     return status;
 }
 
-/* What the subject looks like in the window: its lines moved there, or the camera. */
+/* Draws the subject in the window: its lines are moved there, or the camera. */
 static camber_status draw_shifted(camber_validation *v, const camber_drawing_path *path, const camber_subject *subject,
                                   const camber_tessellation_desc *desc, const camber_finding *finding,
                                   uint8_t *levels) {
@@ -141,7 +76,7 @@ static camber_status draw_shifted(camber_validation *v, const camber_drawing_pat
         camber_camera_center(&shifted.camera, floor(finding->x), floor(finding->y));
         shifted.camera.width = shifted.camera.height = SIDE_PX;
     } else {
-        status = camber_polylines_create(v->session->context, &lines, &polylines);
+        status = camber_polylines_create(v->desc->context, &lines, &polylines);
         shifted.polylines = polylines;
     }
     if (status == CAMBER_OK)
@@ -150,12 +85,13 @@ static camber_status draw_shifted(camber_validation *v, const camber_drawing_pat
     return status;
 }
 
-int camber_failure_image_of_mesh(camber_validation *v, const camber_checked_device *rig, const camber_subject *subject,
-                                 const camber_tessellation_desc *desc, camber_finding *finding) {
+camber_status camber_failure_image_of_mesh(camber_validation *v, const camber_checked_device *checked,
+                                           const camber_subject *subject, const camber_tessellation_desc *desc,
+                                           camber_finding *finding) {
     static const camber_window window = {0, 0, SIDE_PX, SIDE_PX};
     camber_subject shifted = *subject;
-    if (!is_wanted(v) || !rig->easel_count || !finding->has_point || subject->lines.point_count == 0)
-        return CAMBER_EXIT_DONE;
+    if (!is_wanted(v) || !checked->drawer_count || !finding->has_point || subject->lines.point_count == 0)
+        return CAMBER_OK;
     float *truth = calloc(SIDE_PX * SIDE_PX, sizeof *truth);
     uint8_t *levels = calloc(SIDE_PX, SIDE_PX);
     camber_status made = CAMBER_ERROR_MEMORY;
@@ -166,10 +102,10 @@ int camber_failure_image_of_mesh(camber_validation *v, const camber_checked_devi
                                           .keep_open = subject->keep_open,
                                           .kind = CAMBER_TRUTH_OVER};
         if (camber_truth_make(&truths, window, truth))
-            made = draw_shifted(v, &rig->easels[0].paths[0], &shifted, desc, finding, levels);
+            made = draw_shifted(v, &checked->drawers[0].paths[0], &shifted, desc, finding, levels);
     }
-    int status = camber_report_status(v->session->report, made);
-    if (status == CAMBER_EXIT_DONE)
+    camber_status status = made;
+    if (status == CAMBER_OK)
         status = camber_failure_image_write(v, window, truth, levels, finding);
     free(levels);
     free(truth);

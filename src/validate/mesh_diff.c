@@ -2,17 +2,18 @@
 #include "validate/checks.h"
 
 #include <stddef.h>
+#include <stdio.h>
 #include <string.h>
 
-camber_status camber_mesh_state_read(camber_mesh *mesh, bool with_stages, camber_mesh_state *sight) {
-    const camber_status status = with_stages ? camber_mesh_read_stages(mesh, &sight->stages) : CAMBER_OK;
-    sight->has_stages = with_stages && status == CAMBER_OK;
-    return status == CAMBER_OK ? camber_mesh_read(mesh, &sight->mesh) : status;
+camber_status camber_mesh_state_read(camber_mesh *mesh, bool with_stages, camber_mesh_state *state) {
+    const camber_status status = with_stages ? camber_mesh_read_stages(mesh, &state->stages) : CAMBER_OK;
+    state->has_stages = with_stages && status == CAMBER_OK;
+    return status == CAMBER_OK ? camber_mesh_read(mesh, &state->mesh) : status;
 }
 
-void camber_mesh_state_close(camber_context *context, camber_mesh_state *sight) {
-    camber_mesh_data_free(context, &sight->mesh);
-    camber_stages_free(context, &sight->stages);
+void camber_mesh_state_close(camber_context *context, camber_mesh_state *state) {
+    camber_mesh_data_free(context, &state->mesh);
+    camber_stages_free(context, &state->stages);
 }
 
 static void place(camber_finding *finding, const camber_point_stages *point) {

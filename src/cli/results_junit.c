@@ -1,4 +1,4 @@
-#include "cli/junit.h"
+#include "cli/results_text.h"
 
 #include <stdarg.h>
 #include <stdlib.h>
@@ -55,12 +55,12 @@ static void put_details(writer *w, const camber_finding *finding) {
 static void put_case(writer *w, const camber_check *check) {
     put_format(w, "    <testcase classname=\"camber.validate\" time=\"%.3f\"", check->ms / 1e3);
     put_attribute(w, "name", check->name);
-    if (check->verdict == CAMBER_RESULT_PASSED) {
+    if (check->result == CAMBER_RESULT_PASSED) {
         put_format(w, "/>\n");
         return;
     }
     put_format(w, ">\n      ");
-    if (check->verdict == CAMBER_RESULT_SKIPPED) {
+    if (check->result == CAMBER_RESULT_SKIPPED) {
         put_format(w, "<skipped");
         put_attribute(w, "message", check->reason);
         put_format(w, "/>");
@@ -82,22 +82,22 @@ static bool same_suite(const camber_check *a, const camber_check *b) {
     return same_text(a->device, b->device) && same_text(a->backend, b->backend);
 }
 
-/* What a suite or the whole document counts. */
+/* The counts of a suite or of the whole document. */
 typedef struct counts {
     size_t tests, failures, skipped;
     double ms;
 } counts;
 
-/* Of the checks that belong to the suite of one; NULL: of all. */
-static counts count_checks(const camber_results *verdicts, const camber_check *one) {
+/* Counts the checks that belong to the suite of one; NULL: all. */
+static counts count_checks(const camber_results *results, const camber_check *one) {
     counts sum = {0};
-    for (size_t i = 0; i < verdicts->count; i++) {
-        const camber_check *check = &verdicts->list[i];
+    for (size_t i = 0; i < results->count; i++) {
+        const camber_check *check = &results->list[i];
         if (one && !same_suite(check, one))
             continue;
         sum.tests++;
-        sum.failures += check->verdict == CAMBER_RESULT_FAILED;
-        sum.skipped += check->verdict == CAMBER_RESULT_SKIPPED;
+        sum.failures += check->result == CAMBER_RESULT_FAILED;
+        sum.skipped += check->result == CAMBER_RESULT_SKIPPED;
         sum.ms += check->ms;
     }
     return sum;
@@ -109,29 +109,29 @@ static void put_counts(writer *w, counts sum) {
 }
 
 /* The suite that the check opens; nothing where an earlier check has done so. */
-static void put_suite(writer *w, const camber_results *verdicts, size_t opener) {
-    const camber_check *one = &verdicts->list[opener];
+static void put_suite(writer *w, const camber_results *results, size_t opener) {
+    const camber_check *one = &results->list[opener];
     for (size_t i = 0; i < opener; i++)
-        if (same_suite(&verdicts->list[i], one))
+        if (same_suite(&results->list[i], one))
             return;
     char name[256];
     snprintf(name, sizeof name, "%s%s%s", one->device ? one->device : "this machine", one->backend ? ", " : "",
              one->backend ? one->backend : "");
     put_format(w, "  <testsuite");
     put_attribute(w, "name", name);
-    put_counts(w, count_checks(verdicts, one));
-    for (size_t i = opener; i < verdicts->count; i++)
-        if (same_suite(&verdicts->list[i], one))
-            put_case(w, &verdicts->list[i]);
+    put_counts(w, count_checks(results, one));
+    for (size_t i = opener; i < results->count; i++)
+        if (same_suite(&results->list[i], one))
+            put_case(w, &results->list[i]);
     put_format(w, "  </testsuite>\n");
 }
 
-int camber_junit_write(const camber_results *verdicts, camber_output *output) {
+int camber_junit_write(const camber_results *results, camber_output *output) {
     writer w = {.sink = camber_output_sink(output)};
     put_format(&w, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"camber validate\"");
-    put_counts(&w, count_checks(verdicts, NULL));
-    for (size_t i = 0; i < verdicts->count; i++)
-        put_suite(&w, verdicts, i);
+    put_counts(&w, count_checks(results, NULL));
+    for (size_t i = 0; i < results->count; i++)
+        put_suite(&w, results, i);
     put_format(&w, "</testsuites>\n");
     return w.failed ? camber_output_status(output, CAMBER_ERROR_IO) : camber_output_publish(output);
 }

@@ -6,6 +6,7 @@
 #include "camber_files.h"
 #include "camber_network.h"
 #include "peers/peer.h"
+#include "validate/fixture.h"
 
 #include <jansson.h>
 #include <stdbool.h>
@@ -33,12 +34,13 @@ typedef struct bench_scene {
 
 typedef struct bench {
     camber_context *context;
+    camber_fixture opened; /* which has the next four */
     camber_surface *surface;
     camber_device *device;
     camber_renderer *renderer; /* GL */
-    camber_mesh *mesh;
-    camber_renderer *covering; /* OpenCL, and no GL */
-    camber_mesh *covered;
+    camber_renderer *cl_renderer;
+    camber_mesh *mesh;    /* that GL draws */
+    camber_mesh *cl_mesh; /* that kernels draw */
     bench_size size;
     size_t warm_ups, runs;          /* up to BENCH_RUNS_MAX */
     const char *data;               /* the folder that has data/ with the larger cities, or NULL */
@@ -49,7 +51,7 @@ typedef struct bench {
     size_t scene_count;
 } bench;
 
-/* ---- rig.c: camber at work ---- */
+/* ---- frame.c: camber at work ---- */
 
 bool bench_open(bench *b);
 void bench_close(bench *b);

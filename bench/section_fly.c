@@ -34,11 +34,11 @@ typedef struct flight {
 } flight;
 
 static camber_renderer *renderer_of(const flight *f) {
-    return f->in_cl ? f->b->covering : f->b->renderer;
+    return f->in_cl ? f->b->cl_renderer : f->b->renderer;
 }
 
 static camber_mesh *mesh_of(const flight *f) {
-    return f->in_cl ? f->b->covered : f->b->mesh;
+    return f->in_cl ? f->b->cl_mesh : f->b->mesh;
 }
 
 /* Where the flight is after a share of its way: it circles over the city and goes down to the streets and up again. */

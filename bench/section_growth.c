@@ -115,16 +115,16 @@ static camber_status draw_once(bench *b, const load *l, const camber_polylines *
     const camber_stroke stroke = {.width_px = WIDTH_PX};
     const camber_tessellation_desc strokes = {.strokes = &stroke, .stroke_count = 1};
     const camber_paint paint = {.width_px = WIDTH_PX, .color = {0, 0, 0, 1}};
-    const camber_pass pass = {.mesh = b->covered, .paints = &paint, .paint_count = 1};
+    const camber_pass pass = {.mesh = b->cl_mesh, .paints = &paint, .paint_count = 1};
     const camber_frame frame = {
         .width = l->side_px, .height = l->side_px, .background = {1, 1, 1, 1}, .passes = &pass, .pass_count = 1};
     camber_frame_stats stats = {0};
     uint64_t rows = 0;
     const double begin = camber_now_ms(), busy = processor_ms();
-    camber_status status = camber_tessellate(b->covered, polylines, &strokes);
+    camber_status status = camber_tessellate(b->cl_mesh, polylines, &strokes);
     const double tessellated = camber_now_ms();
     if (status == CAMBER_OK)
-        status = camber_render(b->covering, &frame, take_rows, &rows, &stats);
+        status = camber_render(b->cl_renderer, &frame, take_rows, &rows, &stats);
     const double frame_ms = camber_now_ms() - begin;
     bench_series_add(&c->frame, frame_ms);
     bench_series_add(&c->tessellate, tessellated - begin);

@@ -72,13 +72,13 @@ static camber_status measure_drawing(trial *t) {
     const camber_stroke stroke = {.width_px = t->width_px};
     const camber_tessellation_desc desc = {.strokes = &stroke, .stroke_count = 1};
     const camber_paint paint = {.width_px = t->width_px, .color = {0, 0, 0, 1}};
-    const camber_pass pass = {.mesh = b->covered, .paints = &paint, .paint_count = 1};
+    const camber_pass pass = {.mesh = b->cl_mesh, .paints = &paint, .paint_count = 1};
     const camber_frame frame = {
         .width = BENCH_SIDE_PX, .height = BENCH_SIDE_PX, .background = {1, 1, 1, 1}, .passes = &pass, .pass_count = 1};
-    camber_status status = camber_tessellate(b->covered, t->polylines, &desc);
+    camber_status status = camber_tessellate(b->cl_mesh, t->polylines, &desc);
     for (size_t run = 0; run < b->warm_ups + b->runs && status == CAMBER_OK; run++) {
         camber_frame_stats stats;
-        status = camber_render(b->covering, &frame, NULL, NULL, &stats);
+        status = camber_render(b->cl_renderer, &frame, NULL, NULL, &stats);
         if (status != CAMBER_OK || run < b->warm_ups)
             continue;
         const double ms[DRAWN] = {stats.shape_ms, stats.count_ms, stats.total_ms, stats.fill_ms, stats.cover_ms};

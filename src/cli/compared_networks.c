@@ -1,3 +1,5 @@
+/* Reads the files of compare into networks, and projects one at a time: polylines in pixels are one network, maps are
+ * one for each --where. The view is fitted to all of them together. */
 #include "cli/compared_networks.h"
 
 #include <stdlib.h>
@@ -83,7 +85,7 @@ static char *any_of(const char *const *wheres, size_t count) {
     return text;
 }
 
-/* What shows all networks together, which one of them may not reach. */
+/* Finds the view that shows all networks together, which one of them may not reach. */
 static camber_status fit_view(camber_compared_networks *networks) {
     const camber_options *options = networks->session->options;
     if (networks->count < 2 || networks->view.kind != CAMBER_VIEW_FIT)

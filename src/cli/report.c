@@ -1,3 +1,5 @@
+/* One line on standard error for each error and warning, which nothing in a file's name can break; a bar that erases
+ * itself; JSON on standard output. A status of the library becomes an exit status here. */
 #include "cli/report.h"
 
 #include <errno.h>

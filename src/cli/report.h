@@ -1,4 +1,4 @@
-/* What the tool says: errors, warnings, progress bars, JSON. */
+/* Messages of the tool: errors, warnings, progress bars, JSON. */
 #ifndef CAMBER_CLI_REPORT_H
 #define CAMBER_CLI_REPORT_H
 
@@ -38,7 +38,7 @@ int camber_report_fail(camber_report *report, int exit_status, const char *forma
 int camber_report_status(camber_report *report, camber_status status);
 /* Standard input cannot be read, for the reason that errno gave. Returns the exit status, its line printed. */
 int camber_report_input(camber_report *report, int cause);
-/* What helps against an errno of the system's own limits; otherwise: against any other. */
+/* The cure for an errno that is one of the system's limits; for any other it is otherwise. */
 const char *camber_report_cure(int cause, const char *otherwise);
 void camber_report_warn(camber_report *report, const char *format, ...) CAMBER_PRINTF(2, 3);
 

@@ -1,3 +1,4 @@
+/* JUnit's XML: a suite for each device and back end, in the order in which they come. */
 #include "cli/results_text.h"
 
 #include <stdarg.h>

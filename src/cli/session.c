@@ -1,3 +1,5 @@
+/* Opens the user's way to draw: --draw, --backend, --sharing and --device decide, or else whether GL is hardware. A
+ * renderer may open on a thread beside the reading of files, with a context and a report of its own. */
 #include "cli/session.h"
 
 #ifdef CAMBER_MAP

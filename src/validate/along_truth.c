@@ -1,3 +1,5 @@
+/* Each pixel's 256 samples find the nearest place of the line, and take the colour that the paint has there: the gap
+ * between the line's two sides, its blur, dashes, trim and ramp. No formula is shared with kernels and shaders. */
 #include "validate/along_truth.h"
 
 #include <math.h>

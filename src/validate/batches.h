@@ -4,7 +4,7 @@
 
 #include "camber_proof.h"
 
-/* What an index of 16 bits reaches beside the restart index. */
+/* So many vertices an index of 16 bits reaches beside the restart index. */
 #define CAMBER_BATCH_VERTICES 65535u
 
 /* Triangles in their order, each into the batch under way as long as all of its vertices lie within vertices_max

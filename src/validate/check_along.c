@@ -24,7 +24,7 @@ static const camber_ramp ramps[] = {{shades, 6}, {panes, 4}};
 
 #define WHITE .color = {1, 1, 1, 1}
 
-/* What is drawn, and what its pixels are held to: measured with llvmpipe, with a third on top. */
+/* Lines as they are drawn, and the bounds of their pixels: measured with llvmpipe, with a third on top. */
 static const struct {
     const char *name;
     camber_cap cap;

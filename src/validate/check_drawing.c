@@ -6,7 +6,7 @@
 #include <string.h>
 
 enum { PASSES = 3, SIDE_PX = 2048, RECORDS_MAX = 1 << 20 };
-/* Of built-in scenes, but for --full: the twin takes longer than all else. */
+/* Side of the picture of a made-up scene, unless the checks are full: the twin takes longer than all else. */
 enum { PART_PX = 512 };
 
 /* ---- What is drawn: lines over each other, united, and in a group ---- */
@@ -87,7 +87,7 @@ static bool boxes_differ(const camber_drawing_stages *got, const camber_drawing_
     return false;
 }
 
-/* What each segment has words of; of what is drawn: the others' are whatever lay there. */
+/* Compares words that each segment has so many of. Segments that are not drawn have whatever lay there. */
 static bool words_differ(const char *field, const float *got, const float *expected, size_t words,
                          const camber_drawing_stages *of, camber_finding *finding) {
     char where[96];

@@ -57,7 +57,7 @@ static camber_status see_mesh(camber_mesh *mesh, const camber_subject *s, const 
     return status == CAMBER_OK ? camber_mesh_state_read(mesh, with_stages, state) : status;
 }
 
-/* A subject on a checked with a method. */
+/* A subject on a device with a method. */
 typedef struct job {
     camber_validation *v;
     const camber_subject *s;
@@ -78,7 +78,7 @@ static camber_status compare_mesh(job *j, camber_mesh *mesh, const camber_mesh_s
 
 /* ---- Against the twin ---- */
 
-/* Of every join and cap one, and the last with offsets. */
+/* One for every join and cap, and the last with offsets. */
 enum { BESIDE = 9, STYLES };
 
 static void every_join_and_cap(camber_stroke *stroke, size_t row, size_t number) {
@@ -138,7 +138,7 @@ void camber_style_kept(camber_stroke *stroke, size_t row, size_t number) {
     (void)number;
 }
 
-/* What a device takes at least: camber_device_desc. */
+/* Devices take no smaller limit: camber_device_desc. */
 enum { LEAST_BUFFER_BYTES = 4096 };
 
 enum { REASON_BYTES = 501 }; /* of a message that becomes a reason */
@@ -155,7 +155,7 @@ static uint64_t part_bytes(const camber_mesh_state *whole, size_t stroke_count) 
         const bool last = i + 1 == whole->stages.point_count;
         if (!last && points[i + 1].polyline == points[i].polyline)
             continue;
-        /* Of strips two indices a record, of kite and fan a record a point, in whole work-groups. */
+        /* Strips have two indices a record; kite and fan have a record a point, in whole work-groups. */
         const uint64_t indices = (last ? info->index_count : points[i + 1].first_index) - points[from].first_index;
         const uint64_t records = info->strips ? indices / 2 : i - from + 512;
         const uint64_t bytes[] = {records * sizeof(camber_record), info->strips ? 0 : indices * sizeof(uint32_t),

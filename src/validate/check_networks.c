@@ -141,7 +141,7 @@ static double reach_of(const job *j) {
     return reach;
 }
 
-/* What camber_tessellate_network promises of the window, of all that the twin sees. */
+/* Checks what camber_tessellate_network promises of the window, on every point that the twin sees. */
 static camber_status check_window(job *j, const camber_subject *s) {
     camber_check check = camber_check_start(NULL, NULL, "%s: no point far outside the picture", s->name);
     const camber_tessellation_desc desc = {j->strokes, j->stroke_count, s->method, 0, false};

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A subject in one style: its truth, and its pictures on one checked with one method. */
+/* A subject in one style: its truth, and its pictures on one device with one method. */
 typedef struct job {
     camber_validation *v;
     const camber_subject *s;
@@ -161,7 +161,7 @@ static camber_status check_path(job *j, camber_checked_drawer *drawer, size_t pa
     return status;
 }
 
-/* What one draws against what the first does. */
+/* One drawer's picture against the first one's. */
 static camber_status check_drawer(job *j, const camber_checked_drawer *drawer) {
     camber_check check = camber_check_start(j->checked->name, drawer->name, "%s: %s, %s: %s as %s, on %s", j->s->name,
                                             camber_method_name(j->desc.method), j->style, drawer->name,

@@ -1,4 +1,4 @@
-/* What a picture of lines should be, pixel by pixel, and how far one is from it. */
+/* The truth about a picture of lines, pixel by pixel, and how far a picture is from it. */
 #ifndef CAMBER_VALIDATE_COVERAGE_TRUTH_H
 #define CAMBER_VALIDATE_COVERAGE_TRUTH_H
 

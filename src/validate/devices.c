@@ -1,3 +1,5 @@
+/* Opens a device three times without what draws, in three work-group sizes, and once more for each drawer: a renderer
+ * decides how a device shares its buffers. What cannot be opened becomes a check that is skipped, with its reason. */
 #include "validate/devices.h"
 
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* Surfaces open first, then the device, since it may share buffers with a surface; renderers last. */
 #include "validate/fixture.h"
 
 static const struct {

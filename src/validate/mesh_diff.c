@@ -165,7 +165,7 @@ static bool indices_differ(const camber_mesh_state *g, const camber_mesh_state *
     return false;
 }
 
-/* What the mesh is kept as; the vertices and indices that it makes are told first, by their points. */
+/* The records that the mesh is kept as. Vertices and indices, which come of them, are told first, by their points. */
 static bool records_differ(const camber_mesh_data *g, const camber_mesh_data *e, camber_finding *finding) {
     for (size_t i = 0; i < g->info.record_count && i < e->info.record_count; i++) {
         const camber_record *got = g->records + i, *expected = e->records + i;

@@ -1,3 +1,5 @@
+/* Triangles in a row that carry one segment are that segment; where one ends and the next begins at the same point they
+ * meet in a join. Its room follows from lengths and angles in double precision. */
 #include "validate/mesh_joins.h"
 
 #include <math.h>
@@ -5,7 +7,7 @@
 
 /* Past it a join is split. */
 static const double TAN_SPLIT = 2.0;
-/* What the mesh's single precision may decide either way. */
+/* So near the bound the mesh's single precision may decide either way. */
 static const double AT_BOUND = 1e-5;
 
 /* A triangle by the places of its indices. */

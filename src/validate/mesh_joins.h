@@ -20,7 +20,7 @@ typedef struct camber_found_join {
     float x, y;      /* where they meet, px */
     double turn_deg; /* 0 to 180 */
     uint32_t row;
-    /* Of a ring: its first segment lies elsewhere in the mesh, and the range has only what its join added. */
+    /* The seam of a ring: its first segment lies elsewhere in the mesh, and the range has only what its join added. */
     bool seam;
 } camber_found_join;
 

@@ -1,6 +1,6 @@
-/* What a camera over a network should show, from the definition alone: in double precision, a segment at a time, cut
- * far outside the picture. Shares no formula with kernels/network.h but the steps that coordinates are rounded to,
- * which camber.h states. */
+/* The truth about networks: what a camera should show, from the definition alone: in double precision, a segment at a
+ * time, cut far outside the picture. Shares no formula with kernels/network.h but the steps that coordinates are
+ * rounded to, which camber.h states. */
 #ifndef CAMBER_VALIDATE_NETWORK_TRUTH_H
 #define CAMBER_VALIDATE_NETWORK_TRUTH_H
 

@@ -1,6 +1,6 @@
-/* What pixels are held to: all of it in this file's tables, in 255ths and in shares of the pixels that an edge crosses.
- * Measured with Mesa's llvmpipe, with a quarter on top. What a scene is known to get wrong is in its row: ends of lines
- * whose last segments are shorter than a pixel, and lines that lie over themselves, each part anti-aliased. */
+/* The bounds that pixels are held to: all in this file's tables, in 255ths and in shares of the pixels that an edge
+ * crosses. Measured with Mesa's llvmpipe, with a quarter on top. The known faults of a scene are in its row: ends of
+ * lines whose last segments are shorter than a pixel, and lines that lie over themselves, each part anti-aliased. */
 #include "validate/checks.h"
 
 #include <math.h>

@@ -1,3 +1,5 @@
+/* Windows of SIDE_PX are spread over the lines, and their truth is made once; each picture of the subject is then held
+ * against it, window by window. */
 #include "validate/samples.h"
 
 #include <stdlib.h>

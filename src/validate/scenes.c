@@ -1,3 +1,5 @@
+/* Building first, then the scenes of each user. Points are floats in the order in which they were made, from seeds that
+ * stand here: a change of either changes golden pictures, bounds and figures. */
 #define _XOPEN_SOURCE 700 /* M_PI */
 
 #include "validate/scenes.h"

@@ -53,7 +53,7 @@ typedef struct camber_subject {
     const char
         *scene; /* its name, where it is made up. NULL: a user's, whose drawn strokes keep their joins and caps */
     uint32_t width, height; /* of the picture, px */
-    /* What a camera sees of a network; polylines are the CPU twin's then. NULL: none. */
+    /* The network that a camera sees as this subject; polylines are the CPU twin's then. NULL: none. */
     camber_network *network;
     camber_camera camera;
     camber_method method; /* of a network, the one that it is checked with */

@@ -18,7 +18,7 @@
 #include <string.h>
 
 enum { SIDE_PX = 2048, CROP_AT_PX = 800, CROP_PX = 400, SKIPPED = 77 };
-/* What a map leaves out unless told otherwise. */
+/* A map leaves out so much unless told otherwise. */
 static const double SIMPLIFY_PX = 0.1;
 
 /* World coordinates, then pixels of the picture. */
@@ -157,7 +157,7 @@ static bool keep_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint3
     return true;
 }
 
-/* What lines are drawn as: all points of all of them, or what the camera keeps. */
+/* Lines to draw: all points of all of them, or those that the camera keeps. */
 typedef enum source {
     ALL_POINTS,
     SIMPLIFIED,
@@ -231,7 +231,7 @@ typedef struct bounds {
     double over, united, simplified;
 } bounds;
 
-/* What the mesh takes on the device with every point at the first width, per segment. */
+/* Bytes a segment that the mesh takes on the device, with every point at the first width. */
 static bool judge_bytes(const core *c, const network *n, double width_px, double most) {
     uint8_t *levels = must(malloc((size_t)SIDE_PX * SIDE_PX));
     const bool drawn = draw(c, n, ALL_POINTS, width_px, CAMBER_OVERLAP_FLATTEN, levels);

@@ -1,6 +1,6 @@
 /* Networks of real streets: the device against the twin under cameras from a whole city to a doorstep, turned and
  * straight, with points left out and with all of them. */
-#include "bench.h"
+#include "test_fixture.h"
 
 #include "camber_map.h"
 
@@ -31,7 +31,7 @@ static const char *data_folder(void) {
 }
 
 /* Points and meshes of one look. Gives how many records there are. */
-static size_t compare(bench *b, camber_network *network, const camber_camera *camera,
+static size_t compare(fixture *b, camber_network *network, const camber_camera *camera,
                       const camber_tessellation_desc *desc) {
     camber_polylines *twin = NULL;
     camber_mesh_data got = {0}, expected = {0};
@@ -67,7 +67,7 @@ static size_t compare(bench *b, camber_network *network, const camber_camera *ca
     return records;
 }
 
-static size_t check_city(bench *b, const camber_features *features, const city *c) {
+static size_t check_city(fixture *b, const camber_features *features, const city *c) {
     camber_scene *streets = NULL;
     size_t records = 0;
     for (size_t i = 0; i < LOOK_COUNT; i++) {
@@ -96,7 +96,7 @@ static size_t check_city(bench *b, const camber_features *features, const city *
 }
 
 static void test_cities(void **state) {
-    bench *b = *state;
+    fixture *b = *state;
     camber_style *style = NULL;
     size_t seen = 0;
     assert_int_equal(camber_style_builtin(b->context, CAMBER_THEME_LIGHT, &style), CAMBER_OK);
@@ -131,6 +131,6 @@ int main(void) {
         return 77;
     }
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_cities)};
-    const int failed = cmocka_run_group_tests(tests, bench_set_up, bench_tear_down);
+    const int failed = cmocka_run_group_tests(tests, fixture_set_up_mesh, fixture_tear_down);
     return failed;
 }

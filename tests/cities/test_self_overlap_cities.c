@@ -1,5 +1,5 @@
 /* The longest lines of a real network, 2,217 points in five lines, under the same judge as the torture set. */
-#include "torture.h"
+#include "torture_judge.h"
 
 #include <cpl_conv.h>
 #include <cpl_vsi.h>
@@ -24,7 +24,7 @@ static OGRGeometryH read_geometry(const char *folder) {
 
 /* The lines as figures of their own, in the geometry's own proportions, north up; drawn at several scales, since what
  * is tight at one is plain at another. */
-static size_t add_lines(torture_set *set, OGRGeometryH geometry, double side_px) {
+static size_t add_lines(camber_torture_set *set, OGRGeometryH geometry, double side_px) {
     OGREnvelope box;
     OGR_G_GetEnvelope(geometry, &box);
     const double scale = side_px / fmax(box.MaxX - box.MinX, box.MaxY - box.MinY);
@@ -33,47 +33,47 @@ static size_t add_lines(torture_set *set, OGRGeometryH geometry, double side_px)
         const OGRGeometryH line = OGR_G_GetGeometryRef(geometry, i);
         const int count = OGR_G_GetPointCount(line);
         for (int k = 0; k < count; k++)
-            scene_point(&set->lines, (OGR_G_GetX(line, k) - box.MinX) * scale,
-                        (box.MaxY - OGR_G_GetY(line, k)) * scale);
+            camber_made_scene_point(&set->lines, (OGR_G_GetX(line, k) - box.MinX) * scale,
+                                    (box.MaxY - OGR_G_GetY(line, k)) * scale);
         char name[32];
         snprintf(name, sizeof name, "line %d, %d points", i, count);
-        torture_end_figure(set, name, 12);
+        camber_torture_end_figure(set, name, 12);
         points += (size_t)count;
     }
     return points;
 }
 
-typedef struct bench {
-    studio studio;
-    torture_set set;
-} bench;
+typedef struct overlap_test {
+    fixture fixture;
+    camber_torture_set set;
+} overlap_test;
 
 static void test_strips_are_uniform(void **state) {
-    bench *b = *state;
-    torture_check(&b->studio, &b->set, CAMBER_METHOD_STRIP, (torture_known){0, 0, 2});
+    overlap_test *b = *state;
+    torture_check(&b->fixture, &b->set, CAMBER_METHOD_STRIP, (torture_known){0, 0, 2});
 }
 
 static void test_kites_are_uniform(void **state) {
-    bench *b = *state;
-    torture_check(&b->studio, &b->set, CAMBER_METHOD_KITE, (torture_known){1, 20, 2});
+    overlap_test *b = *state;
+    torture_check(&b->fixture, &b->set, CAMBER_METHOD_KITE, (torture_known){1, 20, 2});
 }
 
 static int set_up(void **state) {
-    static bench b;
+    static overlap_test b;
     OGRGeometryH geometry = read_geometry(getenv("CAMBER_DATA"));
     assert_non_null(geometry);
-    b.set = torture_begin(SIDE_PX + 32);
+    b.set = camber_torture_begin(SIDE_PX + 32);
     assert_true(add_lines(&b.set, geometry, SIDE_PX) >= LEAST_POINTS);
     add_lines(&b.set, geometry, SIDE_PX / 4.0);
     OGR_G_DestroyGeometry(geometry);
     *state = &b;
-    return studio_open(&b.studio) ? 0 : -1;
+    return fixture_open(&b.fixture) ? 0 : -1;
 }
 
 static int tear_down(void **state) {
-    bench *b = *state;
-    torture_free(&b->set);
-    studio_close(&b->studio);
+    overlap_test *b = *state;
+    camber_torture_free(&b->set);
+    fixture_close(&b->fixture);
     return 0;
 }
 
@@ -85,7 +85,7 @@ int main(void) {
         printf("no %s; set CAMBER_DATA\n", data ? path : FILE_NAME);
         return 77;
     }
-    if (!studio_begin())
+    if (!fixture_begin())
         return 77;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_strips_are_uniform),

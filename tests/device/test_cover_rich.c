@@ -1,6 +1,6 @@
-/* What frames have beside widths and colours, drawn in OpenCL: bands, blur, dashes, trims, ramps and masked layers, on
- * the device and by the twin to the last bit, beside GL, and in areas of any size. */
-#include "covering.h"
+/* Features of frames beside widths and colours, drawn in OpenCL: bands, blur, dashes, trims, ramps and masked layers,
+ * on the device and by the twin to the last bit, beside GL, and in areas of any size. */
+#include "raster_twin.h"
 
 #include "draw/renderer.h"
 
@@ -46,40 +46,41 @@ static camber_paint paint_of(size_t way, float width_px) {
 }
 
 typedef struct drawing {
-    scene lines;
-    camber_stroke strokes[SCENE_ROWS];
-    camber_paint paints[2][SCENE_ROWS];
+    camber_made_scene lines;
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
+    camber_paint paints[2][CAMBER_KERNEL_ROWS];
     camber_pass passes[2];
     camber_frame frame;
 } drawing;
 
 enum { SCENES = 5 };
 static drawing begin_drawing(int which, size_t first_way) {
-    static void (*const fills[SCENES])(scene *, uint64_t *) = {scene_walks, scene_rings, scene_turns, scene_blocks,
-                                                               scene_degenerate};
+    static void (*const fills[SCENES])(camber_made_scene *, uint64_t *) = {
+        camber_scene_add_walks, camber_scene_add_rings, camber_scene_add_turns, camber_scene_add_blocks,
+        camber_scene_add_degenerate};
     drawing d = {.frame = {.width = SIDE_PX, .height = SIDE_PX - 37, .background = {0.8f, 0.6f, 1, 1}}};
     uint64_t seed = 31 + (uint64_t)which;
     scene_strokes(d.strokes);
     fills[which](&d.lines, &seed);
-    for (size_t i = 0; i < SCENE_ROWS; i++) {
+    for (size_t i = 0; i < CAMBER_KERNEL_ROWS; i++) {
         d.paints[0][i] = paint_of((first_way + i) % WAYS, d.strokes[i].width_px);
         d.paints[1][i] = paint_of((first_way + 3 * i + 5) % WAYS, 0.5f * d.strokes[i].width_px);
     }
     return d;
 }
 
-static camber_mesh *make_mesh(const covering *e, camber_renderer *renderer, const drawing *d, camber_method method) {
-    const camber_tessellation_desc desc = {d->strokes, SCENE_ROWS, method, 0, true};
-    return studio_mesh(&e->s, renderer, &d->lines, &desc);
+static camber_mesh *make_mesh(const fixture *e, camber_renderer *renderer, const drawing *d, camber_method method) {
+    const camber_tessellation_desc desc = {d->strokes, CAMBER_KERNEL_ROWS, method, 0, true};
+    return fixture_mesh(e, renderer, &d->lines, &desc);
 }
 
-static picture draw_with(const covering *e, camber_renderer *renderer, drawing *d, camber_method method) {
+static picture draw_with(const fixture *e, camber_renderer *renderer, drawing *d, camber_method method) {
     camber_mesh *mesh = make_mesh(e, renderer, d, method);
     for (size_t i = 0; i < 2; i++) {
         camber_pass *pass = d->passes + i;
         pass->mesh = mesh;
         pass->paints = d->paints[i];
-        pass->paint_count = SCENE_ROWS;
+        pass->paint_count = CAMBER_KERNEL_ROWS;
         pass->dashes = dashes;
         pass->dash_count = DASHES;
         pass->ramps = ramps;
@@ -129,25 +130,25 @@ static camber_ink_more more_of(size_t way, float width_px, float tail[4 * TAIL_M
     return m;
 }
 
-static void compare_with_twin(const covering *e, const drawing *d, camber_mesh *mesh, size_t first_way, bool linear) {
+static void compare_with_twin(const fixture *e, const drawing *d, camber_mesh *mesh, size_t first_way, bool linear) {
     static float tail[4 * TAIL_MAX];
-    float rows[3 * SCENE_ROWS][CAMBER_COVER_ROW_WORDS] = {{0}};
-    camber_ink inks[3 * SCENE_ROWS] = {{0}};
-    camber_ink_more more[3 * SCENE_ROWS] = {{0}};
+    float rows[3 * CAMBER_KERNEL_ROWS][CAMBER_COVER_ROW_WORDS] = {{0}};
+    camber_ink inks[3 * CAMBER_KERNEL_ROWS] = {{0}};
+    camber_ink_more more[3 * CAMBER_KERNEL_ROWS] = {{0}};
     size_t tail_count = 0;
-    for (uint32_t i = 0; i < 3 * SCENE_ROWS; i++) {
+    for (uint32_t i = 0; i < 3 * CAMBER_KERNEL_ROWS; i++) {
         const size_t way = (first_way + i) % WAYS;
-        const float width = d->strokes[i % SCENE_ROWS].width_px;
+        const float width = d->strokes[i % CAMBER_KERNEL_ROWS].width_px;
         rows[i][0] = width > 0.0f ? 0.5f * width : -1.0f;
         memcpy(rows[i] + 3, &i, sizeof i);
         more[i] = more_of(way, width, tail, &tail_count);
         inks[i] = (camber_ink){.r = 0.1f * (float)(i % 10), .g = 0.7f, .b = 1, .a = i % 2 ? 1 : 0.6f};
-        if (i >= SCENE_ROWS && i < 2 * SCENE_ROWS) { /* a masked layer in a group */
+        if (i >= CAMBER_KERNEL_ROWS && i < 2 * CAMBER_KERNEL_ROWS) { /* a masked layer in a group */
             inks[i].mode = CAMBER_INK_MASKED;
             inks[i].layer = 1;
             inks[i].layer_opacity = 0.8f;
         }
-        if (i >= SCENE_ROWS) {
+        if (i >= CAMBER_KERNEL_ROWS) {
             inks[i].group = 1;
             inks[i].group_opacity = 0.9f;
         }
@@ -156,12 +157,13 @@ static void compare_with_twin(const covering *e, const drawing *d, camber_mesh *
     }
     assert_true(tail_count <= TAIL_MAX);
     const size_t count = mesh->polyline_count;
-    const camber_cover_run runs[] = {
-        {mesh, 0, count, 0}, {mesh, count / 3, count, SCENE_ROWS}, {mesh, 0, count / 2, 2 * SCENE_ROWS}};
+    const camber_cover_run runs[] = {{mesh, 0, count, 0},
+                                     {mesh, count / 3, count, CAMBER_KERNEL_ROWS},
+                                     {mesh, 0, count / 2, 2 * CAMBER_KERNEL_ROWS}};
     camber_cover_scene drawn = {.rows = rows[0],
-                                .row_count = 3 * SCENE_ROWS,
+                                .row_count = 3 * CAMBER_KERNEL_ROWS,
                                 .inks = inks,
-                                .ink_count = 3 * SCENE_ROWS,
+                                .ink_count = 3 * CAMBER_KERNEL_ROWS,
                                 .runs = runs,
                                 .run_count = 3,
                                 .background = {0.2f, 0.3f, 0.4f, 1},
@@ -172,22 +174,22 @@ static void compare_with_twin(const covering *e, const drawing *d, camber_mesh *
     const double pitches[] = {0, 20, 60, 80};
     for (size_t i = 0; i < sizeof pitches / sizeof *pitches; i++) {
         if (i > 0)
-            covering_tilt(&drawn, pitches[i], SIDE_PX, SIDE_PX);
-        camber_free(e->s.context, covering_draw_twice(e, &drawn, (camber_cover_area){32, 64, 400, 333}));
+            raster_tilt(&drawn, pitches[i], SIDE_PX, SIDE_PX);
+        camber_free(e->context, raster_draw_twice(e, &drawn, (camber_cover_area){32, 64, 400, 333}));
     }
 }
 
 static void test_twin(void **state) {
-    const covering *e = *state;
+    const fixture *e = *state;
     static const camber_method methods[] = {CAMBER_METHOD_STRIP, CAMBER_METHOD_KITE, CAMBER_METHOD_FAN};
     for (int which = 0; which < SCENES; which++)
         for (size_t m = 0; m < 3; m++) {
             const size_t first_way = 5 * m + 2 * (size_t)which;
             drawing d = begin_drawing(which, first_way);
-            camber_mesh *mesh = make_mesh(e, e->cl, &d, methods[m]);
+            camber_mesh *mesh = make_mesh(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], &d, methods[m]);
             compare_with_twin(e, &d, mesh, first_way, which % 2);
             camber_mesh_destroy(mesh);
-            scene_free(&d.lines);
+            camber_made_scene_free(&d.lines);
         }
 }
 
@@ -196,9 +198,9 @@ static void test_twin(void **state) {
 /* A group's layer is rounded to 8 bits twice more. On bisectors single pixels belong to another segment than GL's
  * triangles say, whose dash, band or colour is another: up to 255. */
 enum { PIXELS_PAST_8 = 1000 };
-static void compare_with_gl(const covering *e, drawing *d, const char *what, size_t way) {
-    picture a = draw_with(e, studio_any(&e->s), d, CAMBER_METHOD_STRIP),
-            b = draw_with(e, e->cl, d, CAMBER_METHOD_STRIP);
+static void compare_with_gl(const fixture *e, drawing *d, const char *what, size_t way) {
+    picture a = draw_with(e, fixture_gl(e), d, CAMBER_METHOD_STRIP),
+            b = draw_with(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], d, CAMBER_METHOD_STRIP);
     const difference apart = picture_compare(&a, &b);
     printf("# %-24s %2zu %.4f of 255 on average, %d at most, %zu pixels past 8\n", what, way, apart.mean, apart.most,
            apart.past_8);
@@ -209,9 +211,9 @@ static void compare_with_gl(const covering *e, drawing *d, const char *what, siz
 }
 
 static void test_gl(void **state) {
-    const covering *e = *state;
+    const fixture *e = *state;
     static const char *const names[SCENES] = {"walks", "rings", "turns", "blocks", "degenerate"};
-    if (!studio_any(&e->s))
+    if (!fixture_gl(e))
         skip();
     for (size_t way = 0; way < WAYS; way++) {
         const int which = (int)way % SCENES;
@@ -219,25 +221,25 @@ static void test_gl(void **state) {
         compare_with_gl(e, &d, names[which], way);
         d.passes[0].overlap = CAMBER_OVERLAP_UNITE;
         d.passes[1].opacity = 0.6f;
-        for (size_t i = 0; i < SCENE_ROWS; i++)
+        for (size_t i = 0; i < CAMBER_KERNEL_ROWS; i++)
             d.paints[0][i].color.a = 0.5f;
         compare_with_gl(e, &d, "  translucent", way);
         d.frame.coverage = CAMBER_COVERAGE_LINEAR;
-        for (size_t i = 0; i < SCENE_ROWS; i++) { /* coverage is gathered, and coloured once */
+        for (size_t i = 0; i < CAMBER_KERNEL_ROWS; i++) { /* coverage is gathered, and coloured once */
             d.paints[0][i] = paint_of(way < 12 ? way : way - 4, d.strokes[i].width_px);
             d.paints[0][i].color = (camber_color){0, 0.4f, 0, 0.5f};
         }
         d.passes[0].opacity = 0.7f;
         d.passes[1].overlap = CAMBER_OVERLAP_ACCUMULATE;
         compare_with_gl(e, &d, "  of one colour, linear", way);
-        scene_free(&d.lines);
+        camber_made_scene_free(&d.lines);
     }
 }
 
 static void test_gl_tilted(void **state) {
-    const covering *e = *state;
+    const fixture *e = *state;
     static const double pitches[] = {30, 60, 80};
-    if (!studio_any(&e->s))
+    if (!fixture_gl(e))
         skip();
     for (size_t way = 0; way < WAYS; way++) {
         drawing d = begin_drawing((int)way % SCENES, way);
@@ -247,34 +249,34 @@ static void test_gl_tilted(void **state) {
         compare_with_gl(e, &d, what, way);
         d.passes[0].overlap = CAMBER_OVERLAP_UNITE;
         d.passes[1].opacity = 0.6f;
-        for (size_t i = 0; i < SCENE_ROWS; i++)
+        for (size_t i = 0; i < CAMBER_KERNEL_ROWS; i++)
             d.paints[0][i].color.a = 0.5f;
         compare_with_gl(e, &d, "  translucent", way);
-        scene_free(&d.lines);
+        camber_made_scene_free(&d.lines);
     }
 }
 
 /* Lines of more alphas than layers: one layer, in which a line hides those below it. */
 static void test_many_alphas(void **state) {
-    const covering *e = *state;
+    const fixture *e = *state;
     enum { LINES = 80 };
     static camber_stroke strokes[LINES];
     static camber_paint paints[LINES];
-    scene lines = {0};
+    camber_made_scene lines = {0};
     uint64_t seed = 4;
-    if (!studio_any(&e->s))
+    if (!fixture_gl(e))
         skip();
     for (size_t i = 0; i < LINES; i++) {
         strokes[i].width_px = 9;
         paints[i] = (camber_paint){.width_px = 9, .color = {(float)(i % 3) / 2, 0.5f, (float)(i % 2), 0}};
         paints[i].color.a = (float)(i + 1) / (LINES + 1);
-        scene_walk(&lines, &seed, 12, (const double[]){20, 60}, 1);
-        scene_end(&lines, i);
+        camber_made_scene_walk(&lines, &seed, 12, (const double[]){20, 60}, 1);
+        camber_made_scene_end(&lines, i);
     }
     picture p[2];
     for (int i = 0; i < 2; i++) {
-        camber_renderer *renderer = i ? e->cl : studio_any(&e->s);
-        camber_mesh *mesh = studio_mesh(&e->s, renderer, &lines, &(camber_tessellation_desc){strokes, LINES, 0, 0, 0});
+        camber_renderer *renderer = i ? e->on.renderer[CAMBER_FIXTURE_OPENCL] : fixture_gl(e);
+        camber_mesh *mesh = fixture_mesh(e, renderer, &lines, &(camber_tessellation_desc){strokes, LINES, 0, 0, 0});
         const camber_pass pass = {.mesh = mesh, .paints = paints, .paint_count = LINES, .opacity = 0.9f};
         const camber_frame frame = {.width = SIDE_PX, .height = SIDE_PX, .passes = &pass, .pass_count = 1};
         p[i] = picture_draw(renderer, &frame);
@@ -286,46 +288,47 @@ static void test_many_alphas(void **state) {
     assert_true(apart.mean < 0.5); /* GL's layer has 8 bits, and so has that of the group */
     picture_free(&p[0]);
     picture_free(&p[1]);
-    scene_free(&lines);
+    camber_made_scene_free(&lines);
 }
 
 /* ---- The same bytes ---- */
 
 /* Where no buffer has room for all segments, so that they are drawn in slices. */
-static void compare_in_slices(const covering *e, drawing *d, const picture *whole) {
+static void compare_in_slices(const fixture *e, drawing *d, const picture *whole) {
     const camber_device_desc desc = {.largest_buffer_bytes = 256 * 1024};
-    covering small = {.s = {.context = e->s.context}};
-    assert_int_equal(camber_device_create(e->s.context, &desc, NULL, &small.s.device), CAMBER_OK);
-    assert_int_equal(camber_renderer_create(small.s.device, NULL, NULL, &small.cl), CAMBER_OK);
-    picture p = draw_with(&small, small.cl, d, CAMBER_METHOD_STRIP);
-    assert_true(camber_cover_slices(small.cl->cover) > 1);
+    fixture small = {.context = e->context};
+    assert_int_equal(camber_device_create(e->context, &desc, NULL, &small.on.device), CAMBER_OK);
+    assert_int_equal(camber_renderer_create(small.on.device, NULL, NULL, &small.on.renderer[CAMBER_FIXTURE_OPENCL]),
+                     CAMBER_OK);
+    picture p = draw_with(&small, small.on.renderer[CAMBER_FIXTURE_OPENCL], d, CAMBER_METHOD_STRIP);
+    assert_true(camber_cover_slices(small.on.renderer[CAMBER_FIXTURE_OPENCL]->cover) > 1);
     picture_assert_same(whole, &p);
     picture_free(&p);
-    camber_renderer_destroy(small.cl);
-    camber_device_destroy(small.s.device);
+    camber_renderer_destroy(small.on.renderer[CAMBER_FIXTURE_OPENCL]);
+    camber_device_destroy(small.on.device);
 }
 
 static void test_areas(void **state) {
-    const covering *e = *state;
+    const fixture *e = *state;
     static const uint32_t sides[] = {33, 64, 320};
     drawing d = begin_drawing(0, 1);
     d.passes[1].opacity = 0.5f;
     for (int i = 0; i < 2; i++) {
-        picture whole = draw_with(e, e->cl, &d, CAMBER_METHOD_STRIP);
+        picture whole = draw_with(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], &d, CAMBER_METHOD_STRIP);
         for (size_t k = 0; k < sizeof sides / sizeof *sides; k++) {
             d.frame.largest_piece_px = sides[k];
-            picture p = draw_with(e, e->cl, &d, CAMBER_METHOD_STRIP);
+            picture p = draw_with(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], &d, CAMBER_METHOD_STRIP);
             picture_assert_same(&whole, &p);
             picture_free(&p);
         }
         d.frame.largest_piece_px = 0;
         compare_in_slices(e, &d, &whole);
         picture_free(&whole);
-        for (size_t k = 0; k < SCENE_ROWS; k++)
+        for (size_t k = 0; k < CAMBER_KERNEL_ROWS; k++)
             d.paints[0][k] = paint_of(8 + k % 8, d.strokes[k].width_px);
         d.frame.pitch_deg = 65;
     }
-    scene_free(&d.lines);
+    camber_made_scene_free(&d.lines);
 }
 
 int main(void) {
@@ -334,5 +337,5 @@ int main(void) {
         cmocka_unit_test(test_twin),        cmocka_unit_test(test_gl),    cmocka_unit_test(test_gl_tilted),
         cmocka_unit_test(test_many_alphas), cmocka_unit_test(test_areas),
     };
-    return COVERING_RUN(tests);
+    return FIXTURE_CL_RUN(tests);
 }

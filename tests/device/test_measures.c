@@ -1,15 +1,15 @@
 /* Measures: how far along its polyline each record lies. Against sums in double precision, and the device against the
  * twin to the last bit, over borders of chunks and parts. */
-#include "bench.h"
+#include "test_fixture.h"
 
 #include "tess/tess.h"
 
 static const camber_method METHODS[] = {CAMBER_METHOD_STRIP, CAMBER_METHOD_KITE, CAMBER_METHOD_FAN};
 
-static camber_mesh_data measured_on_host(bench *b, const camber_polylines *polylines, const camber_stroke *strokes,
+static camber_mesh_data measured_on_host(fixture *b, const camber_polylines *polylines, const camber_stroke *strokes,
                                          camber_method method) {
     camber_mesh_data data;
-    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, method, 0, true};
+    const camber_tessellation_desc desc = {strokes, CAMBER_KERNEL_ROWS, method, 0, true};
     assert_int_equal(camber_tessellate_on_host(b->context, polylines, &desc, &data), CAMBER_OK);
     return data;
 }
@@ -43,14 +43,14 @@ static void check_line(const float *points, size_t count, const camber_mesh_data
 }
 
 static void test_against_doubles(void **state) {
-    bench *b = *state;
-    camber_stroke strokes[SCENE_ROWS];
+    fixture *b = *state;
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     uint64_t seed = 5;
-    scene s = {0};
+    camber_made_scene s = {0};
     scene_strokes(strokes);
     for (int line = 0; line < 40; line++) {
-        scene_walk(&s, &seed, 2 + random_below(&seed, 400), (const double[]){0.5, 30}, 0.5);
-        scene_end(&s, 5);
+        camber_made_scene_walk(&s, &seed, 2 + camber_random_below(&seed, 400), (const double[]){0.5, 30}, 0.5);
+        camber_made_scene_end(&s, 5);
     }
     camber_polylines *polylines = scene_first(b->context, &s, s.polyline_count, true);
     camber_mesh_data data = measured_on_host(b, polylines, strokes, CAMBER_METHOD_STRIP);
@@ -65,7 +65,7 @@ static void test_against_doubles(void **state) {
     assert_int_equal(record, data.info.record_count);
     camber_mesh_data_free(b->context, &data);
     camber_polylines_destroy(polylines);
-    scene_free(&s);
+    camber_made_scene_free(&s);
 }
 
 static void assert_same(const camber_mesh_data *a, const camber_mesh_data *b) {
@@ -79,16 +79,16 @@ static void assert_same(const camber_mesh_data *a, const camber_mesh_data *b) {
 }
 
 static void test_device_equals_twin(void **state) {
-    bench *b = *state;
+    fixture *b = *state;
     if (!b->rounds)
         skip();
-    camber_stroke strokes[SCENE_ROWS];
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     scene_strokes(strokes);
-    for (size_t which = 0; which < SCENE_COUNT; which++) {
-        scene s = scene_make(which);
+    for (size_t which = 0; which < CAMBER_KERNEL_SCENES; which++) {
+        camber_made_scene s = scene_make(which);
         camber_polylines *polylines = scene_polylines(b->context, &s);
         for (size_t m = 0; m < 3; m++) {
-            const camber_tessellation_desc desc = {strokes, SCENE_ROWS, METHODS[m], 0, true};
+            const camber_tessellation_desc desc = {strokes, CAMBER_KERNEL_ROWS, METHODS[m], 0, true};
             camber_mesh_data twin = measured_on_host(b, polylines, strokes, METHODS[m]), device;
             assert_int_equal(camber_tessellate(b->mesh, polylines, &desc), CAMBER_OK);
             assert_int_equal(camber_mesh_read(b->mesh, &device), CAMBER_OK);
@@ -97,20 +97,20 @@ static void test_device_equals_twin(void **state) {
             camber_mesh_data_free(b->context, &device);
         }
         camber_polylines_destroy(polylines);
-        scene_free(&s);
+        camber_made_scene_free(&s);
     }
 }
 
 /* The same mesh without and with measures, in turn: what is not measured is as if nothing had been. */
 static void test_in_turn(void **state) {
-    bench *b = *state;
-    camber_stroke strokes[SCENE_ROWS];
+    fixture *b = *state;
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     scene_strokes(strokes);
-    scene s = scene_make(0);
+    camber_made_scene s = scene_make(0);
     camber_polylines *polylines = scene_polylines(b->context, &s);
     camber_mesh_data meshes[4];
     for (size_t i = 0; i < 4; i++) {
-        const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0, i % 2 == 1};
+        const camber_tessellation_desc desc = {strokes, CAMBER_KERNEL_ROWS, CAMBER_METHOD_STRIP, 0, i % 2 == 1};
         assert_int_equal(camber_tessellate(b->mesh, polylines, &desc), CAMBER_OK);
         assert_int_equal(camber_mesh_read(b->mesh, meshes + i), CAMBER_OK);
         assert_int_equal(meshes[i].measures != NULL, i % 2);
@@ -122,13 +122,13 @@ static void test_in_turn(void **state) {
     for (size_t i = 0; i < 4; i++)
         camber_mesh_data_free(b->context, meshes + i);
     camber_polylines_destroy(polylines);
-    scene_free(&s);
+    camber_made_scene_free(&s);
 }
 
 /* ---- Networks ---- */
 
 /* Walks that leave the window far behind and come back. */
-static camber_network *wander(bench *b, double *points, size_t count, size_t lines) {
+static camber_network *wander(fixture *b, double *points, size_t count, size_t lines) {
     uint64_t seed = 11;
     size_t offsets[9];
     float *importance = calloc(lines * count, sizeof *importance);
@@ -139,11 +139,11 @@ static camber_network *wander(bench *b, double *points, size_t count, size_t lin
         for (size_t i = 0; i < count; i++) {
             points[2 * (line * count + i)] = x;
             points[2 * (line * count + i) + 1] = y;
-            importance[line * count + i] = (float)random_between(&seed, 0, 0.02);
-            direction += random_between(&seed, -0.8, 0.8);
-            const double length = i % 50 == 48 ? 200 : random_between(&seed, 0.001, 0.3);
-            x = i % 50 == 49 ? random_between(&seed, 4, 6) : x + length * cos(direction);
-            y = i % 50 == 49 ? random_between(&seed, 4, 6) : y + length * sin(direction);
+            importance[line * count + i] = (float)camber_random_between(&seed, 0, 0.02);
+            direction += camber_random_between(&seed, -0.8, 0.8);
+            const double length = i % 50 == 48 ? 200 : camber_random_between(&seed, 0.001, 0.3);
+            x = i % 50 == 49 ? camber_random_between(&seed, 4, 6) : x + length * cos(direction);
+            y = i % 50 == 49 ? camber_random_between(&seed, 4, 6) : y + length * sin(direction);
         }
     }
     offsets[lines] = lines * count;
@@ -182,7 +182,7 @@ static double nearest(const double *points, size_t count, const camber_camera *c
 
 static void test_networks(void **state) {
     enum { COUNT = 400, LINES = 8 };
-    bench *b = *state;
+    fixture *b = *state;
     static double points[2 * COUNT * LINES];
     camber_network *network = wander(b, points, COUNT, LINES);
     const camber_stroke stroke = {6, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0};
@@ -222,7 +222,7 @@ static void test_networks(void **state) {
  * whose buffers hold a few lines each, so that there are sections. */
 static void test_parts_of_lines(void **state) {
     enum { COUNT = 100, LINES = 120 };
-    bench *b = *state;
+    fixture *b = *state;
     static double points[2 * COUNT * LINES];
     static float progress[2 * LINES];
     size_t offsets[LINES + 1];
@@ -230,10 +230,10 @@ static void test_parts_of_lines(void **state) {
     for (size_t line = 0; line <= LINES; line++)
         offsets[line] = line * COUNT;
     for (size_t i = 0; i < 2 * COUNT * LINES; i++)
-        points[i] = random_between(&seed, 0, 10);
+        points[i] = camber_random_between(&seed, 0, 10);
     for (size_t line = 0; line < LINES; line++) {
-        progress[2 * line] = line % 3 ? (float)random_between(&seed, 0, 0.5) : 0.0f;
-        progress[2 * line + 1] = line % 4 ? (float)random_between(&seed, 0.6, 1) : 1.0f;
+        progress[2 * line] = line % 3 ? (float)camber_random_between(&seed, 0, 0.5) : 0.0f;
+        progress[2 * line + 1] = line % 4 ? (float)camber_random_between(&seed, 0.6, 1) : 1.0f;
     }
     progress[2] = NAN;  /* as if nothing were said */
     progress[4] = 0.9f; /* no longer */
@@ -296,7 +296,7 @@ int main(void) {
     };
     int failed = 77;
     if (device_is_there())
-        failed = cmocka_run_group_tests(tests, bench_set_up, bench_tear_down);
+        failed = cmocka_run_group_tests(tests, fixture_set_up_mesh, fixture_tear_down);
     else
         puts("skipped: no OpenCL device");
     return failed;

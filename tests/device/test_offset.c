@@ -1,6 +1,6 @@
 /* Lines beside others: against offset curves that are sampled in double precision and thinned by distance, the device
  * against the twin to the last bit, over borders of chunks and parts, and cameras against each other. */
-#include "bench.h"
+#include "test_fixture.h"
 
 #include <float.h>
 
@@ -83,7 +83,7 @@ static samples sample_truth(const line *l, double offset, double step) {
 
 /* ---- What is made ---- */
 
-static camber_polylines *polylines_of(bench *b, const line *l) {
+static camber_polylines *polylines_of(fixture *b, const line *l) {
     float points[2 * POINTS_MAX];
     const uint32_t offsets[] = {0, (uint32_t)l->count};
     for (size_t i = 0; i < 2 * l->count; i++)
@@ -95,7 +95,7 @@ static camber_polylines *polylines_of(bench *b, const line *l) {
     return polylines;
 }
 
-static line made_of(bench *b, const line *l, camber_stroke stroke) {
+static line made_of(fixture *b, const line *l, camber_stroke stroke) {
     static line made;
     camber_polylines *polylines = polylines_of(b, l);
     const camber_tessellation_desc desc = {.strokes = &stroke, .stroke_count = 1};
@@ -125,7 +125,7 @@ static double distance_to_samples(const samples *s, double x, double y) {
 
 /* The line beside is where the truth is and nowhere else. aside: how far either may lie from the other, where links cut
  * corners. */
-static void check_shape(bench *b, const char *name, const line *l, double offset, double aside) {
+static void check_shape(fixture *b, const char *name, const line *l, double offset, double aside) {
     const camber_stroke stroke = {.width_px = 2, .offset_px = (float)offset};
     const line made = made_of(b, l, stroke);
     samples truth = sample_truth(l, offset, 0.1);
@@ -279,24 +279,25 @@ static void test_joins(void **state) {
 
 /* No point lies farther than the offset, and rings begin where they end, whatever the line. */
 static void test_walks(void **state) {
-    bench *b = *state;
+    fixture *b = *state;
     uint64_t seed = 77;
     for (int n = 0; n < 400; n++) {
         static line l;
         l.count = 0;
-        const double turn = random_between(&seed, 0.1, SCENE_PI), longest = random_between(&seed, 0.5, 30);
-        const size_t count = 2 + random_below(&seed, 60);
+        const double turn = camber_random_between(&seed, 0.1, SCENE_PI),
+                     longest = camber_random_between(&seed, 0.5, 30);
+        const size_t count = 2 + camber_random_below(&seed, 60);
         double x = 200, y = 200, direction = 0;
         for (size_t i = 0; i < count; i++) {
             add(&l, (double)(float)x, (double)(float)y);
-            direction += random_between(&seed, -turn, turn);
-            const double step = random_between(&seed, 0.05, longest);
+            direction += camber_random_between(&seed, -turn, turn);
+            const double step = camber_random_between(&seed, 0.05, longest);
             x += step * cos(direction);
             y += step * sin(direction);
         }
         if (n % 3 == 0 && count > 3)
             add(&l, l.points[0], l.points[1]);
-        const double offset = random_between(&seed, -25, 25);
+        const double offset = camber_random_between(&seed, -25, 25);
         const line made = made_of(b, &l, (camber_stroke){.width_px = 2, .offset_px = (float)offset});
         for (size_t i = 0; i < made.count; i++) {
             const double d = distance_to_line(&l, made.points[2 * i], made.points[2 * i + 1]);
@@ -311,10 +312,10 @@ static void test_walks(void **state) {
 
 /* ---- Device and twin ---- */
 
-static void offset_strokes(camber_stroke strokes[SCENE_ROWS]) {
+static void offset_strokes(camber_stroke strokes[CAMBER_KERNEL_ROWS]) {
     static const float offsets[] = {6, -6, 0, 0.4f, -25, 3, 140, -3, 12};
     scene_strokes(strokes);
-    for (size_t i = 0; i < SCENE_ROWS; i++)
+    for (size_t i = 0; i < CAMBER_KERNEL_ROWS; i++)
         strokes[i].offset_px = offsets[i];
 }
 
@@ -332,7 +333,7 @@ static void assert_same(const camber_mesh_data *a, const camber_mesh_data *b) {
         assert_memory_equal(a->corners, b->corners, a->info.index_count * sizeof *a->corners);
 }
 
-static void compare(bench *b, camber_mesh *mesh, const camber_polylines *polylines,
+static void compare(fixture *b, camber_mesh *mesh, const camber_polylines *polylines,
                     const camber_tessellation_desc *desc) {
     camber_mesh_data device, twin;
     camber_stages seen, wanted;
@@ -352,27 +353,27 @@ static void compare(bench *b, camber_mesh *mesh, const camber_polylines *polylin
 
 /* Every scene, as one part of work-groups of 256, and in parts of other ones. */
 static void test_device_equals_twin(void **state) {
-    bench *b = *state;
+    fixture *b = *state;
     if (!b->rounds)
         skip();
-    camber_stroke strokes[SCENE_ROWS];
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     camber_device *small = NULL;
     camber_mesh *mesh = NULL;
     const camber_device_desc parts = {.work_group_size = 64, .memory_bytes = 64 << 20};
     offset_strokes(strokes);
     assert_int_equal(camber_device_create(b->context, &parts, NULL, &small), CAMBER_OK);
     assert_int_equal(camber_mesh_create(small, NULL, &mesh), CAMBER_OK);
-    for (size_t which = 0; which < SCENE_COUNT; which++) {
-        scene s = scene_make(which);
+    for (size_t which = 0; which < CAMBER_KERNEL_SCENES; which++) {
+        camber_made_scene s = scene_make(which);
         camber_polylines *polylines = scene_polylines(b->context, &s);
         for (int method = 0; method < 3; method++) {
-            camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)method, 0, method != 1};
+            camber_tessellation_desc desc = {strokes, CAMBER_KERNEL_ROWS, (camber_method)method, 0, method != 1};
             compare(b, b->mesh, polylines, &desc);
             desc.measured = !desc.measured;
             compare(b, mesh, polylines, &desc);
         }
         camber_polylines_destroy(polylines);
-        scene_free(&s);
+        camber_made_scene_free(&s);
     }
     camber_mesh_destroy(mesh);
     camber_device_destroy(small);
@@ -380,19 +381,19 @@ static void test_device_equals_twin(void **state) {
 
 /* A mesh whose buffers or memory are too small for one part: the same bytes. */
 static void test_parts(void **state) {
-    bench *b = *state;
-    camber_stroke strokes[SCENE_ROWS];
+    fixture *b = *state;
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     offset_strokes(strokes);
-    scene s = {0};
+    camber_made_scene s = {0};
     uint64_t seed = 3;
     for (size_t i = 0; i < 600; i++) {
-        scene_walk(&s, &seed, 3 + random_below(&seed, 90), (const double[]){0.3, 12}, 1.2);
-        scene_end(&s, i % SCENE_ROWS);
+        camber_made_scene_walk(&s, &seed, 3 + camber_random_below(&seed, 90), (const double[]){0.3, 12}, 1.2);
+        camber_made_scene_end(&s, i % CAMBER_KERNEL_ROWS);
     }
     static const camber_device_desc descs[] = {
         {.largest_buffer_bytes = 70000}, {.memory_bytes = 700000}, {.memory_bytes = 2 << 20}};
     camber_polylines *polylines = scene_polylines(b->context, &s);
-    const camber_tessellation_desc desc = {.strokes = strokes, .stroke_count = SCENE_ROWS, .measured = true};
+    const camber_tessellation_desc desc = {.strokes = strokes, .stroke_count = CAMBER_KERNEL_ROWS, .measured = true};
     for (size_t i = 0; i < sizeof descs / sizeof *descs; i++) {
         camber_device *device = NULL;
         camber_mesh *mesh = NULL;
@@ -408,30 +409,31 @@ static void test_parts(void **state) {
         camber_device_destroy(device);
     }
     camber_polylines_destroy(polylines);
-    scene_free(&s);
+    camber_made_scene_free(&s);
 }
 
 /* With, without and with again: what has no offset is as if nothing had had one. */
 static void test_in_turn(void **state) {
-    bench *b = *state;
-    camber_stroke with[SCENE_ROWS], without[SCENE_ROWS];
+    fixture *b = *state;
+    camber_stroke with[CAMBER_KERNEL_ROWS], without[CAMBER_KERNEL_ROWS];
     offset_strokes(with);
     scene_strokes(without);
-    scene s = scene_make(0);
+    camber_made_scene s = scene_make(0);
     camber_polylines *polylines = scene_polylines(b->context, &s);
     for (int i = 0; i < 6; i++) {
-        const camber_tessellation_desc desc = {i % 2 ? with : without, SCENE_ROWS, CAMBER_METHOD_STRIP, 0, i > 2};
+        const camber_tessellation_desc desc = {i % 2 ? with : without, CAMBER_KERNEL_ROWS, CAMBER_METHOD_STRIP, 0,
+                                               i > 2};
         compare(b, b->mesh, polylines, &desc);
         assert_int_equal(b->mesh->shifts != NULL, i % 2);
         assert_int_equal(b->mesh->parts[0].course.x != NULL, i % 2);
     }
     camber_polylines_destroy(polylines);
-    scene_free(&s);
+    camber_made_scene_free(&s);
 }
 
 /* Nothing is left of a line that lies inside a small bend: nothing is drawn, whatever the mesh had before. */
 static void test_vanishes(void **state) {
-    bench *b = *state;
+    fixture *b = *state;
     line l = {0};
     add(&l, 13.49f, 93.51f);
     add(&l, 18.53f, 88.48f);
@@ -459,7 +461,7 @@ typedef struct world {
     camber_network *network;
 } world;
 
-static world world_of(bench *b, const scene *s) {
+static world world_of(fixture *b, const camber_made_scene *s) {
     world w = {.points = malloc(2 * s->point_count * sizeof *w.points),
                .offsets = malloc((s->polyline_count + 1) * sizeof *w.offsets),
                .entries = malloc(s->polyline_count * sizeof *w.entries),
@@ -488,7 +490,7 @@ static void world_free(world *w) {
     free(w->points);
 }
 
-static camber_stages seen_by(bench *b, const world *w, const camber_camera *camera,
+static camber_stages seen_by(fixture *b, const world *w, const camber_camera *camera,
                              const camber_tessellation_desc *desc) {
     camber_polylines *seen = NULL;
     camber_stages stages = {0}, device = {0};
@@ -506,39 +508,40 @@ static camber_stages seen_by(bench *b, const world *w, const camber_camera *came
 }
 
 /* Rings and walks about the middle. */
-static scene make_streets(void) {
-    scene s = {0};
+static camber_made_scene make_streets(void) {
+    camber_made_scene s = {0};
     uint64_t seed = 11;
     for (size_t i = 0; i < 120; i++) {
-        scene_walk(&s, &seed, 5 + random_below(&seed, 60), (const double[]){1, 25}, i % 2 ? 0.7 : 2.5);
-        scene_end(&s, i % SCENE_ROWS);
+        camber_made_scene_walk(&s, &seed, 5 + camber_random_below(&seed, 60), (const double[]){1, 25},
+                               i % 2 ? 0.7 : 2.5);
+        camber_made_scene_end(&s, i % CAMBER_KERNEL_ROWS);
     }
     for (size_t i = 0; i < 60; i++) {
-        const size_t sides = 4 + random_below(&seed, 30), first = s.point_count;
-        const double x = random_between(&seed, 0, 1000), y = random_between(&seed, 0, 1000);
-        const double radius = random_between(&seed, 5, 150);
+        const size_t sides = 4 + camber_random_below(&seed, 30), first = s.point_count;
+        const double x = camber_random_between(&seed, 0, 1000), y = camber_random_between(&seed, 0, 1000);
+        const double radius = camber_random_between(&seed, 5, 150);
         for (size_t k = 0; k < sides; k++)
-            scene_point(&s, x + radius * cos(2 * SCENE_PI * (double)k / (double)sides),
-                        y + radius * sin(2 * SCENE_PI * (double)k / (double)sides));
-        scene_point(&s, (double)s.points[2 * first], (double)s.points[2 * first + 1]);
-        scene_end(&s, i % SCENE_ROWS);
+            camber_made_scene_point(&s, x + radius * cos(2 * SCENE_PI * (double)k / (double)sides),
+                                    y + radius * sin(2 * SCENE_PI * (double)k / (double)sides));
+        camber_made_scene_point(&s, (double)s.points[2 * first], (double)s.points[2 * first + 1]);
+        camber_made_scene_end(&s, i % CAMBER_KERNEL_ROWS);
     }
     return s;
 }
 
 /* Windows do not move a point: what a small picture shows lies where a large one has it. */
 static void test_windows(void **state) {
-    bench *b = *state;
-    camber_stroke strokes[SCENE_ROWS];
+    fixture *b = *state;
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     offset_strokes(strokes);
-    for (size_t i = 0; i < SCENE_ROWS; i++) {
+    for (size_t i = 0; i < CAMBER_KERNEL_ROWS; i++) {
         strokes[i].width_px = 3;
         strokes[i].miter_limit = 2;
         strokes[i].offset_px = i == 6 ? 18 : strokes[i].offset_px; /* farther out rounding is seen */
     }
-    scene s = make_streets();
+    camber_made_scene s = make_streets();
     world w = world_of(b, &s);
-    const camber_tessellation_desc desc = {.strokes = strokes, .stroke_count = SCENE_ROWS, .measured = true};
+    const camber_tessellation_desc desc = {.strokes = strokes, .stroke_count = CAMBER_KERNEL_ROWS, .measured = true};
     const camber_camera whole = {.x = 500, .y = 500, .scale_px = 1, .width = 6000, .height = 6000};
     camber_stages all = seen_by(b, &w, &whole, &desc);
     size_t compared = 0;
@@ -572,19 +575,20 @@ static void test_windows(void **state) {
     assert_true(compared > 500);
     camber_stages_free(b->context, &all);
     world_free(&w);
-    scene_free(&s);
+    camber_made_scene_free(&s);
 }
 
 /* A ring that a window cuts: its seam stays a join, and both pieces have the same point there. */
 static void test_cut_rings(void **state) {
-    bench *b = *state;
+    fixture *b = *state;
     for (int k = 0; k < 24; k++) {
         const double angle = k * SCENE_PI / 12;
-        scene s = {0};
+        camber_made_scene s = {0};
         for (int i = 0; i < 36; i++)
-            scene_point(&s, 500 + 400 * cos(angle + i * SCENE_PI / 18), 500 + 400 * sin(angle + i * SCENE_PI / 18));
-        scene_point(&s, (double)s.points[0], (double)s.points[1]);
-        scene_end(&s, 0);
+            camber_made_scene_point(&s, 500 + 400 * cos(angle + i * SCENE_PI / 18),
+                                    500 + 400 * sin(angle + i * SCENE_PI / 18));
+        camber_made_scene_point(&s, (double)s.points[0], (double)s.points[1]);
+        camber_made_scene_end(&s, 0);
         world w = world_of(b, &s);
         const camber_stroke stroke = {.width_px = 4, .offset_px = k % 2 ? 7 : -7};
         const camber_tessellation_desc desc = {.strokes = &stroke, .stroke_count = 1};
@@ -598,7 +602,7 @@ static void test_cut_rings(void **state) {
         assert_true((p[0].join >> 28) >= 3);
         camber_stages_free(b->context, &stages);
         world_free(&w);
-        scene_free(&s);
+        camber_made_scene_free(&s);
     }
 }
 
@@ -606,7 +610,7 @@ static void test_cut_rings(void **state) {
 
 /* Along a line beside, what is measured is the line: it grows from 0 to all of it. */
 static void test_measures(void **state) {
-    bench *b = *state;
+    fixture *b = *state;
     line l = {0};
     add(&l, 10, 10);
     add(&l, 110, 10);
@@ -636,7 +640,7 @@ static void test_measures(void **state) {
 }
 
 static void test_arguments(void **state) {
-    bench *b = *state;
+    fixture *b = *state;
     static const float wrong[] = {NAN, INFINITY, -INFINITY, 16385, -16385};
     line l = {0};
     add(&l, 10, 10);
@@ -665,5 +669,5 @@ int main(void) {
         cmocka_unit_test(test_measures),     cmocka_unit_test(test_arguments),
         cmocka_unit_test(test_vanishes),
     };
-    return cmocka_run_group_tests(tests, bench_set_up, bench_tear_down);
+    return cmocka_run_group_tests(tests, fixture_set_up_mesh, fixture_tear_down);
 }

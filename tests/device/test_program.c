@@ -9,7 +9,7 @@
 
 /* ---- Without a platform: in a child, before anything here loads one ---- */
 
-/* What the child saw, as its exit status. */
+/* The child's findings, as its exit status. */
 enum { CHILD_OK = 0, CHILD_LISTED, CHILD_STATUS, CHILD_STORY, CHILD_TOUCHED, CHILD_LEAK };
 
 static int open_without_platform(void) {
@@ -267,7 +267,7 @@ static void test_damaged_files_are_ignored(void **state) {
         } else {         /* noise behind a hash that fits it */
             uint64_t seed = 12;
             for (size_t i = 8; i < size; i++)
-                bad[i] = (unsigned char)random_bits(&seed);
+                bad[i] = (unsigned char)camber_random_bits(&seed);
             const uint64_t hash = camber_hash(CAMBER_HASH_START, bad + 8, size - 8);
             memcpy(bad, &hash, sizeof hash);
         }

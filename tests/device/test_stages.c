@@ -1,5 +1,5 @@
-/* What classify and scan found: the device against the twin's walk, and both against the mesh that came of it. */
-#include "bench.h"
+/* The results of classify and scan: the device against the twin's walk, and both against the mesh that came of it. */
+#include "test_fixture.h"
 
 #include "kernels/join.h"
 
@@ -16,20 +16,20 @@ static size_t first_difference(const camber_stages *a, const camber_stages *b) {
     return a->point_count;
 }
 
-static camber_stages on_device(bench *b) {
+static camber_stages on_device(fixture *b) {
     camber_stages stages;
     assert_int_equal(camber_mesh_read_stages(b->mesh, &stages), CAMBER_OK);
     return stages;
 }
 
-static camber_stages on_host(bench *b, const camber_polylines *polylines, const camber_tessellation_desc *desc) {
+static camber_stages on_host(fixture *b, const camber_polylines *polylines, const camber_tessellation_desc *desc) {
     camber_stages stages;
     assert_int_equal(camber_stages_on_host(b->context, polylines, desc, &stages), CAMBER_OK);
     return stages;
 }
 
 /* Points ascend within polylines that ascend, and what lies at a point's first vertex is the point. */
-static void check_against_mesh(bench *b, const camber_polylines *polylines, const camber_stages *stages) {
+static void check_against_mesh(fixture *b, const camber_polylines *polylines, const camber_stages *stages) {
     camber_mesh_data data;
     assert_int_equal(camber_mesh_read(b->mesh, &data), CAMBER_OK);
     assert_int_equal(stages->point_count, polylines->stats.kept_points);
@@ -57,13 +57,13 @@ static void check_against_mesh(bench *b, const camber_polylines *polylines, cons
 }
 
 static void test_device_equals_twin(void **state) {
-    bench *b = *state;
-    camber_stroke strokes[SCENE_ROWS];
+    fixture *b = *state;
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     scene_strokes(strokes);
-    for (size_t which = 0; which < SCENE_COUNT; which++) {
-        scene s = scene_make(which);
+    for (size_t which = 0; which < CAMBER_KERNEL_SCENES; which++) {
+        camber_made_scene s = scene_make(which);
         for (int i = 0; i < 6; i++) {
-            const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)(i / 2), 0, false};
+            const camber_tessellation_desc desc = {strokes, CAMBER_KERNEL_ROWS, (camber_method)(i / 2), 0, false};
             camber_polylines *polylines = scene_first(b->context, &s, s.polyline_count, i % 2);
             assert_int_equal(camber_tessellate(b->mesh, polylines, &desc), CAMBER_OK);
             camber_stages device = on_device(b), twin = on_host(b, polylines, &desc);
@@ -76,17 +76,17 @@ static void test_device_equals_twin(void **state) {
             camber_stages_free(b->context, &twin);
             camber_polylines_destroy(polylines);
         }
-        scene_free(&s);
+        camber_made_scene_free(&s);
     }
 }
 
 /* A word that is wrong on the device shows where it is. */
 static void test_wrong_words_show(void **state) {
-    bench *b = *state;
-    camber_stroke strokes[SCENE_ROWS];
+    fixture *b = *state;
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     scene_strokes(strokes);
-    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0, false};
-    scene s = scene_make(1);
+    const camber_tessellation_desc desc = {strokes, CAMBER_KERNEL_ROWS, CAMBER_METHOD_STRIP, 0, false};
+    camber_made_scene s = scene_make(1);
     camber_polylines *polylines = scene_first(b->context, &s, s.polyline_count, true);
     assert_int_equal(camber_tessellate(b->mesh, polylines, &desc), CAMBER_OK);
     camber_stages good = on_device(b);
@@ -100,14 +100,14 @@ static void test_wrong_words_show(void **state) {
             const size_t at = 4 * (k < 3 ? points[i] + 1 : points[i] / item);
             cl_uint word = 0;
             for (int bit = 0; bit < 32; bit += 7) {
-                clEnqueueReadBuffer(b->device->queue, mems[k], CL_TRUE, at, 4, &word, 0, NULL, NULL);
+                clEnqueueReadBuffer(b->on.device->queue, mems[k], CL_TRUE, at, 4, &word, 0, NULL, NULL);
                 word ^= 1u << bit;
-                clEnqueueWriteBuffer(b->device->queue, mems[k], CL_TRUE, at, 4, &word, 0, NULL, NULL);
+                clEnqueueWriteBuffer(b->on.device->queue, mems[k], CL_TRUE, at, 4, &word, 0, NULL, NULL);
                 camber_stages bad = on_device(b);
                 assert_int_equal(first_difference(&good, &bad), k < 3 ? points[i] : points[i] / item * item);
                 camber_stages_free(b->context, &bad);
                 word ^= 1u << bit;
-                clEnqueueWriteBuffer(b->device->queue, mems[k], CL_TRUE, at, 4, &word, 0, NULL, NULL);
+                clEnqueueWriteBuffer(b->on.device->queue, mems[k], CL_TRUE, at, 4, &word, 0, NULL, NULL);
             }
         }
     }
@@ -116,17 +116,17 @@ static void test_wrong_words_show(void **state) {
     camber_stages_free(b->context, &again);
     camber_stages_free(b->context, &good);
     camber_polylines_destroy(polylines);
-    scene_free(&s);
+    camber_made_scene_free(&s);
 }
 
 static void test_ring_by_hand(void **state) {
-    bench *b = *state;
-    scene s = {0};
+    fixture *b = *state;
+    camber_made_scene s = {0};
     const double points[][2] = {{0, 0}, {40, 0}, {10, 10}, {0, 0}};
-    scene_end(&s, 0); /* empty */
+    camber_made_scene_end(&s, 0); /* empty */
     for (size_t i = 0; i < 4; i++)
-        scene_point(&s, points[i][0], points[i][1]);
-    scene_end(&s, 0);
+        camber_made_scene_point(&s, points[i][0], points[i][1]);
+    camber_made_scene_end(&s, 0);
     const camber_stroke stroke = {2, CAMBER_JOIN_ROUND, CAMBER_CAP_ROUND, 0};
     const camber_tessellation_desc desc = {&stroke, 1, CAMBER_METHOD_STRIP, 0, false};
     camber_polylines *polylines = scene_polylines(b->context, &s);
@@ -149,26 +149,26 @@ static void test_ring_by_hand(void **state) {
     assert_int_equal(camber_join_kind(stages.points[2].join), CAMBER_KIND_CUT);
     camber_stages_free(b->context, &stages);
     camber_polylines_destroy(polylines);
-    scene_free(&s);
+    camber_made_scene_free(&s);
 }
 
-static void assert_no_points(bench *b) {
+static void assert_no_points(fixture *b) {
     camber_stages stages = on_device(b);
     assert_int_equal(stages.point_count, 0);
     camber_stages_free(b->context, &stages);
 }
 
 static void test_nothing(void **state) {
-    bench *b = *state;
+    fixture *b = *state;
     camber_mesh *used = b->mesh;
     const camber_stroke stroke = {2, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0};
     const camber_tessellation_desc desc = {&stroke, 1, CAMBER_METHOD_STRIP, 0, false};
-    assert_int_equal(camber_mesh_create(b->device, NULL, &b->mesh), CAMBER_OK);
+    assert_int_equal(camber_mesh_create(b->on.device, NULL, &b->mesh), CAMBER_OK);
     assert_no_points(b); /* before the first tessellation */
-    scene s = {0};
+    camber_made_scene s = {0};
     camber_polylines *none = scene_polylines(b->context, &s);
-    scene_point(&s, 3, 4);
-    scene_end(&s, 0);
+    camber_made_scene_point(&s, 3, 4);
+    camber_made_scene_end(&s, 0);
     camber_polylines *dot = scene_polylines(b->context, &s);
     assert_int_equal(camber_tessellate(b->mesh, dot, &desc), CAMBER_OK);
     camber_stages stages = on_device(b), twin = on_host(b, dot, &desc);
@@ -193,13 +193,13 @@ static void test_nothing(void **state) {
     camber_polylines_destroy(none);
     camber_mesh_destroy(b->mesh);
     b->mesh = used;
-    scene_free(&s);
+    camber_made_scene_free(&s);
 }
 
 /* ---- Memory ---- */
 
 typedef struct attempt {
-    bench *b;
+    fixture *b;
     const camber_polylines *polylines;
     const camber_tessellation_desc *desc;
 } attempt;
@@ -221,17 +221,17 @@ static camber_status try_stages(camber_context *context, void *user) {
 }
 
 static void test_memory(void **state) {
-    bench *b = *state;
-    camber_stroke strokes[SCENE_ROWS];
+    fixture *b = *state;
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     scene_strokes(strokes);
-    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_KITE, 0, false};
-    scene s = scene_make(0);
+    const camber_tessellation_desc desc = {strokes, CAMBER_KERNEL_ROWS, CAMBER_METHOD_KITE, 0, false};
+    camber_made_scene s = scene_make(0);
     camber_polylines *polylines = scene_polylines(b->context, &s);
     assert_int_equal(camber_tessellate(b->mesh, polylines, &desc), CAMBER_OK);
     attempt a = {b, polylines, &desc};
     each_allocation_fails(&b->h, try_stages, b->context, &a);
     camber_polylines_destroy(polylines);
-    scene_free(&s);
+    camber_made_scene_free(&s);
 }
 
 int main(void) {
@@ -244,7 +244,7 @@ int main(void) {
     };
     int failed = 77;
     if (device_is_there())
-        failed = cmocka_run_group_tests(tests, bench_set_up, bench_tear_down);
+        failed = cmocka_run_group_tests(tests, fixture_set_up_mesh, fixture_tear_down);
     else
         puts("skipped: no OpenCL device");
     return failed;

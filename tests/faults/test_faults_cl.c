@@ -1,6 +1,6 @@
 /* OpenCL's failures: the n-th call is refused, once or from there on, for every n. Each time the call says so in one
  * line, leaks nothing, and works when the fault is gone; what is drawn and read then is right. */
-#include "picture.h"
+#include "pictures.h"
 
 #include "cl_fault.h"
 #include "tess/tess.h"
@@ -36,7 +36,7 @@ typedef struct stage_set {
     camber_context *context;
     camber_device *device;
     camber_polylines *polylines, *others;
-    camber_stroke strokes[SCENE_ROWS];
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     camber_tessellation_desc desc;
     camber_mesh_data wanted; /* of polylines */
     camber_stages stages;
@@ -44,15 +44,15 @@ typedef struct stage_set {
 } stage_set;
 
 static camber_polylines *make_lines(camber_context *context, uint64_t seed, size_t count) {
-    scene s = {0};
+    camber_made_scene s = {0};
     for (size_t i = 0; i < count; i++) {
-        scene_walk(&s, &seed, 20, (const double[]){20, 200}, 1);
-        scene_end(&s, i % SCENE_ROWS);
+        camber_made_scene_walk(&s, &seed, 20, (const double[]){20, 200}, 1);
+        camber_made_scene_end(&s, i % CAMBER_KERNEL_ROWS);
     }
     for (size_t i = 0; i < 2 * s.point_count; i++)
         s.points[i] *= SIDE_PX / 1000.0f; /* into the picture */
     camber_polylines *polylines = scene_polylines(context, &s);
-    scene_free(&s);
+    camber_made_scene_free(&s);
     return polylines;
 }
 
@@ -66,7 +66,7 @@ static void open_set(stage_set *s, bool parts, camber_method method) {
     s->others = make_lines(s->context, 4, 30);
     scene_strokes(s->strokes);
     s->strokes[1].offset_px = 6;
-    s->desc = (camber_tessellation_desc){s->strokes, SCENE_ROWS, method, 0, false};
+    s->desc = (camber_tessellation_desc){s->strokes, CAMBER_KERNEL_ROWS, method, 0, false};
     camber_mesh *mesh = NULL;
     assert_int_equal(camber_mesh_create(s->device, NULL, &mesh), CAMBER_OK);
     assert_int_equal(camber_tessellate(mesh, s->polylines, &s->desc), CAMBER_OK);
@@ -406,19 +406,19 @@ static void test_small_device(void **state) {
 
 /* ---- Drawing ---- */
 
-typedef struct easel {
+typedef struct drawn_lines {
     camber_surface *surface;
     camber_sharing sharing;
     camber_renderer *renderer;
     camber_mesh *mesh;
     picture wanted;
     camber_overdraw overdraw;
-} easel;
+} drawn_lines;
 
-static camber_paint paints[SCENE_ROWS];
+static camber_paint paints[CAMBER_KERNEL_ROWS];
 
 static camber_status try_renderer(stage_set *s, void *user) {
-    const easel *e = user;
+    const drawn_lines *e = user;
     camber_renderer *renderer = NULL;
     const camber_renderer_desc desc = {.sharing = e->sharing, .draw = CAMBER_DRAW_GL};
     const camber_status status = camber_renderer_create(s->device, e->surface, &desc, &renderer);
@@ -431,16 +431,16 @@ static bool take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint3
     return true;
 }
 
-static camber_status draw(const easel *e, uint8_t *rgba, camber_overdraw *overdraw) {
-    const camber_pass pass = {.mesh = e->mesh, .paints = paints, .paint_count = SCENE_ROWS};
+static camber_status draw(const drawn_lines *e, uint8_t *rgba, camber_overdraw *overdraw) {
+    const camber_pass pass = {.mesh = e->mesh, .paints = paints, .paint_count = CAMBER_KERNEL_ROWS};
     const camber_frame frame = {.width = SIDE_PX, .height = SIDE_PX, .passes = &pass, .pass_count = 1};
     const camber_overdraw_desc counted = {
-        .width = SIDE_PX, .height = SIDE_PX, .mesh = e->mesh, .paints = paints, .paint_count = SCENE_ROWS};
+        .width = SIDE_PX, .height = SIDE_PX, .mesh = e->mesh, .paints = paints, .paint_count = CAMBER_KERNEL_ROWS};
     const camber_status status = camber_render(e->renderer, &frame, take_rows, rgba, NULL);
     return status == CAMBER_OK ? camber_overdraw_count(e->renderer, &counted, overdraw) : status;
 }
 
-static void assert_drawn(const easel *e) {
+static void assert_drawn(const drawn_lines *e) {
     uint8_t rgba[4 * SIDE_PX * SIDE_PX];
     camber_overdraw overdraw;
     assert_int_equal(draw(e, rgba, &overdraw), CAMBER_OK);
@@ -449,7 +449,7 @@ static void assert_drawn(const easel *e) {
 }
 
 /* Tessellates and draws with the n-th call refused; then once more without. */
-static void draw_after_each(stage_set *s, easel *e) {
+static void draw_after_each(stage_set *s, drawn_lines *e) {
     for (size_t n = 1;; n++) {
         uint8_t rgba[4 * SIDE_PX * SIDE_PX];
         camber_overdraw overdraw;
@@ -477,15 +477,15 @@ static void test_drawing(void **state) {
     (void)state;
     static const camber_sharing sharings[] = {CAMBER_SHARING_AUTO, CAMBER_SHARING_ZERO_COPY, CAMBER_SHARING_COPY};
     size_t drawn = 0;
-    for (int k = 0; k < 3 * BACKENDS; k++) {
+    for (int k = 0; k < 3 * CAMBER_FIXTURE_BACKENDS; k++) {
         const bool parts = k % 3 == 2;
         stage_set s;
-        easel e = {.sharing = sharings[k % 3]};
+        drawn_lines e = {.sharing = sharings[k % 3]};
         open_set(&s, parts, CAMBER_METHOD_STRIP);
-        for (int i = 0; i < SCENE_ROWS; i++)
+        for (int i = 0; i < CAMBER_KERNEL_ROWS; i++)
             paints[i] = (camber_paint){.width_px = fminf(s.strokes[i].width_px, 2),
-                                       .color = {1, 0.5f, (float)i / SCENE_ROWS, 1}};
-        const camber_surface_desc surface_desc = {BACKEND[k / 3]};
+                                       .color = {1, 0.5f, (float)i / CAMBER_KERNEL_ROWS, 1}};
+        const camber_surface_desc surface_desc = {fixture_backend(k / 3)};
         const camber_renderer_desc renderer_desc = {.sharing = e.sharing, .draw = CAMBER_DRAW_GL};
         if (camber_surface_create(s.context, &surface_desc, &e.surface) == CAMBER_OK &&
             camber_renderer_create(s.device, e.surface, &renderer_desc, &e.renderer) == CAMBER_OK) {
@@ -501,7 +501,7 @@ static void test_drawing(void **state) {
             picture_free(&e.wanted);
             drawn++;
         } else {
-            print_message("%s, %s: not here\n", BACKEND_NAME[k / 3], camber_sharing_name(e.sharing));
+            print_message("%s, %s: not here\n", fixture_name(k / 3), camber_sharing_name(e.sharing));
         }
         camber_mesh_destroy(e.mesh);
         camber_renderer_destroy(e.renderer);
@@ -517,7 +517,7 @@ static void test_drawing(void **state) {
 /* A device of its own where kernels are to be built, and everything else in any case. */
 static camber_status draw_covered(const stage_set *s, camber_device *device, uint8_t *rgba) {
     const camber_renderer_desc desc = {.draw = CAMBER_DRAW_CL};
-    camber_pass passes[2] = {{.paints = paints, .paint_count = SCENE_ROWS}};
+    camber_pass passes[2] = {{.paints = paints, .paint_count = CAMBER_KERNEL_ROWS}};
     camber_renderer *renderer = NULL;
     camber_mesh *mesh = NULL;
     camber_status status = camber_renderer_create(device, NULL, &desc, &renderer);
@@ -582,9 +582,9 @@ static void test_covered(void **state) {
     stage_set s;
     sheet whole;
     open_set(&s, false, CAMBER_METHOD_STRIP);
-    for (int i = 0; i < SCENE_ROWS; i++)
+    for (int i = 0; i < CAMBER_KERNEL_ROWS; i++)
         paints[i] = (camber_paint){.width_px = fminf(s.strokes[i].width_px, 2),
-                                   .color = {1, 0.5f, (float)i / SCENE_ROWS, i % 2 ? 1 : 0.5f}};
+                                   .color = {1, 0.5f, (float)i / CAMBER_KERNEL_ROWS, i % 2 ? 1 : 0.5f}};
     whole.device = s.device;
     assert_int_equal(draw_covered(&s, s.device, whole.wanted), CAMBER_OK);
     assert_true(refuse(&s, try_covered, &whole, NULL, 0, false) > 100);
@@ -598,45 +598,45 @@ static void test_covered(void **state) {
     close_set(&s);
 }
 
-static void open_easel(stage_set *s, easel *e) {
+static void open_drawn_lines(stage_set *s, drawn_lines *e) {
     assert_int_equal(camber_renderer_create(s->device, NULL, NULL, &e->renderer), CAMBER_OK);
     assert_int_equal(camber_mesh_create(s->device, e->renderer, &e->mesh), CAMBER_OK);
     assert_int_equal(camber_tessellate(e->mesh, s->polylines, &s->desc), CAMBER_OK);
 }
 
-static void close_easel(easel *e) {
+static void close_drawn_lines(drawn_lines *e) {
     camber_mesh_destroy(e->mesh);
     camber_renderer_destroy(e->renderer);
 }
 
-static camber_status draw_easel(const easel *e, uint8_t *rgba) {
-    const camber_pass pass = {.mesh = e->mesh, .paints = paints, .paint_count = SCENE_ROWS};
+static camber_status draw_drawn_lines(const drawn_lines *e, uint8_t *rgba) {
+    const camber_pass pass = {.mesh = e->mesh, .paints = paints, .paint_count = CAMBER_KERNEL_ROWS};
     const camber_frame frame = {.width = SIDE_PX, .height = SIDE_PX, .passes = &pass, .pass_count = 1};
     return camber_render(e->renderer, &frame, take_rows, rgba, NULL);
 }
 
-/* What a renderer draws after its first frame has failed, wherever it did, is right. */
+/* A renderer whose first frame has failed, wherever it did, draws the next one right. */
 static void test_covered_again(void **state) {
     (void)state;
     stage_set s;
-    easel e = {.renderer = NULL};
+    drawn_lines e = {.renderer = NULL};
     uint8_t wanted[4 * SIDE_PX * SIDE_PX], rgba[sizeof wanted];
     open_set(&s, false, CAMBER_METHOD_STRIP);
-    open_easel(&s, &e);
-    assert_int_equal(draw_easel(&e, wanted), CAMBER_OK);
-    close_easel(&e);
+    open_drawn_lines(&s, &e);
+    assert_int_equal(draw_drawn_lines(&e, wanted), CAMBER_OK);
+    close_drawn_lines(&e);
     for (size_t n = 1;; n++) {
-        open_easel(&s, &e);
+        open_drawn_lines(&s, &e);
         cl_fault_arm(n, n, CL_OUT_OF_RESOURCES);
-        const camber_status status = draw_easel(&e, rgba);
+        const camber_status status = draw_drawn_lines(&e, rgba);
         cl_fault_disarm();
         assert_int_equal(status == CAMBER_OK, cl_fault.refusals == 0 || is_optional(cl_fault.refused));
         if (status != CAMBER_OK)
             assert_story(&s.h, cl_fault.refused);
         memset(rgba, 0, sizeof rgba);
-        assert_int_equal(draw_easel(&e, rgba), CAMBER_OK);
+        assert_int_equal(draw_drawn_lines(&e, rgba), CAMBER_OK);
         assert_memory_equal(rgba, wanted, sizeof wanted);
-        close_easel(&e);
+        close_drawn_lines(&e);
         if (cl_fault.refusals == 0)
             break;
         assert_true(n < CALLS_MAX);

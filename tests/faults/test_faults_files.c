@@ -104,7 +104,7 @@ const char *__wrap_sqlite3_errmsg(sqlite3 *database) {
 
 /* ---- pread: by one of its two names ---- */
 
-/* What it does: fails, is interrupted, reads a byte only, or comes to the end of a file that was longer. */
+/* The fault of a call: it fails, is interrupted, reads a byte only, or comes to the end of a file that was longer. */
 enum { CUT_OFF = 10000, SHORT };
 
 static ssize_t refuse_read(void) {

@@ -381,7 +381,7 @@ static void test_settings(void **state) {
 
 /* ---- jansson's ---- */
 
-/* Of the process, as jansson's functions are. */
+/* One for the process, as jansson's functions are. */
 static struct { size_t live_blocks, calls, refuse_at; } json;
 
 static void *json_allocate(size_t size) {

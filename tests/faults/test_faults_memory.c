@@ -1,14 +1,14 @@
 /* The n-th allocation fails, for every n, in all of libcamber: the status says so in one line, nothing is kept, inputs
  * stay as they are, what comes out in spite of it is right, and what failed works afterwards. test_faults_map.c does
  * the same for libcamber-map. */
-#include "picture.h"
+#include "pictures.h"
 
 enum { WIDTH = 80, HEIGHT = 60, PIECE_PX = 32, ROWS = 3 };
 
-/* What an attempt reads, and what came of it the first time. */
+/* The input of an attempt, and what came of it the first time. */
 typedef struct desk {
-    studio s;
-    scene lines;
+    fixture s;
+    camber_made_scene lines;
     camber_polylines *polylines;
     camber_mesh_data mesh; /* of the twin */
     camber_stages stages;
@@ -16,7 +16,7 @@ typedef struct desk {
     camber_overdraw overdraw;
     byte_list file; /* a polyline file */
     byte_list png;
-    int backend; /* BACKENDS: kernels draw */
+    int backend; /* CAMBER_FIXTURE_BACKENDS: kernels draw */
     bool known;  /* rgba and overdraw are there */
 } desk;
 
@@ -63,7 +63,7 @@ static camber_status try_polylines(camber_context *context, void *user) {
     desk *d = user;
     camber_polylines *const untouched = (camber_polylines *)(void *)d;
     camber_polylines *made = untouched;
-    const scene *s = &d->lines;
+    const camber_made_scene *s = &d->lines;
     const camber_polylines_desc desc = {s->points, s->point_count, s->offsets, s->polyline_count, s->rows, false};
     const camber_status status = camber_polylines_create(context, &desc, &made);
     if (status != CAMBER_OK) {
@@ -103,7 +103,7 @@ static camber_status try_twin(camber_context *context, void *user) {
     return status;
 }
 
-/* What a mesh of the device holds. */
+/* A mesh of the device, read back. */
 static camber_status read_all(camber_context *context, camber_mesh *mesh, const desk *d) {
     camber_mesh_data data = {.indices = (uint32_t *)(uintptr_t)8};
     camber_stages stages = {.point_count = 7};
@@ -202,15 +202,15 @@ static camber_status try_drawing(camber_context *context, void *user) {
     camber_surface *surface = NULL;
     camber_renderer *renderer = NULL;
     camber_mesh *mesh = NULL;
-    const bool in_cl = d->backend == BACKENDS;
+    const bool in_cl = d->backend == CAMBER_FIXTURE_BACKENDS;
     const camber_renderer_desc desc = {.draw = in_cl ? CAMBER_DRAW_CL : CAMBER_DRAW_GL};
     camber_status status = CAMBER_OK;
     if (!in_cl)
-        status = camber_surface_create(context, &(camber_surface_desc){BACKEND[d->backend]}, &surface);
+        status = camber_surface_create(context, &(camber_surface_desc){fixture_backend(d->backend)}, &surface);
     if (status == CAMBER_OK)
-        status = camber_renderer_create(d->s.device, surface, &desc, &renderer);
+        status = camber_renderer_create(d->s.on.device, surface, &desc, &renderer);
     if (status == CAMBER_OK)
-        status = camber_mesh_create(d->s.device, renderer, &mesh);
+        status = camber_mesh_create(d->s.on.device, renderer, &mesh);
     if (status == CAMBER_OK)
         status = camber_tessellate(mesh, d->polylines, &STRIPS);
     if (status == CAMBER_OK)
@@ -267,11 +267,11 @@ static camber_status try_png(camber_context *context, void *user) {
 static int set_up(void **state) {
     desk *d = calloc(1, sizeof *d);
     assert_non_null(d);
-    assert_true(studio_open(&d->s));
+    assert_true(fixture_open(&d->s));
     uint64_t seed = 8;
     for (size_t i = 0; i < 40; i++) {
-        scene_walk(&d->lines, &seed, 12, (const double[]){4, 30}, 2);
-        scene_end(&d->lines, i % ROWS);
+        camber_made_scene_walk(&d->lines, &seed, 12, (const double[]){4, 30}, 2);
+        camber_made_scene_end(&d->lines, i % ROWS);
     }
     for (size_t i = 0; i < 2 * d->lines.point_count; i++)
         d->lines.points[i] = fmodf(fabsf(d->lines.points[i]), i % 2 ? HEIGHT : WIDTH);
@@ -282,7 +282,7 @@ static int set_up(void **state) {
     assert_int_equal(camber_tessellate_on_host(d->s.context, d->polylines, &STRIPS, &d->mesh), CAMBER_OK);
     assert_int_equal(camber_stages_on_host(d->s.context, d->polylines, &STRIPS, &d->stages), CAMBER_OK);
     for (size_t i = 0; i < sizeof d->rgba; i++)
-        d->rgba[i] = (uint8_t)(i % 4 == 3 ? 255 : random_bits(&seed));
+        d->rgba[i] = (uint8_t)(i % 4 == 3 ? 255 : camber_random_bits(&seed));
     assert_int_equal(write_png(d->s.context, d, &d->png), CAMBER_OK);
     *state = d;
     return 0;
@@ -293,10 +293,10 @@ static int tear_down(void **state) {
     camber_stages_free(d->s.context, &d->stages);
     camber_mesh_data_free(d->s.context, &d->mesh);
     camber_polylines_destroy(d->polylines);
-    scene_free(&d->lines);
+    camber_made_scene_free(&d->lines);
     free(d->file.bytes);
     free(d->png.bytes);
-    studio_close(&d->s);
+    fixture_close(&d->s);
     assert_int_equal(d->s.h.live_blocks, 0);
     free(d);
     return 0;
@@ -370,8 +370,8 @@ static void test_with_cache(void **state) {
 static void test_drawing(void **state) {
     desk *d = *state;
     each_fails(d, try_any_surface);
-    for (d->backend = 0; d->backend <= BACKENDS; d->backend++) {
-        if (d->backend < BACKENDS && !d->s.renderer[d->backend])
+    for (d->backend = 0; d->backend <= CAMBER_FIXTURE_BACKENDS; d->backend++) {
+        if (d->backend < CAMBER_FIXTURE_BACKENDS && !d->s.on.renderer[d->backend])
             continue;
         d->known = false;
         assert_int_equal(try_drawing(d->s.context, d), CAMBER_OK);
@@ -385,18 +385,18 @@ static void test_same_objects(void **state) {
     desk *d = *state;
     host *h = &d->s.h;
     d->known = false;
-    for (int i = 0; i <= BACKENDS; i++) {
-        const bool in_cl = i == BACKENDS;
+    for (int i = 0; i <= CAMBER_FIXTURE_BACKENDS; i++) {
+        const bool in_cl = i == CAMBER_FIXTURE_BACKENDS;
         const camber_renderer_desc desc = {.draw = in_cl ? CAMBER_DRAW_CL : CAMBER_DRAW_GL};
         camber_renderer *renderer = NULL;
-        if (!in_cl && !d->s.renderer[i])
+        if (!in_cl && !d->s.on.renderer[i])
             continue;
-        assert_int_equal(camber_renderer_create(d->s.device, in_cl ? NULL : d->s.surface[i], &desc, &renderer),
+        assert_int_equal(camber_renderer_create(d->s.on.device, in_cl ? NULL : d->s.on.surface[i], &desc, &renderer),
                          CAMBER_OK);
         size_t n = 1;
         for (bool reached = true; reached; n++) {
             camber_mesh *mesh = NULL;
-            assert_int_equal(camber_mesh_create(d->s.device, renderer, &mesh), CAMBER_OK);
+            assert_int_equal(camber_mesh_create(d->s.on.device, renderer, &mesh), CAMBER_OK);
             h->refuse_first = h->calls + n;
             h->refuse_count = 1;
             camber_status status = camber_tessellate(mesh, d->polylines, &STRIPS);
@@ -428,7 +428,7 @@ int main(void) {
         cmocka_unit_test(test_on_host), cmocka_unit_test(test_on_device),    cmocka_unit_test(test_with_cache),
         cmocka_unit_test(test_drawing), cmocka_unit_test(test_same_objects),
     };
-    if (!studio_begin())
+    if (!fixture_begin())
         return 77;
     const int failed = cmocka_run_group_tests(tests, set_up, tear_down);
     return failed;

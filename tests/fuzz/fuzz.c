@@ -1,3 +1,4 @@
+/* The context of a fuzz target: it counts memory and keeps the log; and the properties of any mesh. */
 #include "fuzz.h"
 
 #include "kernels/layout.h"

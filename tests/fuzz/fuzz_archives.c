@@ -172,7 +172,7 @@ static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
     write_file(made);
     snprintf(path, sizeof path, "/tmp/camber-fuzz-%ld.pmtiles", (long)getpid());
     fuzz_write_file(path, made->file.bytes, made->file.size);
-    /* What takes seconds of a good machine takes an instrumented one on two busy cores the whole timeout. */
+    /* An input that takes seconds of a good machine takes an instrumented one on two busy cores the whole timeout. */
     run->context->budget->desc.tiles /= 16;
     run->context->budget->desc.steps /= 16;
     fuzz_read_tiles(run, path, "pmtiles");

@@ -42,7 +42,7 @@ static void check_simplified(const camber_lines *from, const camber_lines *to, d
         REQUIRE((first == past) == (count == 0));
         for (uint32_t i = first; i < past; i++) {
             const float *point = from->points + 2 * (size_t)i;
-            /* Of equal points the last one is left to the end. */
+            /* The last of equal points is left to the end. */
             if (next < count && same_point(point, kept + 2 * next) && (next + 1 < count || i + 1 == past)) {
                 next++;
                 continue;

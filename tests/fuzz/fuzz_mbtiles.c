@@ -10,7 +10,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* What a database may take to be made: it is the reading that is tried. */
+/* The most that a database may take to be made: it is the reading that is tried. */
 enum { STEPS_A_CALL = 1000, MOST_CALLS = 100, LARGEST_VALUE_BYTES = 1 << 16, LARGEST_FILE_BYTES = 1 << 20 };
 
 /* Where the SQL makes none; then it runs once more, over these. */

@@ -77,7 +77,7 @@ static void read_points(fuzz_reader *from, unsigned form, bool bare, size_t want
         const int byte = bare ? 0 : (int8_t)fuzz_take(from, 1);
         made->importance[i] = byte == -128 ? NAN : byte == 127 ? INFINITY : (float)byte / 16;
     }
-    /* What there are no points for is left out: offsets are the caller's promise. */
+    /* Polylines that there are no points for are left out: offsets are the caller's promise. */
     for (size_t i = 0; i <= made->network.polyline_count; i++)
         if (made->offsets[i] > count)
             made->offsets[i] = count;
@@ -221,26 +221,26 @@ static void check_lines(fuzz_run *run, const camber_network *network, const inpu
 
 /* ---- On a device ---- */
 
-static fuzz_easel easel;
+static fuzz_drawer drawer;
 
 static void check_device(const input *from) {
     camber_network *network = NULL;
     camber_polylines *twin = NULL;
     camber_mesh_data got = {0}, expected = {0};
-    REQUIRE(camber_network_create(easel.context, &from->network, &network) == CAMBER_OK);
-    const camber_status status = camber_tessellate_network(easel.mesh, network, &from->camera, &from->tessellation);
+    REQUIRE(camber_network_create(drawer.context, &from->network, &network) == CAMBER_OK);
+    const camber_status status = camber_tessellate_network(drawer.mesh, network, &from->camera, &from->tessellation);
     REQUIRE(status == camber_network_project(network, &from->camera, &from->tessellation, &twin));
     if (status == CAMBER_OK) {
-        REQUIRE(camber_mesh_read(easel.mesh, &got) == CAMBER_OK);
-        REQUIRE(camber_tessellate_on_host(easel.context, twin, &from->tessellation, &expected) == CAMBER_OK);
+        REQUIRE(camber_mesh_read(drawer.mesh, &got) == CAMBER_OK);
+        REQUIRE(camber_tessellate_on_host(drawer.context, twin, &from->tessellation, &expected) == CAMBER_OK);
         REQUIRE(got.info.record_count == expected.info.record_count &&
                 got.info.index_count == expected.info.index_count);
         REQUIRE(got.info.record_count == 0 ||
                 memcmp(got.records, expected.records, got.info.record_count * sizeof *got.records) == 0);
-        fuzz_easel_draw(&easel, from->tessellation.strokes, from->tessellation.stroke_count);
+        fuzz_drawer_draw(&drawer, from->tessellation.strokes, from->tessellation.stroke_count);
     }
-    camber_mesh_data_free(easel.context, &got);
-    camber_mesh_data_free(easel.context, &expected);
+    camber_mesh_data_free(drawer.context, &got);
+    camber_mesh_data_free(drawer.context, &expected);
     camber_polylines_destroy(twin);
     camber_network_destroy(network);
 }
@@ -261,7 +261,7 @@ static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
             check_lines(run, network, &from);
             fuzz_tessellate(run, slots, &from.tessellation, NULL);
         }
-        if (easel.mesh && !run->refuse_at)
+        if (drawer.mesh && !run->refuse_at)
             check_device(&from);
     }
     camber_polylines_destroy(slots);
@@ -273,7 +273,7 @@ static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
 int LLVMFuzzerInitialize(int *argument_count, char ***arguments) {
     (void)argument_count;
     (void)arguments;
-    fuzz_easel_open(&easel);
+    fuzz_drawer_open(&drawer);
     return 0;
 }
 

@@ -63,7 +63,7 @@ static void check_view(const camber_options *o) {
     REQUIRE(is_within(view->pitch_deg, 0, 85) && is_within(view->bearing_deg, -1e6, 1e6));
 }
 
-/* What camber_options says of its members. */
+/* Checks what camber_options says of its members. */
 static void check_values(const camber_options *o) {
     REQUIRE(is_within(o->format, -1, 1) && is_within(o->theme, -1, 1) && is_within(o->method, -1, 2));
     REQUIRE(is_within(o->coverage, 0, 1) && is_within(o->backend, 0, 2) && is_within(o->sharing, 0, 3));

@@ -45,7 +45,7 @@ void fuzz_scene(fuzz_run *run, const camber_features *features, const camber_sce
     REQUIRE(isfinite(info.zoom) && info.zoom <= 24.0);
     camber_tessellation_desc tessellation = {.method = (camber_method)(run->hash >> 20 & 0xff) % 3};
     tessellation.strokes = camber_scene_strokes(scene, &tessellation.stroke_count);
-    /* What a style says is never what a tessellation refuses. */
+    /* A tessellation never refuses what a style says. */
     REQUIRE(fuzz_tessellate(run, camber_scene_polylines(scene), &tessellation, NULL) || run->refused);
     camber_scene_destroy(scene);
 }

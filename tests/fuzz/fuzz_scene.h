@@ -1,4 +1,4 @@
-/* What must hold for any scene, whatever the style and the features. */
+/* Properties of any scene, whatever the style and the features. */
 #ifndef CAMBER_FUZZ_SCENE_H
 #define CAMBER_FUZZ_SCENE_H
 

@@ -65,7 +65,7 @@ static bool add_features(fuzz_run *run, camber_features *features) {
     return true;
 }
 
-/* What reads an id or all properties finds these. */
+/* Expressions that read an id or all properties find these. */
 static const camber_value numbers[] = {{.type = CAMBER_VALUE_NUMBER, .number = 1.5},
                                        {.type = CAMBER_VALUE_STRING, .string = "a"}};
 static const camber_member members[] = {
@@ -122,7 +122,7 @@ static void use_expression(fuzz_run *run, const uint8_t *bytes, size_t size) {
     free(answer.bytes);
 }
 
-/* What is wrong, each with its place; what has no errors parses. */
+/* Everything that is wrong has its place; a style without errors parses. */
 static void use_report(fuzz_run *run, const uint8_t *bytes, size_t size, bool *right) {
     camber_style_report *report = NULL;
     *right = false;

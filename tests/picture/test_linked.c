@@ -1,6 +1,6 @@
 /* Linked shader programs in the cache folder: taken from there, and built anew where what lies there is no program. */
 #include "gl_fault.h"
-#include "picture.h"
+#include "pictures.h"
 
 #include <dirent.h>
 
@@ -85,33 +85,33 @@ static size_t spoil(const char *folder, damage how) {
 }
 
 static void test_cache(void **state) {
-    studio *s = *state;
-    for (int i = 0; i < BACKENDS; i++) {
-        if (!s->renderer[i])
+    fixture *s = *state;
+    for (int i = 0; i < CAMBER_FIXTURE_BACKENDS; i++) {
+        if (!s->on.renderer[i])
             continue;
         GLint formats = 0;
-        assert_int_equal(camber_surface_make_current(s->surface[i]), CAMBER_OK);
-        s->surface[i]->gl.GetIntegerv(GL_NUM_PROGRAM_BINARY_FORMATS, &formats);
+        assert_int_equal(camber_surface_make_current(s->on.surface[i]), CAMBER_OK);
+        s->on.surface[i]->gl.GetIntegerv(GL_NUM_PROGRAM_BINARY_FORMATS, &formats);
         if (formats == 0) {
-            printf("%s keeps no programs\n", BACKEND_NAME[i]);
+            printf("%s keeps no programs\n", fixture_name(i));
             continue;
         }
         char folder[64];
         size_t built, compiled;
         folder_make(folder);
-        picture wanted = draw_anew(folder, BACKEND[i], &built);
+        picture wanted = draw_anew(folder, fixture_backend(i), &built);
         assert_true(built >= 4); /* the strokes and the flattening, two each */
-        picture again = draw_anew(folder, BACKEND[i], &compiled);
+        picture again = draw_anew(folder, fixture_backend(i), &compiled);
         assert_int_equal(compiled, 0);
         picture_assert_same(&wanted, &again);
         picture_free(&again);
         for (damage how = 0; how < DAMAGES; how++) {
             assert_int_equal(2 * spoil(folder, how), built);
-            again = draw_anew(folder, BACKEND[i], &compiled);
+            again = draw_anew(folder, fixture_backend(i), &compiled);
             assert_int_equal(compiled, built);
             picture_assert_same(&wanted, &again);
             picture_free(&again);
-            again = draw_anew(folder, BACKEND[i], &compiled); /* mended */
+            again = draw_anew(folder, fixture_backend(i), &compiled); /* mended */
             assert_int_equal(compiled, 0);
             picture_free(&again);
         }
@@ -121,9 +121,9 @@ static void test_cache(void **state) {
 }
 
 int main(void) {
-    if (!studio_begin())
+    if (!fixture_begin())
         return 77;
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_cache)};
-    const int failed = cmocka_run_group_tests(tests, studio_set_up, studio_tear_down);
+    const int failed = cmocka_run_group_tests(tests, fixture_set_up, fixture_tear_down);
     return failed;
 }

@@ -1,17 +1,17 @@
 /* The flattened layer is uniform: one alpha everywhere inside a translucent stroke, however often it runs over itself.
  */
-#include "torture.h"
+#include "torture_judge.h"
 
-typedef struct bench {
-    studio studio;
-    torture_set set;
-} bench;
+typedef struct overlap_test {
+    fixture fixture;
+    camber_torture_set set;
+} overlap_test;
 
 /* Torn: on the inner side of a sharp turn two neighbours leave a corner of one pixel each, and what both leave is not
  * nothing by a level or two. Meeting: the figures whose edges fall on each other, and the dense ones. */
 static void check_method(void **state, camber_method method) {
-    bench *b = *state;
-    torture_check(&b->studio, &b->set, method, (torture_known){3, 1, 5});
+    overlap_test *b = *state;
+    torture_check(&b->fixture, &b->set, method, (torture_known){3, 1, 5});
 }
 
 static void test_strips_are_uniform(void **state) {
@@ -27,21 +27,21 @@ static void test_fans_are_uniform(void **state) {
 }
 
 static int set_up(void **state) {
-    static bench b;
-    b.set = torture_make();
+    static overlap_test b;
+    b.set = camber_torture_make();
     *state = &b;
-    return studio_open(&b.studio) ? 0 : -1;
+    return fixture_open(&b.fixture) ? 0 : -1;
 }
 
 static int tear_down(void **state) {
-    bench *b = *state;
-    torture_free(&b->set);
-    studio_close(&b->studio);
+    overlap_test *b = *state;
+    camber_torture_free(&b->set);
+    fixture_close(&b->fixture);
     return 0;
 }
 
 int main(void) {
-    if (!studio_begin())
+    if (!fixture_begin())
         return 77;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_strips_are_uniform),

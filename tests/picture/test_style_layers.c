@@ -1,20 +1,12 @@
 /* Layers of styles with sources of their own, as a scene draws them: order, strokes by feature, sources, translations.
  */
-#include "picture.h"
-
-#include "camber_map.h"
+#include "map_picture.h"
 
 #include <math.h>
 #include <time.h>
 #include <unistd.h>
 
 enum { SIDE = 128 };
-
-typedef struct map {
-    camber_style *style;
-    camber_features *features;
-    camber_scene *scene;
-} map;
 
 /* A source of lines from west to east at these latitudes, with properties; at zoom 4 a degree is 22.8 px about 0. */
 #define LINE(latitude, properties)                                                                                     \
@@ -23,36 +15,16 @@ typedef struct map {
 #define LINES(...)                                                                                                     \
     "{\"type\": \"geojson\", \"data\": {\"type\": \"FeatureCollection\", \"features\": [" __VA_ARGS__ "]}}"
 
-static map open_map(studio *s, const char *sources, const char *layers, double bearing_deg) {
-    map m = {0};
+static map open_map(fixture *s, const char *sources, const char *layers, double bearing_deg) {
+    camber_style *style = NULL;
     char json[8192];
     snprintf(json, sizeof json, "{\"version\": 8, \"zoom\": 4, \"bearing\": %g, \"sources\": {%s}, \"layers\": [%s]}",
              bearing_deg, sources, layers);
-    if (camber_style_parse(s->context, json, strlen(json), "test", &m.style) != CAMBER_OK)
+    if (camber_style_parse(s->context, json, strlen(json), "test", &style) != CAMBER_OK)
         fail_msg("%s", s->h.last);
-    camber_scene_desc desc = {.view = camber_style_get_view(m.style)};
+    camber_scene_desc desc = {.view = camber_style_get_view(style)};
     desc.view.width = desc.view.height = SIDE;
-    assert_int_equal(camber_features_create(s->context, m.style, &m.features), CAMBER_OK);
-    if (camber_features_read_sources(m.features, &desc.view, NULL) != CAMBER_OK)
-        fail_msg("%s", s->h.last);
-    assert_int_equal(camber_scene_create(m.features, &desc, &m.scene), CAMBER_OK);
-    return m;
-}
-
-static void close_map(map *m) {
-    camber_scene_destroy(m->scene);
-    camber_features_destroy(m->features);
-    camber_style_destroy(m->style);
-}
-
-static picture draw(studio *s, map *m) {
-    camber_mesh *mesh = NULL;
-    assert_int_equal(camber_mesh_create(s->device, studio_any(s), &mesh), CAMBER_OK);
-    assert_int_equal(camber_scene_tessellate(m->scene, mesh, CAMBER_METHOD_STRIP), CAMBER_OK);
-    const camber_frame frame = camber_scene_frame(m->scene, mesh);
-    picture p = picture_draw(studio_any(s), &frame);
-    camber_mesh_destroy(mesh);
-    return p;
+    return map_open(s, style, &desc);
 }
 
 static void assert_pixel(const picture *p, uint32_t x, uint32_t y, double r, double g, double b, double a) {
@@ -72,7 +44,7 @@ static camber_stroke stroke_of(const map *m, size_t polyline) {
 
 /* By the key, and those of one key in the order of the source. */
 static void test_sort_key(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     const char *source =
         "\"s\": " LINES(LINE(0, "\"k\": 3, \"c\": \"#f00\"") "," LINE(0.05, "\"k\": 1, \"c\": \"#0f0\"") "," LINE(
             0.1, "\"k\": 2, \"c\": \"#00f\"") "," LINE(0.15, "\"k\": 1, \"c\": \"#ff0\"") "," LINE(0.2,
@@ -90,15 +62,15 @@ static void test_sort_key(void **state) {
         const double y = (double)lines->points[2 * lines->offsets[i] + 1];
         assert_true(fabs(y - (SIDE / 2 - latitudes[i] * 512 * 16 / 360)) < 0.1);
     }
-    picture p = draw(s, &m);
+    picture p = map_draw(s, &m);
     assert_pixel(&p, 64, 64, 1, 0, 0, 1); /* the largest key on top */
     picture_free(&p);
-    close_map(&m);
+    map_close(&m);
 }
 
 /* One layer, one pass, a stroke for each kind. */
 static void test_strokes_by_feature(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     const char *source =
         "\"s\": " LINES(LINE(1, "\"cap\": \"round\", \"join\": \"bevel\", \"limit\": 3, \"w\": 4") "," LINE(
             0, "\"cap\": \"square\", \"join\": \"miter\", \"limit\": 5, \"w\": 4") "," LINE(-1, "\"cap\": \"pointed\", "
@@ -120,11 +92,11 @@ static void test_strokes_by_feature(void **state) {
     assert_true(fabsf(third.miter_limit - 2) < 1e-6f);
     assert_true(fabsf(first.width_px - 10) < 1e-6f && fabsf(third.width_px - 14) < 1e-6f); /* two bands and the gap */
     assert_int_equal(camber_scene_frame(m.scene, NULL).pass_count, 1);
-    close_map(&m);
+    map_close(&m);
 }
 
 static void test_sources(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     const char *sources = "\"s\": " LINES(LINE(1, "")) ", \"t\": " LINES(LINE(-1, ""));
     map m = open_map(s, sources,
                      "{\"id\": \"a\", \"type\": \"line\", \"source\": \"s\", \"paint\": {\"line-width\": 8, "
@@ -132,18 +104,18 @@ static void test_sources(void **state) {
                      "{\"line-width\": 8, \"line-color\": \"#00f\"}}, {\"id\": \"c\", \"type\": \"line\", \"source\": "
                      "\"s\", \"layout\": {\"visibility\": \"none\"}, \"paint\": {\"line-width\": 60}}",
                      0);
-    picture p = draw(s, &m);
+    picture p = map_draw(s, &m);
     assert_pixel(&p, 64, 41, 1, 0, 0, 1);
     assert_pixel(&p, 64, 86, 0, 0, 1, 1);
     assert_pixel(&p, 64, 64, 0, 0, 0, 0);
     picture_free(&p);
-    close_map(&m);
+    map_close(&m);
 }
 
 /* The map's translation turns with it, the viewport's does not; a line far outside the picture is seen where it is
  * drawn inside. */
 static void test_translate(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
 #define MOVED(anchor)                                                                                                  \
     "{\"id\": \"a\", \"type\": \"line\", \"source\": \"s\", \"paint\": {\"line-width\": 8, \"line-translate\": [0, "   \
     "300], \"line-translate-anchor\": \"" anchor "\"}}"
@@ -152,43 +124,43 @@ static void test_translate(void **state) {
     const double up = 256 * 16 / 3.14159265358979 * log(tan(3.14159265358979 / 4 + 13 * 3.14159265358979 / 360));
     const uint32_t row = (uint32_t)(64 + 300 - up);
     map m = open_map(s, source, MOVED("map"), 0);
-    picture p = draw(s, &m);
+    picture p = map_draw(s, &m);
     assert_pixel(&p, 64, row, 0, 0, 0, 1);
     assert_pixel(&p, 64, row + 8, 0, 0, 0, 0);
     picture_free(&p);
-    close_map(&m);
+    map_close(&m);
     m = open_map(s, source, MOVED("map"), 180);
-    p = draw(s, &m);
+    p = map_draw(s, &m);
     assert_pixel(&p, 64, SIDE - 1 - row, 0, 0, 0, 1); /* all of it turned */
     assert_pixel(&p, 64, SIDE - 1 - row - 8, 0, 0, 0, 0);
     picture_free(&p);
-    close_map(&m);
+    map_close(&m);
     m = open_map(s, source, MOVED("viewport"), 180);
-    p = draw(s, &m);
+    p = map_draw(s, &m);
     for (uint32_t y = 0; y < SIDE; y += 4)
         assert_pixel(&p, 64, y, 0, 0, 0, 0); /* farther down */
     picture_free(&p);
-    close_map(&m);
+    map_close(&m);
 }
 
 static void test_layer_opacity(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     const char *source = "\"s\": " LINES(LINE(0, "\"c\": \"#f00\"") "," LINE(0.2, "\"c\": \"#00f\""));
     map m = open_map(
         s, source,
         "{\"id\": \"a\", \"type\": \"line\", \"source\": \"s\", \"paint\": {\"line-width\": 20, \"line-color\": "
         "[\"get\", \"c\"], \"line-layer-opacity\": 0.5}}",
         0);
-    picture p = draw(s, &m);
+    picture p = map_draw(s, &m);
     assert_pixel(&p, 64, 64, 0, 0, 0.5, 0.5); /* blue hides red, then both are half there */
     picture_free(&p);
-    close_map(&m);
+    map_close(&m);
 }
 
 /* Lines over and beside each other, as the layer's metadata has it. Where opacity changes with the feature, those of
  * one opacity that follow each other are flattened together. */
 static void test_overlap(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     static const struct {
         const char *overlap;
         double over,
@@ -207,23 +179,24 @@ static void test_overlap(void **state) {
                          "\"s\": " LINES(LINE(0, "\"o\": 0.5") "," LINE(0.2, "\"o\": 0.5") "," LINE(
                              -0.922852, "\"o\": 0.5") "," LINE(-0.7, "\"o\": 0.4")),
                          layer, 0);
-        picture p = draw(s, &m);
+        picture p = map_draw(s, &m);
         assert_pixel(&p, 64, 60, 0, 0, 0, cases[i].over);
         assert_pixel(&p, 64, 80, 0, 0, 0, 0.7); /* of two opacities, whatever the overlap */
         picture_free(&p);
-        close_map(&m);
+        map_close(&m);
         m = open_map(s, "\"s\": " LINES(LINE(0, "\"o\": 1") "," LINE(-0.922852, "\"o\": 1")), layer, 0);
-        p = draw(s, &m);
+        p = map_draw(s, &m);
         assert_pixel(&p, 64, 74, 0, 0, 0, cases[i].beside);
         picture_free(&p);
-        close_map(&m);
+        map_close(&m);
     }
 }
 
-/* Of the line's own width; where the line is translucent, it is not seen through the border, nor the border through it.
+/* As wide as the line itself; where the line is translucent, it is not seen through the border, nor the border through
+ * it.
  */
 static void test_border(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     static const struct {
         const char *paint;
         double edge[4], middle[4];
@@ -245,7 +218,7 @@ static void test_border(void **state) {
                  "\"line-border-width\": [\"get\", \"b\"], %s}}",
                  borders[i].paint);
         map m = open_map(s, "\"s\": " LINES(LINE(0, "\"b\": 4") "," LINE(2, "\"b\": 0")), layer, 0);
-        picture p = draw(s, &m);
+        picture p = map_draw(s, &m);
         const double *edge = borders[i].edge, *middle = borders[i].middle;
         assert_pixel(&p, 64, 55, edge[0], edge[1], edge[2], edge[3]);
         assert_pixel(&p, 64, 72, edge[0], edge[1], edge[2], edge[3]);
@@ -255,13 +228,13 @@ static void test_border(void **state) {
         assert_pixel(&p, 64, 10, middle[0], middle[1], middle[2], middle[3]); /* 45.5 px up: without a border */
         assert_int_equal(camber_scene_get_info(m.scene).layers, 1);
         picture_free(&p);
-        close_map(&m);
+        map_close(&m);
     }
 }
 
 /* A round join is a miter below the layer's limit where that shows: from 10 px on by the specification's limit. */
 static void test_round_limit(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     static const struct {
         const char *layout;
         double width, limit;
@@ -279,13 +252,13 @@ static void test_round_limit(void **state) {
         map m = open_map(s, "\"s\": " LINES(LINE(0, "\"limit\": 1.5")), layer, 0);
         if (fabs((double)stroke_of(&m, 0).round_limit - cases[i].limit) > 1e-6)
             fail_msg("case %zu: a limit of %g", i, (double)stroke_of(&m, 0).round_limit);
-        close_map(&m);
+        map_close(&m);
     }
 }
 
 /* Layers share polylines where their strokes agree, though one says by a function what the other says plainly. */
 static void test_sharing(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     static const struct {
         const char *layout;
         size_t polylines;
@@ -307,7 +280,7 @@ static void test_sharing(void **state) {
         map m = open_map(s, "\"s\": " LINES(LINE(0, "\"cap\": \"butt\"")), layers, 0);
         if (camber_scene_lines(m.scene)->polyline_count != others[i].polylines)
             fail_msg("%s: %zu polylines", others[i].layout, camber_scene_lines(m.scene)->polyline_count);
-        close_map(&m);
+        map_close(&m);
     }
 }
 
@@ -346,7 +319,7 @@ static double cpu_ms(void) {
 }
 
 static void test_many_layers(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     static char json[1 << 20];
     char path[1024];
     const char *data = getenv("CAMBER_DATA");
@@ -363,7 +336,7 @@ static void test_many_layers(void **state) {
     assert_int_equal(camber_features_read(m.features, &(camber_source_desc){.path = path}), CAMBER_OK);
     const camber_scene_desc desc = {.on_device = true};
     assert_int_equal(camber_scene_create(m.features, &desc, &m.scene), CAMBER_OK);
-    /* What a frame evaluates: another zoom of the same features. */
+    /* A frame evaluates another zoom of the same features. */
     const camber_scene_info info = camber_scene_get_view(m.scene);
     const camber_view_desc view = {
         .kind = CAMBER_VIEW_CENTER, .longitude = info.longitude, .latitude = info.latitude, .zoom = info.zoom + 0.25};
@@ -372,10 +345,10 @@ static void test_many_layers(void **state) {
     const double evaluate_ms = cpu_ms() - before_ms;
     camber_mesh *mesh = NULL;
     camber_frame_stats stats = {0};
-    assert_int_equal(camber_mesh_create(s->device, studio_any(s), &mesh), CAMBER_OK);
+    assert_int_equal(camber_mesh_create(s->on.device, fixture_any(s), &mesh), CAMBER_OK);
     assert_int_equal(camber_scene_tessellate(m.scene, mesh, CAMBER_METHOD_STRIP), CAMBER_OK);
     const camber_frame frame = camber_scene_frame(m.scene, mesh);
-    assert_int_equal(camber_render(studio_any(s), &frame, NULL, NULL, &stats), CAMBER_OK);
+    assert_int_equal(camber_render(fixture_any(s), &frame, NULL, NULL, &stats), CAMBER_OK);
     printf("%d layers: %zu bytes parsed in %.1f ms, evaluated in %.1f ms, %zu passes, %zu draw calls\n", LAYERS,
            strlen(json), parse_ms, evaluate_ms, frame.pass_count, stats.draw_calls);
     assert_in_range(frame.pass_count, 2, LAYERS);
@@ -384,11 +357,11 @@ static void test_many_layers(void **state) {
     assert_true(parse_ms + evaluate_ms < 300);
 #endif
     camber_mesh_destroy(mesh);
-    close_map(&m);
+    map_close(&m);
 }
 
 int main(void) {
-    if (!studio_begin())
+    if (!fixture_begin())
         return 77;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_sort_key),      cmocka_unit_test(test_strokes_by_feature),
@@ -397,6 +370,6 @@ int main(void) {
         cmocka_unit_test(test_border),        cmocka_unit_test(test_sharing),
         cmocka_unit_test(test_overlap),       cmocka_unit_test(test_round_limit),
     };
-    const int failed = cmocka_run_group_tests(tests, studio_set_up, studio_tear_down);
+    const int failed = cmocka_run_group_tests(tests, fixture_set_up, fixture_tear_down);
     return failed;
 }

@@ -1,7 +1,7 @@
 /* Frames in textures: the bytes that rows have, by each way of sharing, in each kind of drawing; over what a texture
  * holds and upside down, as the host puts it together; in a context of the caller's; and what is refused or fails. */
 #include "gl_fault.h"
-#include "picture.h"
+#include "pictures.h"
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
@@ -22,20 +22,21 @@ typedef struct drawing {
 } drawing;
 
 /* Wide lines, and translucent ones over them, on nothing. */
-static void begin_drawing(const studio *s, camber_renderer *renderer, drawing *d) {
+static void begin_drawing(const fixture *s, camber_renderer *renderer, drawing *d) {
     static const camber_stroke strokes[ROWS] = {
         {.width_px = 9}, {.width_px = 5, .join = CAMBER_JOIN_MITER}, {.width_px = 2}};
     const camber_tessellation_desc desc = {.strokes = strokes, .stroke_count = ROWS};
-    scene lines = {0};
+    camber_made_scene lines = {0};
     uint64_t seed = 11;
     for (size_t i = 0; i < 30; i++) {
         for (int k = 0; k < 5; k++)
-            scene_point(&lines, random_between(&seed, -9, WIDTH + 9), random_between(&seed, -9, HEIGHT + 9));
-        scene_end(&lines, i % ROWS);
+            camber_made_scene_point(&lines, camber_random_between(&seed, -9, WIDTH + 9),
+                                    camber_random_between(&seed, -9, HEIGHT + 9));
+        camber_made_scene_end(&lines, i % ROWS);
     }
     *d = (drawing){.frame = {.width = WIDTH, .height = HEIGHT, .pass_count = 2}};
-    d->mesh = studio_mesh(s, renderer, &lines, &desc);
-    scene_free(&lines);
+    d->mesh = fixture_mesh(s, renderer, &lines, &desc);
+    camber_made_scene_free(&lines);
     for (size_t i = 0; i < ROWS; i++) {
         const float shade = 0.3f * (float)i, width = strokes[i].width_px;
         d->paints[0][i] = (camber_paint){.width_px = width, .color = {1 - shade, 0.2f, shade, 1}};
@@ -83,7 +84,7 @@ static void drop_texture(camber_surface *surface, GLuint name) {
 /* ---- The same bytes ---- */
 
 /* Frames of several sizes, in areas and at once, one behind the other and not waited for. */
-static void compare_frames(const studio *s, camber_surface *surface, camber_renderer *shared, camber_renderer *alone) {
+static void compare_frames(const fixture *s, camber_surface *surface, camber_renderer *shared, camber_renderer *alone) {
     static const struct {
         uint32_t width, height, piece_px;
         camber_color background;
@@ -132,20 +133,20 @@ static void compare_frames(const studio *s, camber_surface *surface, camber_rend
 
 /* Kernels draw the same with a surface as without, also as rows. */
 static void test_kernels(void **state) {
-    const studio *s = *state;
+    const fixture *s = *state;
     camber_renderer *alone = NULL;
     size_t found = 0;
-    assert_int_equal(camber_renderer_create(s->device, NULL, NULL, &alone), CAMBER_OK);
-    for (size_t k = 0; k < BACKENDS * 3; k++) {
-        camber_surface *surface = s->surface[k / 3];
+    assert_int_equal(camber_renderer_create(s->on.device, NULL, NULL, &alone), CAMBER_OK);
+    for (size_t k = 0; k < CAMBER_FIXTURE_BACKENDS * 3; k++) {
+        camber_surface *surface = s->on.surface[k / 3];
         const camber_renderer_desc desc = {.draw = CAMBER_DRAW_CL, .sharing = PATH[k % 3]};
         camber_renderer *shared = NULL;
         host *h = (host *)(uintptr_t)&s->h;
-        if (!surface || camber_renderer_create(s->device, surface, &desc, &shared) != CAMBER_OK) {
+        if (!surface || camber_renderer_create(s->on.device, surface, &desc, &shared) != CAMBER_OK) {
             h->errors = 0;
             continue;
         }
-        printf("# %s, %s\n", BACKEND_NAME[k / 3], camber_sharing_name(PATH[k % 3]));
+        printf("# %s, %s\n", fixture_name((int)k / 3), camber_sharing_name(PATH[k % 3]));
         found++;
         assert_int_equal(camber_renderer_get_sharing(shared), PATH[k % 3]);
         assert_int_equal(camber_renderer_get_draw(shared), CAMBER_DRAW_CL);
@@ -166,10 +167,10 @@ static void test_kernels(void **state) {
 }
 
 static void test_shaders(void **state) {
-    const studio *s = *state;
-    for (int i = 0; i < BACKENDS; i++)
-        if (s->renderer[i] && s->surface[i])
-            compare_frames(s, s->surface[i], s->renderer[i], s->renderer[i]);
+    const fixture *s = *state;
+    for (int i = 0; i < CAMBER_FIXTURE_BACKENDS; i++)
+        if (s->on.renderer[i] && s->on.surface[i])
+            compare_frames(s, s->on.surface[i], s->on.renderer[i], s->on.renderer[i]);
 }
 
 /* ---- Over what a texture holds ---- */
@@ -209,7 +210,7 @@ static picture put_over(const picture *below, const picture *above) {
     return p;
 }
 
-static void compare_over(const studio *s, camber_surface *surface, camber_renderer *renderer) {
+static void compare_over(const fixture *s, camber_surface *surface, camber_renderer *renderer) {
     drawing d;
     begin_drawing(s, renderer, &d);
     picture lines = picture_draw(renderer, &d.frame);
@@ -238,14 +239,14 @@ static void compare_over(const studio *s, camber_surface *surface, camber_render
 }
 
 static void test_over(void **state) {
-    const studio *s = *state;
-    for (int i = 0; i < BACKENDS * KINDS; i++) {
-        camber_surface *surface = s->surface[i / KINDS];
+    const fixture *s = *state;
+    for (int i = 0; i < CAMBER_FIXTURE_BACKENDS * KINDS; i++) {
+        camber_surface *surface = s->on.surface[i / KINDS];
         const camber_renderer_desc desc = {.draw = KIND[i % KINDS]};
         camber_renderer *renderer = NULL;
         if (!surface)
             continue;
-        assert_int_equal(camber_renderer_create(s->device, surface, &desc, &renderer), CAMBER_OK);
+        assert_int_equal(camber_renderer_create(s->on.device, surface, &desc, &renderer), CAMBER_OK);
         compare_over(s, surface, renderer);
         camber_renderer_destroy(renderer);
     }
@@ -253,13 +254,13 @@ static void test_over(void **state) {
 
 /* GL's lines below those of kernels, below GL's again, with nothing read back between. */
 static void test_in_turn(void **state) {
-    const studio *s = *state;
-    camber_surface *surface = s->surface[0] ? s->surface[0] : s->surface[1];
+    const fixture *s = *state;
+    camber_surface *surface = s->on.surface[0] ? s->on.surface[0] : s->on.surface[1];
     const camber_renderer_desc desc = {.draw = CAMBER_DRAW_CL};
-    camber_renderer *turns[3] = {studio_any(s), NULL, studio_any(s)};
+    camber_renderer *turns[3] = {fixture_any(s), NULL, fixture_any(s)};
     drawing d[3];
     picture wanted = {calloc(4, WIDTH * HEIGHT), WIDTH, HEIGHT, HEIGHT, 0};
-    assert_int_equal(camber_renderer_create(s->device, surface, &desc, &turns[1]), CAMBER_OK);
+    assert_int_equal(camber_renderer_create(s->on.device, surface, &desc, &turns[1]), CAMBER_OK);
     const GLuint name = make_texture(surface, &wanted, WIDTH, HEIGHT);
     for (int i = 0; i < 3; i++) {
         void *drawn = NULL;
@@ -338,14 +339,14 @@ static void use_engine(const engine *e) {
 }
 
 /* The engine makes the texture and looks at it; between them are only fences. */
-static void draw_for_engine(const studio *s, const engine *e, camber_surface *surface, camber_draw kind) {
+static void draw_for_engine(const fixture *s, const engine *e, camber_surface *surface, camber_draw kind) {
     const camber_gl *gl = &surface->gl; /* the same functions in any context of EGL's */
     const camber_renderer_desc desc = {.draw = kind};
     camber_renderer *renderer = NULL;
     drawing d;
     void *drawn = NULL;
     GLuint name = 0, framebuffer = 0;
-    assert_int_equal(camber_renderer_create(s->device, surface, &desc, &renderer), CAMBER_OK);
+    assert_int_equal(camber_renderer_create(s->on.device, surface, &desc, &renderer), CAMBER_OK);
     begin_drawing(s, renderer, &d);
     picture lines = picture_draw(renderer, &d.frame), ground = make_ground(), wanted = put_over(&ground, &lines);
     use_engine(e);
@@ -379,7 +380,7 @@ static void draw_for_engine(const studio *s, const engine *e, camber_surface *su
 }
 
 static void test_engine(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     engine e;
     camber_surface *surface = NULL;
     if (!open_engine(&e))
@@ -390,7 +391,7 @@ static void test_engine(void **state) {
     for (int i = 0; i < KINDS; i++)
         draw_for_engine(s, &e, surface, KIND[i]);
     camber_surface_destroy(surface);
-    /* What cannot be shared is told. */
+    /* The log tells what cannot be shared. */
     const camber_surface_desc osmesa = {CAMBER_BACKEND_OSMESA, e.context, e.display};
     assert_int_equal(camber_surface_create(s->context, &osmesa, &surface), CAMBER_ERROR_ARGUMENT);
     assert_story(&s->h, "use the back end EGL");
@@ -404,15 +405,15 @@ static void test_engine(void **state) {
 /* ---- What is refused ---- */
 
 static void test_refused(void **state) {
-    studio *s = *state;
-    for (int i = 0; i < BACKENDS * KINDS; i++) {
-        camber_surface *surface = s->surface[i / KINDS];
+    fixture *s = *state;
+    for (int i = 0; i < CAMBER_FIXTURE_BACKENDS * KINDS; i++) {
+        camber_surface *surface = s->on.surface[i / KINDS];
         const camber_renderer_desc desc = {.draw = KIND[i % KINDS]};
         camber_renderer *renderer = NULL;
         drawing d;
         if (!surface)
             continue;
-        assert_int_equal(camber_renderer_create(s->device, surface, &desc, &renderer), CAMBER_OK);
+        assert_int_equal(camber_renderer_create(s->on.device, surface, &desc, &renderer), CAMBER_OK);
         begin_drawing(s, renderer, &d);
         const GLuint small = make_texture(surface, NULL, WIDTH, HEIGHT - 1),
                      good = make_texture(surface, NULL, WIDTH, HEIGHT);
@@ -444,10 +445,10 @@ static void test_refused(void **state) {
 }
 
 static void test_no_surface(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     camber_renderer *alone = NULL;
     drawing d;
-    assert_int_equal(camber_renderer_create(s->device, NULL, NULL, &alone), CAMBER_OK);
+    assert_int_equal(camber_renderer_create(s->on.device, NULL, NULL, &alone), CAMBER_OK);
     begin_drawing(s, alone, &d);
     assert_int_equal(camber_render_texture(alone, &d.frame, &(camber_texture){.name = 1}, NULL), CAMBER_ERROR_ARGUMENT);
     assert_story(&s->h, "create it with a surface");
@@ -458,7 +459,7 @@ static void test_no_surface(void **state) {
 /* ---- Faults ---- */
 
 typedef struct victim {
-    studio *s;
+    fixture *s;
     camber_surface *surface;
     camber_renderer *renderer;
     drawing d;
@@ -515,14 +516,14 @@ static void check_loss(victim *v) {
 }
 
 static void test_faults(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     for (size_t k = 0; k < KINDS * 2; k++) {
         const camber_renderer_desc desc = {.draw = KIND[k % KINDS],
                                            .sharing = k < KINDS ? CAMBER_SHARING_COPY : CAMBER_SHARING_AUTO};
         victim v = {.s = s};
         if (camber_surface_create(s->context, NULL, &v.surface) != CAMBER_OK)
             skip();
-        assert_int_equal(camber_renderer_create(s->device, v.surface, &desc, &v.renderer), CAMBER_OK);
+        assert_int_equal(camber_renderer_create(s->on.device, v.surface, &desc, &v.renderer), CAMBER_OK);
         begin_drawing(s, v.renderer, &v.d);
         v.name = make_texture(v.surface, NULL, WIDTH, HEIGHT);
         v.wanted = picture_draw(v.renderer, &v.d.frame);
@@ -544,7 +545,7 @@ static camber_status attempt_all(camber_context *context, void *user) {
     camber_renderer *renderer = NULL;
     camber_mesh *mesh = v->d.mesh;
     (void)context;
-    camber_status status = camber_renderer_create(v->s->device, v->surface, &desc, &renderer);
+    camber_status status = camber_renderer_create(v->s->on.device, v->surface, &desc, &renderer);
     if (status == CAMBER_OK) {
         mesh->renderer = renderer; /* it is the kernels' alike */
         status = camber_render_texture(renderer, &v->d.frame, &(camber_texture){.name = v->name, .keep = true}, NULL);
@@ -555,10 +556,10 @@ static camber_status attempt_all(camber_context *context, void *user) {
 }
 
 static void test_memory(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     const camber_renderer_desc desc = {.draw = CAMBER_DRAW_CL};
-    victim v = {.s = s, .surface = s->surface[0] ? s->surface[0] : s->surface[1]};
-    assert_int_equal(camber_renderer_create(s->device, v.surface, &desc, &v.renderer), CAMBER_OK);
+    victim v = {.s = s, .surface = s->on.surface[0] ? s->on.surface[0] : s->on.surface[1]};
+    assert_int_equal(camber_renderer_create(s->on.device, v.surface, &desc, &v.renderer), CAMBER_OK);
     begin_drawing(s, v.renderer, &v.d);
     v.name = make_texture(v.surface, NULL, WIDTH, HEIGHT);
     assert_int_equal(attempt_all(s->context, &v), CAMBER_OK);
@@ -574,5 +575,5 @@ int main(void) {
         cmocka_unit_test(test_in_turn),    cmocka_unit_test(test_engine),  cmocka_unit_test(test_refused),
         cmocka_unit_test(test_no_surface), cmocka_unit_test(test_faults),  cmocka_unit_test(test_memory),
     };
-    return STUDIO_RUN(tests);
+    return FIXTURE_RUN(tests);
 }

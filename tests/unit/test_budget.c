@@ -1,4 +1,4 @@
-/* What files may make a run take, and which files may be read. */
+/* Budgets: how much memory files may make a run take, and which files may be read. */
 #include "core.h"
 
 #include <fcntl.h>
@@ -172,7 +172,7 @@ static void test_root(void **state) {
     folder_remove(folder);
 }
 
-/* What is about to be replaced is not read, by any of its names. */
+/* A file that is about to be replaced is not read, by any of its names. */
 static void test_output(void **state) {
     (void)state;
     host h;

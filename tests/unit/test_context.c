@@ -228,7 +228,7 @@ static void test_memory(void **state) {
     float points[2 * 60];
     uint64_t seed = 1;
     for (int i = 0; i < 120; i++)
-        points[i] = (float)random_between(&seed, 0, 50);
+        points[i] = (float)camber_random_between(&seed, 0, 50);
     const uint32_t offsets[] = {0, 60};
     const camber_polylines_desc desc = {points, 60, offsets, 1, NULL, false};
     camber_polylines *polylines = NULL;

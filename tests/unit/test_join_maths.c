@@ -14,9 +14,9 @@ typedef struct sample {
 } sample;
 
 static sample make_sample(uint64_t *seed, double turn_deg) {
-    const double base = random_between(seed, -PI, PI), turn = turn_deg * PI / 180;
+    const double base = camber_random_between(seed, -PI, PI), turn = turn_deg * PI / 180;
     /* From 1e-3 to 1e4 px, evenly in the exponent. */
-    const double a = pow(10, random_between(seed, -3, 4)), b = pow(10, random_between(seed, -3, 4));
+    const double a = pow(10, camber_random_between(seed, -3, 4)), b = pow(10, camber_random_between(seed, -3, 4));
     sample s = {(float)(a * cos(base)),
                 (float)(a * sin(base)),
                 (float)(b * cos(base + turn)),
@@ -56,7 +56,7 @@ static void test_half_turn(void **state) {
         for (int repeat = 0; repeat < 20; repeat++) {
             const sample s = make_sample(&seed, k * 0.1 - 180);
             const camber_turn turn = camber_turn_between(s.dx, s.dy, s.ex, s.ey);
-            /* Of a full reversal the sign is the float rounding's. */
+            /* The sign of a full reversal is the float rounding's. */
             const bool reversal = fabs(s.turn) > 179.999 * PI / 180;
             assert_true(turn.c >= 0.0f);
             assert_near(turn.c, cos(s.turn / 2), 6e-7);
@@ -152,9 +152,10 @@ static void test_words(void **state) {
         for (camber_u32 method = 0; method < 3; method++)
             for (camber_u32 join = 0; join < 3; join++) {
                 const sample s = make_sample(&seed, k * 0.1 - 180);
-                const float width = (float)pow(10, random_between(&seed, -1, 3));
-                camber_row row = make_row(width, join, limits[random_below(&seed, 5)], 0.3);
-                row.round_cos = k % 2 || join != CAMBER_JOIN_ROUND ? 2.0f : 1.0f / limits[random_below(&seed, 5)];
+                const float width = (float)pow(10, camber_random_between(&seed, -1, 3));
+                camber_row row = make_row(width, join, limits[camber_random_below(&seed, 5)], 0.3);
+                row.round_cos =
+                    k % 2 || join != CAMBER_JOIN_ROUND ? 2.0f : 1.0f / limits[camber_random_below(&seed, 5)];
                 check_word(&s, row, method);
             }
 }
@@ -193,7 +194,7 @@ static void test_fan_triangles(void **state) {
     for (int k = 0; k <= STEPS; k++) {
         for (int repeat = 0; repeat < 10; repeat++) {
             const sample s = make_sample(&seed, k * 0.1 - 180);
-            const double step = random_between(&seed, PI / CAMBER_JOIN_TRIANGLES_MAX, PI / 2);
+            const double step = camber_random_between(&seed, PI / CAMBER_JOIN_TRIANGLES_MAX, PI / 2);
             const camber_row row = make_row(4, CAMBER_JOIN_ROUND, 2, step);
             const camber_turn turn = camber_turn_between(s.dx, s.dy, s.ex, s.ey);
             const double n = camber_fan_triangles(turn.dot, row.fan_cos, row.fan_sin);
@@ -214,9 +215,10 @@ static void test_counts_fit(void **state) {
     uint64_t seed = 4;
     camber_u32 most_vertices = 0, most_indices = 0;
     for (int i = 0; i < 200000; i++) {
-        const sample s = make_sample(&seed, random_between(&seed, -180, 180));
-        const camber_row row = make_row(1000, (camber_u32)random_below(&seed, 3), 2, PI / CAMBER_JOIN_TRIANGLES_MAX);
-        const camber_u32 method = (camber_u32)random_below(&seed, 3);
+        const sample s = make_sample(&seed, camber_random_between(&seed, -180, 180));
+        const camber_row row =
+            make_row(1000, (camber_u32)camber_random_below(&seed, 3), 2, PI / CAMBER_JOIN_TRIANGLES_MAX);
+        const camber_u32 method = (camber_u32)camber_random_below(&seed, 3);
         const camber_u32 word = join_word(camber_turn_between(s.dx, s.dy, s.ex, s.ey), row, method);
         const camber_u32 counts = camber_join_counts(word, word, CAMBER_POINT_REAL, method);
         most_vertices = (counts & 0xffffu) > most_vertices ? counts & 0xffffu : most_vertices;

@@ -21,7 +21,7 @@ static void test_round_trip(void **state) {
     }
 }
 
-/* What is no UTF-8 is taken byte by byte, never past the end, and comes out as it was. */
+/* Bytes that are no UTF-8 are taken one by one, never past the end, and come out as they were. */
 static void test_broken(void **state) {
     (void)state;
     static const char *const texts[] = {"\x80",     "\xc3",     "\xe2\x82",    "\xf0\x9f\x9b",

@@ -76,16 +76,16 @@ static void test_round_trip(void **state) {
     camber_context *context = host_context(&h);
     uint64_t seed = 5;
     for (int round = 0; round < 20; round++) {
-        const size_t n = random_below(&seed, 3000);
+        const size_t n = camber_random_below(&seed, 3000);
         uint32_t *offsets = calloc(n + 1, sizeof *offsets);
         assert_non_null(offsets);
         for (size_t i = 0; i < n; i++)
-            offsets[i + 1] = offsets[i] + (uint32_t)random_below(&seed, 4);
+            offsets[i + 1] = offsets[i] + (uint32_t)camber_random_below(&seed, 4);
         const size_t p = offsets[n];
         float *points = calloc(2 * p + 1, sizeof *points);
         assert_non_null(points);
         for (size_t i = 0; i < 2 * p; i++) {
-            const uint32_t bits = (uint32_t)random_bits(&seed);
+            const uint32_t bits = (uint32_t)camber_random_bits(&seed);
             memcpy(points + i, &bits, 4);
         }
         byte_list file = {.refuse_at = SIZE_MAX};
@@ -208,8 +208,8 @@ static void test_random_bytes(void **state) {
     memcpy(original, file.bytes, file.size);
     for (int round = 0; round < 20000; round++) {
         memcpy(file.bytes, original, file.size);
-        for (size_t i = 0; i < 1 + random_below(&seed, 3); i++)
-            file.bytes[random_below(&seed, HEAD_SIZE + 16)] = (unsigned char)random_bits(&seed);
+        for (size_t i = 0; i < 1 + camber_random_below(&seed, 3); i++)
+            file.bytes[camber_random_below(&seed, HEAD_SIZE + 16)] = (unsigned char)camber_random_bits(&seed);
         camber_lines lines;
         if (camber_lines_parse(context, file.bytes, file.size, "x", &lines) != CAMBER_OK)
             continue;

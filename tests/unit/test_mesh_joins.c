@@ -9,10 +9,11 @@ typedef struct found {
     size_t rooms[CAMBER_JOIN_ROOMS], seams;
 } found;
 
-static found find(camber_context *context, const scene *lines, const camber_stroke *strokes, camber_method method) {
+static found find(camber_context *context, const camber_made_scene *lines, const camber_stroke *strokes,
+                  camber_method method) {
     found f = {0};
     camber_polylines *polylines = scene_polylines(context, lines);
-    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, method, 0, false};
+    const camber_tessellation_desc desc = {strokes, CAMBER_KERNEL_ROWS, method, 0, false};
     assert_int_equal(camber_tessellate_on_host(context, polylines, &desc, &f.mesh), CAMBER_OK);
     assert_true(camber_mesh_joins_find(&f.mesh, strokes, &f.joins));
     for (size_t i = 0; i < f.joins.count; i++) {
@@ -51,10 +52,10 @@ static void test_counts(void **state) {
     (void)state;
     host h;
     camber_context *context = host_context(&h);
-    camber_stroke strokes[SCENE_ROWS];
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     scene_strokes(strokes);
-    for (size_t which = 0; which + 1 < SCENE_COUNT; which++) {
-        scene lines = scene_make(which);
+    for (size_t which = 0; which + 1 < CAMBER_KERNEL_SCENES; which++) {
+        camber_made_scene lines = scene_make(which);
         size_t seams = 0;
         for (int method = CAMBER_METHOD_FAN; method >= 0; method--) {
             found f = find(context, &lines, strokes, (camber_method)method);
@@ -75,7 +76,7 @@ static void test_counts(void **state) {
                    info->tight_joins, f.rooms[2], info->split_joins, f.seams);
             forget(context, &f);
         }
-        scene_free(&lines);
+        camber_made_scene_free(&lines);
     }
     host_done(&h, context);
 }
@@ -84,10 +85,10 @@ static void test_ranges(void **state) {
     (void)state;
     host h;
     camber_context *context = host_context(&h);
-    camber_stroke strokes[SCENE_ROWS];
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     scene_strokes(strokes);
     for (size_t which = 0; which < 4; which++) {
-        scene lines = scene_make(which);
+        camber_made_scene lines = scene_make(which);
         for (int method = 0; method < 3; method++) {
             found f = find(context, &lines, strokes, (camber_method)method);
             for (size_t i = 0; i < f.joins.count; i++) {
@@ -97,7 +98,7 @@ static void test_ranges(void **state) {
             }
             forget(context, &f);
         }
-        scene_free(&lines);
+        camber_made_scene_free(&lines);
     }
     host_done(&h, context);
 }
@@ -106,28 +107,28 @@ static void test_by_hand(void **state) {
     (void)state;
     host h;
     camber_context *context = host_context(&h);
-    camber_stroke strokes[SCENE_ROWS] = {{.width_px = 8.5f}}; /* reach 5 */
+    camber_stroke strokes[CAMBER_KERNEL_ROWS] = {{.width_px = 8.5f}}; /* reach 5 */
     for (int method = 0; method < 3; method++) {
-        scene lines = {0};
+        camber_made_scene lines = {0};
         static const double points[][2] = {{0, 0}, {20, 0}, {20, 20}, {20, 10.5}, {10.5, 20}};
         for (int i = 0; i < 5; i++)
-            scene_point(&lines, points[i][0], points[i][1]);
-        scene_end(&lines, 0);
-        scene_point(&lines, 0, 0); /* equal to the first, and no join between the two */
-        scene_point(&lines, 20, 0);
-        scene_point(&lines, 20, 9.9);
-        scene_end(&lines, 0);
-        scene_point(&lines, 0, 0); /* exactly at the bound */
-        scene_point(&lines, 20, 0);
-        scene_point(&lines, 20, 10);
-        scene_end(&lines, 0);
-        scene_point(&lines, 60, 0); /* there, back, and there again: no ring */
-        scene_point(&lines, 90, 0);
-        scene_point(&lines, 60, 0);
-        scene_point(&lines, 90, 0);
-        scene_end(&lines, 0);
-        scene_point(&lines, 5, 5); /* a dot */
-        scene_end(&lines, 0);
+            camber_made_scene_point(&lines, points[i][0], points[i][1]);
+        camber_made_scene_end(&lines, 0);
+        camber_made_scene_point(&lines, 0, 0); /* equal to the first, and no join between the two */
+        camber_made_scene_point(&lines, 20, 0);
+        camber_made_scene_point(&lines, 20, 9.9);
+        camber_made_scene_end(&lines, 0);
+        camber_made_scene_point(&lines, 0, 0); /* exactly at the bound */
+        camber_made_scene_point(&lines, 20, 0);
+        camber_made_scene_point(&lines, 20, 10);
+        camber_made_scene_end(&lines, 0);
+        camber_made_scene_point(&lines, 60, 0); /* there, back, and there again: no ring */
+        camber_made_scene_point(&lines, 90, 0);
+        camber_made_scene_point(&lines, 60, 0);
+        camber_made_scene_point(&lines, 90, 0);
+        camber_made_scene_end(&lines, 0);
+        camber_made_scene_point(&lines, 5, 5); /* a dot */
+        camber_made_scene_end(&lines, 0);
         found f = find(context, &lines, strokes, (camber_method)method);
         static const camber_join_room rooms[] = {CAMBER_JOIN_PLAIN, CAMBER_JOIN_SPLIT, CAMBER_JOIN_SPLIT,
                                                  CAMBER_JOIN_TIGHT, CAMBER_JOIN_TIGHT, CAMBER_JOIN_SPLIT,
@@ -141,7 +142,7 @@ static void test_by_hand(void **state) {
         }
         assert_true(f.joins.items[2].x == 20 && f.joins.items[2].y == 10.5f);
         forget(context, &f);
-        scene_free(&lines);
+        camber_made_scene_free(&lines);
     }
     host_done(&h, context);
 }
@@ -151,13 +152,14 @@ static void test_rings(void **state) {
     (void)state;
     host h;
     camber_context *context = host_context(&h);
-    camber_stroke strokes[SCENE_ROWS] = {{.width_px = 4}};
+    camber_stroke strokes[CAMBER_KERNEL_ROWS] = {{.width_px = 4}};
     for (int method = 0; method < 3; method++) {
-        scene lines = {0};
+        camber_made_scene lines = {0};
         for (int ring = 0; ring < 2; ring++) {
             for (int i = 0; i <= 6; i++)
-                scene_point(&lines, 100 + 50 * cos(i % 6 * SCENE_PI / 3), 100 + 50 * sin(i % 6 * SCENE_PI / 3));
-            scene_end(&lines, 0);
+                camber_made_scene_point(&lines, 100 + 50 * cos(i % 6 * SCENE_PI / 3),
+                                        100 + 50 * sin(i % 6 * SCENE_PI / 3));
+            camber_made_scene_end(&lines, 0);
         }
         found f = find(context, &lines, strokes, (camber_method)method);
         const size_t seams = method == CAMBER_METHOD_STRIP ? 0 : 2;
@@ -165,7 +167,7 @@ static void test_rings(void **state) {
         assert_int_equal(f.joins.count, 10 + seams);
         assert_int_equal(f.rooms[CAMBER_JOIN_PLAIN], f.joins.count);
         forget(context, &f);
-        scene_free(&lines);
+        camber_made_scene_free(&lines);
     }
     host_done(&h, context);
 }

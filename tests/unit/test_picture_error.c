@@ -19,11 +19,11 @@ static void tell(void *user, double fraction) {
 
 static void test_bands(void **state) {
     (void)state;
-    scene s = {0};
+    camber_made_scene s = {0};
     uint64_t seed = 7;
     for (int i = 0; i < 40; i++) {
-        scene_walk(&s, &seed, 12, (const double[]){0.5, 20}, 1.5);
-        scene_end(&s, (size_t)i % 2);
+        camber_made_scene_walk(&s, &seed, 12, (const double[]){0.5, 20}, 1.5);
+        camber_made_scene_end(&s, (size_t)i % 2);
     }
     for (size_t i = 0; i < 2 * s.point_count; i++)
         s.points[i] /= 10; /* into the picture */
@@ -40,7 +40,7 @@ static void test_bands(void **state) {
     assert_true(camber_truth_make(&desc.truth, (camber_window){0, 0, WIDTH, HEIGHT}, truth));
     for (size_t i = 0; i < WIDTH * HEIGHT; i++) {
         pictures[0][i] = (uint8_t)lrintf(255 * truth[i]);
-        pictures[1][i] = (uint8_t)random_below(&seed, 256);
+        pictures[1][i] = (uint8_t)camber_random_below(&seed, 256);
     }
     pictures[0][WIDTH * HEIGHT - 1] ^= 200; /* the last of all */
     for (unsigned threads = 0; threads < 9; threads += 1 + threads / 2) {
@@ -62,7 +62,7 @@ static void test_bands(void **state) {
                          abs((int)pictures[0][WIDTH * HEIGHT - 1] - (int)lrintf(255 * truth[WIDTH * HEIGHT - 1])));
         assert_true(threads != 1 || (t.calls == 4 && t.last == 1.0)); /* bands of 32 rows */
     }
-    scene_free(&s);
+    camber_made_scene_free(&s);
 }
 
 int main(void) {

@@ -1,4 +1,4 @@
-/* What pixels are held to: the oracle's own error, and what few pixels may be off by and may not. */
+/* The bounds that pixels are held to: the oracle's own error, and what few pixels may be off by and may not. */
 #include "validate/checks.h"
 #include "validate/oracle.h"
 

@@ -178,7 +178,7 @@ typedef struct place {
     double x, y;
 } place;
 
-/* Of the vertices that triangles use. */
+/* The vertices that triangles use, and no others. */
 static size_t places_of(camber_context *context, const property_case *c, place **places) {
     camber_mesh_data data = property_mesh(context, c);
     const size_t count = data.info.vertex_count;
@@ -294,7 +294,7 @@ static bool differ(const property_case *c, const camber_stages *a, const camber_
 static property_outcome check_rotated(void *user, const property_case *c, char story[PROPERTY_STORY]) {
     const property_bench *b = user;
     uint64_t dice = c->dice | 1;
-    const double angle = random_between(&dice, -SCENE_PI, SCENE_PI);
+    const double angle = camber_random_between(&dice, -SCENE_PI, SCENE_PI);
     property_case turned = *c;
     for (size_t i = 0; i < c->count; i++) {
         const double x = (double)c->points[2 * i] - 64, y = (double)c->points[2 * i + 1] - 64;

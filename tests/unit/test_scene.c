@@ -1,3 +1,4 @@
+/* Scenes: features under a view become polylines, rows, strokes and networks. */
 #include "camber_map.h"
 #include "lines/importance.h"
 #include "map/view.h"

@@ -278,7 +278,7 @@ static void test_zooms(void **state) {
     }
 }
 
-/* What the view does not see is not read, and lines go on as far as the buffer has them. */
+/* Tiles that the view does not see are not read, and lines go on as far as the buffer has them. */
 static void test_seen_tiles(void **state) {
     fixture *it = *state;
     static const char source[] = "\"s\": {\"type\": \"vector\", \"maxzoom\": 2, \"tiles\": [\"{z}-{x}-{y}.mvt\"]}";
@@ -666,8 +666,8 @@ static void test_geojson_options(void **state) {
     assert_int_equal(it->features->polyline_count, 8);
 }
 
-/* What JSON has no word for, as other programs write it: the point is left out and its line split there, and texts that
- * look like it stay. */
+/* Numbers that JSON has no word for, as other programs write them: the point is left out and its line split there, and
+ * texts that look like it stay. */
 static void test_no_numbers(void **state) {
     fixture *it = *state;
     static const char source[] = "\"s\": {\"type\": \"geojson\", \"data\": \"odd.json\"}";
@@ -701,7 +701,7 @@ static void test_no_numbers(void **state) {
     expect_ok(it, read_view(it, source, LINES, &view));
     assert_int_equal(it->features->polyline_count, 2);
     assert_int_equal(it->features->stats.damaged_features, 0);
-    /* What is wrong besides is said, with its place. */
+    /* Other faults are said, with their place. */
     write_text(it, "odd.json", "{\"type\": \"LineString\",\n \"coordinates\": [[1e400, NaN], oops]}");
     expect_error(it, CAMBER_ERROR_INPUT, source, ": invalid token; get the file again");
     write_text(it, "odd.json", "\xff\xfe{");
@@ -774,7 +774,7 @@ static void test_straight_on(void **state) {
     assert_int_equal(it->features->polyline_count, 3);
 }
 
-/* What is read is what the sources' bounds show where no camera is given. */
+/* Where no camera is given, the sources' bounds say what is read. */
 static void test_fit(void **state) {
     fixture *it = *state;
     const camber_view_desc view = {.kind = CAMBER_VIEW_FIT, .width = 512, .height = 512};

@@ -136,7 +136,7 @@ static void test_order_across_tiles(void **state) {
     EXPECT(it, 4, 5000, 300, 5100, 300);
 }
 
-/* What lies in the buffer only is the neighbour's. */
+/* A line that lies in the buffer only is the neighbour's. */
 static void test_buffer_is_dropped(void **state) {
     fixture *it = *state;
     ADD(it, 0, 0, 7, 4100, 100, 4150, 200);

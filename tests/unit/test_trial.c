@@ -29,7 +29,7 @@ static bool keep_bytes(void *user, const void *block, size_t size_bytes) {
     return true;
 }
 
-/* What the library answers, parsed; NULL where it returns another status than CAMBER_OK. */
+/* The library's answer, parsed; NULL where it returns another status than CAMBER_OK. */
 static json_t *ask(const char *text, camber_status *status) {
     const camber_context_desc desc = {.cache_dir = ""};
     camber_context *context;

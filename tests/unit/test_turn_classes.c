@@ -3,24 +3,24 @@
 
 #include "validate/turn_classes.h"
 
-static camber_lines lines_of(const scene *s) {
+static camber_lines lines_of(const camber_made_scene *s) {
     return (camber_lines){s->points, s->offsets, s->point_count, s->polyline_count};
 }
 
 static void test_classes(void **state) {
     (void)state;
-    scene s = {0};
+    camber_made_scene s = {0};
     for (int degree = -179; degree <= 180; degree++) { /* between whole degrees, where no class begins */
         const double angle = (degree - 0.5) * SCENE_PI / 180;
-        scene_point(&s, -10, 0);
-        scene_point(&s, 0, 0);
-        scene_point(&s, 10 * cos(angle), 10 * sin(angle));
-        scene_end(&s, 0);
+        camber_made_scene_point(&s, -10, 0);
+        camber_made_scene_point(&s, 0, 0);
+        camber_made_scene_point(&s, 10 * cos(angle), 10 * sin(angle));
+        camber_made_scene_end(&s, 0);
     }
-    scene_point(&s, 0, 0);
-    scene_point(&s, 10, 0);
-    scene_point(&s, 0, 0); /* straight back, and a ring: two joins of 180 degrees */
-    scene_end(&s, 0);
+    camber_made_scene_point(&s, 0, 0);
+    camber_made_scene_point(&s, 10, 0);
+    camber_made_scene_point(&s, 0, 0); /* straight back, and a ring: two joins of 180 degrees */
+    camber_made_scene_end(&s, 0);
     const camber_lines lines = lines_of(&s);
     size_t counts[CAMBER_TURN_CLASSES] = {1000};
     camber_turns_count(&lines, false, counts);
@@ -29,20 +29,20 @@ static void test_classes(void **state) {
     memset(counts, 0, sizeof counts);
     camber_turns_count(&lines, true, counts);
     assert_int_equal(counts[CAMBER_TURN_CLASSES - 1], 61);
-    scene_free(&s);
+    camber_made_scene_free(&s);
 }
 
 static void test_sums(void **state) {
     (void)state;
     host h;
     camber_context *context = host_context(&h);
-    camber_stroke strokes[SCENE_ROWS];
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     scene_strokes(strokes);
-    for (size_t which = 0; which < SCENE_COUNT; which++)
+    for (size_t which = 0; which < CAMBER_KERNEL_SCENES; which++)
         for (int keep_open = 0; keep_open < 2; keep_open++) {
-            scene s = scene_make(which);
+            camber_made_scene s = scene_make(which);
             camber_polylines *polylines = scene_first(context, &s, s.polyline_count, keep_open);
-            const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0, false};
+            const camber_tessellation_desc desc = {strokes, CAMBER_KERNEL_ROWS, CAMBER_METHOD_STRIP, 0, false};
             const camber_lines lines = lines_of(&s);
             size_t counts[CAMBER_TURN_CLASSES] = {0}, sum = 0;
             camber_turns_count(&lines, keep_open, counts);
@@ -53,7 +53,7 @@ static void test_sums(void **state) {
             assert_int_equal(sum, mesh.info.joins);
             camber_mesh_data_free(context, &mesh);
             camber_polylines_destroy(polylines);
-            scene_free(&s);
+            camber_made_scene_free(&s);
         }
     host_done(&h, context);
 }

@@ -14,24 +14,28 @@ static void on_log(void *user, camber_log_level level, const char *message) {
         fprintf(stderr, "camber_bench: %s\n", message);
 }
 
-static camber_status open_renderer(bench *b, camber_draw draw, camber_renderer **renderer, camber_mesh **mesh) {
-    const camber_renderer_desc desc = {.draw = draw};
-    camber_surface *surface = draw == CAMBER_DRAW_GL ? b->surface : NULL;
-    const camber_status status = camber_renderer_create(b->device, surface, &desc, renderer);
-    return status == CAMBER_OK ? camber_mesh_create(b->device, *renderer, mesh) : status;
+/* Both GL and OpenCL draw on one device, which shares its meshes with GL where it can. */
+static camber_status open_fixture(bench *b) {
+    static const camber_fixture_desc desc = {
+        .drawers = CAMBER_FIXTURE_IN_GL | CAMBER_FIXTURE_IN_OPENCL, .first_gl = true, .on_surface = true};
+    const camber_status status = camber_fixture_open(b->context, &desc, &b->opened);
+    const int gl = b->opened.surface[CAMBER_FIXTURE_EGL] ? CAMBER_FIXTURE_EGL : CAMBER_FIXTURE_OSMESA;
+    b->device = b->opened.device;
+    b->surface = b->opened.surface[gl];
+    b->renderer = b->opened.renderer[gl];
+    b->cl_renderer = b->opened.renderer[CAMBER_FIXTURE_OPENCL];
+    return status == CAMBER_OK && !(b->renderer && b->cl_renderer) ? CAMBER_ERROR_DEVICE : status;
 }
 
 bool bench_open(bench *b) {
     const camber_context_desc desc = {.log = on_log};
     camber_status status = camber_context_create(&desc, &b->context);
     if (status == CAMBER_OK)
-        status = camber_surface_create(b->context, NULL, &b->surface);
+        status = open_fixture(b);
     if (status == CAMBER_OK)
-        status = camber_device_create(b->context, NULL, b->surface, &b->device);
+        status = camber_mesh_create(b->device, b->renderer, &b->mesh);
     if (status == CAMBER_OK)
-        status = open_renderer(b, CAMBER_DRAW_GL, &b->renderer, &b->mesh);
-    if (status == CAMBER_OK)
-        status = open_renderer(b, CAMBER_DRAW_CL, &b->covering, &b->covered);
+        status = camber_mesh_create(b->device, b->cl_renderer, &b->cl_mesh);
     if (status != CAMBER_OK)
         return false;
     b->picture = calloc((size_t)BENCH_SIDE_PX * BENCH_SIDE_PX, 4);
@@ -42,12 +46,9 @@ bool bench_open(bench *b) {
 void bench_close(bench *b) {
     free(b->pictured);
     free(b->picture);
-    camber_mesh_destroy(b->covered);
-    camber_renderer_destroy(b->covering);
+    camber_mesh_destroy(b->cl_mesh);
     camber_mesh_destroy(b->mesh);
-    camber_renderer_destroy(b->renderer);
-    camber_device_destroy(b->device);
-    camber_surface_destroy(b->surface);
+    camber_fixture_close(&b->opened);
     camber_context_destroy(b->context);
 }
 
@@ -70,10 +71,11 @@ static bool take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint3
 static camber_status draw_mesh(bench *b, const bench_frame_desc *desc, taking *t, camber_frame_stats *stats) {
     const camber_paint paint = {.width_px = desc->width_px, .color = {0, 0, 0, 1}};
     const camber_pass pass = {
-        .mesh = desc->in_cl ? b->covered : b->mesh, .paints = &paint, .paint_count = 1, .overlap = desc->overlap};
+        .mesh = desc->in_cl ? b->cl_mesh : b->mesh, .paints = &paint, .paint_count = 1, .overlap = desc->overlap};
     const camber_frame frame = {
         .width = BENCH_SIDE_PX, .height = BENCH_SIDE_PX, .background = {1, 1, 1, 1}, .passes = &pass, .pass_count = 1};
-    return camber_render(desc->in_cl ? b->covering : b->renderer, &frame, desc->picture ? take_rows : NULL, t, stats);
+    return camber_render(desc->in_cl ? b->cl_renderer : b->renderer, &frame, desc->picture ? take_rows : NULL, t,
+                         stats);
 }
 
 static camber_status tessellate_lines(bench *b, const bench_frame_desc *desc, const camber_tessellation_desc *strokes) {
@@ -85,7 +87,7 @@ static camber_status tessellate_lines(bench *b, const bench_frame_desc *desc, co
                                         .keep_open = true};
     camber_status status = camber_polylines_create(b->context, &made, &polylines);
     if (status == CAMBER_OK)
-        status = camber_tessellate(desc->in_cl ? b->covered : b->mesh, polylines, strokes);
+        status = camber_tessellate(desc->in_cl ? b->cl_mesh : b->mesh, polylines, strokes);
     camber_polylines_destroy(polylines);
     return status;
 }
@@ -93,7 +95,7 @@ static camber_status tessellate_lines(bench *b, const bench_frame_desc *desc, co
 static camber_status tessellate(bench *b, const bench_frame_desc *desc) {
     const camber_stroke stroke = {.width_px = desc->width_px};
     const camber_tessellation_desc strokes = {.strokes = &stroke, .stroke_count = 1};
-    camber_mesh *mesh = desc->in_cl ? b->covered : b->mesh;
+    camber_mesh *mesh = desc->in_cl ? b->cl_mesh : b->mesh;
     return desc->network ? camber_tessellate_network(mesh, desc->network, &desc->camera, &strokes)
                          : tessellate_lines(b, desc, &strokes);
 }

@@ -53,7 +53,7 @@ validate_until_failure() {
     wait "$process" 2>"$tmp/killed"
 }
 
-# What a failure leaves: a picture that the report names, JUnit's failures, and JSON with what differs.
+# A failure leaves a picture that the report names, JUnit's failures, and JSON with what differs.
 evidence=()
 look_at_evidence() { # FILE METHOD
     local picture member
@@ -92,7 +92,7 @@ mutant() {
         status=$?
         first=$(grep -m 1 '^not ok' "$tmp/tap")
         if [ "$status" -gt 128 ] && [ ${#evidence[@]} = 0 ]; then
-            # What a broken kernel leaves unwritten is whatever lay there: the next one may go anywhere.
+            # A broken kernel may leave unwritten whatever lay there: the next one may go anywhere.
             caught=$((caught + 1))
             echo "caught: $file: $what: ended by signal $((status - 128))"
         elif [ "$status" = 1 ] && [ -n "$first" ]; then
@@ -244,7 +244,7 @@ mutant strip shaders/flatten.frag "united lines: edges that face alike are added
 mutant strip shaders/flatten.frag "united lines: every two edges face alike" 'abs(cosine))' '1.0)'
 mutant strip shaders/flatten.frag "united lines: one over the other" 'abs(cosine))' '0.0)'
 
-# What lies along lines, and bands beside them.
+# Paints along lines, and bands beside them.
 mutant strip shaders/stroke.frag "gaps that are not cut out" 'max(area - gap, 0.0)' 'area'
 mutant strip shaders/stroke.frag "a fade half as wide" 'fade = v_band.y + 1.0' 'fade = 0.5 * v_band.y + 1.0'
 mutant strip shaders/stroke.frag "dashes that do not end" 'covered((t - dash.x) * scale, edge) - covered((t - dash.y) * scale, edge)' \

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What has threads, under ThreadSanitizer: test_tsan.sh build SOURCE FOLDER [CMAKE ARGS...], then run SOURCE FOLDER
+# Tests of threads, under ThreadSanitizer: test_tsan.sh build SOURCE FOLDER [CMAKE ARGS...], then run SOURCE FOLDER
 set -eu
 verb=$1 source=$2 folder=$3
 shift 3

@@ -1,5 +1,6 @@
-/* Each pixel's 256 samples find the nearest place of the line, and take the colour that the paint has there: the gap
- * between the line's two sides, its blur, dashes, trim and ramp. No formula is shared with kernels and shaders. */
+/* Each pixel's 256 samples find the nearest point of the line, their foot on it, and take the colour that the paint has
+ * there: the gap between the line's two sides, its blur, dashes, trim and ramp. No formula is shared with kernels and
+ * shaders. */
 #include "validate/along_truth.h"
 
 #include <math.h>
@@ -7,10 +8,10 @@
 enum { SAMPLES = 16 }; /* across and down */
 
 /* Where a sample lies. */
-typedef struct place {
+typedef struct foot {
     double along, distance; /* px */
     bool is_past;           /* an end */
-} place;
+} foot;
 
 double camber_along_length(const float *points, size_t count) {
     double total = 0;
@@ -20,8 +21,8 @@ double camber_along_length(const float *points, size_t count) {
     return total;
 }
 
-static place place_of(const camber_along_desc *d, double x, double y) {
-    place nearest = {.distance = INFINITY};
+static foot foot_of(const camber_along_desc *d, double x, double y) {
+    foot nearest = {.distance = INFINITY};
     double before = 0;
     for (size_t i = 0; i + 1 < d->count; i++) {
         const double ax = (double)d->points[2 * i], ay = (double)d->points[2 * i + 1];
@@ -30,7 +31,7 @@ static place place_of(const camber_along_desc *d, double x, double y) {
         const double within = fmin(fmax(at, 0), length);
         const double distance = hypot(x - ax - within * dx / length, y - ay - within * dy / length);
         if (distance < nearest.distance)
-            nearest = (place){before + within, distance, (i == 0 && at < 0) || (i + 2 == d->count && at > length)};
+            nearest = (foot){before + within, distance, (i == 0 && at < 0) || (i + 2 == d->count && at > length)};
         before += length;
     }
     return nearest;
@@ -55,8 +56,8 @@ static double dash_distance(const camber_along_desc *d, double along) {
     return nearest;
 }
 
-/* How much of the paint a place has. */
-static double share_at(const camber_along_desc *d, place p, double progress) {
+/* How much of the paint there is at a foot. */
+static double share_at(const camber_along_desc *d, foot p, double progress) {
     const camber_paint *paint = d->paint;
     const double width = (double)paint->width_px, gap = (double)paint->gap_px, blur = (double)paint->blur_px;
     const double outer = gap > 0 ? 0.5 * gap + width : 0.5 * width;
@@ -100,7 +101,7 @@ static void color_at(const camber_ramp *ramp, double progress, double color[4]) 
 
 static void add_sample(const camber_along_desc *d, double total, double x, double y, double sum[4]) {
     double color[4] = {1, 1, 1, 1};
-    const place p = place_of(d, x, y);
+    const foot p = foot_of(d, x, y);
     const double progress = p.along / total, share = share_at(d, p, progress);
     if (share <= 0)
         return;
@@ -120,7 +121,7 @@ void camber_along_add(const camber_along_desc *d, camber_window window, float *r
             const double left = window.x0 + x, top = window.y0 + y;
             float *pixel = rgba + 4 * ((size_t)y * (size_t)window.width + (size_t)x);
             double sum[4] = {0};
-            if (place_of(d, left + 0.5, top + 0.5).distance > reach)
+            if (foot_of(d, left + 0.5, top + 0.5).distance > reach)
                 continue;
             for (int s = 0; s < SAMPLES * SAMPLES; s++)
                 add_sample(d, total, left + (s % SAMPLES + 0.5) / SAMPLES, top + (s / SAMPLES + 0.5) / SAMPLES, sum);

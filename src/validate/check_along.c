@@ -1,4 +1,4 @@
-/* Lines that are two bands, fade, are dashed, drawn in part or change their colour: against samples. */
+/* Lines that have two sides and a gap, fade, are dashed, drawn in part or change their colour: against samples. */
 #include "validate/along_truth.h"
 #include "validate/checks.h"
 

@@ -11,7 +11,7 @@ enum { PART_PX = 512 };
 
 /* ---- What is drawn: lines over each other, united, and in a group ---- */
 
-/* Kernels are built in variants: without bands beside lines, with them, and for planes that are seen at an angle. */
+/* Kernels are built in variants: without sides beside lines, with them, and for planes that are seen at an angle. */
 static const struct {
     const char *name;
     float gap_px, blur_px;

@@ -21,7 +21,7 @@ typedef struct job {
     camber_network_desc desc;
 } job;
 
-/* Some see all of it in a few pixels, some a part, some a piece of a segment whose ends lie a million pixels away. */
+/* Some see all of it in a few pixels, some a part, some a stretch of a segment whose ends lie a million pixels away. */
 static const struct {
     const char *name;
     double times, bearing_deg; /* of the camera that the subject is seen with */
@@ -86,7 +86,7 @@ static bool lies_in(const camber_subject *s, const float *point) {
     return point[0] >= 0 && point[1] >= 0 && point[0] < (float)s->width && point[1] < (float)s->height;
 }
 
-/* A place on a long segment in the picture, not halfway; other numbers find other ones. */
+/* A point on a long segment in the picture, not halfway; other numbers find other ones. */
 static void find_place(const camber_subject *s, size_t number, double *x, double *y) {
     enum { TRIES = 64 };
     static const double PART = 0.37;

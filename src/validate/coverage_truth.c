@@ -4,11 +4,11 @@
 #include <stdlib.h>
 
 /* A line, or a part of it between points that are not numbers. */
-typedef struct piece {
+typedef struct open_line {
     const float *points;
     size_t count;
     camber_oracle_style style;
-} piece;
+} open_line;
 
 /* Where results of a line's own go before they are laid over what is there. */
 typedef struct canvas {
@@ -22,8 +22,8 @@ static bool is_number(const float *point) {
     return fabsf(point[0]) <= 1e9f && fabsf(point[1]) <= 1e9f;
 }
 
-/* The part of the window that a piece may touch; false: none. */
-static bool reach_of(const piece *p, camber_window window, camber_window *part) {
+/* The part of the window that a line may touch; false: none. */
+static bool reach_of(const open_line *p, camber_window window, camber_window *part) {
     double left = INFINITY, top = INFINITY, right = -INFINITY, bottom = -INFINITY;
     for (size_t i = 0; i < p->count; i++) {
         left = fmin(left, (double)p->points[2 * i]), right = fmax(right, (double)p->points[2 * i]);
@@ -49,7 +49,7 @@ static void lay_over(const canvas *c, camber_window part) {
         }
 }
 
-static bool draw_piece(canvas *c, const piece *p) {
+static bool draw_open_line(canvas *c, const open_line *p) {
     camber_window part;
     if (!reach_of(p, c->window, &part))
         return true;
@@ -67,18 +67,18 @@ static bool draw_line(canvas *c, size_t line) {
     const camber_lines *lines = c->desc->lines;
     const camber_stroke *stroke = c->desc->strokes + (c->desc->rows ? c->desc->rows[line] : 0);
     const size_t end = lines->offsets[line + 1];
-    piece p = {.style = {.width_px = (double)stroke->width_px,
-                         .join = stroke->join,
-                         .cap = stroke->cap,
-                         .miter_limit = stroke->miter_limit > 0 ? (double)stroke->miter_limit : 2,
-                         .round_limit = (double)stroke->round_limit}};
+    open_line p = {.style = {.width_px = (double)stroke->width_px,
+                             .join = stroke->join,
+                             .cap = stroke->cap,
+                             .miter_limit = stroke->miter_limit > 0 ? (double)stroke->miter_limit : 2,
+                             .round_limit = (double)stroke->round_limit}};
     bool drawn = true;
     for (size_t first = lines->offsets[line]; first < end && drawn; first += p.count + 1) {
         p.points = lines->points + 2 * first;
         for (p.count = 0; first + p.count < end && is_number(p.points + 2 * p.count);)
             p.count++;
         p.style.closed = !c->desc->keep_open && first == lines->offsets[line] && first + p.count == end;
-        drawn = p.count == 0 || draw_piece(c, &p);
+        drawn = p.count == 0 || draw_open_line(c, &p);
     }
     return drawn;
 }

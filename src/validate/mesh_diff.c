@@ -16,7 +16,7 @@ void camber_mesh_state_close(camber_context *context, camber_mesh_state *state) 
     camber_stages_free(context, &state->stages);
 }
 
-static void place(camber_finding *finding, const camber_point_stages *point) {
+static void locate(camber_finding *finding, const camber_point_stages *point) {
     finding->has_point = true;
     finding->polyline = point->polyline;
     finding->point = point->point;
@@ -60,7 +60,7 @@ static bool counts_differ(const char *stage, const char *field, size_t got, size
 
 static void tell_stage(camber_finding *finding, const char *stage, const camber_point_stages *point) {
     finding->stage = stage;
-    place(finding, point);
+    locate(finding, point);
     snprintf(finding->what, sizeof finding->what, "%s: polyline %zu, point %zu at (%.9g, %.9g): %s is %s, not %s",
              stage, finding->polyline, finding->point, finding->x, finding->y, finding->field,
              camber_value_print(finding->got).text, camber_value_print(finding->expected).text);
@@ -125,7 +125,7 @@ static void tell_emit(camber_finding *finding, const camber_stages *stages, cons
     char where[128] = "";
     finding->stage = "emit";
     if (point) {
-        place(finding, point);
+        locate(finding, point);
         snprintf(where, sizeof where, "polyline %zu, point %zu at (%.9g, %.9g): ", finding->polyline, finding->point,
                  finding->x, finding->y);
     }

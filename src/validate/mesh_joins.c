@@ -18,12 +18,12 @@ typedef struct triangle {
 } triangle;
 
 /* Triangles in a row that carry one segment. */
-typedef struct run {
+typedef struct drawn_segment {
     uint64_t first_index, end_index;
     uint32_t least; /* vertex of the first triangle */
     uint32_t most;  /* of all */
     const camber_vertex *segment;
-} run;
+} drawn_segment;
 
 /* Walks the triangles of a mesh in the order of their indices. */
 typedef struct walk {
@@ -86,7 +86,7 @@ static bool same_segment(const camber_vertex *v, const camber_vertex *w) {
            (v->dx == w->dx && v->dy == w->dy && v->row == w->row && is_near(end_of(v), end_of(w), length_of(v)));
 }
 
-/* Whether a run is the first segment of its polyline again, which begins with a join: a ring's seam. */
+/* Whether a drawn segment is the first segment of its polyline again, which begins with a join: a ring's seam. */
 static bool is_again(const camber_vertex *first, const camber_vertex *v) {
     return first->turn_a != 0 && first->turn_a == v->turn_a && same_segment(first, v);
 }
@@ -109,9 +109,9 @@ static void judge(camber_found_join *join, const camber_vertex *in, const camber
                                                      : CAMBER_JOIN_PLAIN;
 }
 
-/* Whether the second of two runs goes on where the first ends. Within a polyline a run shares vertices with the next,
- * but where a strip is split: there it turns back from the same place. */
-static bool is_next(const run *a, const run *b, camber_join_room room) {
+/* Whether the second of two drawn segments goes on where the first ends. Within a polyline a drawn segment shares
+ * vertices with the next, but where a strip is split: there it turns back from the same place. */
+static bool is_next(const drawn_segment *a, const drawn_segment *b, camber_join_room room) {
     const camber_vertex *in = a->segment, *out = b->segment;
     const double shorter = fmin(length_of(in), length_of(out));
     if (in->turn_b == 0 || in->turn_b != out->turn_a || !(shorter > 0))
@@ -126,9 +126,9 @@ typedef struct search {
     const camber_stroke *strokes;
     camber_mesh_joins found;
     size_t capacity;
-    run before, now;
+    drawn_segment before, now;
     const camber_vertex *first; /* the segment that the polyline begins with */
-    bool joined;                /* the run before is not the polyline's first */
+    bool joined;                /* the drawn segment before is not the polyline's first */
 } search;
 
 static bool append(search *s, const camber_found_join *join) {
@@ -144,8 +144,8 @@ static bool append(search *s, const camber_found_join *join) {
     return true;
 }
 
-/* Adds the join between a run that is complete and the one before it. */
-static bool end_run(search *s) {
+/* Adds the join between a drawn segment that is complete and the one before it. */
+static bool end_segment(search *s) {
     camber_found_join join = {0};
     bool joined = false;
     if (s->before.segment) {
@@ -182,12 +182,12 @@ bool camber_mesh_joins_find(const camber_mesh_data *mesh, const camber_stroke *s
             s.now.most = t.most > s.now.most ? t.most : s.now.most;
             continue;
         }
-        if (s.now.segment && !end_run(&s)) {
+        if (s.now.segment && !end_segment(&s)) {
             camber_mesh_joins_free(&s.found);
             return false;
         }
         if (more)
-            s.now = (run){t.first_index, t.end_index, t.least, t.most, t.segment};
+            s.now = (drawn_segment){t.first_index, t.end_index, t.least, t.most, t.segment};
     }
     *joins = s.found;
     return true;

@@ -8,10 +8,10 @@
 static const double LONGEST_PX = 128; /* that is left in one, a bit longer than half a picture's window */
 
 /* A point that the camera keeps. */
-typedef struct place {
+typedef struct seen_point {
     double x, y; /* px */
     uint32_t point;
-} place;
+} seen_point;
 
 typedef struct projector {
     const camber_network_desc *network;
@@ -19,7 +19,7 @@ typedef struct projector {
     double x0, y0, step; /* of world coordinates */
     double cosine, sine;
     double least, most_x, most_y; /* px: where lines are cut */
-    place *run;                   /* as many as the longest polyline has */
+    seen_point *points;           /* as many as the longest polyline has */
     size_t run_count;
     camber_projected *made;
     bool failed; /* out of memory */
@@ -54,12 +54,12 @@ static size_t measure(projector *p) {
     return longest;
 }
 
-static place project(const projector *p, double x, double y, uint32_t point) {
+static seen_point project(const projector *p, double x, double y, uint32_t point) {
     const camber_camera *c = p->camera;
     const double dx = (p->x0 + floor((x - p->x0) / p->step + 0.5) * p->step - c->x) * c->scale_px;
     const double dy = (p->y0 + floor((y - p->y0) / p->step + 0.5) * p->step - c->y) * c->scale_px;
-    return (place){dx * p->cosine + dy * p->sine + 0.5 * c->width, dy * p->cosine - dx * p->sine + 0.5 * c->height,
-                   point};
+    return (seen_point){dx * p->cosine + dy * p->sine + 0.5 * c->width, dy * p->cosine - dx * p->sine + 0.5 * c->height,
+                        point};
 }
 
 /* ---- Putting ---- */
@@ -94,13 +94,13 @@ static void clip(double start, double delta, double least, double most, double p
     part[1] = fmin(part[1], fmax(to_least, to_most));
 }
 
-static bool is_outside(const projector *p, const place *at) {
+static bool is_outside(const projector *p, const seen_point *at) {
     return at->x < p->least || at->x > p->most_x || at->y < p->least || at->y > p->most_y;
 }
 
-/* The part of a segment that is near the picture; open: the piece before goes on here. Returns whether the next goes on
+/* The part of a segment that is near the picture; open: the line before goes on here. Returns whether the next goes on
  * from its end. */
-static bool put_segment(projector *p, const place *a, const place *b, bool open) {
+static bool put_segment(projector *p, const seen_point *a, const seen_point *b, bool open) {
     const double dx = b->x - a->x, dy = b->y - a->y;
     double part[2] = {0, 1};
     clip(a->x, dx, p->least, p->most_x, part);
@@ -126,23 +126,23 @@ static bool put_segment(projector *p, const place *a, const place *b, bool open)
 }
 
 /* A polyline between points that are not numbers. A ring that is cut begins where it is, for its seam is a join. */
-static void put_run(projector *p, bool ring) {
+static void put_line(projector *p, bool ring) {
     const size_t count = p->run_count, segments = count ? count - 1 : 0;
     const camber_lines *lines = &p->made->lines;
     size_t start = 0;
-    while (ring && start < segments && !is_outside(p, p->run + start))
+    while (ring && start < segments && !is_outside(p, p->points + start))
         start++;
     start = start == segments ? 0 : start;
     bool open = false;
     for (size_t i = 0; i < segments; i++) {
-        const place *a = p->run + (start + i) % segments;
+        const seen_point *a = p->points + (start + i) % segments;
         open = put_segment(p, a, a + 1, open);
     }
-    if (count != 1 || is_outside(p, p->run))
+    if (count != 1 || is_outside(p, p->points))
         return;
     if (lines->point_count > lines->offsets[lines->polyline_count])
-        put(p, NAN, NAN, p->run->point);
-    put(p, p->run->x, p->run->y, p->run->point);
+        put(p, NAN, NAN, p->points->point);
+    put(p, p->points->x, p->points->y, p->points->point);
 }
 
 static void put_entry(projector *p, const camber_network_entry *entry) {
@@ -156,17 +156,17 @@ static void put_entry(projector *p, const camber_network_entry *entry) {
     p->run_count = 0;
     for (size_t i = begin; i < end; i++) {
         if (!is_number(from, entry, i)) {
-            put_run(p, ring);
+            put_line(p, ring);
             p->run_count = 0;
             continue;
         }
         const bool ends =
             i == begin || i + 1 == end || !is_number(from, entry, i - 1) || !is_number(from, entry, i + 1);
         if (ends || (double)from->importance[i] >= tolerance)
-            p->run[p->run_count++] =
+            p->points[p->run_count++] =
                 project(p, from->points[2 * i] + entry->shift_x, from->points[2 * i + 1], (uint32_t)(i - begin));
     }
-    put_run(p, ring);
+    put_line(p, ring);
 }
 
 bool camber_projected_make(const camber_network_desc *network, const camber_camera *camera, double margin_px,
@@ -181,16 +181,16 @@ bool camber_projected_make(const camber_network_desc *network, const camber_came
                    .most_y = camera->height + margin_px,
                    .made = made};
     *made = (camber_projected){0};
-    p.run = calloc(measure(&p) + 1, sizeof *p.run);
+    p.points = calloc(measure(&p) + 1, sizeof *p.points);
     made->lines.offsets = calloc(network->entry_count + 1, sizeof *made->lines.offsets);
     made->rows = calloc(network->entry_count + 1, sizeof *made->rows);
-    p.failed = !p.run || !made->lines.offsets || !made->rows;
+    p.failed = !p.points || !made->lines.offsets || !made->rows;
     for (size_t e = 0; e < network->entry_count && !p.failed; e++) {
         made->rows[e] = network->entries[e].row;
         put_entry(&p, network->entries + e);
         made->lines.offsets[++made->lines.polyline_count] = (uint32_t)made->lines.point_count;
     }
-    free(p.run);
+    free(p.points);
     if (p.failed)
         camber_projected_free(made);
     return !p.failed;

@@ -8,8 +8,8 @@
 
 /* Freed with camber_projected_free. */
 typedef struct camber_projected {
-    /* A polyline an entry, px. Points that are not numbers lie between its pieces; a segment that is long is given
-     * points on the way, so that there is one wherever a picture has something to look at. */
+    /* A polyline an entry, px. Points that are not numbers lie between its visible parts; a segment that is long is
+     * given points on the way, so that there is one wherever a picture has something to look at. */
     camber_lines lines;
     uint32_t *rows;   /* of each polyline */
     uint32_t *places; /* of each point: the point of the entry's polyline that it is, or that begins its segment */

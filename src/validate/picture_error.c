@@ -5,16 +5,16 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-enum { BAND_ROWS = 32, THREADS_MAX = 64 };
+enum { SHARE_ROWS = 32, THREADS_MAX = 64 };
 
 typedef struct crew {
     const camber_picture_error_desc *desc;
-    int bands;
+    int shares;
     atomic_int next, done;
     atomic_bool failed;
 } crew;
 
-/* Bands are taken one after the other, whoever comes first: what is in them differs a lot. */
+/* Shares are taken one after the other, whoever comes first: what is in them differs a lot. */
 typedef struct worker {
     crew *crew;
     pthread_t thread;
@@ -29,9 +29,9 @@ static void add(camber_difference *sum, const camber_difference *more) {
     camber_difference_add(sum, more);
 }
 
-static bool measure_band(worker *w, int band, float *coverage) {
+static bool measure_share(worker *w, int share, float *coverage) {
     const camber_picture_error_desc *desc = w->crew->desc;
-    const int y0 = band * BAND_ROWS, height = desc->height - y0 < BAND_ROWS ? desc->height - y0 : BAND_ROWS;
+    const int y0 = share * SHARE_ROWS, height = desc->height - y0 < SHARE_ROWS ? desc->height - y0 : SHARE_ROWS;
     const camber_window window = {0, y0, desc->width, height};
     const size_t first = (size_t)y0 * (size_t)desc->width, count = (size_t)height * (size_t)desc->width;
     if (!camber_truth_make(&desc->truth, window, coverage))
@@ -47,30 +47,30 @@ static bool measure_band(worker *w, int band, float *coverage) {
 static void *work(void *user) {
     worker *w = user;
     crew *c = w->crew;
-    float *coverage = malloc((size_t)c->desc->width * BAND_ROWS * sizeof *coverage);
+    float *coverage = malloc((size_t)c->desc->width * SHARE_ROWS * sizeof *coverage);
     if (!coverage)
         atomic_store(&c->failed, true);
-    for (int band; !atomic_load(&c->failed) && (band = atomic_fetch_add(&c->next, 1)) < c->bands;) {
-        if (!measure_band(w, band, coverage))
+    for (int share; !atomic_load(&c->failed) && (share = atomic_fetch_add(&c->next, 1)) < c->shares;) {
+        if (!measure_share(w, share, coverage))
             atomic_store(&c->failed, true);
         const int done = atomic_fetch_add(&c->done, 1) + 1;
         if (w->leads && c->desc->progress)
-            c->desc->progress(c->desc->user, (double)done / c->bands);
+            c->desc->progress(c->desc->user, (double)done / c->shares);
     }
     free(coverage);
     return NULL;
 }
 
-static int threads_of(const camber_picture_error_desc *desc, int bands) {
+static int threads_of(const camber_picture_error_desc *desc, int shares) {
     const long cores = desc->threads ? (long)desc->threads : sysconf(_SC_NPROCESSORS_ONLN);
-    const long least = cores < bands ? cores : bands;
+    const long least = cores < shares ? cores : shares;
     return least < 1 ? 1 : least > THREADS_MAX ? THREADS_MAX : (int)least;
 }
 
 bool camber_picture_errors_measure(const camber_picture_error_desc *desc, camber_difference *differences) {
-    crew c = {.desc = desc, .bands = (desc->height + BAND_ROWS - 1) / BAND_ROWS};
+    crew c = {.desc = desc, .shares = (desc->height + SHARE_ROWS - 1) / SHARE_ROWS};
     worker workers[THREADS_MAX] = {{.crew = &c, .leads = true}};
-    const int wanted = threads_of(desc, c.bands);
+    const int wanted = threads_of(desc, c.shares);
     int made = 1;
     for (; made < wanted; made++) {
         workers[made].crew = &c;

@@ -1,5 +1,5 @@
-/* Pictures held against the truth over their whole area: band by band, since the samples of a whole picture would take
- * 32 bytes a pixel, on as many threads as there are cores. */
+/* Pictures held against the truth over their whole area: 32 rows at a time, since the samples of a whole picture would
+ * take 32 bytes a pixel, on as many threads as there are cores. */
 #ifndef CAMBER_VALIDATE_PICTURE_ERROR_H
 #define CAMBER_VALIDATE_PICTURE_ERROR_H
 

@@ -11,8 +11,8 @@ enum { SIDE_PX = 48 };
 
 /* Points in an order that is spread over all of them from the first few on: multiples of the golden ratio. */
 static size_t spread(size_t i, size_t count) {
-    const double place = (double)i * 0.6180339887498949;
-    const size_t at = (size_t)((place - (double)(size_t)place) * (double)count);
+    const double turns = (double)i * 0.6180339887498949;
+    const size_t at = (size_t)((turns - (double)(size_t)turns) * (double)count);
     return at < count ? at : count - 1;
 }
 

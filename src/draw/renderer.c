@@ -1,30 +1,18 @@
-/* Renderers, and meshes that they draw. */
+/* Renderers: opening and closing them, and the buffers of the meshes that they draw. */
 #include "draw/renderer.h"
+
 #include "raster/raster.h"
 
 #include <assert.h>
 
 static void close_gl(camber_renderer *renderer) {
-    const camber_gl *gl = &renderer->share.surface->gl;
     const bool is_current = camber_surface_try_current(renderer->share.surface);
-    camber_frames_forget(renderer, is_current);
-    camber_patterns_release(renderer, is_current);
+    camber_renderer_drop_flights(renderer, is_current);
     if (!is_current)
         renderer->pixels.gl_name = 0; /* it goes with its context */
     if (renderer->path)
         renderer->path->ops.release(&renderer->share, &renderer->pixels);
-    if (is_current) {
-        for (int i = 0; i < CAMBER_STROKES_MAX; i++)
-            gl->DeleteProgram(renderer->strokes[i].program);
-        for (int i = 0; i < CAMBER_FLATTEN_KINDS; i++)
-            gl->DeleteProgram(renderer->flatten[i].program);
-        for (int i = 0; i < CAMBER_METHODS; i++)
-            gl->DeleteProgram(renderer->counts[i].program);
-        camber_renderer_release_targets(renderer);
-        gl->DeleteTextures(1, &renderer->row_texture);
-        gl->DeleteTextures(1, &renderer->record_texture);
-        gl->DeleteVertexArrays(1, &renderer->vertex_array);
-    }
+    camber_gl_release(renderer, is_current);
 }
 
 static camber_status open_gl(camber_renderer *made, camber_sharing sharing) {
@@ -34,8 +22,9 @@ static camber_status open_gl(camber_renderer *made, camber_sharing sharing) {
         status = camber_share_choose(&made->share, sharing, &made->path);
     if (status != CAMBER_OK)
         return status;
-    surface->gl.GenVertexArrays(1, &made->vertex_array);
-    surface->gl.GenTextures(1, &made->record_texture);
+    made->gl.shaders.surface = surface;
+    surface->gl.GenVertexArrays(1, &made->gl.vertex_array);
+    surface->gl.GenTextures(1, &made->gl.record_texture);
     status = camber_surface_check(surface, "opening");
     if (status != CAMBER_OK)
         close_gl(made);
@@ -52,6 +41,7 @@ camber_status camber_renderer_create(camber_device *device, camber_surface *surf
     if (!made)
         return CAMBER_ERROR_MEMORY;
     made->share = (camber_share){.device = device, .surface = surface};
+    made->list.context = made->list.side_table.context = device->context;
     camber_status status = in_cl ? camber_cover_create(device, &made->cover) : CAMBER_OK;
     if (status == CAMBER_OK && surface)
         status = open_gl(made, full.sharing);
@@ -71,14 +61,9 @@ void camber_renderer_destroy(camber_renderer *renderer) {
     if (renderer->share.surface)
         close_gl(renderer);
     else
-        camber_frames_forget(renderer, false);
+        camber_renderer_drop_flights(renderer, false);
     camber_cover_destroy(renderer->cover);
-    camber_free(context, renderer->batch.counts);
-    camber_free(context, renderer->batch.firsts);
-    camber_free(context, renderer->batch.ranges);
-    camber_free(context, renderer->ramps);
-    camber_free(context, renderer->tail_texels);
-    camber_free(context, renderer->row_texels);
+    camber_draw_list_free(&renderer->list);
     camber_free(context, renderer);
 }
 

@@ -2,6 +2,7 @@
  * any size. test_patterns.c says where in its image a pixel lies. */
 #include "covering.h"
 
+#include "draw/draw_cl.h"
 #include "draw/renderer.h"
 
 enum { SIDE_PX = 420, IMAGES = 6, BYTES_MAX = 4 * 70 * 70 };
@@ -125,13 +126,14 @@ static void compare_with_twin(const covering *e, const drawing *d, camber_mesh *
     float rows[ALL][CAMBER_COVER_ROW_WORDS] = {{0}};
     camber_ink inks[ALL] = {{0}};
     camber_ink_more more[ALL] = {{0}};
-    camber_covered_images images = {.nearest = 1};
-    const camber_pass pass = {.images = d->images, .image_count = IMAGES};
-    camber_tail_forget(e->cl);
+    camber_side_table *table = &e->cl->list.side_table;
+    camber_cl_images images = {.table = table, .nearest = 1};
+    camber_side_table_clear(table);
     for (uint32_t i = 0; i < ALL; i++) {
         const float width = d->strokes[i % SCENE_ROWS].width_px;
-        const camber_paint paint = {.width_px = width > 0 ? width : 1,
-                                    .pattern = 1 + (uint32_t)(first_way + i) % IMAGES};
+        const size_t image = (first_way + i) % IMAGES;
+        const camber_image_use use =
+            camber_image_use_on_line(d->images + image, image, width > 0 ? (double)width : 1, 0);
         rows[i][0] = i >= ROWS ? CAMBER_FILL_PX : width > 0.0f ? 0.5f * width : -1.0f;
         memcpy(rows[i] + 3, &i, sizeof i);
         inks[i] = (camber_ink){.r = 1, .g = 1, .b = 1, .a = i % 2 ? 1 : 0.6f, .layer_opacity = 0.8f};
@@ -139,14 +141,19 @@ static void compare_with_twin(const covering *e, const drawing *d, camber_mesh *
         inks[i].group = i >= SCENE_ROWS && i < ROWS;
         inks[i].group_opacity = 0.7f;
         more[i].features = i % 5 == 4 ? 0 : CAMBER_FEATURE_IMAGE;
-        assert_int_equal(camber_covered_put_line(e->cl, &images, &pass, &paint, &more[i].image), CAMBER_OK);
+        assert_int_equal(camber_cl_images_add_line(&images, &use, &more[i].image), CAMBER_OK);
     }
     for (uint32_t i = ROWS; i < ALL; i++) {
         bool is_opaque;
-        const camber_pass fill = {.images = d->images, .image_count = IMAGES, .fill = d->passes[2 * (i - ROWS)].fill};
+        const camber_fill *fill = &d->passes[2 * (i - ROWS)].fill;
+        const camber_image *image = d->images + fill->pattern - 1;
+        camber_image_use uses[] = {camber_image_use_in_fill(image, 0, (double)fill->width_px, (double)fill->height_px),
+                                   camber_image_use_as_mean(image, 0)};
+        const camber_draw_list list = {.image_uses = uses};
+        const camber_fill_paint paint = {fill->color, true, 0, 1, fill->x_px, fill->y_px, fill->bearing_deg};
         more[i].features = CAMBER_FEATURE_IMAGE;
-        assert_int_equal(camber_covered_put_fill(e->cl, &images, &fill, &more[i].image, &is_opaque), CAMBER_OK);
-        assert_int_equal(is_opaque, fill.fill.pattern % 2);
+        assert_int_equal(camber_cl_images_add_fill(&images, &list, &paint, &more[i].image, &is_opaque), CAMBER_OK);
+        assert_int_equal(is_opaque, fill->pattern % 2);
     }
     const size_t count = mesh->polyline_count;
     const camber_cover_run runs[] = {
@@ -160,8 +167,8 @@ static void compare_with_twin(const covering *e, const drawing *d, camber_mesh *
                                 .background = {0.2f, 0.3f, 0.4f, 1},
                                 .linear = linear,
                                 .more = more,
-                                .tail = e->cl->tail_texels,
-                                .tail_count = e->cl->tail_count};
+                                .tail = table->texels,
+                                .tail_count = table->count};
     for (int pitched = 0; pitched < 2; pitched++) {
         if (pitched)
             covering_tilt(&drawn, first_way % 2 ? 40 : 75, SIDE_PX, SIDE_PX);

@@ -1,6 +1,6 @@
-/* What the kernels that draw found, and their twin: for proofs. */
+/* Reads the results of each kernel that draws, or of the CPU twin in its place, so that proofs can compare them. */
 #include "camber_proof.h"
-#include "raster/raster.h"
+#include "draw/draw_cl.h"
 #include "draw/renderer.h"
 
 #include <assert.h>
@@ -36,7 +36,9 @@ static camber_status read_stages(camber_renderer *renderer, const camber_frame *
                                  camber_drawing_stages *stages) {
     reading r = {.on_host = on_host};
     assert(renderer->cover);
-    const camber_status status = camber_covered_each(renderer, frame, read_area, &r);
+    camber_status status = camber_renderer_resolve(renderer, frame);
+    if (status == CAMBER_OK)
+        status = camber_cl_each_area(renderer, frame, read_area, &r);
     if (status != CAMBER_OK) {
         camber_cover_stages_free(renderer->share.device->context, &r.stages);
         return status;

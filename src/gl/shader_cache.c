@@ -1,19 +1,19 @@
-/* Linked shader programs, kept in the user's cache folder as the driver gives them. Mesa keeps what its compiler made
- * by itself, but reads the sources first; other drivers keep nothing. */
-#include "draw/renderer.h"
+/* Keeps linked shader programs in the user's cache folder, in the driver's own format. Mesa keeps what its compiler
+ * made too, but reads the sources first; other drivers keep nothing. */
+#include "gl/shader_cache.h"
 
 #include <stdio.h>
 #include <string.h>
 
-/* A file: this, then the driver's bytes. */
+/* A file begins with this head; the driver's bytes follow. */
 typedef struct linked_head {
-    uint64_t hash; /* of the key, the format and the bytes: what is torn or another's is no program */
+    uint64_t hash; /* of the key, the format and the bytes: it finds files that are torn or another program's */
     GLenum format;
     uint32_t unused;
 } linked_head;
 
-uint64_t camber_linked_key(const camber_renderer *renderer, const char *const *sources, size_t count) {
-    const camber_surface_info *info = &renderer->share.surface->info;
+uint64_t camber_shader_cache_key(const camber_surface *surface, const char *const *sources, size_t count) {
+    const camber_surface_info *info = &surface->info;
     uint64_t key = camber_hash(CAMBER_HASH_START, info->renderer, strlen(info->renderer) + 1);
     key = camber_hash(key, info->version, strlen(info->version) + 1);
     for (size_t i = 0; i < count; i++)
@@ -36,15 +36,14 @@ static bool keeps_programs(const camber_gl *gl) {
     return formats > 0;
 }
 
-bool camber_linked_load(camber_renderer *renderer, uint64_t key, GLuint program) {
-    camber_surface *surface = renderer->share.surface;
+bool camber_shader_cache_load(camber_surface *surface, uint64_t key, GLuint program) {
     const camber_gl *gl = &surface->gl;
     char name[64], *bytes = NULL;
     size_t size = 0;
     GLint linked = 0;
     linked_head head;
     file_name(key, name);
-    if (!keeps_programs(gl) || !camber_cache_load(renderer->share.device->context, name, &bytes, &size))
+    if (!keeps_programs(gl) || !camber_cache_load(surface->context, name, &bytes, &size))
         return false;
     if (size > sizeof head) {
         memcpy(&head, bytes, sizeof head);
@@ -52,23 +51,23 @@ bool camber_linked_load(camber_renderer *renderer, uint64_t key, GLuint program)
         if (head.hash == hash_bytes(key, head.format, bytes + sizeof head, size)) {
             gl->ProgramBinary(program, head.format, bytes + sizeof head, (GLsizei)size);
             gl->GetProgramiv(program, GL_LINK_STATUS, &linked);
-            camber_surface_forget_errors(surface); /* of another version's bytes: they are built anew */
+            camber_surface_forget_errors(surface); /* bytes of another version: the caller builds the program anew */
         }
     }
-    camber_free(renderer->share.device->context, bytes);
+    camber_free(surface->context, bytes);
     return linked != 0;
 }
 
-void camber_linked_save(camber_renderer *renderer, uint64_t key, GLuint program) {
-    camber_context *context = renderer->share.device->context;
-    const camber_gl *gl = &renderer->share.surface->gl;
+void camber_shader_cache_save(camber_surface *surface, uint64_t key, GLuint program) {
+    camber_context *context = surface->context;
+    const camber_gl *gl = &surface->gl;
     GLint size = 0;
     GLsizei written = 0;
     linked_head head = {0};
     if (!keeps_programs(gl) || !camber_cache_is_on(context))
         return;
     gl->GetProgramiv(program, GL_PROGRAM_BINARY_LENGTH, &size);
-    /* A file that is not saved fails nothing. */
+    /* Where no memory is left the file is not saved, and nothing fails. */
     char *bytes = size > 0 ? camber_resize_quietly(context, NULL, sizeof head + (size_t)size) : NULL;
     if (bytes) {
         gl->GetProgramBinary(program, size, &written, &head.format, bytes + sizeof head);
@@ -80,6 +79,6 @@ void camber_linked_save(camber_renderer *renderer, uint64_t key, GLuint program)
             camber_cache_save(context, name, bytes, sizeof head + (size_t)written);
         }
     }
-    camber_surface_forget_errors(renderer->share.surface);
+    camber_surface_forget_errors(surface);
     camber_free(context, bytes);
 }

@@ -1,4 +1,4 @@
-/* What is drawn into: the picture, the layers that are flattened before they reach it, and counts. */
+/* Textures that GL draws into: the picture, the layers that are flattened before they reach it, and counts. */
 #include "draw/renderer.h"
 
 #include <stdio.h>
@@ -16,7 +16,7 @@ static camber_status check_target(camber_renderer *renderer, GLsizei width, GLsi
     const GLenum complete = renderer->share.surface->gl.CheckFramebufferStatus(GL_FRAMEBUFFER);
     char what[64];
     snprintf(what, sizeof what, "a target of %d x %d px", (int)width, (int)height);
-    const camber_status status = camber_renderer_check(renderer, what);
+    const camber_status status = camber_gl_check(renderer, what);
     if (status == CAMBER_OK && complete != GL_FRAMEBUFFER_COMPLETE)
         return camber_fail(renderer->share.device->context, CAMBER_ERROR_DEVICE,
                            "%s: not complete (0x%x) on %s; draw smaller pieces, or update its driver", what, complete,
@@ -24,7 +24,7 @@ static camber_status check_target(camber_renderer *renderer, GLsizei width, GLsi
     return status;
 }
 
-/* With the depth that nobody needs: stencil alone is not a framebuffer's everywhere. */
+/* Not every driver takes stencil without depth, which nobody needs. */
 static void add_stencil(const camber_gl *gl, camber_target *target, GLsizei width, GLsizei height) {
     gl->GenRenderbuffers(1, &target->stencil);
     gl->BindRenderbuffer(GL_RENDERBUFFER, target->stencil);
@@ -57,7 +57,7 @@ static void add_alphas(const camber_gl *gl, camber_target *target, GLsizei width
 
 static camber_status resize(camber_renderer *renderer, int which, GLsizei width, GLsizei height) {
     const camber_gl *gl = &renderer->share.surface->gl;
-    camber_target *target = renderer->targets + which;
+    camber_target *target = renderer->gl.targets + which;
     if (target->width == width && target->height == height)
         return CAMBER_OK;
     release(gl, target);
@@ -79,46 +79,45 @@ static camber_status resize(camber_renderer *renderer, int which, GLsizei width,
     return CAMBER_OK;
 }
 
-GLsizei camber_renderer_guard(const camber_renderer *renderer, int axis, GLsizei side) {
+GLsizei camber_target_guard(const camber_renderer *renderer, int axis, GLsizei side) {
     const GLsizei room = (renderer->share.surface->largest_viewport[axis] - side) / 2;
     return room < 0 ? 0 : room < side ? room : side;
 }
 
-camber_status camber_renderer_bind_target(camber_renderer *renderer, int which, GLsizei width, GLsizei height) {
+camber_status camber_target_bind(camber_renderer *renderer, int which, GLsizei width, GLsizei height) {
     const camber_gl *gl = &renderer->share.surface->gl;
     const camber_status status = resize(renderer, which, width, height);
     if (status != CAMBER_OK)
         return status;
-    gl->BindFramebuffer(GL_FRAMEBUFFER, renderer->targets[which].framebuffer);
-    const GLsizei guard_x = camber_renderer_guard(renderer, 0, width),
-                  guard_y = camber_renderer_guard(renderer, 1, height);
+    gl->BindFramebuffer(GL_FRAMEBUFFER, renderer->gl.targets[which].framebuffer);
+    const GLsizei guard_x = camber_target_guard(renderer, 0, width), guard_y = camber_target_guard(renderer, 1, height);
     gl->Viewport(-guard_x, -guard_y, width + 2 * guard_x, height + 2 * guard_y);
     gl->Scissor(0, 0, width, height);
     gl->Enable(GL_SCISSOR_TEST);
     return CAMBER_OK;
 }
 
-void camber_renderer_release_targets(camber_renderer *renderer) {
+void camber_targets_release(camber_renderer *renderer) {
     for (int i = 0; i < CAMBER_TARGETS; i++)
-        release(&renderer->share.surface->gl, renderer->targets + i);
+        release(&renderer->share.surface->gl, renderer->gl.targets + i);
 }
 
-/* Only the framebuffer is the target's own. */
-void camber_renderer_let_go(camber_renderer *renderer) {
-    renderer->targets[CAMBER_TARGET_GIVEN].texture = 0;
-    release(&renderer->share.surface->gl, renderer->targets + CAMBER_TARGET_GIVEN);
+/* The texture is the caller's; only the framebuffer goes. */
+void camber_target_take_back(camber_renderer *renderer) {
+    renderer->gl.targets[CAMBER_TARGET_GIVEN].texture = 0;
+    release(&renderer->share.surface->gl, renderer->gl.targets + CAMBER_TARGET_GIVEN);
 }
 
-camber_status camber_renderer_give_target(camber_renderer *renderer, GLuint texture, GLsizei width, GLsizei height) {
+camber_status camber_target_give(camber_renderer *renderer, GLuint texture, GLsizei width, GLsizei height) {
     const camber_gl *gl = &renderer->share.surface->gl;
-    camber_target *target = renderer->targets + CAMBER_TARGET_GIVEN;
+    camber_target *target = renderer->gl.targets + CAMBER_TARGET_GIVEN;
     target->texture = texture;
     gl->GenFramebuffers(1, &target->framebuffer);
     gl->BindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
     gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture, 0);
     const camber_status status = check_target(renderer, width, height);
     if (status != CAMBER_OK) {
-        camber_renderer_let_go(renderer);
+        camber_target_take_back(renderer);
         return status;
     }
     target->width = width;

@@ -15,7 +15,7 @@
 
 enum {
     SIDE_MAX_PX = 65535,
-    PIECE_SIDE_PX = 2048,
+    AREA_SIDE_PX = 2048,
     FULL = 255,            /* of a channel */
     INDICES_MAX = 3 << 28, /* a draw call's: a signed 32-bit number, whole triangles, an even number */
     INDICES_LEAST = 252,   /* the same, and no pixel is full after them */
@@ -31,10 +31,10 @@ typedef struct counting {
     const camber_index_range *drawn; /* the same indices for what needs no apart: in one range where they are all */
     size_t drawn_count;
     const camber_shader *cover, *every;
-    camber_piece piece;
+    camber_gl_area area;
     const camber_mesh_part *bound; /* NULL: none */
     camber_status status;          /* of binding one */
-    uint8_t *pixels;               /* RGBA8 of a piece */
+    uint8_t *pixels;               /* RGBA8 of an area */
     camber_overdraw sum;
 } counting;
 
@@ -74,10 +74,10 @@ static void draw_range(counting *c, camber_index_range range) {
             c->status = camber_part_use(mesh, part);
             if (c->status != CAMBER_OK)
                 return;
-            camber_renderer_bind_part(c->renderer, part);
+            camber_gl_bind_part(c->renderer, part);
         }
         c->bound = part;
-        camber_renderer_draw_indices(c->renderer, mesh, first, count);
+        camber_gl_draw_indices(c->renderer, mesh, first, count);
         const uint64_t done = count < left ? count - shared : count; /* no triangle lies in two parts */
         range.first_index += done;
         range.index_count -= done;
@@ -153,10 +153,10 @@ static cursor draw_some(counting *c, cursor at, uint64_t indices) {
     return at;
 }
 
-/* Reads the counts of a piece back: the sums of both channels, and the highest of either. */
+/* Reads the counts of an area back: the sums of both channels, and the highest of either. */
 static camber_status read_counts(counting *c, uint64_t sums[2], int *highest) {
-    const size_t count = (size_t)c->piece.width * c->piece.height;
-    gl_of(c)->ReadPixels(0, 0, (GLsizei)c->piece.width, (GLsizei)c->piece.height, GL_RGBA, GL_UNSIGNED_BYTE, c->pixels);
+    const size_t count = (size_t)c->area.width * c->area.height;
+    gl_of(c)->ReadPixels(0, 0, (GLsizei)c->area.width, (GLsizei)c->area.height, GL_RGBA, GL_UNSIGNED_BYTE, c->pixels);
     uint64_t covered = 0, every = 0;
     int most = 0;
     for (size_t i = 0; i < count; i++) {
@@ -169,7 +169,7 @@ static camber_status read_counts(counting *c, uint64_t sums[2], int *highest) {
     sums[COVERED] = covered;
     sums[EVERY] = every;
     *highest = most;
-    return c->status == CAMBER_OK ? camber_renderer_check(c->renderer, "counting") : c->status;
+    return c->status == CAMBER_OK ? camber_gl_check(c->renderer, "counting") : c->status;
 }
 
 static camber_status count_fragments(counting *c) {
@@ -213,11 +213,11 @@ static void cover_and_repeat(counting *c, size_t first, size_t count) {
 }
 
 static void add_to_map(const counting *c) {
-    const camber_piece *piece = &c->piece;
-    for (uint32_t y = 0; y < piece->height; y++) {
-        uint8_t *row = c->desc->map + (size_t)(piece->y + y) * c->desc->width + piece->x;
-        const uint8_t *counts = c->pixels + 4 * (size_t)y * piece->width + EVERY;
-        for (uint32_t x = 0; x < piece->width; x++) {
+    const camber_gl_area *area = &c->area;
+    for (uint32_t y = 0; y < area->height; y++) {
+        uint8_t *row = c->desc->map + (size_t)(area->y + y) * c->desc->width + area->x;
+        const uint8_t *counts = c->pixels + 4 * (size_t)y * area->width + EVERY;
+        for (uint32_t x = 0; x < area->width; x++) {
             const int sum = row[x] + counts[4 * (size_t)x];
             row[x] = (uint8_t)(sum < 255 ? sum : 255);
         }
@@ -253,24 +253,24 @@ static camber_status count_pixels(counting *c) {
     return status;
 }
 
-/* ---- Pieces ---- */
+/* ---- Areas ---- */
 
-static camber_status count_piece(counting *c) {
-    camber_status status = camber_renderer_bind_target(c->renderer, CAMBER_TARGET_COUNTS, (GLsizei)c->piece.width,
-                                                       (GLsizei)c->piece.height);
+static camber_status count_area(counting *c) {
+    camber_status status =
+        camber_target_bind(c->renderer, CAMBER_TARGET_COUNTS, (GLsizei)c->area.width, (GLsizei)c->area.height);
     if (status != CAMBER_OK)
         return status;
     c->bound = NULL; /* the target's texture has taken the rows' place */
-    camber_renderer_use_shader(c->renderer, c->cover, c->desc->mesh, &c->piece);
-    camber_renderer_use_shader(c->renderer, c->every, c->desc->mesh, &c->piece);
+    camber_gl_use_shader(c->renderer, c->cover, c->desc->mesh, &c->area);
+    camber_gl_use_shader(c->renderer, c->every, c->desc->mesh, &c->area);
     status = count_fragments(c);
     return status == CAMBER_OK ? count_pixels(c) : status;
 }
 
-static camber_status count_pieces(counting *c) {
+static camber_status count_areas(counting *c) {
     const camber_overdraw_desc *desc = c->desc;
     const uint32_t largest = c->renderer->share.surface->info.largest_target_px;
-    const uint32_t side = largest < PIECE_SIDE_PX ? largest : PIECE_SIDE_PX;
+    const uint32_t side = largest < AREA_SIDE_PX ? largest : AREA_SIDE_PX;
     const uint32_t widest = desc->width < side ? desc->width : side,
                    tallest = desc->height < side ? desc->height : side;
     camber_context *context = c->renderer->share.device->context;
@@ -280,13 +280,13 @@ static camber_status count_pieces(counting *c) {
         return CAMBER_ERROR_MEMORY;
     for (uint32_t y = 0; y < desc->height && status == CAMBER_OK; y += tallest) {
         for (uint32_t x = 0; x < desc->width && status == CAMBER_OK; x += widest) {
-            c->piece = (camber_piece){.x = x,
-                                      .y = y,
-                                      .width = desc->width - x < widest ? desc->width - x : widest,
-                                      .height = desc->height - y < tallest ? desc->height - y : tallest};
-            status = count_piece(c);
+            c->area = (camber_gl_area){.x = x,
+                                       .y = y,
+                                       .width = desc->width - x < widest ? desc->width - x : widest,
+                                       .height = desc->height - y < tallest ? desc->height - y : tallest};
+            status = count_area(c);
         }
-        camber_progress(context, "counting", (double)(y + c->piece.height) / desc->height);
+        camber_progress(context, "counting", (double)(y + c->area.height) / desc->height);
     }
     camber_free(context, c->pixels);
     return status;
@@ -297,11 +297,11 @@ static camber_status prepare(counting *c, camber_index_range **list) {
     const camber_gl *gl = gl_of(c);
     camber_status status = desc->ranges ? check_ranges(c) : list_polylines(c, list);
     if (status == CAMBER_OK)
-        status = camber_renderer_set_widths(c->renderer, desc->mesh, desc->paints, desc->paint_count);
+        status = camber_rows_upload_widths(c->renderer, desc->mesh, desc->paints, desc->paint_count);
     if (status == CAMBER_OK)
-        status = camber_renderer_mesh_shader(c->renderer, desc->mesh, 0.0f, CAMBER_VARIANT_COUNT, &c->cover);
+        status = camber_gl_stroke_shader(c->renderer, desc->mesh, 0.0f, CAMBER_VARIANT_COUNT, &c->cover);
     if (status == CAMBER_OK)
-        status = camber_renderer_count_shader(c->renderer, desc->mesh->mesh_info.method, &c->every);
+        status = camber_shaders_count(&c->renderer->gl.shaders, desc->mesh->mesh_info.method, &c->every);
     if (status != CAMBER_OK)
         return status;
     gl->Enable(GL_BLEND);
@@ -339,7 +339,7 @@ camber_status camber_overdraw_count(camber_renderer *renderer, const camber_over
         renderer->share.frames_begun++; /* what it draws with is awaited before it changes */
         status = prepare(&c, &list);
         if (status == CAMBER_OK)
-            status = count_pieces(&c);
+            status = count_areas(&c);
         renderer->share.surface->gl.BindVertexArray(0);
         camber_free(context, list);
     }

@@ -24,7 +24,7 @@ static camber_cover_area first_area(const camber_renderer *renderer, const cambe
     return (camber_cover_area){.width = width, .height = frame->height < rows ? frame->height : rows};
 }
 
-/* What becomes of a frame's areas. */
+/* Where the areas of a frame go. */
 typedef struct destination {
     camber_rows_fn *rows;
     void *user;

@@ -64,7 +64,7 @@ static camber_status set_features(camber_cl_tables *t, const camber_draw_list *l
                : CAMBER_OK;
 }
 
-/* What the inks of a command have in common. The union needs no layer: its ink has the opacity. */
+/* Fills in the parts of an ink that all inks of a command share. The union needs no layer: its ink has the opacity. */
 static camber_ink ink_of_command(camber_cl_tables *t, const camber_draw_command *command) {
     camber_ink ink = {.mode = CAMBER_INK_OVER, .group = command->group};
     if (command->group)

@@ -87,7 +87,7 @@ static camber_status check_frame(camber_context *context, const camber_frame *fr
 
 /* ---- Rows ---- */
 
-/* What the rows of a pass are made with. */
+/* Makes the rows of a pass. */
 typedef struct row_maker {
     camber_draw_list *list;
     const camber_pass *pass;
@@ -328,7 +328,7 @@ static camber_composite composite_of(const span *s) {
     return s->features ? CAMBER_COMPOSITE_COVERAGE : CAMBER_COMPOSITE_UNION;
 }
 
-/* What the commands of a pass have in common. */
+/* Makes the commands of a pass. */
 typedef struct command_maker {
     camber_draw_list *list;
     const camber_pass *pass;

@@ -265,7 +265,7 @@ camber_status camber_batch_draw(camber_renderer *renderer, unsigned variant, con
         gl->Uniform1i(shader->table,
                       has_numbered_tables(mesh, area) ? (GLint)vertex_bits(mesh, area->view.pitched) : 0);
         gl->Uniform1i(shader->table_rows, (GLint)mesh->row_count);
-        gl->Uniform1i(shader->tail, (GLint)(CAMBER_ROW_TEXELS * row_count));
+        gl->Uniform1i(shader->side_table, (GLint)(CAMBER_ROW_TEXELS * row_count));
         if (variant & CAMBER_VARIANT_PATTERN)
             camber_atlas_bind(renderer);
         if (area->view.pitched)

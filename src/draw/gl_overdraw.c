@@ -1,13 +1,13 @@
-/* Overdraw, counted by the GPU: fragments, and pixels that a range covers once and more than once.
+/* Counts overdraw on the GPU: all fragments, and the pixels that a range of indices covers once and more than once.
  *
- * Counts gather in 8-bit channels to which every fragment adds 1 of 255. Such a channel stays at 255 when it is full,
- * so a pixel that shows 255 after more than 255 additions tells that the batch was too large: it is counted again in
- * smaller ones. No count is ever lost, and no extension is needed.
+ * Every fragment adds 1 of 255 to an 8-bit channel, which stays at 255 when it is full. Where a pixel shows 255, too
+ * much was drawn before the counts were read, and it is drawn again in smaller steps. So no count is lost, and no
+ * extension is needed.
  *
- * A range takes two draw calls, by the stencil, which is 0 before:
+ * A range takes two draw calls that go by the stencil, which is 0 before:
  *   cover    where it is 0, adds 1 to the drawn pixels; everywhere, a fragment with coverage adds 1 to it
  *   repeat   where it is 2 or more, adds 1 to the repeated pixels; everywhere, back to 0
- * so that of a pixel only the first fragment passes. */
+ * so that only the first fragment of a pixel passes. */
 #include "draw/renderer.h"
 
 #include <assert.h>
@@ -16,8 +16,8 @@
 enum {
     SIDE_MAX_PX = 65535,
     AREA_SIDE_PX = 2048,
-    FULL = 255,            /* of a channel */
-    INDICES_MAX = 3 << 28, /* a draw call's: a signed 32-bit number, whole triangles, an even number */
+    FULL = 255,            /* a channel */
+    INDICES_MAX = 3 << 28, /* of a draw call: it fits a signed 32-bit number, has whole triangles, and is even */
     INDICES_LEAST = 252,   /* the same, and no pixel is full after them */
     COVERED = 0,
     EVERY = 1, /* the channels that stroke.frag and count.frag add to */
@@ -26,9 +26,10 @@ enum {
 typedef struct counting {
     camber_renderer *renderer;
     const camber_overdraw_desc *desc;
-    const camber_index_range *ranges; /* each counted by itself */
+    const camber_index_range *ranges; /* each is counted by itself */
     size_t range_count;
-    const camber_index_range *drawn; /* the same indices for what needs no apart: in one range where they are all */
+    const camber_index_range
+        *drawn; /* the same indices for counts of all ranges together: one range, where it is the whole mesh */
     size_t drawn_count;
     const camber_shader *cover, *every;
     camber_gl_area area;
@@ -131,13 +132,13 @@ static camber_status list_polylines(counting *c, camber_index_range **list) {
 
 /* ---- Fragments ---- */
 
-/* A place in the list of what is drawn: an index within a range. */
+/* A position in the ranges that are drawn: an index within one of them. */
 typedef struct cursor {
     size_t range;
     uint64_t index;
 } cursor;
 
-/* Draws the triangles that end with one of the next indices, so many of them at most. */
+/* Draws the triangles that end with one of the next indices, and gives where it stopped. indices: at most so many. */
 static cursor draw_some(counting *c, cursor at, uint64_t indices) {
     const uint64_t shared = shared_indices(c->desc->mesh);
     while (at.range < c->drawn_count && indices > 0) {

@@ -35,7 +35,7 @@ enum {
 /* Texture units of the shaders' samplers. All that are not listed are at unit 0. */
 enum { CAMBER_RECORDS_UNIT = 1, CAMBER_ALPHAS_UNIT = 2, CAMBER_ATLAS_UNIT = 3 };
 
-/* What the flatten shader reads and puts onto the picture. */
+/* The flatten shader puts one of these onto the picture. */
 typedef enum camber_flatten_kind {
     CAMBER_FLATTEN_COLORS,
     CAMBER_FLATTEN_COVERAGE, /* a layer with one channel, gathered one line over the other */
@@ -51,7 +51,7 @@ typedef enum camber_flatten_kind {
 typedef struct camber_shader {
     GLuint program;   /* 0: not built yet */
     unsigned variant; /* of a stroke shader */
-    GLint origin, corner, scale, layer_color, table, table_rows, stride, tail, eye;
+    GLint origin, corner, scale, layer_color, table, table_rows, stride, side_table, eye;
     GLint image_rect, mean, first, axis_x, axis_y; /* of a fill with images */
 } camber_shader;
 

@@ -31,7 +31,8 @@ void camber_share_await(camber_share *share, const camber_buffer *buffers, size_
 
 enum { PROBE_BYTES = 4096 };
 
-/* What GL reads from a buffer: a copy of it that GL makes, since a map may be the very memory that OpenCL wrote. */
+/* Whether GL reads this word from a buffer. GL makes a copy first, since a map of the buffer itself may be the very
+ * memory that OpenCL wrote. */
 static bool gl_sees(const camber_gl *gl, GLuint buffer, cl_uint word) {
     GLuint copy = 0;
     gl->GenBuffers(1, &copy);

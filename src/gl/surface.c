@@ -1,4 +1,4 @@
-/* Choosing a back end, and what all back ends share. */
+/* Surfaces: chooses a back end, loads GL's functions, and reads the errors that GL reports. */
 #include "gl/surface.h"
 
 #include <string.h>
@@ -129,7 +129,7 @@ static camber_status open_backend(camber_context *context, const camber_surface_
     return CAMBER_OK;
 }
 
-/* A back end that is not there is no error while another may be. */
+/* Tries a back end. It is no error that it is not there, as long as another may be. */
 static camber_status try_backend(camber_context *context, const camber_surface_ops *ops,
                                  const camber_surface_desc *desc, camber_surface **surface) {
     camber_soft_log kept;
@@ -200,7 +200,7 @@ camber_status camber_surface_make_current(camber_surface *surface) {
                        "%s: the GL context cannot be made current; start again with a new surface", surface->name);
 }
 
-/* ---- What GL reports ---- */
+/* ---- Errors that GL reports ---- */
 
 /* The first error since the last look. There may be a flag a part of the driver, and a lost context may report its
  * loss for ever. */

@@ -129,9 +129,9 @@ static camber_status draw_once(bench *b, const load *l, const camber_polylines *
     bench_series_add(&c->frame, frame_ms);
     bench_series_add(&c->tessellate, tessellated - begin);
     bench_series_add(&c->draw, stats.draw_ms);
-    bench_series_add(&c->shape, stats.shape_ms);
-    bench_series_add(&c->lists, stats.count_ms + stats.total_ms + stats.fill_ms);
-    bench_series_add(&c->cover, stats.cover_ms);
+    bench_series_add(&c->shape, stats.setup_ms);
+    bench_series_add(&c->lists, stats.bin_count_ms + stats.bin_scan_ms + stats.bin_scatter_ms);
+    bench_series_add(&c->cover, stats.rasterize_ms);
     bench_series_add(&c->cores, (processor_ms() - busy) / frame_ms);
     return status;
 }
@@ -207,8 +207,8 @@ static json_t *measure(bench *b, const char *only) {
             json_pack("{s:s, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:f, s:f}", "key", kind_names[l->kind], "points",
                       (json_int_t)l->points, "side_px", (json_int_t)l->side_px, "frame_ms", bench_ms(frame_ms),
                       "tessellate_ms", bench_ms(bench_series_median(&c.tessellate)), "draw_ms",
-                      bench_ms(bench_series_median(&c.draw)), "shape_ms", bench_ms(bench_series_median(&c.shape)),
-                      "lists_ms", bench_ms(bench_series_median(&c.lists)), "cover_ms",
+                      bench_ms(bench_series_median(&c.draw)), "setup_ms", bench_ms(bench_series_median(&c.shape)),
+                      "lists_ms", bench_ms(bench_series_median(&c.lists)), "rasterize_ms",
                       bench_ms(bench_series_median(&c.cover)), "ns", unit_cost(l, frame_ms), "cores", cores));
         if (l->kind == LOAD_TILE || l->kind == LOAD_LINE)
             bench_result_add_figure(result, &(bench_figure){kind_names[l->kind], "cores at work", NULL, cores, false});
@@ -231,8 +231,8 @@ static void print(const json_t *result, FILE *to) {
     json_array_foreach(bench_result_rows(result), i, row) {
         fprintf(to, "%-7s %9.0f %6.0f | %9.1f %9.1f %9.1f | %9.1f %9.1f %9.1f | %8.2f %5.2f\n", bench_text(row, "key"),
                 bench_number(row, "points"), bench_number(row, "side_px"), bench_number(row, "frame_ms"),
-                bench_number(row, "tessellate_ms"), bench_number(row, "draw_ms"), bench_number(row, "shape_ms"),
-                bench_number(row, "lists_ms"), bench_number(row, "cover_ms"), bench_number(row, "ns"),
+                bench_number(row, "tessellate_ms"), bench_number(row, "draw_ms"), bench_number(row, "setup_ms"),
+                bench_number(row, "lists_ms"), bench_number(row, "rasterize_ms"), bench_number(row, "ns"),
                 bench_number(row, "cores"));
     }
     fprintf(to, "A point costs at most %.2f times what it costs in any smaller load, a pixel %.2f times.\n",

@@ -20,7 +20,7 @@ static const struct {
     {"emit", 16, 0},     /* x, y, info, joins; the mesh */
 };
 
-static const char *const drawn_names[DRAWN] = {"shape", "count", "total", "fill", "cover"};
+static const char *const drawn_names[DRAWN] = {"setup", "bin_count", "bin_scan", "bin_scatter", "rasterize"};
 
 typedef struct trial {
     bench *b;
@@ -81,7 +81,8 @@ static camber_status measure_drawing(trial *t) {
         status = camber_render(b->covering, &frame, NULL, NULL, &stats);
         if (status != CAMBER_OK || run < b->warm_ups)
             continue;
-        const double ms[DRAWN] = {stats.shape_ms, stats.count_ms, stats.total_ms, stats.fill_ms, stats.cover_ms};
+        const double ms[DRAWN] = {stats.setup_ms, stats.bin_count_ms, stats.bin_scan_ms, stats.bin_scatter_ms,
+                                  stats.rasterize_ms};
         for (int i = 0; i < DRAWN; i++)
             bench_series_add(t->drawn + i, ms[i]);
     }

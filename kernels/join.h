@@ -8,8 +8,8 @@
  *     tan(t/4) = s / (1 + c)    in -1 to 1 for every turn: what is stored, as 16 bits
  *     1 / c                     the miter length over the width
  */
-#ifndef CAMBER_JOIN_MATHS_H
-#define CAMBER_JOIN_MATHS_H
+#ifndef CAMBER_KERNEL_JOIN_H
+#define CAMBER_KERNEL_JOIN_H
 
 #include "layout.h"
 
@@ -166,7 +166,7 @@ CAMBER_FN camber_u32 camber_join_word(camber_turn turn, CAMBER_GLOBAL const camb
 
 /* The join word of an end of an open polyline, or of a dot. */
 CAMBER_FN camber_u32 camber_cap_word(camber_u32 cap, camber_u32 dot) {
-    const camber_u32 kind = !dot ? CAMBER_KIND_CAP : cap == 0u ? CAMBER_KIND_GHOST : CAMBER_KIND_DOT;
+    const camber_u32 kind = !dot ? CAMBER_KIND_CAP : cap == 0u ? CAMBER_KIND_SENTINEL : CAMBER_KIND_DOT;
     return kind << CAMBER_JOIN_KIND_SHIFT | camber_cap_end(cap) << CAMBER_JOIN_END_SHIFT;
 }
 
@@ -204,7 +204,7 @@ CAMBER_FN float camber_edge_limit(camber_u32 join, float side) {
 CAMBER_FN camber_u32 camber_strip_records(camber_u32 kind, camber_u32 info) {
     const camber_u32 first = info & CAMBER_POINT_FIRST ? 1u : 0u;
     const camber_u32 inner = info & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST) ? 0u : 1u;
-    const camber_u32 live = kind == CAMBER_KIND_GHOST ? 0u : kind == CAMBER_KIND_DOT ? 3u : 1u + first;
+    const camber_u32 live = kind == CAMBER_KIND_SENTINEL ? 0u : kind == CAMBER_KIND_DOT ? 3u : 1u + first;
     return live + (kind > CAMBER_KIND_CUT ? inner : 0u) + (kind > CAMBER_KIND_TIGHT ? inner : 0u);
 }
 
@@ -254,7 +254,7 @@ CAMBER_FN camber_u32 camber_join_counts(camber_u32 join, camber_u32 before, camb
         const camber_u32 vertices = records == 3u ? 4u : inside ? 1u + records : 2u;
         return records == 0u ? 0u : vertices | records << 17;
     }
-    if (kind == CAMBER_KIND_GHOST)
+    if (kind == CAMBER_KIND_SENTINEL)
         return 0;
     if (kind == CAMBER_KIND_DOT)
         return 4u | 6u << 16;

@@ -1,7 +1,7 @@
 /* Layouts that host and device share. Scalar C that both compilers read; the build declares the dialect
  * (__OPENCL_VERSION__ is OpenCL's own). Sizes are asserted on both sides. */
-#ifndef CAMBER_LAYOUT_H
-#define CAMBER_LAYOUT_H
+#ifndef CAMBER_KERNEL_LAYOUT_H
+#define CAMBER_KERNEL_LAYOUT_H
 
 #ifdef __OPENCL_VERSION__
 #pragma OPENCL FP_CONTRACT OFF
@@ -25,23 +25,23 @@ typedef uint64_t camber_u64;
 #define CAMBER_FABS(x) fabsf(x)
 #endif
 
-/* Points a work-group, and the block of the scan. Point arrays are padded with ghosts to a multiple of it, so
+/* Points a work-group, and the block of the scan. Point arrays are padded with sentinels to a multiple of it, so
  * that no kernel needs a guard. A device may take smaller ones, which divide it: its build sets them. */
 #ifndef CAMBER_BLOCK
 #define CAMBER_BLOCK 256
 #endif
 /* Points a work-item of classify, scan and emit. On a CPU one takes a whole block: its build says so. */
-#ifndef CAMBER_ITEM
-#define CAMBER_ITEM 8
+#ifndef CAMBER_POINT_CHUNK
+#define CAMBER_POINT_CHUNK 8
 #endif
 
-/* A kernel, work-groups of `size` work-items; its body finds its work-item's number in CAMBER_ITEM_ID. On a CPU the
+/* A kernel, work-groups of `size` work-items; its body finds its work-item's number in CAMBER_WORK_ITEM. On a CPU the
  * body is a function that the kernel calls: PoCL puts a kernel's body into three entries of each build and compiles its
  * loop over work-items around each, which takes twice as long and runs no faster. */
 #ifdef __OPENCL_VERSION__
 #define CAMBER_LIST(...) __VA_ARGS__
-#if CAMBER_ITEM == CAMBER_BLOCK
-#define CAMBER_ITEM_ID item_id
+#if CAMBER_POINT_CHUNK == CAMBER_BLOCK
+#define CAMBER_WORK_ITEM item_id
 #define CAMBER_KERNEL(size, name, parameters, arguments)                                                               \
     static void name##_item(const size_t item_id, CAMBER_LIST parameters) __attribute__((noinline));                   \
     kernel __attribute__((reqd_work_group_size(size, 1, 1))) void name parameters {                                    \
@@ -49,15 +49,15 @@ typedef uint64_t camber_u64;
     }                                                                                                                  \
     static void name##_item(const size_t item_id, CAMBER_LIST parameters)
 #else
-#define CAMBER_ITEM_ID get_global_id(0)
+#define CAMBER_WORK_ITEM get_global_id(0)
 #define CAMBER_KERNEL(size, name, parameters, arguments)                                                               \
     kernel __attribute__((reqd_work_group_size(size, 1, 1))) void name parameters
 #endif
 #endif
 
-/* A point's info word: row << CAMBER_POINT_ROW_SHIFT | flags. 0 is a ghost: a neighbour to look at, or padding,
- * that emits nothing. A ring is stored as ghost of its last but one point, its points with the first repeated
- * at the end, ghost of its second point: so neighbours are always i - 1 and i + 1. */
+/* A point's info word: row << CAMBER_POINT_ROW_SHIFT | flags. 0 is a sentinel: a neighbour to look at, or padding,
+ * that emits nothing. A ring is stored as sentinel of its last but one point, its points with the first repeated
+ * at the end, sentinel of its second point: so neighbours are always i - 1 and i + 1. */
 #define CAMBER_POINT_REAL 1u
 #define CAMBER_POINT_FIRST 2u
 #define CAMBER_POINT_LAST 4u
@@ -78,10 +78,10 @@ typedef struct camber_row {
 } camber_row;
 
 /* Words of a record: see camber_record in camber_proof.h. A measured mesh has as many again behind them, of which the
- * first two are camber_measure. */
+ * first two are camber_arc_length. */
 #define CAMBER_RECORD_WORDS 4
-#ifndef CAMBER_MEASURED
-#define CAMBER_MEASURED 0
+#ifndef CAMBER_HAS_ARC_LENGTH
+#define CAMBER_HAS_ARC_LENGTH 0
 #endif
 
 /* A record's last word is its point's info, with one of these. The vertices of a start are placed by the segment that
@@ -118,12 +118,12 @@ typedef struct camber_row {
 #define CAMBER_JOIN_KIND_SHIFT 28
 #define CAMBER_JOIN_TRIANGLES_MAX 64 /* so that a block's index count fits 16 bits */
 
-#define CAMBER_KIND_GHOST 0u /* emits nothing: no point of a polyline, or a dot with butt caps */
-#define CAMBER_KIND_DOT 1u   /* a polyline of one point */
-#define CAMBER_KIND_CAP 2u   /* an end of an open polyline */
-#define CAMBER_KIND_CUT 3u   /* a join cut along its bisector */
-#define CAMBER_KIND_TIGHT 4u /* cut on the outer side; the inner side has no room */
-#define CAMBER_KIND_SPLIT 5u /* too sharp to cut: both segments end here */
+#define CAMBER_KIND_SENTINEL 0u /* emits nothing: no point of a polyline, or a dot with butt caps */
+#define CAMBER_KIND_DOT 1u      /* a polyline of one point */
+#define CAMBER_KIND_CAP 2u      /* an end of an open polyline */
+#define CAMBER_KIND_CUT 3u      /* a join cut along its bisector */
+#define CAMBER_KIND_TIGHT 4u    /* cut on the outer side; the inner side has no room */
+#define CAMBER_KIND_SPLIT 5u    /* too sharp to cut: both segments end here */
 
 /* The methods, as camber_method, and the ends, as camber_end: numbers that the preprocessor can compare. */
 #define CAMBER_STRIP 0

@@ -422,7 +422,7 @@ typedef struct camber_mesh_info {
     size_t split_joins;    /* turns past 127 degrees */
     size_t undrawn_dots;   /* dots with butt caps, which have no area */
     double classify_ms, scan_ms, emit_ms; /* of the last tessellation, on the device's queue */
-    double survey_ms, project_ms;         /* of a network */
+    double cull_count_ms, cull_emit_ms;   /* of a network */
     double offset_ms;                     /* of lines with an offset */
 } camber_mesh_info;
 
@@ -579,7 +579,8 @@ typedef struct camber_frame_stats {
     size_t pieces;
     double draw_ms; /* clear, draw, finish; of a frame that overlaps others, what its calls take */
     double read_ms;
-    double shape_ms, count_ms, total_ms, fill_ms, cover_ms; /* of CAMBER_DRAW_CL's kernels on the device's queue */
+    double setup_ms, bin_count_ms, bin_scan_ms, bin_scatter_ms,
+        rasterize_ms; /* of CAMBER_DRAW_CL's kernels on the device's queue */
 } camber_frame_stats;
 
 /* Takes row_count rows of width * 4 bytes, premultiplied RGBA8, from the top down; a return of false stops the

@@ -26,9 +26,9 @@ typedef struct camber_record {
 
 /* How far along its polyline a record of a measured mesh lies: the arc length over all of the polyline's points, those
  * of a network also where the camera leaves points out or cuts. */
-typedef struct camber_measure {
+typedef struct camber_arc_length {
     float along_px, total_px; /* from its first point, and to its last */
-} camber_measure;
+} camber_arc_length;
 
 /* A vertex as the vertex shader makes it from records. A segment runs from A to B, u is its direction, L its length.
  * The vertex lies at P + u * clamp(along * g, -limit_px, +limit_px) + (-u.y, u.x) * across * g with g = half the width
@@ -70,7 +70,7 @@ typedef struct camber_mesh_data {
     /* What the device has: info.record_count, and of kite and fan info.index_count, record << 7 | corner
      * (CAMBER_CORNER_* in kernels/layout.h); NULL of strips. */
     camber_record *records;
-    camber_measure *measures; /* as many, of measured meshes. NULL: not measured */
+    camber_arc_length *measures; /* as many, of measured meshes. NULL: not measured */
     uint32_t *corners;
     /* What is drawn by it: info.vertex_count, and info.index_count. Of strips these are two indices a record, both
      * CAMBER_RESTART_INDEX where it lies between two strips. At a tight join two records follow each other that have
@@ -134,15 +134,15 @@ CAMBER_API void camber_stages_free(camber_context *context, camber_stages *stage
  * camber_drawing_stages_free. */
 typedef struct camber_drawing_stages {
     /* shape: what each record of the passes, in drawing order, ends, rounded up to sixteens for each part of a mesh:
-     * shape_words floats and bits that tiles and pixels are drawn from, of what is drawn, and the tiles of its box, a
+     * segment_words floats and bits that tiles and pixels are drawn from, of what is drawn, and the tiles of its box, a
      * byte each: the first one's column, its row, the last one's column, its row. Where the last column lies before the
      * first, nothing is drawn. What lies along lines is measured where passes have gaps, blurs, dashes, trims or ramps;
      * a frame that is pitched has a shape's words of its plane too. */
-    float *shapes;   /* shape_words * shape_count */
-    uint32_t *boxes; /* shape_count */
-    float *measures; /* measure_words * shape_count. NULL: nothing lies along lines, or beside them */
-    float *planes;   /* plane_words * shape_count. NULL: not pitched */
-    size_t shape_count, shape_words, measure_words, plane_words;
+    float *segments; /* segment_words * segment_count */
+    uint32_t *boxes; /* segment_count */
+    float *measures; /* measure_words * segment_count. NULL: nothing lies along lines, or beside them */
+    float *planes;   /* plane_words * segment_count. NULL: not pitched */
+    size_t segment_count, segment_words, measure_words, plane_words;
     /* count and total: where the list of each tile begins, columns * rows + 1, row by row. */
     uint32_t *starts;
     uint32_t columns, rows;

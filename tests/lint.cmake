@@ -57,7 +57,7 @@ foreach(method 0 1 2)
   # As for a GPU, and as for a CPU, where a kernel calls its body (CAMBER_KERNEL).
   lint_step(kernels_cpu_${method}
     COMMAND ${CLANG} -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only ${lint_warnings}
-            -Wno-unused-function -Wno-unused-parameter -Wno-ignored-pragmas -DCAMBER_METHOD=${method} -DCAMBER_ITEM=256 -D__OPENCL_VERSION__=120 ${CMAKE_BINARY_DIR}/src/kernels.cl
+            -Wno-unused-function -Wno-unused-parameter -Wno-ignored-pragmas -DCAMBER_METHOD=${method} -DCAMBER_POINT_CHUNK=256 -D__OPENCL_VERSION__=120 ${CMAKE_BINARY_DIR}/src/kernels.cl
     DEPENDS ${CMAKE_BINARY_DIR}/src/kernels.cl)
   lint_step(kernels_${method}
     COMMAND ${CLANG} -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only ${lint_warnings}
@@ -71,20 +71,20 @@ lint_step(kernels_network
   DEPENDS ${CMAKE_BINARY_DIR}/src/network.cl)
 
 foreach(variant 0,0 1,0 1,1)
-  string(REGEX REPLACE "(.),(.)" "-DCAMBER_COVER_RICH=\\1;-DCAMBER_COVER_PITCHED=\\2" macros ${variant})
+  string(REGEX REPLACE "(.),(.)" "-DCAMBER_RASTER_RICH=\\1;-DCAMBER_RASTER_PITCHED=\\2" macros ${variant})
   string(REPLACE "," "_" variant ${variant})
   lint_step(kernels_cover_${variant}
     COMMAND ${CLANG} -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only ${lint_warnings}
             -Wno-unused-function -Wno-unused-parameter -Wno-ignored-pragmas -D__OPENCL_VERSION__=120 ${macros}
-            ${CMAKE_BINARY_DIR}/src/cover.cl
-    DEPENDS ${CMAKE_BINARY_DIR}/src/cover.cl)
+            ${CMAKE_BINARY_DIR}/src/rasterize.cl
+    DEPENDS ${CMAKE_BINARY_DIR}/src/rasterize.cl)
 endforeach()
 
 lint_step(kernels_cover_lanes
   COMMAND ${CLANG} -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only ${lint_warnings}
           -Wno-unused-function -Wno-unused-parameter -Wno-ignored-pragmas -D__OPENCL_VERSION__=120 -Wno-bitwise-instead-of-logical -DCAMBER_LANES=1
-          ${CMAKE_BINARY_DIR}/src/cover.cl
-  DEPENDS ${CMAKE_BINARY_DIR}/src/cover.cl)
+          ${CMAKE_BINARY_DIR}/src/rasterize.cl
+  DEPENDS ${CMAKE_BINARY_DIR}/src/rasterize.cl)
 
 file(GLOB public_headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/camber*.h)
 foreach(header IN LISTS public_headers)

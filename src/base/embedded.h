@@ -6,12 +6,12 @@ extern const char camber_kernels_source[]; /* kernels/ as one program */
 extern const unsigned long camber_kernels_source_size;
 extern const char camber_network_kernels_source[]; /* those of networks, as another */
 extern const unsigned long camber_network_kernels_source_size;
-extern const char camber_measure_kernels_source[]; /* those of measures */
-extern const unsigned long camber_measure_kernels_source_size;
+extern const char camber_arc_length_kernels_source[]; /* those of measures */
+extern const unsigned long camber_arc_length_kernels_source_size;
 extern const char camber_offset_kernels_source[]; /* those of offsets */
 extern const unsigned long camber_offset_kernels_source_size;
-extern const char camber_cover_kernels_source[]; /* those that draw */
-extern const unsigned long camber_cover_kernels_source_size;
+extern const char camber_raster_kernels_source[]; /* those that draw */
+extern const unsigned long camber_raster_kernels_source_size;
 extern const char camber_edge_glsl[]; /* shaders/ without their #version line */
 extern const unsigned long camber_edge_glsl_size;
 extern const char camber_stroke_vert[], camber_stroke_frag[];

@@ -242,8 +242,8 @@ static camber_status bound(camber_device *device, const camber_device_desc *desc
                            "%llu bytes of memory for meshes; it must be %d or more, or 0 for what the device has",
                            (unsigned long long)desc->memory_bytes, LEAST_MEMORY_BYTES);
     device->block = size ? size : CAMBER_BLOCK;
-    device->item = size == 0 && device->info.type == CAMBER_DEVICE_TYPE_CPU ? device->block : CAMBER_ITEM;
-    device->lanes = device->item == device->block ? 16 : 1;
+    device->point_chunk = size == 0 && device->info.type == CAMBER_DEVICE_TYPE_CPU ? device->block : CAMBER_POINT_CHUNK;
+    device->lanes = device->point_chunk == device->block ? 16 : 1;
     uint64_t *largest = &device->info.largest_buffer_bytes;
     if (*largest > LARGEST_BUFFER_BYTES)
         *largest = LARGEST_BUFFER_BYTES;
@@ -329,11 +329,11 @@ void camber_device_destroy(camber_device *device) {
         for (int pitched = 0; pitched < 2; pitched++)
             camber_program_destroy(device->context, device->network_programs[measured][pitched]);
     }
-    camber_program_destroy(device->context, device->measures);
+    camber_program_destroy(device->context, device->arc_length_program);
     for (size_t i = 0; i < 2; i++)
         camber_program_destroy(device->context, device->offset_programs[i]);
-    for (size_t i = 0; i < sizeof device->cover / sizeof *device->cover; i++)
-        camber_program_destroy(device->context, device->cover[i]);
+    for (size_t i = 0; i < sizeof device->raster_programs / sizeof *device->raster_programs; i++)
+        camber_program_destroy(device->context, device->raster_programs[i]);
     if (device->queue)
         clReleaseCommandQueue(device->queue);
     if (device->cl)

@@ -8,15 +8,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const OPTIONS = "-cl-std=CL1.2 -w -DCAMBER_METHOD=%d%s%s -DCAMBER_ITEM=%zu%s";
+static const char *const OPTIONS = "-cl-std=CL1.2 -w -DCAMBER_METHOD=%d%s%s -DCAMBER_POINT_CHUNK=%zu%s";
 
 /* Which kernels a program has. */
 typedef enum program_kind {
     PROGRAM_METHOD,
     PROGRAM_NETWORK,
-    PROGRAM_MEASURES,
+    PROGRAM_ARC_LENGTHS,
     PROGRAM_OFFSETS,
-    PROGRAM_COVER,
+    PROGRAM_RASTER,
 } program_kind;
 
 /* What a program is made of. */
@@ -154,14 +154,21 @@ static camber_status make_kernels(camber_device *device, camber_program *program
         const char *name;
         cl_kernel *kernel;
         program_kind kind;
-    } stages[] = {{"survey", &program->survey, PROGRAM_NETWORK},    {"project", &program->project, PROGRAM_NETWORK},
-                  {"classify", &program->classify, PROGRAM_METHOD}, {"scan", &program->scan, PROGRAM_METHOD},
-                  {"emit", &program->emit, PROGRAM_METHOD},         {"tally", &program->tally, PROGRAM_MEASURES},
-                  {"measure", &program->measure, PROGRAM_MEASURES}, {"span", &program->span, PROGRAM_OFFSETS},
-                  {"tell", &program->tell, PROGRAM_OFFSETS},        {"shift", &program->shift, PROGRAM_OFFSETS},
-                  {"shape", &program->shape, PROGRAM_COVER},        {"count", &program->count, PROGRAM_COVER},
-                  {"total", &program->total, PROGRAM_COVER},        {"fill", &program->fill, PROGRAM_COVER},
-                  {"cover", &program->cover, PROGRAM_COVER}};
+    } stages[] = {{"cull_count", &program->cull_count, PROGRAM_NETWORK},
+                  {"cull_emit", &program->cull_emit, PROGRAM_NETWORK},
+                  {"classify", &program->classify, PROGRAM_METHOD},
+                  {"scan", &program->scan, PROGRAM_METHOD},
+                  {"emit", &program->emit, PROGRAM_METHOD},
+                  {"arc_length_sum", &program->arc_length_sum, PROGRAM_ARC_LENGTHS},
+                  {"arc_length_scan", &program->arc_length_scan, PROGRAM_ARC_LENGTHS},
+                  {"offset_clip", &program->offset_clip, PROGRAM_OFFSETS},
+                  {"offset_count", &program->offset_count, PROGRAM_OFFSETS},
+                  {"offset_emit", &program->offset_emit, PROGRAM_OFFSETS},
+                  {"setup", &program->setup, PROGRAM_RASTER},
+                  {"bin_count", &program->bin_count, PROGRAM_RASTER},
+                  {"bin_scan", &program->bin_scan, PROGRAM_RASTER},
+                  {"bin_scatter", &program->bin_scatter, PROGRAM_RASTER},
+                  {"rasterize", &program->rasterize, PROGRAM_RASTER}};
     for (size_t i = 0; i < sizeof stages / sizeof *stages; i++) {
         cl_int code;
         if (stages[i].kind != kind)
@@ -226,14 +233,14 @@ static void set_options(const camber_device *device, int method, bool measured, 
     if (device->block != CAMBER_BLOCK)
         snprintf(block, sizeof block, " -DCAMBER_BLOCK=%zu", device->block);
     snprintf(from->options, sizeof from->options, OPTIONS, method,
-             device->rounds_correctly ? " -cl-fp32-correctly-rounded-divide-sqrt" : "", block, device->item,
-             measured ? " -DCAMBER_MEASURED=1" : "");
+             device->rounds_correctly ? " -cl-fp32-correctly-rounded-divide-sqrt" : "", block, device->point_chunk,
+             measured ? " -DCAMBER_HAS_ARC_LENGTH=1" : "");
 }
 
 #ifdef CAMBER_KERNEL_FOLDER
 /* For who changes kernels: their text is read where the build has written it, and a change is no build. */
 static camber_status make_current(camber_device *device, recipe *from, camber_program **program) {
-    static const char *const files[] = {"kernels.cl", "network.cl", "measure.cl", "offset.cl", "cover.cl"};
+    static const char *const files[] = {"kernels.cl", "network.cl", "arc_length.cl", "offset.cl", "rasterize.cl"};
     char path[CAMBER_FOLDER_SIZE], *text = NULL;
     snprintf(path, sizeof path, "%s/%s", CAMBER_KERNEL_FOLDER, files[from->kind]);
     camber_status status = camber_read_file(device->context, path, CAMBER_NAMED_BY_CALLER, &text, &from->source_size);
@@ -265,27 +272,28 @@ camber_status camber_device_program(camber_device *device, camber_program_desc d
     return use_program(device, &from, &device->programs[desc.measured][desc.round_limits][desc.method], program);
 }
 
-camber_status camber_device_measures(camber_device *device, camber_program **program) {
-    recipe from = {PROGRAM_MEASURES, "measures", camber_measure_kernels_source, camber_measure_kernels_source_size, ""};
+camber_status camber_device_arc_length_program(camber_device *device, camber_program **program) {
+    recipe from = {PROGRAM_ARC_LENGTHS, "measures", camber_arc_length_kernels_source,
+                   camber_arc_length_kernels_source_size, ""};
     set_options(device, -1, false, &from);
-    return use_program(device, &from, &device->measures, program);
+    return use_program(device, &from, &device->arc_length_program, program);
 }
 
-camber_status camber_device_offsets(camber_device *device, bool measured, camber_program **program) {
+camber_status camber_device_offset_program(camber_device *device, bool measured, camber_program **program) {
     recipe from = {PROGRAM_OFFSETS, "offsets", camber_offset_kernels_source, camber_offset_kernels_source_size, ""};
     set_options(device, -1, measured, &from);
     return use_program(device, &from, &device->offset_programs[measured], program);
 }
 
-camber_status camber_device_cover_program(camber_device *device, unsigned variant, camber_program **program) {
-    recipe from = {PROGRAM_COVER, "drawing", camber_cover_kernels_source, camber_cover_kernels_source_size, ""};
+camber_status camber_device_raster_program(camber_device *device, unsigned variant, camber_program **program) {
+    recipe from = {PROGRAM_RASTER, "drawing", camber_raster_kernels_source, camber_raster_kernels_source_size, ""};
     set_options(device, -1, false, &from);
     const size_t used = strlen(from.options);
     snprintf(from.options + used, sizeof from.options - used, "%s%s%s",
              variant == 0 && device->lanes == 1 ? " -DCAMBER_LANES=1" : "",
-             variant & CAMBER_COVER_RICH ? " -DCAMBER_COVER_RICH=1" : "",
-             variant & CAMBER_COVER_PITCHED ? " -DCAMBER_COVER_PITCHED=1" : "");
-    return use_program(device, &from, &device->cover[variant], program);
+             variant & CAMBER_RASTER_RICH ? " -DCAMBER_RASTER_RICH=1" : "",
+             variant & CAMBER_RASTER_PITCHED ? " -DCAMBER_RASTER_PITCHED=1" : "");
+    return use_program(device, &from, &device->raster_programs[variant], program);
 }
 
 camber_status camber_device_network_program(camber_device *device, bool measured, bool pitched,
@@ -300,20 +308,20 @@ camber_status camber_device_network_program(camber_device *device, bool measured
 
 /* The n-th program of all that a device can be asked for, or none; what takes longest comes first. */
 static camber_status use_nth(camber_device *device, unsigned n, camber_program **program) {
-    static const unsigned variants[] = {CAMBER_COVER_RICH | CAMBER_COVER_PITCHED, CAMBER_COVER_RICH, 0};
+    static const unsigned variants[] = {CAMBER_RASTER_RICH | CAMBER_RASTER_PITCHED, CAMBER_RASTER_RICH, 0};
     enum { VARIANTS = sizeof variants / sizeof *variants, OFFSETS = 2, NETWORKS = 4, METHODS = 12 };
     if (n < VARIANTS)
-        return camber_device_cover_program(device, variants[n], program);
+        return camber_device_raster_program(device, variants[n], program);
     n -= VARIANTS;
     if (n < OFFSETS)
-        return camber_device_offsets(device, n, program);
+        return camber_device_offset_program(device, n, program);
     n -= OFFSETS;
     if (n < NETWORKS)
         return camber_device_network_program(device, n & 1, n >> 1 & 1, program);
     n -= NETWORKS;
     if (n < METHODS)
         return camber_device_program(device, (camber_program_desc){(camber_method)(n / 4), n & 1, n >> 1 & 1}, program);
-    return n == METHODS ? camber_device_measures(device, program) : CAMBER_OK;
+    return n == METHODS ? camber_device_arc_length_program(device, program) : CAMBER_OK;
 }
 
 camber_status camber_device_warm(camber_device *device, unsigned share, unsigned shares, camber_warmed *warmed) {
@@ -343,9 +351,11 @@ camber_status camber_device_warm(camber_device *device, unsigned share, unsigned
 void camber_program_destroy(camber_context *context, camber_program *program) {
     if (!program)
         return;
-    cl_kernel kernels[] = {program->survey, program->project, program->classify, program->scan, program->emit,
-                           program->tally,  program->measure, program->span,     program->tell, program->shift,
-                           program->shape,  program->count,   program->total,    program->fill, program->cover};
+    cl_kernel kernels[] = {
+        program->cull_count,   program->cull_emit,      program->classify,        program->scan,
+        program->emit,         program->arc_length_sum, program->arc_length_scan, program->offset_clip,
+        program->offset_count, program->offset_emit,    program->setup,           program->bin_count,
+        program->bin_scan,     program->bin_scatter,    program->rasterize};
     for (size_t i = 0; i < sizeof kernels / sizeof *kernels; i++)
         if (kernels[i])
             clReleaseKernel(kernels[i]);

@@ -75,13 +75,13 @@ static bool boxes_differ(const camber_drawing_stages *got, const camber_drawing_
                          camber_finding *finding) {
     char where[96];
     finding->field = "tiles";
-    if (got->shape_count != expected->shape_count)
-        return tell(finding, "shape", "the number of segments", (double)got->shape_count,
-                    (double)expected->shape_count);
-    for (size_t i = 0; i < expected->shape_count; i++)
+    if (got->segment_count != expected->segment_count)
+        return tell(finding, "setup", "the number of segments", (double)got->segment_count,
+                    (double)expected->segment_count);
+    for (size_t i = 0; i < expected->segment_count; i++)
         if (got->boxes[i] != expected->boxes[i]) {
             snprintf(where, sizeof where, "the box of segment %zu", i);
-            return tell(finding, "shape", where, got->boxes[i], expected->boxes[i]);
+            return tell(finding, "setup", where, got->boxes[i], expected->boxes[i]);
         }
     return false;
 }
@@ -91,19 +91,19 @@ static bool words_differ(const char *field, const float *got, const float *expec
                          const camber_drawing_stages *of, camber_finding *finding) {
     char where[96];
     finding->field = field;
-    for (size_t i = 0; i < words * of->shape_count; i++) {
+    for (size_t i = 0; i < words * of->segment_count; i++) {
         const uint32_t box = of->boxes[i / words];
         if ((box & 255u) > (box >> 16 & 255u) || memcmp(got + i, expected + i, sizeof(float)) == 0)
             continue;
         snprintf(where, sizeof where, "word %zu of segment %zu's %s", i % words, i / words, field);
-        return tell(finding, "shape", where, (double)got[i], (double)expected[i]);
+        return tell(finding, "setup", where, (double)got[i], (double)expected[i]);
     }
     return false;
 }
 
 static bool shapes_differ(const camber_drawing_stages *got, const camber_drawing_stages *expected,
                           camber_finding *finding) {
-    return words_differ("shape", got->shapes, expected->shapes, expected->shape_words, expected, finding) ||
+    return words_differ("setup", got->segments, expected->segments, expected->segment_words, expected, finding) ||
            (expected->measures &&
             words_differ("measures", got->measures, expected->measures, expected->measure_words, expected, finding)) ||
            (expected->planes &&

@@ -54,9 +54,9 @@ static int time_run(job *j, run_times *times) {
         status = camber_input_tessellate(&j->input, j->mesh);
     times->tessellate = camber_clock_ms() - resident_ms;
     const camber_mesh_info info = camber_mesh_get_info(j->mesh);
-    times->tessellate -= info.survey_ms + info.project_ms; /* from classify on */
-    times->survey = info.survey_ms;
-    times->project = info.project_ms;
+    times->tessellate -= info.cull_count_ms + info.cull_emit_ms; /* from classify on */
+    times->survey = info.cull_count_ms;
+    times->project = info.cull_emit_ms;
     times->classify = info.classify_ms;
     times->scan = info.scan_ms;
     times->emit = info.emit_ms;
@@ -64,11 +64,11 @@ static int time_run(job *j, run_times *times) {
     if (status == CAMBER_OK)
         status = camber_render(j->session->renderer, &frame, NULL, NULL, &j->stats);
     times->draw = j->stats.draw_ms;
-    times->shape = j->stats.shape_ms;
-    times->count = j->stats.count_ms;
-    times->total = j->stats.total_ms;
-    times->fill = j->stats.fill_ms;
-    times->cover = j->stats.cover_ms;
+    times->shape = j->stats.setup_ms;
+    times->count = j->stats.bin_count_ms;
+    times->total = j->stats.bin_scan_ms;
+    times->fill = j->stats.bin_scatter_ms;
+    times->cover = j->stats.rasterize_ms;
     return camber_report_status(j->session->report, status);
 }
 
@@ -188,8 +188,8 @@ static int print_json(const job *j) {
     json_object_set_new(object, "frame_ms", summary_json(&j->summaries[2]));
     json_t *stages = json_object();
     /* The kernels that draw are there where they drew. */
-    static const char *const names[] = {"survey", "project", "classify", "scan", "emit",
-                                        "shape",  "count",   "total",    "fill", "cover"};
+    static const char *const names[] = {"cull_count", "cull_emit", "classify", "scan",        "emit",
+                                        "setup",      "bin_count", "bin_scan", "bin_scatter", "rasterize"};
     const size_t count = camber_renderer_get_draw(session->renderer) == CAMBER_DRAW_CL ? 10 : 5;
     for (size_t i = 0; i < count; i++)
         json_object_set_new(stages, names[i], summary_json(&j->summaries[3 + i]));
@@ -220,8 +220,9 @@ static int print_text(const job *j) {
     if (session->surface) /* kernels have no draw calls */
         fprintf(file, "%zu draw call%s, ", j->stats.draw_calls, camber_plural(j->stats.draw_calls));
     fprintf(file, "peak memory %.0f MB\n", (double)camber_peak_rss_bytes() / 1e6);
-    static const char *const names[TIMES] = {"tessellate", "draw",  "frame", "survey", "project", "classify", "scan",
-                                             "emit",       "shape", "count", "total",  "fill",    "cover"};
+    static const char *const names[TIMES] = {"tessellate", "draw",        "frame",    "cull_count", "cull_emit",
+                                             "classify",   "scan",        "emit",     "setup",      "bin_count",
+                                             "bin_scan",   "bin_scatter", "rasterize"};
     const size_t count = camber_renderer_get_draw(session->renderer) == CAMBER_DRAW_CL ? TIMES : 8;
     fprintf(file, "\n%-12s %10s %10s %10s   ms, %u run%s\n", "", "min", "median", "max", options->runs,
             camber_plural(options->runs));

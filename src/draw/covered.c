@@ -1,24 +1,24 @@
-/* Frames that kernels draw: passes become runs of polylines, tables of rows and inks, and the picture is drawn an area
- * after the other. */
+/* Frames that kernels draw: passes become runs of polylines, tables of rows and brushes, and the picture is drawn an
+ * area after the other. */
 #include "base/perspective.h"
-#include "raster/raster.h"
 #include "draw/renderer.h"
+#include "raster/raster.h"
 
 #include <string.h>
 
 /* Of an area: its tiles' counts and its pixels are what its memory goes by. */
 enum { AREA_PX = 16 * 1024 * 1024, AREA_SIDE_PX = CAMBER_TILE_PX * CAMBER_TILES_MAX };
-/* How far back a table looks for an ink of the same colour. */
+/* How far back a table looks for a brush of the same colour. */
 enum { INKS_BACK = 16 };
 
 typedef struct tables {
     camber_context *context;
     camber_renderer *renderer; /* has the tail */
     float *rows;
-    camber_ink *inks;
-    camber_ink_more *more; /* as many */
-    camber_cover_run *runs;
-    size_t row_count, row_capacity, ink_count, ink_capacity, more_capacity, run_count, run_capacity;
+    camber_brush *brushes;
+    camber_brush_ext *brush_ext; /* as many */
+    camber_raster_input *runs;
+    size_t row_count, row_capacity, brush_count, brush_capacity, more_capacity, run_count, run_capacity;
     bool is_rich; /* one of these has features */
     camber_covered_images images;
     uint32_t layers;     /* so far */
@@ -37,30 +37,31 @@ typedef struct tables {
 static void free_tables(tables *t) {
     camber_free(t->context, t->images.held);
     camber_free(t->context, t->runs);
-    camber_free(t->context, t->more);
-    camber_free(t->context, t->inks);
+    camber_free(t->context, t->brush_ext);
+    camber_free(t->context, t->brushes);
     camber_free(t->context, t->rows);
 }
 
-/* The number of an ink, which may be one of the table's that begins with ink first. */
-static camber_status use_ink(tables *t, size_t first, const camber_ink *ink, const camber_ink_more *more,
-                             uint32_t *number) {
-    for (size_t i = t->ink_count; i > first && i + INKS_BACK > t->ink_count; i--)
-        if (memcmp(t->inks + i - 1, ink, sizeof *ink) == 0 && memcmp(t->more + i - 1, more, sizeof *more) == 0) {
+/* The number of a brush, which may be one of the table's that begins with brush first. */
+static camber_status use_brush(tables *t, size_t first, const camber_brush *brush, const camber_brush_ext *brush_ext,
+                               uint32_t *number) {
+    for (size_t i = t->brush_count; i > first && i + INKS_BACK > t->brush_count; i--)
+        if (memcmp(t->brushes + i - 1, brush, sizeof *brush) == 0 &&
+            memcmp(t->brush_ext + i - 1, brush_ext, sizeof *brush_ext) == 0) {
             *number = (uint32_t)(i - 1);
             return CAMBER_OK;
         }
-    if (!camber_grow(t->context, &t->inks, &t->ink_capacity, t->ink_count + 1, sizeof *t->inks) ||
-        !camber_grow(t->context, &t->more, &t->more_capacity, t->ink_count + 1, sizeof *t->more))
+    if (!camber_grow(t->context, &t->brushes, &t->brush_capacity, t->brush_count + 1, sizeof *t->brushes) ||
+        !camber_grow(t->context, &t->brush_ext, &t->more_capacity, t->brush_count + 1, sizeof *t->brush_ext))
         return CAMBER_ERROR_MEMORY;
-    *number = (uint32_t)t->ink_count;
-    t->is_rich = t->is_rich || more->features || ink->mode == CAMBER_INK_MASKED;
-    t->more[t->ink_count] = *more;
-    t->inks[t->ink_count++] = *ink;
+    *number = (uint32_t)t->brush_count;
+    t->is_rich = t->is_rich || brush_ext->features || brush->mode == CAMBER_BRUSH_MASKED;
+    t->brush_ext[t->brush_count] = *brush_ext;
+    t->brushes[t->brush_count++] = *brush;
     return CAMBER_OK;
 }
 
-static camber_status put_dash(tables *t, const camber_pass *pass, uint32_t row, camber_ink_more *more) {
+static camber_status put_dash(tables *t, const camber_pass *pass, uint32_t row, camber_brush_ext *brush_ext) {
     const camber_paint *paint = pass->paints + row;
     const camber_dash *dash = pass->dashes + paint->dash - 1;
     const bool is_round = pass->mesh->host_rows[row].cap == CAMBER_CAP_ROUND;
@@ -73,85 +74,85 @@ static camber_status put_dash(tables *t, const camber_pass *pass, uint32_t row, 
         t->dash_round = is_round;
         t->dash_unit_px = paint->dash_unit_px;
     }
-    more->features |= CAMBER_FEATURE_DASH;
-    more->first_dash = (uint32_t)t->dash_texel[0];
-    more->dash_count = (uint32_t)t->dash_texel[1] / 2;
-    more->round_dashes = is_round;
-    more->period = t->dash_texel[2];
+    brush_ext->features |= CAMBER_FEATURE_DASH;
+    brush_ext->first_dash = (uint32_t)t->dash_texel[0];
+    brush_ext->dash_count = (uint32_t)t->dash_texel[1] / 2;
+    brush_ext->round_dashes = is_round;
+    brush_ext->period = t->dash_texel[2];
     return CAMBER_OK;
 }
 
-/* What a row has beside its ink. */
-static camber_status fill_more(tables *t, const camber_pass *pass, uint32_t row, camber_ink_more *more) {
+/* What a row has beside its brush. */
+static camber_status fill_more(tables *t, const camber_pass *pass, uint32_t row, camber_brush_ext *brush_ext) {
     const camber_paint *paint = pass->paints + row;
     camber_status status = CAMBER_OK;
-    *more = (camber_ink_more){0};
+    *brush_ext = (camber_brush_ext){0};
     if (paint->gap_px > 0.0f) {
-        more->features |= CAMBER_FEATURE_GAP;
-        more->half_gap = 0.5f * paint->gap_px;
+        brush_ext->features |= CAMBER_FEATURE_GAP;
+        brush_ext->half_gap = 0.5f * paint->gap_px;
     }
     if (paint->blur_px > 0.0f) {
-        more->features |= CAMBER_FEATURE_BLUR;
-        more->blur = paint->blur_px;
+        brush_ext->features |= CAMBER_FEATURE_BLUR;
+        brush_ext->blur = paint->blur_px;
     }
     if (paint->trim_end > paint->trim_start) {
         float trim[2];
         camber_rows_put_trim(paint, trim);
-        more->features |= CAMBER_FEATURE_TRIM;
-        more->trim_from = trim[0];
-        more->trim_to = trim[1];
+        brush_ext->features |= CAMBER_FEATURE_TRIM;
+        brush_ext->trim_from = trim[0];
+        brush_ext->trim_to = trim[1];
     }
     if (paint->dash)
-        status = put_dash(t, pass, row, more);
+        status = put_dash(t, pass, row, brush_ext);
     if (paint->ramp && status == CAMBER_OK) {
         float texel[2];
         status = camber_tail_put_ramp(t->renderer, pass->ramps + paint->ramp - 1, texel);
         if (status != CAMBER_OK)
             return status;
-        more->features |= CAMBER_FEATURE_RAMP;
-        more->first_stop = (uint32_t)texel[0];
-        more->stop_count = (uint32_t)texel[1];
+        brush_ext->features |= CAMBER_FEATURE_RAMP;
+        brush_ext->first_stop = (uint32_t)texel[0];
+        brush_ext->stop_count = (uint32_t)texel[1];
     }
     if (paint->pattern && status == CAMBER_OK) {
-        more->features |= CAMBER_FEATURE_IMAGE;
-        status = camber_covered_put_line(t->renderer, &t->images, pass, paint, &more->image);
+        brush_ext->features |= CAMBER_FEATURE_IMAGE;
+        status = camber_covered_put_line(t->renderer, &t->images, pass, paint, &brush_ext->image);
     }
     return status;
 }
 
-/* The table of a run: rows of other alphas are left out, and a layer's rows are drawn opaque. ink has its group. */
-static camber_status fill_table(tables *t, const camber_run *run, camber_ink ink) {
+/* The table of a run: rows of other alphas are left out, and a layer's rows are drawn opaque. brush has its group. */
+static camber_status fill_table(tables *t, const camber_run *run, camber_brush brush) {
     const camber_pass *pass = run->pass;
-    const size_t count = pass->mesh->row_count, first_ink = t->ink_count;
+    const size_t count = pass->mesh->row_count, first_brush = t->brush_count;
     /* The union is of strokes with one edge on each side. */
     const bool united = run->layered && run->one_color && !run->bands;
     if (!camber_grow(t->context, &t->rows, &t->row_capacity, t->row_count + count,
-                     CAMBER_COVER_ROW_WORDS * sizeof *t->rows))
+                     CAMBER_RASTER_ROW_WORDS * sizeof *t->rows))
         return CAMBER_ERROR_MEMORY;
     if (run->layered && !united) {
-        ink.layer = ++t->layers;
-        ink.layer_opacity = run->alpha * run->opacity;
+        brush.layer = ++t->layers;
+        brush.layer_opacity = run->alpha * run->opacity;
     }
     t->first_row = t->row_count;
     for (size_t i = 0; i < count; i++) {
         const camber_paint *paint = pass->paints + i;
-        float *row = t->rows + CAMBER_COVER_ROW_WORDS * t->row_count++;
+        float *row = t->rows + CAMBER_RASTER_ROW_WORDS * t->row_count++;
         uint32_t number = 0;
-        memset(row, 0, CAMBER_COVER_ROW_WORDS * sizeof *row);
+        memset(row, 0, CAMBER_RASTER_ROW_WORDS * sizeof *row);
         row[0] = -1.0f;
         if (!camber_pass_draws(pass, (uint32_t)i) || (run->one_alpha && paint->color.a != run->alpha))
             continue;
         static const camber_color image_alone = {1, 1, 1, 1};
         const camber_color color = paint->pattern ? image_alone : united ? run->color : paint->color;
-        ink.r = color.r;
-        ink.g = color.g;
-        ink.b = color.b;
-        ink.a = united ? run->alpha * run->opacity : run->layered && run->one_alpha ? 1.0f : paint->color.a;
-        ink.mode = united ? CAMBER_INK_UNION : run->masked ? CAMBER_INK_MASKED : CAMBER_INK_OVER;
-        camber_ink_more more;
-        camber_status status = fill_more(t, pass, (uint32_t)i, &more);
+        brush.r = color.r;
+        brush.g = color.g;
+        brush.b = color.b;
+        brush.a = united ? run->alpha * run->opacity : run->layered && run->one_alpha ? 1.0f : paint->color.a;
+        brush.mode = united ? CAMBER_BRUSH_UNION : run->masked ? CAMBER_BRUSH_MASKED : CAMBER_BRUSH_OVER;
+        camber_brush_ext brush_ext;
+        camber_status status = fill_more(t, pass, (uint32_t)i, &brush_ext);
         if (status == CAMBER_OK)
-            status = use_ink(t, first_ink, &ink, &more, &number);
+            status = use_brush(t, first_brush, &brush, &brush_ext, &number);
         if (status != CAMBER_OK)
             return status;
         row[0] = camber_paint_half_width(paint);
@@ -162,35 +163,35 @@ static camber_status fill_table(tables *t, const camber_run *run, camber_ink ink
     return CAMBER_OK;
 }
 
-static camber_status add_run(tables *t, const camber_run *run, camber_ink ink) {
+static camber_status add_run(tables *t, const camber_run *run, camber_brush brush) {
     if (run->alpha <= 0.0f)
         return CAMBER_OK;
-    const bool shares = !run->layered && t->pass && t->pass == run->pass && ink.group == 0;
+    const bool shares = !run->layered && t->pass && t->pass == run->pass && brush.group == 0;
     camber_status status = CAMBER_OK;
     if (!camber_grow(t->context, &t->runs, &t->run_capacity, t->run_count + 1, sizeof *t->runs))
         return CAMBER_ERROR_MEMORY;
     if (!shares)
-        status = fill_table(t, run, ink);
-    t->pass = run->layered || ink.group ? NULL : run->pass;
-    t->runs[t->run_count++] = (camber_cover_run){run->pass->mesh, run->first, run->end, t->first_row};
+        status = fill_table(t, run, brush);
+    t->pass = run->layered || brush.group ? NULL : run->pass;
+    t->runs[t->run_count++] = (camber_raster_input){run->pass->mesh, run->first, run->end, t->first_row};
     return status;
 }
 
 /* A row by itself, of a fill. */
-static camber_status add_fill_row(tables *t, const camber_ink *ink, const camber_ink_more *more) {
+static camber_status add_fill_row(tables *t, const camber_brush *brush, const camber_brush_ext *brush_ext) {
     uint32_t number = 0;
     if (!camber_grow(t->context, &t->rows, &t->row_capacity, t->row_count + 1,
-                     CAMBER_COVER_ROW_WORDS * sizeof *t->rows) ||
+                     CAMBER_RASTER_ROW_WORDS * sizeof *t->rows) ||
         !camber_grow(t->context, &t->runs, &t->run_capacity, t->run_count + 1, sizeof *t->runs))
         return CAMBER_ERROR_MEMORY;
-    const camber_status status = use_ink(t, 0, ink, more, &number);
+    const camber_status status = use_brush(t, 0, brush, brush_ext, &number);
     if (status != CAMBER_OK)
         return status;
-    float *row = t->rows + CAMBER_COVER_ROW_WORDS * t->row_count;
+    float *row = t->rows + CAMBER_RASTER_ROW_WORDS * t->row_count;
     row[0] = CAMBER_FILL_PX;
     row[1] = row[2] = 0.0f;
     memcpy(row + 3, &number, sizeof number);
-    t->runs[t->run_count++] = (camber_cover_run){.first_row = t->row_count++};
+    t->runs[t->run_count++] = (camber_raster_input){.first_row = t->row_count++};
     return CAMBER_OK;
 }
 
@@ -201,15 +202,15 @@ static void hide_runs(tables *t) {
 }
 
 static camber_status add_images(tables *t, const camber_pass *pass, float alpha) {
-    const camber_ink ink = {.r = 1, .g = 1, .b = 1, .a = alpha};
-    camber_ink_more more = {.features = CAMBER_FEATURE_IMAGE};
+    const camber_brush brush = {.r = 1, .g = 1, .b = 1, .a = alpha};
+    camber_brush_ext brush_ext = {.features = CAMBER_FEATURE_IMAGE};
     bool is_opaque = false;
-    const camber_status status = camber_covered_put_fill(t->renderer, &t->images, pass, &more.image, &is_opaque);
+    const camber_status status = camber_covered_put_fill(t->renderer, &t->images, pass, &brush_ext.image, &is_opaque);
     if (status != CAMBER_OK)
         return status;
     if (is_opaque && alpha >= 1.0f)
         hide_runs(t);
-    return add_fill_row(t, &ink, &more);
+    return add_fill_row(t, &brush, &brush_ext);
 }
 
 static void put_over(const float color[4], float below[4]) {
@@ -219,11 +220,11 @@ static void put_over(const float color[4], float below[4]) {
 
 /* What an opaque colour hides is not drawn; below all lines a fill is part of the background. */
 static camber_status add_fill(tables *t, const camber_pass *pass) {
-    static const camber_ink_more no_more = {0};
+    static const camber_brush_ext no_more = {0};
     const camber_color c = pass->fill.color;
     const float a = c.a * (pass->opacity > 0.0f ? pass->opacity : 1.0f);
     const float color[4] = {c.r * a, c.g * a, c.b * a, a};
-    const camber_ink ink = {.r = c.r, .g = c.g, .b = c.b, .a = a};
+    const camber_brush brush = {.r = c.r, .g = c.g, .b = c.b, .a = a};
     if (!(a > 0.0f))
         return CAMBER_OK;
     if (pass->fill.pattern)
@@ -232,7 +233,7 @@ static camber_status add_fill(tables *t, const camber_pass *pass) {
     if (a >= 1.0f)
         hide_runs(t);
     if (t->run_count > 0)
-        return add_fill_row(t, &ink, &no_more);
+        return add_fill_row(t, &brush, &no_more);
     put_over(color, t->background);
     return CAMBER_OK;
 }
@@ -244,7 +245,7 @@ static camber_status add_pass(tables *t, const camber_pass *pass) {
     const bool fades = pass->opacity > 0.0f && pass->opacity < 1.0f;
     size_t end = pass->polyline_count ? pass->first_polyline + pass->polyline_count : mesh->polyline_count;
     end = end < mesh->polyline_count ? end : mesh->polyline_count;
-    camber_ink ink = {0};
+    camber_brush brush = {0};
     camber_status status = CAMBER_OK;
     if (mesh->empty)
         return CAMBER_OK;
@@ -256,44 +257,44 @@ static camber_status add_pass(tables *t, const camber_pass *pass) {
             run.opacity = pass->opacity;
             run.one_alpha = run.one_alpha || !run.layered;
             run.layered = true;
-        } else if (fades && ink.group == 0) {
-            ink.group = ++t->layers;
-            ink.group_opacity = pass->opacity;
+        } else if (fades && brush.group == 0) {
+            brush.group = ++t->layers;
+            brush.group_opacity = pass->opacity;
         }
-        status = add_run(t, &run, ink);
+        status = add_run(t, &run, brush);
     }
     return status;
 }
 
 static camber_status make_tables(tables *t, const camber_frame *frame) {
-    const camber_ink none = {0};
-    const camber_ink_more no_more = {0};
+    const camber_brush none = {0};
+    const camber_brush_ext no_more = {0};
     uint32_t number;
-    camber_status status = use_ink(t, 0, &none, &no_more, &number); /* there is one, also where nothing is drawn */
+    camber_status status = use_brush(t, 0, &none, &no_more, &number); /* there is one, also where nothing is drawn */
     for (size_t i = 0; i < frame->pass_count && status == CAMBER_OK; i++)
         status = add_pass(t, frame->passes + i);
     if (status == CAMBER_OK && !camber_grow(t->context, &t->rows, &t->row_capacity, t->row_count + 1,
-                                            CAMBER_COVER_ROW_WORDS * sizeof *t->rows))
+                                            CAMBER_RASTER_ROW_WORDS * sizeof *t->rows))
         status = CAMBER_ERROR_MEMORY;
     if (status == CAMBER_OK)
-        memset(t->rows + CAMBER_COVER_ROW_WORDS * t->row_count, 0, CAMBER_COVER_ROW_WORDS * sizeof *t->rows);
+        memset(t->rows + CAMBER_RASTER_ROW_WORDS * t->row_count, 0, CAMBER_RASTER_ROW_WORDS * sizeof *t->rows);
     return status;
 }
 
 /* Whole rows where they fit. */
-static camber_cover_area first_area(const camber_renderer *renderer, const camber_frame *frame) {
+static camber_raster_area first_area(const camber_renderer *renderer, const camber_frame *frame) {
     const camber_device *device = renderer->share.device;
     uint32_t side = AREA_SIDE_PX;
     if (frame->largest_piece_px && frame->largest_piece_px < side)
         side = frame->largest_piece_px < CAMBER_TILE_PX ? CAMBER_TILE_PX
                                                         : frame->largest_piece_px / CAMBER_TILE_PX * CAMBER_TILE_PX;
-    if (camber_cover_widest(renderer->cover) < side)
-        side = camber_cover_widest(renderer->cover);
+    if (camber_raster_widest(renderer->raster) < side)
+        side = camber_raster_widest(renderer->raster);
     const uint32_t width = frame->width < side ? frame->width : side;
     const uint64_t most = device->info.largest_buffer_bytes / 4, pixels = most < AREA_PX ? most : AREA_PX;
     const uint32_t fitting = (uint32_t)(pixels / (width + CAMBER_TILE_PX)) / CAMBER_TILE_PX * CAMBER_TILE_PX;
     const uint32_t bound = fitting < side ? fitting : side, rows = bound > 0 ? bound : CAMBER_TILE_PX;
-    return (camber_cover_area){.width = width, .height = frame->height < rows ? frame->height : rows};
+    return (camber_raster_area){.width = width, .height = frame->height < rows ? frame->height : rows};
 }
 
 typedef struct target {
@@ -306,11 +307,11 @@ typedef struct target {
 } target;
 
 /* Copies the area into the band, or hands it over as it is. */
-static camber_status take_area(camber_renderer *renderer, const camber_cover_area *area, target *to) {
-    camber_cover_pixels pixels;
+static camber_status take_area(camber_renderer *renderer, const camber_raster_area *area, target *to) {
+    camber_raster_pixels pixels;
     const size_t width_bytes = 4 * (size_t)area->width, row_bytes = 4 * (size_t)to->width;
     const bool direct = !to->band;
-    camber_status status = camber_cover_map(renderer->cover, &pixels);
+    camber_status status = camber_raster_map(renderer->raster, &pixels);
     if (status != CAMBER_OK)
         return status;
     const double begin = camber_now_ms();
@@ -319,21 +320,21 @@ static camber_status take_area(camber_renderer *renderer, const camber_cover_are
     to->user_ms += camber_now_ms() - begin;
     for (size_t y = 0; !direct && y < area->height; y++)
         memcpy(to->band + y * row_bytes + 4 * (size_t)area->x, pixels.rgba + y * pixels.row_bytes, width_bytes);
-    camber_cover_unmap(renderer->cover, pixels);
+    camber_raster_unmap(renderer->raster, pixels);
     return status;
 }
 
 static void add_times(const camber_renderer *renderer, camber_frame_stats *stats) {
-    const camber_cover_times times = camber_cover_get_times(renderer->cover);
-    stats->shape_ms += times.shape_ms;
-    stats->count_ms += times.count_ms;
-    stats->total_ms += times.total_ms;
-    stats->fill_ms += times.fill_ms;
-    stats->cover_ms += times.cover_ms;
+    const camber_raster_times times = camber_raster_get_times(renderer->raster);
+    stats->setup_ms += times.setup_ms;
+    stats->bin_count_ms += times.bin_count_ms;
+    stats->bin_scan_ms += times.bin_scan_ms;
+    stats->bin_scatter_ms += times.bin_scatter_ms;
+    stats->rasterize_ms += times.rasterize_ms;
 }
 
 /* The areas of a band of rows, from left to right. */
-static camber_status draw_band(camber_renderer *renderer, const camber_cover_scene *scene, camber_cover_area area,
+static camber_status draw_band(camber_renderer *renderer, const camber_raster_scene *scene, camber_raster_area area,
                                target *to, camber_frame_stats *stats) {
     const uint32_t widest = area.width;
     camber_status status = CAMBER_OK;
@@ -342,7 +343,7 @@ static camber_status draw_band(camber_renderer *renderer, const camber_cover_sce
         to->user_ms = 0;
         area.width = to->width - area.x < widest ? to->width - area.x : widest;
         status =
-            to->draw ? to->draw(renderer, scene, &area, to->user) : camber_cover_draw(renderer->cover, scene, &area);
+            to->draw ? to->draw(renderer, scene, &area, to->user) : camber_raster_draw(renderer->raster, scene, &area);
         const double drawn = camber_now_ms();
         stats->draw_ms += drawn - begin;
         stats->pieces++;
@@ -356,10 +357,10 @@ static camber_status draw_band(camber_renderer *renderer, const camber_cover_sce
     return status;
 }
 
-static camber_status draw_areas(camber_renderer *renderer, const camber_frame *frame, const camber_cover_scene *scene,
+static camber_status draw_areas(camber_renderer *renderer, const camber_frame *frame, const camber_raster_scene *scene,
                                 target *to, camber_frame_stats *stats) {
     camber_context *context = renderer->share.device->context;
-    camber_cover_area area = first_area(renderer, frame);
+    camber_raster_area area = first_area(renderer, frame);
     const uint32_t tallest = area.height;
     camber_status status = CAMBER_OK;
     to->width = frame->width;
@@ -377,7 +378,7 @@ static camber_status draw_areas(camber_renderer *renderer, const camber_frame *f
     return status;
 }
 
-static void pitch_scene(const camber_frame *frame, const float sky[4], camber_cover_scene *scene) {
+static void pitch_scene(const camber_frame *frame, const float sky[4], camber_raster_scene *scene) {
     if (!(frame->pitch_deg > 0.0))
         return;
     const camber_perspective p = camber_perspective_of(frame->pitch_deg, frame->height);
@@ -407,18 +408,18 @@ static camber_status render_to(camber_renderer *renderer, const camber_frame *fr
     memcpy(t.sky, t.background, sizeof t.sky);
     camber_tail_forget(renderer);
     camber_status status = make_tables(&t, frame);
-    camber_cover_scene scene = {
+    camber_raster_scene scene = {
         .rows = t.rows,
         .row_count = t.row_count + 1,
-        .inks = t.inks,
-        .ink_count = t.ink_count,
-        .runs = t.runs,
-        .run_count = t.run_count,
+        .brushes = t.brushes,
+        .brush_count = t.brush_count,
+        .inputs = t.runs,
+        .input_count = t.run_count,
         .background = {t.background[0], t.background[1], t.background[2], t.background[3]},
         .linear = frame->coverage == CAMBER_COVERAGE_LINEAR,
-        .more = t.is_rich || frame->pitch_deg > 0.0 ? t.more : NULL,
-        .tail = renderer->tail_texels,
-        .tail_count = renderer->tail_count,
+        .brush_ext = t.is_rich || frame->pitch_deg > 0.0 ? t.brush_ext : NULL,
+        .side_table = renderer->tail_texels,
+        .side_table_count = renderer->tail_count,
     };
     pitch_scene(frame, t.sky, &scene);
     if (status == CAMBER_OK)
@@ -453,7 +454,7 @@ static bool keep_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint3
 
 camber_status camber_covered_begin(camber_renderer *renderer, const camber_frame *frame, camber_flight *flight) {
     camber_context *context = renderer->share.device->context;
-    const camber_cover_area area = first_area(renderer, frame);
+    const camber_raster_area area = first_area(renderer, frame);
     camber_flight made = {.frame = *frame, .first = {.width = area.width, .height = area.height}};
     camber_status status = CAMBER_OK;
     if (area.width == frame->width && area.height == frame->height) {

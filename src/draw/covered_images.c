@@ -1,7 +1,7 @@
-/* Images of a frame that kernels draw, in the tail: texels once a size, and for each ink that names one its place. */
+/* Images of a frame that kernels draw, in the tail: texels once a size, and for each brush that names one its place. */
 #include "draw/renderer.h"
 
-#include "kernels/cover_images.h"
+#include "kernels/images.h"
 
 #include <math.h>
 #include <string.h>
@@ -69,7 +69,7 @@ static void put_bits_of(float words[CAMBER_IMAGE_WORDS], const camber_covered_im
     words[3] = (float)width_px;
 }
 
-/* An image's place, which is the texel that an ink names; one like the last is that one. */
+/* An image's place, which is the texel that a brush names; one like the last is that one. */
 static camber_status put_place(camber_renderer *renderer, camber_covered_images *images,
                                const float words[CAMBER_IMAGE_WORDS], uint32_t *place) {
     const size_t size_bytes = CAMBER_IMAGE_WORDS * sizeof *words;

@@ -1,19 +1,19 @@
 /* What the kernels that draw found, and their twin: for proofs. */
 #include "camber_proof.h"
-#include "raster/raster.h"
 #include "draw/renderer.h"
+#include "raster/raster.h"
 
 #include <assert.h>
 
 typedef struct reading {
     bool on_host;
     bool done;
-    camber_cover_stages stages;
-    camber_cover_area area;
+    camber_raster_stages stages;
+    camber_raster_area area;
 } reading;
 
-static camber_status read_area(camber_renderer *renderer, const camber_cover_scene *scene,
-                               const camber_cover_area *area, void *user) {
+static camber_status read_area(camber_renderer *renderer, const camber_raster_scene *scene,
+                               const camber_raster_area *area, void *user) {
     camber_context *context = renderer->share.device->context;
     reading *r = user;
     if (r->done)
@@ -21,38 +21,38 @@ static camber_status read_area(camber_renderer *renderer, const camber_cover_sce
     r->done = true;
     r->area = *area;
     if (r->on_host)
-        return camber_cover_on_host(context, scene, area, &r->stages);
-    const camber_status status = camber_cover_draw(renderer->cover, scene, area);
+        return camber_raster_on_host(context, scene, area, &r->stages);
+    const camber_status status = camber_raster_draw(renderer->raster, scene, area);
     if (status != CAMBER_OK)
         return status;
-    if (camber_cover_slices(renderer->cover) > 1)
+    if (camber_raster_slice_count(renderer->raster) > 1)
         return camber_fail(
             context, CAMBER_ERROR_LIMIT,
             "the stages of what is drawn in slices are not kept; read those of less, or allow more memory");
-    return camber_cover_read_stages(renderer->cover, &r->stages);
+    return camber_raster_read_stages(renderer->raster, &r->stages);
 }
 
 static camber_status read_stages(camber_renderer *renderer, const camber_frame *frame, bool on_host,
                                  camber_drawing_stages *stages) {
     reading r = {.on_host = on_host};
-    assert(renderer->cover);
+    assert(renderer->raster);
     const camber_status status = camber_covered_each(renderer, frame, read_area, &r);
     if (status != CAMBER_OK) {
-        camber_cover_stages_free(renderer->share.device->context, &r.stages);
+        camber_raster_stages_free(renderer->share.device->context, &r.stages);
         return status;
     }
     *stages = (camber_drawing_stages){
-        .shapes = r.stages.shapes,
-        .shape_words = CAMBER_SHAPE_WORDS,
-        .measure_words = CAMBER_SHAPE_MEASURES,
+        .segments = r.stages.segments,
+        .segment_words = CAMBER_SEGMENT_WORDS,
+        .measure_words = CAMBER_SEGMENT_MEASURES,
         .plane_words = CAMBER_PLANE_WORDS,
         .boxes = r.stages.boxes,
         .measures = r.stages.measures,
         .planes = r.stages.planes,
-        .shape_count = r.stages.shape_count,
+        .segment_count = r.stages.segment_count,
         .starts = r.stages.starts,
-        .columns = camber_cover_tiles(r.area.width),
-        .rows = camber_cover_tiles(r.area.height),
+        .columns = camber_raster_tiles(r.area.width),
+        .rows = camber_raster_tiles(r.area.height),
         .lists = r.stages.lists,
         .rgba = r.stages.rgba,
         .width = r.area.width,
@@ -72,7 +72,7 @@ camber_status camber_drawing_stages_on_host(camber_renderer *renderer, const cam
 }
 
 void camber_drawing_stages_free(camber_context *context, camber_drawing_stages *stages) {
-    camber_free(context, stages->shapes);
+    camber_free(context, stages->segments);
     camber_free(context, stages->boxes);
     camber_free(context, stages->measures);
     camber_free(context, stages->planes);

@@ -258,7 +258,7 @@ camber_status camber_render(camber_renderer *renderer, const camber_frame *frame
     assert(renderer->flight_count == 0);
     camber_flight flight = {0};
     camber_status status = camber_frame_check(renderer, frame);
-    if (status == CAMBER_OK && renderer->cover) {
+    if (status == CAMBER_OK && renderer->raster) {
         status = camber_covered_render(renderer, frame, rows, user, &flight.stats);
     } else {
         if (status == CAMBER_OK)
@@ -314,8 +314,8 @@ camber_status camber_render_begin(camber_renderer *renderer, const camber_frame 
     camber_flight *flight = renderer->flights + at;
     camber_status status = camber_frame_check(renderer, frame);
     if (status == CAMBER_OK)
-        status = renderer->cover ? camber_covered_begin(renderer, frame, flight)
-                                 : begin(renderer, frame, targets[at], flight);
+        status = renderer->raster ? camber_covered_begin(renderer, frame, flight)
+                                  : begin(renderer, frame, targets[at], flight);
     if (status != CAMBER_OK)
         return status;
     if (!has_one_piece(flight))
@@ -334,7 +334,7 @@ camber_status camber_render_end(camber_renderer *renderer, camber_rows_fn *rows,
     assert(renderer->flight_count > 0);
     camber_flight *flight = renderer->flights + renderer->first_flight;
     const camber_status status =
-        renderer->cover ? camber_covered_end(renderer, flight, rows, user) : end(renderer, flight, rows, user);
+        renderer->raster ? camber_covered_end(renderer, flight, rows, user) : end(renderer, flight, rows, user);
     drop_passes(renderer, flight);
     renderer->first_flight = (renderer->first_flight + 1) % CAMBER_FRAMES_IN_FLIGHT;
     renderer->flight_count--;

@@ -30,7 +30,7 @@ typedef struct counting {
     size_t range_count;
     const camber_index_range *drawn; /* the same indices for what needs no apart: in one range where they are all */
     size_t drawn_count;
-    const camber_shader *cover, *every;
+    const camber_shader *raster, *every;
     camber_piece piece;
     const camber_mesh_part *bound; /* NULL: none */
     camber_status status;          /* of binding one */
@@ -201,7 +201,7 @@ static camber_status count_fragments(counting *c) {
 static void cover_and_repeat(counting *c, size_t first, size_t count) {
     const camber_gl *gl = gl_of(c);
     for (size_t i = first; i < first + count; i++) {
-        gl->UseProgram(c->cover->program);
+        gl->UseProgram(c->raster->program);
         gl->StencilFunc(GL_EQUAL, 0, 0xff);
         gl->StencilOp(GL_INCR, GL_INCR, GL_INCR);
         draw_range(c, c->ranges[i]);
@@ -261,7 +261,7 @@ static camber_status count_piece(counting *c) {
     if (status != CAMBER_OK)
         return status;
     c->bound = NULL; /* the target's texture has taken the rows' place */
-    camber_renderer_use_shader(c->renderer, c->cover, c->desc->mesh, &c->piece);
+    camber_renderer_use_shader(c->renderer, c->raster, c->desc->mesh, &c->piece);
     camber_renderer_use_shader(c->renderer, c->every, c->desc->mesh, &c->piece);
     status = count_fragments(c);
     return status == CAMBER_OK ? count_pixels(c) : status;
@@ -299,7 +299,7 @@ static camber_status prepare(counting *c, camber_index_range **list) {
     if (status == CAMBER_OK)
         status = camber_renderer_set_widths(c->renderer, desc->mesh, desc->paints, desc->paint_count);
     if (status == CAMBER_OK)
-        status = camber_renderer_mesh_shader(c->renderer, desc->mesh, 0.0f, CAMBER_VARIANT_COUNT, &c->cover);
+        status = camber_renderer_mesh_shader(c->renderer, desc->mesh, 0.0f, CAMBER_VARIANT_COUNT, &c->raster);
     if (status == CAMBER_OK)
         status = camber_renderer_count_shader(c->renderer, desc->mesh->mesh_info.method, &c->every);
     if (status != CAMBER_OK)
@@ -316,7 +316,7 @@ camber_status camber_overdraw_count(camber_renderer *renderer, const camber_over
     camber_context *context = renderer->share.device->context;
     assert(desc->mesh->renderer == renderer);
     assert(desc->paint_count == 0 || desc->paints);
-    if (renderer->cover)
+    if (renderer->raster)
         return camber_fail(context, CAMBER_ERROR_ARGUMENT,
                            "overdraw is counted by GL; open the renderer with a surface");
     if (desc->width < 1 || desc->width > SIDE_MAX_PX || desc->height < 1 || desc->height > SIDE_MAX_PX)

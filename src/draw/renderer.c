@@ -52,11 +52,11 @@ camber_status camber_renderer_create(camber_device *device, camber_surface *surf
     if (!made)
         return CAMBER_ERROR_MEMORY;
     made->share = (camber_share){.device = device, .surface = surface};
-    camber_status status = in_cl ? camber_cover_create(device, &made->cover) : CAMBER_OK;
+    camber_status status = in_cl ? camber_raster_create(device, &made->raster) : CAMBER_OK;
     if (status == CAMBER_OK && surface)
         status = open_gl(made, full.sharing);
     if (status != CAMBER_OK) {
-        camber_cover_destroy(made->cover);
+        camber_raster_destroy(made->raster);
         camber_free(device->context, made);
         return status;
     }
@@ -72,7 +72,7 @@ void camber_renderer_destroy(camber_renderer *renderer) {
         close_gl(renderer);
     else
         camber_frames_forget(renderer, false);
-    camber_cover_destroy(renderer->cover);
+    camber_raster_destroy(renderer->raster);
     camber_free(context, renderer->batch.counts);
     camber_free(context, renderer->batch.firsts);
     camber_free(context, renderer->batch.ranges);
@@ -87,7 +87,7 @@ camber_sharing camber_renderer_get_sharing(const camber_renderer *renderer) {
 }
 
 camber_draw camber_renderer_get_draw(const camber_renderer *renderer) {
-    return renderer->cover ? CAMBER_DRAW_CL : CAMBER_DRAW_GL;
+    return renderer->raster ? CAMBER_DRAW_CL : CAMBER_DRAW_GL;
 }
 
 const char *camber_draw_name(camber_draw draw) {
@@ -131,7 +131,7 @@ static const camber_buffer_ops current_ops = {current_reserve, current_begin, cu
 
 camber_status camber_mesh_create(camber_device *device, camber_renderer *renderer, camber_mesh **mesh) {
     assert(!renderer || renderer->share.device == device);
-    const bool in_gl = renderer && !renderer->cover;
+    const bool in_gl = renderer && !renderer->raster;
     const camber_status status = camber_mesh_create_on(device, in_gl ? &current_ops : NULL, renderer, mesh);
     if (status == CAMBER_OK)
         (*mesh)->renderer = renderer;

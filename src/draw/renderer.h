@@ -157,7 +157,7 @@ struct camber_renderer {
     camber_share share;
     /* Draws in OpenCL. Of what follows, only what brings its pixels into textures is used then, and without a surface
      * nothing. NULL: GL draws. */
-    struct camber_cover *cover;
+    struct camber_raster *raster;
     camber_buffer pixels; /* that kernels draw and GL reads */
     const camber_share_path *path;
     camber_shader strokes[CAMBER_STROKES_MAX]; /* in the order they were built */
@@ -294,10 +294,10 @@ camber_status camber_covered_render(camber_renderer *renderer, const camber_fram
 camber_status camber_covered_begin(camber_renderer *renderer, const camber_frame *frame, camber_flight *flight);
 camber_status camber_covered_end(camber_renderer *renderer, camber_flight *flight, camber_rows_fn *rows, void *user);
 /* Hands over the areas of a frame, from the top down, to be drawn and taken. */
-struct camber_cover_scene;
-struct camber_cover_area;
-typedef camber_status camber_area_fn(camber_renderer *renderer, const struct camber_cover_scene *scene,
-                                     const struct camber_cover_area *area, void *user);
+struct camber_raster_scene;
+struct camber_raster_area;
+typedef camber_status camber_area_fn(camber_renderer *renderer, const struct camber_raster_scene *scene,
+                                     const struct camber_raster_area *area, void *user);
 camber_status camber_covered_each(camber_renderer *renderer, const camber_frame *frame, camber_area_fn *draw,
                                   void *user);
 
@@ -320,7 +320,7 @@ typedef struct camber_covered_images {
 
 enum { CAMBER_COVERED_TAIL_MAX = 1 << 24 }; /* texels: floats number them */
 
-/* The image of a row, of a fill: place is the texel that an ink names. Return CAMBER_ERROR_LIMIT where the tail is
+/* The image of a row, of a fill: place is the texel that a brush names. Return CAMBER_ERROR_LIMIT where the tail is
  * full, CAMBER_ERROR_MEMORY. */
 camber_status camber_covered_put_line(camber_renderer *renderer, camber_covered_images *images, const camber_pass *pass,
                                       const camber_paint *paint, uint32_t *place);

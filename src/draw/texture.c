@@ -1,7 +1,7 @@
 /* Frames into textures of the caller's. What GL draws and nothing lies below goes straight there; what kernels draw
  * comes through a buffer that GL shares. What lies over something, or upside down, is drawn beside and put onto it. */
-#include "raster/raster.h"
 #include "draw/renderer.h"
+#include "raster/raster.h"
 
 #include <assert.h>
 
@@ -46,10 +46,10 @@ static camber_status check_texture(camber_renderer *renderer, const camber_frame
 /* ---- What kernels draw ---- */
 
 /* From the buffer into the area's place in the texture that is bound. */
-static camber_status upload(camber_renderer *renderer, const camber_cover_area *area) {
+static camber_status upload(camber_renderer *renderer, const camber_raster_area *area) {
     const camber_gl *gl = &renderer->share.surface->gl;
     gl->BindBuffer(GL_PIXEL_UNPACK_BUFFER, renderer->pixels.gl_name);
-    gl->PixelStorei(GL_UNPACK_ROW_LENGTH, (GLint)camber_cover_stride_px(area));
+    gl->PixelStorei(GL_UNPACK_ROW_LENGTH, (GLint)camber_raster_stride_px(area));
     gl->TexSubImage2D(GL_TEXTURE_2D, 0, (GLint)area->x, (GLint)area->y, (GLsizei)area->width, (GLsizei)area->height,
                       GL_RGBA, GL_UNSIGNED_BYTE, NULL);
     gl->PixelStorei(GL_UNPACK_ROW_LENGTH, 0);
@@ -58,19 +58,19 @@ static camber_status upload(camber_renderer *renderer, const camber_cover_area *
     return camber_renderer_check(renderer, "pixels into a texture");
 }
 
-static camber_status draw_area(camber_renderer *renderer, const camber_cover_scene *scene,
-                               const camber_cover_area *area, void *user) {
+static camber_status draw_area(camber_renderer *renderer, const camber_raster_scene *scene,
+                               const camber_raster_area *area, void *user) {
     const camber_buffer_ops *ops = &renderer->path->ops;
     camber_buffer *pixels = &renderer->pixels;
     (void)user;
-    camber_status status = ops->reserve(&renderer->share, pixels, camber_cover_bytes(area));
+    camber_status status = ops->reserve(&renderer->share, pixels, camber_raster_bytes(area));
     if (status != CAMBER_OK)
         return status;
-    pixels->used_bytes = 4 * camber_cover_stride_px(area) * area->height;
+    pixels->used_bytes = 4 * camber_raster_stride_px(area) * area->height;
     status = ops->begin(&renderer->share, pixels, 1);
     if (status != CAMBER_OK)
         return status;
-    status = camber_cover_draw_into(renderer->cover, scene, area, pixels->mem);
+    status = camber_raster_draw_into(renderer->raster, scene, area, pixels->mem);
     camber_soft_log kept = {0};
     const bool told = status != CAMBER_OK; /* another error would be a second story */
     if (told)
@@ -116,11 +116,11 @@ static camber_status draw(camber_renderer *renderer, const camber_frame *frame, 
     const GLsizei width = (GLsizei)frame->width, height = (GLsizei)frame->height;
     const bool direct = !texture->keep && !texture->bottom_up;
     camber_status status = CAMBER_OK;
-    if (!direct || !renderer->cover)
+    if (!direct || !renderer->raster)
         status = camber_renderer_give_target(renderer, texture->name, width, height);
     if (status != CAMBER_OK)
         return status;
-    if (renderer->cover) {
+    if (renderer->raster) {
         if (!direct)
             status = camber_renderer_bind_target(renderer, CAMBER_TARGET_PICTURE, width, height);
         gl->BindTexture(GL_TEXTURE_2D, direct ? texture->name : renderer->targets[CAMBER_TARGET_PICTURE].texture);

@@ -9,12 +9,13 @@ struct camber_polylines {
     camber_context *context;
     size_t holders;  /* meshes, beside who made them */
     uint64_t serial; /* unique in the context: a mesh knows by it what it has uploaded */
-    /* slot_count + 2 each: a ghost before and after the slots. slot_count is a multiple of CAMBER_BLOCK. */
+    /* slot_count + 2 each: a sentinel before and after the slots. slot_count is a multiple of CAMBER_BLOCK. */
     float *x, *y;
     uint32_t *info;
     size_t slot_count;
-    camber_measure *measures; /* of each slot, where a measured network knows it. NULL: it is the sum over the points */
-    /* Slots of polyline i: [first_slots[i], first_slots[i + 1]), counted without the leading ghost. */
+    camber_arc_length
+        *measures; /* of each slot, where a measured network knows it. NULL: it is the sum over the points */
+    /* Slots of polyline i: [first_slots[i], first_slots[i + 1]), counted without the leading sentinel. */
     uint32_t *first_slots;
     uint32_t *polyline_rows;
     size_t polyline_count;

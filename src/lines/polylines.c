@@ -30,7 +30,7 @@ static camber_status check_desc(camber_context *context, const camber_polylines_
             return camber_fail(context, CAMBER_ERROR_INPUT,
                                "polyline %zu: its row %u is not below %u; merge equal rows", i, desc->rows[i],
                                1u << 24);
-    /* A ring takes two ghosts, and it has three points or more: 5/3 slots a point at most. */
+    /* A ring takes two sentinels, and it has three points or more: 5/3 slots a point at most. */
     if (desc->point_count > (UINT32_MAX - 1024u) / 5 * 3 || desc->polyline_count > UINT32_MAX - 1024u)
         return camber_fail(context, CAMBER_ERROR_LIMIT,
                            "%zu points in %zu polylines are more than 32-bit slots hold; draw them in parts",
@@ -39,18 +39,18 @@ static camber_status check_desc(camber_context *context, const camber_polylines_
 }
 
 static void put_slot(camber_polylines *p, const float *point, uint32_t info) {
-    const size_t i = ++p->slot_count; /* the leading ghost is index 0 */
+    const size_t i = ++p->slot_count; /* the leading sentinel is index 0 */
     p->x[i] = point[0];
     p->y[i] = point[1];
     p->info[i] = info;
 }
 
-/* One run of valid points: repeated points go, its ends are marked, a ring gets its ghosts. */
+/* One run of valid points: repeated points go, its ends are marked, a ring gets its sentinels. */
 static void put_run(camber_polylines *p, const float *points, size_t count, uint32_t row, bool may_close) {
     const uint32_t real = row << CAMBER_POINT_ROW_SHIFT | CAMBER_POINT_REAL;
     const float *last = points + 2 * (count - 1);
     const bool closes = may_close && count > 2 && points[0] == last[0] && points[1] == last[1];
-    const size_t ghost = p->slot_count + 1;
+    const size_t sentinel = p->slot_count + 1;
     if (closes)
         put_slot(p, points, 0);
     const size_t first = p->slot_count + 1;
@@ -70,14 +70,14 @@ static void put_run(camber_polylines *p, const float *points, size_t count, uint
     p->stats.kept_segments += kept_count - 1;
     p->stats.dots += kept_count == 1;
     if (!closes || kept_count < 3)
-        return; /* a ghost that turns out not to be needed stays one */
+        return; /* a sentinel that turns out not to be needed stays one */
     /* The last point may have gone as a repetition of one next to it: close exactly all the same. */
     p->x[end] = p->x[first];
     p->y[end] = p->y[first];
     p->info[first] |= CAMBER_POINT_RING;
     p->info[end] |= CAMBER_POINT_RING;
-    p->x[ghost] = p->x[end - 1];
-    p->y[ghost] = p->y[end - 1];
+    p->x[sentinel] = p->x[end - 1];
+    p->y[sentinel] = p->y[end - 1];
     put_slot(p, (const float[2]){p->x[first + 1], p->y[first + 1]}, 0);
     p->stats.rings++;
 }
@@ -100,7 +100,7 @@ static void put_polyline(camber_polylines *p, const camber_polylines_desc *desc,
     }
 }
 
-/* Ghosts to the end of the last block and one past it. At the origin: no kernel meets a NaN. */
+/* Sentinels to the end of the last block and one past it. At the origin: no kernel meets a NaN. */
 static void put_padding(camber_polylines *p) {
     const size_t used = p->slot_count + 1;
     p->slot_count = (p->slot_count + CAMBER_BLOCK - 1) / CAMBER_BLOCK * CAMBER_BLOCK;

@@ -1,6 +1,6 @@
 /* The tiles that a view sees. */
-#ifndef CAMBER_COVER_H
-#define CAMBER_COVER_H
+#ifndef CAMBER_TILE_COVER_H
+#define CAMBER_TILE_COVER_H
 
 #include "source/mvt.h"
 

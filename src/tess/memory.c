@@ -3,7 +3,7 @@
  * A bound is shared out in eighths: one for strokes and counts, one for the network's section that is read, four for a
  * part of a single polyline, two for what is left over in buffers that a part takes from another. Parts of several
  * polylines take one, so that what is there need not all go for the next. */
-#include "kernels/measure.h"
+#include "kernels/arc_length.h"
 #include "tess/network.h"
 #include "tess/offset.h"
 
@@ -29,20 +29,22 @@ static void count(camber_device *device, uint64_t *held_bytes, uint64_t now_byte
 
 uint64_t camber_input_bytes(const camber_device *device, bool measured, size_t slots) {
     const uint64_t blocks = slots / device->block, words = slots ? (uint64_t)slots + 2 : 0;
-    const uint64_t measures = sizeof(camber_measure) * (uint64_t)slots + 16 * ((uint64_t)slots / CAMBER_MEASURE_CHUNK);
-    return (measured ? measures : 0) + 16 * words + 4 * ((uint64_t)slots / device->item) + (4 + 16) * blocks;
+    const uint64_t measures =
+        sizeof(camber_arc_length) * (uint64_t)slots + 16 * ((uint64_t)slots / CAMBER_ARC_LENGTH_CHUNK);
+    return (measured ? measures : 0) + 16 * words + 4 * ((uint64_t)slots / device->point_chunk) + (4 + 16) * blocks;
 }
 
-uint64_t camber_course_bytes(bool measured, size_t slots) {
+uint64_t camber_source_line_bytes(bool measured, size_t slots) {
     const uint64_t words = slots ? (uint64_t)slots + 2 : 0;
-    const uint64_t measures = sizeof(camber_measure) * (uint64_t)slots + 16 * ((uint64_t)slots / CAMBER_MEASURE_CHUNK);
-    return (measured ? measures : 0) + (12 + sizeof(camber_span)) * words + 4 * (uint64_t)slots +
+    const uint64_t measures =
+        sizeof(camber_arc_length) * (uint64_t)slots + 16 * ((uint64_t)slots / CAMBER_ARC_LENGTH_CHUNK);
+    return (measured ? measures : 0) + (12 + sizeof(camber_offset_clip)) * words + 4 * (uint64_t)slots +
            (slots ? 4 * ((uint64_t)slots / CAMBER_OFFSET_CHUNK + 1) : 0);
 }
 
 void camber_part_count(const camber_mesh *mesh, camber_mesh_part *part) {
     uint64_t bytes = camber_input_bytes(mesh->device, part->measures != NULL, part->slot_capacity);
-    bytes += camber_course_bytes(part->course.measures != NULL, part->course.slot_capacity);
+    bytes += camber_source_line_bytes(part->source_line.measures != NULL, part->source_line.slot_capacity);
     bytes += part->base_capacity * sizeof *part->host_bases + part->chunk_capacity * sizeof *part->chunk_bases;
     for (int i = 0; i < 2; i++)
         bytes += mesh->buffer_copies * (uint64_t)part->buffers[i].capacity_bytes;
@@ -57,7 +59,7 @@ void camber_section_count(const camber_mesh *mesh, camber_section *section) {
 
 void camber_mesh_count(camber_mesh *mesh) {
     uint64_t bytes = mesh->row_capacity * sizeof *mesh->host_rows + mesh->host_row_capacity * sizeof *mesh->host_rows;
-    bytes += mesh->shift_capacity * sizeof(camber_shift);
+    bytes += mesh->offset_row_capacity * sizeof(camber_offset_row);
     if (mesh->held)
         bytes += 8 * (uint64_t)mesh->held->chunk_capacity;
     count(mesh->device, &mesh->held_bytes, bytes);

@@ -61,13 +61,13 @@ void camber_mesh_destroy(camber_mesh *mesh) {
     camber_mesh_release_parts(mesh);
     camber_mesh_let_go(mesh);
     camber_release_buffer(mesh->device, &mesh->rows);
-    camber_release_buffer(mesh->device, &mesh->shifts);
+    camber_release_buffer(mesh->device, &mesh->offset_rows);
     camber_mesh **link = &mesh->device->meshes;
     while (*link != mesh)
         link = &(*link)->next;
     *link = mesh->next;
     camber_free(context, mesh->host_rows);
-    mesh->row_capacity = mesh->host_row_capacity = mesh->shift_capacity = 0;
+    mesh->row_capacity = mesh->host_row_capacity = mesh->offset_row_capacity = 0;
     camber_mesh_count(mesh);
     camber_free(context, mesh->polyline_rows);
     camber_free(context, mesh->first_slots);

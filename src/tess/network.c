@@ -14,7 +14,7 @@ static const double STEPS = 2147483646.0;
 static const double LEAST_EXTENT = 1e-30;
 /* No difference of two coordinates is infinite. */
 static const double FARTHEST = 1e300;
-/* Of slots a point: its own, a ring's ghost, and the end of a piece. */
+/* Of slots a point: its own, a ring's sentinel, and the end of a piece. */
 static const size_t MOST_POINTS = INT32_MAX;
 /* A miter limit without reason must not undo the cutting. */
 static const double LARGEST_REACH_PX = 65536.0;
@@ -102,7 +102,7 @@ static int32_t to_step(double offset, double step) {
 
 static void put_point(camber_network *n, const double *point, double shift_x, float importance) {
     const int32_t x = to_step(point[0] + shift_x - n->x0, n->step), y = to_step(point[1] - n->y0, n->step);
-    camber_run *run = n->runs + n->run_count;
+    camber_stretch *run = n->stretches + n->stretch_count;
     const float weight = importance >= 0.0f ? importance : importance < 0.0f ? 0.0f : INFINITY;
     if (n->point_count > run->first && n->x[n->point_count - 1] == x && n->y[n->point_count - 1] == y) {
         float *kept = n->importance + n->point_count - 1;
@@ -124,30 +124,31 @@ static void put_run(camber_network *n, const camber_network_desc *desc, camber_n
                     size_t end, bool may_close) {
     const double *from = desc->points + 2 * first, *last = desc->points + 2 * (end - 1);
     const bool closes = may_close && end - first > 2 && from[0] == last[0] && from[1] == last[1];
-    camber_run *run = n->runs + n->run_count;
-    *run = (camber_run){(uint32_t)n->point_count, entry.row << CAMBER_POINT_ROW_SHIFT, INT32_MAX, INT32_MAX, -1, -1};
+    camber_stretch *run = n->stretches + n->stretch_count;
+    *run =
+        (camber_stretch){(uint32_t)n->point_count, entry.row << CAMBER_POINT_ROW_SHIFT, INT32_MAX, INT32_MAX, -1, -1};
     for (size_t i = first; i < end; i++)
         put_point(n, desc->points + 2 * i, entry.shift_x, desc->importance ? desc->importance[i] : INFINITY);
     const size_t count = n->point_count - run->first;
     n->importance[run->first] = n->importance[n->point_count - 1] = INFINITY;
     if (closes && count > 2)
-        run->word |= CAMBER_RUN_RING;
+        run->word |= CAMBER_STRETCH_RING;
     n->stats.kept_points += count;
     n->stats.kept_segments += count - 1;
     n->stats.dots += count == 1;
     n->stats.rings += closes && count > 2;
-    n->run_count++;
+    n->stretch_count++;
 }
 
 static camber_status put_entry(camber_network *n, const camber_network_desc *desc, camber_network_entry entry,
-                               size_t *run_capacity) {
+                               size_t *stretch_capacity) {
     const size_t begin = desc->offsets[entry.polyline], end = desc->offsets[entry.polyline + 1];
     n->stats.empty_polylines += begin == end;
     size_t first = begin;
     for (size_t i = begin; i <= end; i++) {
         if (i < end && is_valid(desc->points[2 * i] + entry.shift_x, desc->points[2 * i + 1]))
             continue;
-        if (!camber_grow(n->context, &n->runs, run_capacity, n->run_count + 2, sizeof *n->runs))
+        if (!camber_grow(n->context, &n->stretches, stretch_capacity, n->stretch_count + 2, sizeof *n->stretches))
             return CAMBER_ERROR_MEMORY;
         if (i > first)
             put_run(n, desc, entry, first, i, !desc->keep_open && first == begin && i == end);
@@ -163,7 +164,7 @@ static double length_into(const camber_network *n, size_t point) {
 
 /* A run that is all of its line, or, by two shares of that one's length, a part of it. */
 static void measure_run(camber_network *n, size_t run, const float *progress) {
-    const size_t first = n->runs[run].first, end = n->runs[run + 1].first;
+    const size_t first = n->stretches[run].first, end = n->stretches[run + 1].first;
     const double from = progress ? (double)progress[0] : 0.0, part = progress ? (double)progress[1] - from : 1.0;
     const bool is_part = from >= 0.0 && from < 1.0 && part > LEAST_PART && part <= 1.0 - from + LEAST_PART;
     double length = 0.0;
@@ -180,10 +181,10 @@ static void measure_run(camber_network *n, size_t run, const float *progress) {
 
 static camber_status measure_runs(camber_network *n, const camber_network_desc *desc) {
     if (!(n->lengths = camber_alloc(n->context, n->point_count, sizeof *n->lengths)) ||
-        !(n->totals = camber_alloc(n->context, n->run_count, sizeof *n->totals)))
+        !(n->totals = camber_alloc(n->context, n->stretch_count, sizeof *n->totals)))
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < n->entry_count; i++)
-        for (size_t r = n->entry_runs[i]; r < n->entry_runs[i + 1]; r++)
+        for (size_t r = n->entry_stretches[i]; r < n->entry_stretches[i + 1]; r++)
             measure_run(n, r, desc->progress ? desc->progress + 2 * entry_of(desc, i).polyline : NULL);
     return CAMBER_OK;
 }
@@ -191,25 +192,25 @@ static camber_status measure_runs(camber_network *n, const camber_network_desc *
 static camber_status fill(camber_network *n, const camber_network_desc *desc) {
     camber_context *context = n->context;
     const size_t points = n->stats.points;
-    size_t run_capacity = 0;
+    size_t stretch_capacity = 0;
     if (!(n->x = camber_alloc(context, points, sizeof *n->x)) ||
         !(n->y = camber_alloc(context, points, sizeof *n->y)) ||
         !(n->importance = camber_alloc(context, points, sizeof *n->importance)) ||
-        !(n->entry_runs = camber_alloc(context, n->entry_count + 1, sizeof *n->entry_runs)) ||
+        !(n->entry_stretches = camber_alloc(context, n->entry_count + 1, sizeof *n->entry_stretches)) ||
         !(n->entry_rows = camber_alloc(context, n->entry_count, sizeof *n->entry_rows)) ||
-        !camber_grow(context, &n->runs, &run_capacity, n->entry_count + 1, sizeof *n->runs))
+        !camber_grow(context, &n->stretches, &stretch_capacity, n->entry_count + 1, sizeof *n->stretches))
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < n->entry_count; i++) {
         const camber_network_entry entry = entry_of(desc, i);
-        n->entry_runs[i] = (uint32_t)n->run_count;
+        n->entry_stretches[i] = (uint32_t)n->stretch_count;
         n->entry_rows[i] = entry.row;
         n->row_count = entry.row + 1 > n->row_count ? entry.row + 1 : n->row_count;
-        const camber_status status = put_entry(n, desc, entry, &run_capacity);
+        const camber_status status = put_entry(n, desc, entry, &stretch_capacity);
         if (status != CAMBER_OK)
             return status;
     }
-    n->entry_runs[n->entry_count] = (uint32_t)n->run_count;
-    n->runs[n->run_count] = (camber_run){.first = (uint32_t)n->point_count};
+    n->entry_stretches[n->entry_count] = (uint32_t)n->stretch_count;
+    n->stretches[n->stretch_count] = (camber_stretch){.first = (uint32_t)n->point_count};
     return desc->measured ? measure_runs(n, desc) : CAMBER_OK;
 }
 
@@ -243,8 +244,8 @@ void camber_network_destroy(camber_network *network) {
         return;
     camber_context *context = network->context;
     camber_free(context, network->entry_rows);
-    camber_free(context, network->entry_runs);
-    camber_free(context, network->runs);
+    camber_free(context, network->entry_stretches);
+    camber_free(context, network->stretches);
     camber_free(context, network->totals);
     camber_free(context, network->lengths);
     camber_free(context, network->importance);

@@ -2,7 +2,7 @@
 #ifndef CAMBER_TESS_NETWORK_H
 #define CAMBER_TESS_NETWORK_H
 
-#include "kernels/network.h"
+#include "kernels/cull.h"
 #include "tess/tess.h"
 
 struct camber_network {
@@ -16,9 +16,9 @@ struct camber_network {
     float *lengths; /* of the points: along the line of their run, steps. NULL: not measured */
     float *totals;  /* of the runs, as many: how long that line is */
     size_t point_count;
-    camber_run *runs; /* run_count and one behind them */
-    size_t run_count;
-    uint32_t *entry_runs; /* entry_count + 1: the first run of each */
+    camber_stretch *stretches; /* run_count and one behind them */
+    size_t stretch_count;
+    uint32_t *entry_stretches; /* entry_count + 1: the first run of each */
     uint32_t *entry_rows;
     size_t entry_count;
     uint32_t row_count; /* highest row + 1 */
@@ -35,15 +35,15 @@ uint64_t camber_network_count(const camber_network *network, const camber_projec
 camber_walk camber_network_walk(const camber_network *network);
 /* The first point of an entry; of the one behind the last, the number of points. */
 static inline size_t camber_network_first_point(const camber_network *network, size_t entry) {
-    return network->runs[network->entry_runs[entry]].first;
+    return network->stretches[network->entry_stretches[entry]].first;
 }
 
 /* Entries whose points are in buffers of their own: all, unless the device's largest buffer is too small. */
 typedef struct camber_section {
     size_t first_entry, end_entry;
     size_t first_point, end_point;
-    cl_mem x, y, importance, runs, chunk_runs; /* NULL: not there */
-    cl_mem lengths, totals;                    /* NULL where the network is not measured */
+    cl_mem x, y, importance, stretches, chunk_stretches; /* NULL: not there */
+    cl_mem lengths, totals;                              /* NULL where the network is not measured */
     uint64_t held_bytes;
 } camber_section;
 

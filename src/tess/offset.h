@@ -4,7 +4,7 @@
 
 #include "tess/tess.h"
 
-#include "kernels/offset_pieces.h"
+#include "kernels/offset_emit.h"
 
 /* Whether a stroke has an offset. */
 bool camber_desc_has_offsets(const camber_tessellation_desc *desc);
@@ -13,15 +13,15 @@ camber_status camber_mesh_set_offsets(camber_mesh *mesh, const camber_tessellati
 
 /* Whether the device makes buffers for the course of so many slots; *fits is false where it does not, and there are
  * several polylines. */
-camber_status camber_part_check_course(const camber_mesh *mesh, const camber_mesh_part *part, uint64_t slots,
-                                       bool *fits);
-camber_status camber_part_reserve_course(camber_mesh *mesh, camber_mesh_part *part, size_t slots);
-void camber_course_release(const camber_device *device, camber_part_course *course);
+camber_status camber_part_check_source_lines(const camber_mesh *mesh, const camber_mesh_part *part, uint64_t slots,
+                                             bool *fits);
+camber_status camber_part_reserve_source_lines(camber_mesh *mesh, camber_mesh_part *part, size_t slots);
+void camber_source_line_release(const camber_device *device, camber_source_line_buffers *source_line);
 /* span, tell and shift: the part's slots from those of its course. *fits as that of camber_part_project. */
 camber_status camber_part_offset(camber_mesh *mesh, camber_mesh_part *part, bool *fits);
 
 /* The twin: polylines beside others, whose measures are given where they are wanted; the polylines' own then. */
 camber_status camber_polylines_offset(const camber_polylines *polylines, const camber_tessellation_desc *desc,
-                                      const camber_measure *measures, camber_polylines **beside);
+                                      const camber_arc_length *measures, camber_polylines **beside);
 
 #endif

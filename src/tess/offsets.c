@@ -21,7 +21,7 @@ static void unmap(const camber_mesh *mesh, cl_mem mem, cl_uint *words) {
 
 camber_status camber_offsets_map(const camber_mesh *mesh, const camber_mesh_part *part, size_t first, size_t end,
                                  camber_offsets *offsets) {
-    const size_t item = mesh->device->item, run = first / item, slot = run * item, words = end - slot + 1;
+    const size_t item = mesh->device->point_chunk, run = first / item, slot = run * item, words = end - slot + 1;
     camber_status status = CAMBER_OK;
     camber_offsets o = {.mesh = mesh, .part = part, .first = slot, .first_run = run, .at = SIZE_MAX};
     o.joins = map(mesh, part->joins, slot, words, &status);
@@ -42,7 +42,7 @@ void camber_offsets_unmap(camber_offsets *o) {
 }
 
 uint32_t camber_offset_before(camber_offsets *o, size_t slot) {
-    const size_t item = o->mesh->device->item, run = slot / item;
+    const size_t item = o->mesh->device->point_chunk, run = slot / item;
     if (slot < o->at || run * item > o->at) {
         o->at = run * item;
         o->sum = o->offsets[run - o->first_run];

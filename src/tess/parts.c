@@ -1,5 +1,5 @@
 /* The parts of a mesh: which polylines each has, its buffers, and what is uploaded to them. */
-#include "kernels/measure.h"
+#include "kernels/arc_length.h"
 #include "tess/network.h"
 #include "tess/offset.h"
 
@@ -74,7 +74,7 @@ static void release_slots(const camber_device *device, camber_mesh_part *part) {
 
 static void release_input(const camber_device *device, camber_mesh_part *part) {
     release_slots(device, part);
-    camber_course_release(device, &part->course);
+    camber_source_line_release(device, &part->source_line);
 }
 
 void camber_part_take(camber_mesh_part *part, camber_mesh_part *from) {
@@ -90,8 +90,8 @@ void camber_part_take(camber_mesh_part *part, camber_mesh_part *from) {
         from->buffers[i] = (camber_buffer){0};
     }
     part->slot_capacity = from->slot_capacity;
-    part->course = from->course;
-    from->course = (camber_part_course){0};
+    part->source_line = from->source_line;
+    from->source_line = (camber_source_line_buffers){0};
     part->host_bases = from->host_bases;
     part->base_capacity = from->base_capacity;
     part->chunk_bases = from->chunk_bases;
@@ -109,7 +109,7 @@ static bool has_input(const camber_mesh_part *part, bool measured, size_t slots)
 static camber_status reserve_input(const camber_device *device, bool measured, camber_mesh_part *part, size_t slots) {
     if (has_input(part, measured, slots))
         return CAMBER_OK;
-    const bool uploaded = part->uploaded && part->course.x; /* to the course, which stays */
+    const bool uploaded = part->uploaded && part->source_line.x; /* to the course, which stays */
     release_slots(device, part);
     part->uploaded = uploaded;
     const size_t blocks = slots / device->block, words = slots + 2;
@@ -122,11 +122,11 @@ static camber_status reserve_input(const camber_device *device, bool measured, c
         {&part->y, 4 * words},
         {&part->info, 4 * words},
         {&part->joins, 4 * words},
-        {&part->offsets, 4 * (slots / device->item)},
+        {&part->offsets, 4 * (slots / device->point_chunk)},
         {&part->sums, 4 * blocks},
         {&part->bases, 16 * blocks},
-        {&part->lengths, 16 * slots / CAMBER_MEASURE_CHUNK},
-        {&part->measures, sizeof(camber_measure) * slots},
+        {&part->lengths, 16 * slots / CAMBER_ARC_LENGTH_CHUNK},
+        {&part->measures, sizeof(camber_arc_length) * slots},
     };
     const size_t count = measured ? INPUTS : INPUTS - 2;
     for (size_t i = 0; i < count && status == CAMBER_OK; i++)
@@ -141,7 +141,7 @@ static camber_status reserve_input(const camber_device *device, bool measured, c
 
 /* Of a part's input, and of what the host keeps beside it: camber_grow may double that, and gives some at least. */
 static uint64_t bytes_of_slots(const camber_mesh *mesh, const camber_mesh_part *part, size_t slots) {
-    const uint64_t chunks = mesh->held ? (part->end_point - part->first_point) / CAMBER_CHUNK + 3 : 0;
+    const uint64_t chunks = mesh->held ? (part->end_point - part->first_point) / CAMBER_CULL_CHUNK + 3 : 0;
     const uint64_t blocks = slots / mesh->device->block;
     return camber_input_bytes(mesh->device, mesh->mesh_info.measured, slots) + 2 * (16 * (blocks + 1) + 4 * chunks) +
            256;
@@ -237,9 +237,10 @@ camber_status camber_part_slot(const camber_mesh *mesh, const camber_mesh_part *
     cl_uint place = 0;
     cl_int code = CL_SUCCESS;
     if (mesh->offsets && (given >= part->given_count || polyline >= part->first_polyline + part->polyline_count))
-        place = (cl_uint)part->course.made_count;
+        place = (cl_uint)part->source_line.made_count;
     else if (mesh->offsets && part->slot_count > 0)
-        code = clEnqueueReadBuffer(device->queue, part->course.places, CL_TRUE, 4 * given, 4, &place, 0, NULL, NULL);
+        code =
+            clEnqueueReadBuffer(device->queue, part->source_line.places, CL_TRUE, 4 * given, 4, &place, 0, NULL, NULL);
     *slot = mesh->offsets ? place : given;
     return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(device->context, "clEnqueueReadBuffer", code);
 }
@@ -287,15 +288,15 @@ static uint64_t shared_slots(const camber_mesh *mesh) {
     const size_t block = mesh->device->block;
     const uint64_t block_bytes = camber_input_bytes(mesh->device, mesh->mesh_info.measured, block) +
                                  20 * mesh->buffer_copies * block +
-                                 (mesh->offsets ? camber_course_bytes(mesh->mesh_info.measured, block) : 0);
+                                 (mesh->offsets ? camber_source_line_bytes(mesh->mesh_info.measured, block) : 0);
     const uint64_t blocks = camber_device_share(mesh->device, 1) / block_bytes;
     return (blocks ? blocks : 1) * block;
 }
 
 static camber_status lay_out(camber_mesh *mesh) {
-    const size_t block = mesh->device->block, ghosts = 2;
+    const size_t block = mesh->device->block, sentinels = 2;
     const uint64_t words = mesh->device->info.largest_buffer_bytes / 4, shared = shared_slots(mesh);
-    const uint64_t room = words > ghosts ? (words - ghosts) / block * block : 0;
+    const uint64_t room = words > sentinels ? (words - sentinels) / block * block : 0;
     const size_t slots_max = room < UINT32_MAX ? (size_t)room : UINT32_MAX;
     const size_t slots = shared < slots_max ? (size_t)shared : slots_max;
     const size_t polyline_count = mesh->first_slots[mesh->polyline_count] ? mesh->polyline_count : 0;
@@ -305,7 +306,7 @@ static camber_status lay_out(camber_mesh *mesh) {
             end = first + 1;
         if (end == first)
             return camber_fail_polyline(
-                mesh, first, 4 * ((uint64_t)mesh->first_slots[first + 1] - mesh->first_slots[first] + ghosts));
+                mesh, first, 4 * ((uint64_t)mesh->first_slots[first + 1] - mesh->first_slots[first] + sentinels));
         if (!hold_parts(mesh, mesh->part_count + 1))
             return CAMBER_ERROR_MEMORY;
         set_polylines(mesh, mesh->parts + mesh->part_count, first, end);
@@ -348,7 +349,7 @@ camber_status camber_mesh_plan(camber_mesh *mesh, const camber_polylines *polyli
 
 /* Whether the buffers that are uploaded to have those of measures beside them, if these are wanted now. */
 static bool has_uploaded(const camber_mesh *mesh, const camber_mesh_part *part) {
-    return !mesh->mesh_info.measured || (mesh->offsets ? part->course.measures : part->measures);
+    return !mesh->mesh_info.measured || (mesh->offsets ? part->source_line.measures : part->measures);
 }
 
 camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part) {
@@ -358,20 +359,20 @@ camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part) {
     part->slot_count = part->given_count;
     if (part->given_count == 0 || (part->uploaded && has_uploaded(mesh, part)))
         return CAMBER_OK;
-    camber_status status = mesh->offsets ? camber_part_reserve_course(mesh, part, part->given_count)
+    camber_status status = mesh->offsets ? camber_part_reserve_source_lines(mesh, part, part->given_count)
                                          : camber_part_reserve(mesh, part, part->given_count);
-    const camber_part_course *course = &part->course;
+    const camber_source_line_buffers *source_line = &part->source_line;
     const size_t words = part->given_count + 2, first = part->first_slot;
     const size_t end = part->first_polyline + part->polyline_count;
-    /* The neighbour before, the part's slots, and ghosts: the polylines' own padding, or zeros. */
+    /* The neighbour before, the part's slots, and sentinels: the polylines' own padding, or zeros. */
     size_t given = end < mesh->polyline_count ? mesh->first_slots[end] - first + 1 : polylines->slot_count + 2 - first;
     given = given < words ? given : words;
     const struct {
         cl_mem mem;
         const void *bytes;
-    } arrays[] = {{mesh->offsets ? course->x : part->x, polylines->x + first},
-                  {mesh->offsets ? course->y : part->y, polylines->y + first},
-                  {mesh->offsets ? course->info : part->info, polylines->info + first}};
+    } arrays[] = {{mesh->offsets ? source_line->x : part->x, polylines->x + first},
+                  {mesh->offsets ? source_line->y : part->y, polylines->y + first},
+                  {mesh->offsets ? source_line->info : part->info, polylines->info + first}};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         if (status == CAMBER_OK)
             status = camber_write_buffer(device, arrays[i].mem, 0, 4 * given, arrays[i].bytes);
@@ -411,7 +412,7 @@ static uint64_t index_bytes(const camber_mesh *mesh, part_size size) {
 
 static uint64_t need(const camber_mesh *mesh, const camber_mesh_part *part, part_size size) {
     const size_t given = (size_t)whole_blocks(mesh, size.given);
-    return (mesh->offsets ? camber_course_bytes(mesh->mesh_info.measured, given) : 0) +
+    return (mesh->offsets ? camber_source_line_bytes(mesh->mesh_info.measured, given) : 0) +
            bytes_of_slots(mesh, part, (size_t)whole_blocks(mesh, size.slots)) +
            mesh->buffer_copies * (record_bytes(mesh, size) + index_bytes(mesh, size));
 }

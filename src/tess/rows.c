@@ -84,7 +84,7 @@ const char *camber_method_name(camber_method method) {
 
 void camber_mesh_info_count(camber_mesh_info *info, uint32_t join, uint32_t point) {
     const uint32_t kind = camber_join_kind(join);
-    info->undrawn_dots += kind == CAMBER_KIND_GHOST && point & CAMBER_POINT_REAL;
+    info->undrawn_dots += kind == CAMBER_KIND_SENTINEL && point & CAMBER_POINT_REAL;
     /* A ring's seam is one join, told at its last point. */
     if (kind < CAMBER_KIND_CUT || kind > CAMBER_KIND_SPLIT || point & CAMBER_POINT_FIRST)
         return;

@@ -32,7 +32,7 @@ static size_t slot_of(const camber_mesh *mesh, const camber_mesh_part *part, con
     if (!a->places)
         return given;
     const bool is_behind = given >= part->given_count || polyline >= part->first_polyline + part->polyline_count;
-    return is_behind ? part->course.made_count : a->places[given];
+    return is_behind ? part->source_line.made_count : a->places[given];
 }
 
 /* The points of a part, behind those that stages holds. Where a device has counted wrongly, slots of polylines may lie
@@ -87,7 +87,7 @@ camber_status camber_mesh_read_stages(camber_mesh *mesh, camber_stages *stages) 
             .joins = map(mesh, part->joins, words, &status),
         };
         if (mesh->offsets)
-            seen.places = map(mesh, part->course.places, part->given_count, &status);
+            seen.places = map(mesh, part->source_line.places, part->given_count, &status);
         if (status == CAMBER_OK)
             status = camber_offsets_map(mesh, part, 0, part->slot_count, &seen.offsets);
         if (seen.offsets.offsets) {
@@ -98,7 +98,7 @@ camber_status camber_mesh_read_stages(camber_mesh *mesh, camber_stages *stages) 
         unmap(mesh, part->y, seen.y);
         unmap(mesh, part->info, seen.info);
         unmap(mesh, part->joins, seen.joins);
-        unmap(mesh, part->course.places, seen.places);
+        unmap(mesh, part->source_line.places, seen.places);
     }
     if (status != CAMBER_OK) {
         camber_stages_free(mesh->device->context, &made);

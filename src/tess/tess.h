@@ -21,14 +21,14 @@ struct camber_device {
     bool host_memory;      /* the device works in the host's memory */
     bool gl_context;       /* cl was made for a GL context: GL buffers can be shared */
     size_t block;          /* points a work-group: CAMBER_BLOCK as its kernels see it */
-    size_t item;           /* points a work-item: CAMBER_ITEM */
+    size_t point_chunk;    /* points a work-item: CAMBER_POINT_CHUNK */
     unsigned lanes;        /* pixels a work-item of what draws: CAMBER_LANES */
     /* Built when first used; the second of two for what is measured. */
     struct camber_program *programs[2][2][3];      /* without and with round limits, by camber_method */
     struct camber_program *network_programs[2][2]; /* the second ones of a camera with a pitch */
-    struct camber_program *measures;
+    struct camber_program *arc_length_program;
     struct camber_program *offset_programs[2];
-    struct camber_program *cover[4]; /* what draws, by its variant */
+    struct camber_program *raster_programs[4]; /* what draws, by its variant */
     /* What its meshes may hold (0: what they want), hold, and held at most. */
     uint64_t memory_bytes, held_bytes, most_held_bytes;
     uint64_t drawing_allowed_bytes, drawing_bytes; /* the same of its renderers' buffers */
@@ -50,11 +50,11 @@ camber_status camber_fail_cl(camber_context *context, const char *call, cl_int c
 
 typedef struct camber_program {
     cl_program cl;
-    cl_kernel classify, scan, emit; /* of a method */
-    cl_kernel survey, project;      /* of networks */
-    cl_kernel tally, measure;
-    cl_kernel span, tell, shift; /* of offsets */
-    cl_kernel shape, count, total, fill, cover;
+    cl_kernel classify, scan, emit;  /* of a method */
+    cl_kernel cull_count, cull_emit; /* of networks */
+    cl_kernel arc_length_sum, arc_length_scan;
+    cl_kernel offset_clip, offset_count, offset_emit; /* of offsets */
+    cl_kernel setup, bin_count, bin_scan, bin_scatter, rasterize;
     uint64_t key; /* of the cache */
     bool built;   /* from source: no cache had it */
     bool kept;    /* a cache has it now */
@@ -69,16 +69,16 @@ typedef struct camber_program_desc {
 
 /* What kernels that draw are built for, as bits: the compiler has each that is set as a macro that is 1. All but the
  * plain ones are built for 16 lanes on every device. */
-#define CAMBER_COVER_RICH 1
-#define CAMBER_COVER_PITCHED 2 /* with RICH */
+#define CAMBER_RASTER_RICH 1
+#define CAMBER_RASTER_PITCHED 2 /* with RICH */
 
 /* The kernels, built or loaded at first use. */
 camber_status camber_device_program(camber_device *device, camber_program_desc desc, camber_program **program);
 camber_status camber_device_network_program(camber_device *device, bool measured, bool pitched,
                                             camber_program **program);
-camber_status camber_device_measures(camber_device *device, camber_program **program);
-camber_status camber_device_offsets(camber_device *device, bool measured, camber_program **program);
-camber_status camber_device_cover_program(camber_device *device, unsigned variant, camber_program **program);
+camber_status camber_device_arc_length_program(camber_device *device, camber_program **program);
+camber_status camber_device_offset_program(camber_device *device, bool measured, camber_program **program);
+camber_status camber_device_raster_program(camber_device *device, unsigned variant, camber_program **program);
 void camber_program_destroy(camber_context *context, camber_program *program);
 
 /* ---- Output buffers, which GL may share: src/gl/share_*.c ---- */
@@ -105,12 +105,12 @@ typedef struct camber_buffer_ops {
 /* ---- Meshes ---- */
 
 /* Of lines with an offset: the slots of the lines that they lie beside, and what becomes of each. */
-typedef struct camber_part_course {
-    cl_mem x, y, info, spans, counts, places;
+typedef struct camber_source_line_buffers {
+    cl_mem x, y, info, clips, counts, places;
     cl_mem lengths, measures; /* of what is measured */
     size_t slot_capacity;
     size_t made_count; /* slots beside, without padding */
-} camber_part_course;
+} camber_source_line_buffers;
 
 /* A run of polylines that is tessellated by itself, its vertices numbered from 0. Most meshes are one part; where
  * the device makes no buffer that is large enough, several in the order of their polylines. */
@@ -125,9 +125,9 @@ typedef struct camber_mesh_part {
     size_t chunk_capacity;
     bool uploaded;
     cl_mem x, y, info, joins, offsets, sums, bases;
-    cl_mem lengths, measures; /* of what is measured: sums of chunks, and a camber_measure a slot */
+    cl_mem lengths, measures; /* of what is measured: sums of chunks, and a camber_arc_length a slot */
     size_t slot_capacity;
-    camber_part_course course;
+    camber_source_line_buffers source_line;
     uint64_t *host_bases; /* first vertex and first index of each block, and the totals behind the last */
     size_t base_capacity;
     bool made; /* its buffers hold what the last tessellation made of it */
@@ -162,9 +162,9 @@ struct camber_mesh {
     cl_mem rows;
     camber_row *host_rows; /* the same */
     size_t row_capacity, host_row_capacity;
-    bool offsets;  /* a row has an offset: parts have a course */
-    cl_mem shifts; /* what of each row offsets need */
-    size_t shift_capacity;
+    bool offsets;       /* a row has an offset: parts have a course */
+    cl_mem offset_rows; /* what of each row offsets need */
+    size_t offset_row_capacity;
     camber_mesh_info mesh_info;
     bool joins_counted; /* mesh_info's counts of joins and triangles are there */
     bool round_limits;  /* a row has round joins with a limit */
@@ -253,7 +253,7 @@ camber_status camber_mesh_halve(camber_mesh *mesh, size_t which);
 camber_status camber_fail_memory(const camber_mesh *mesh, size_t polyline, uint64_t size_bytes);
 camber_status camber_fail_polyline(const camber_mesh *mesh, size_t polyline, uint64_t size_bytes);
 
-/* network_parts.c: the same for a network, which is uploaded here. */
+/* cull.c: the same for a network, which is uploaded here. */
 camber_status camber_mesh_plan_network(camber_mesh *mesh, camber_network *network);
 /* Aims the network that a mesh holds. */
 camber_status camber_mesh_aim(camber_mesh *mesh, const camber_camera *camera, const camber_tessellation_desc *desc);
@@ -301,7 +301,7 @@ void camber_mesh_count(camber_mesh *mesh);
 /* Of a part's input for so many slots. */
 uint64_t camber_input_bytes(const camber_device *device, bool measured, size_t slots);
 /* Of the course of a part for so many slots. */
-uint64_t camber_course_bytes(bool measured, size_t slots);
+uint64_t camber_source_line_bytes(bool measured, size_t slots);
 /* Lets parts and sections go, those of other meshes before the mesh's own, until so many more bytes can be held. keep
  * and its section stay, and with spare_made all parts of the mesh that are made. */
 bool camber_mesh_has_room(camber_mesh *mesh, const camber_mesh_part *keep, uint64_t more_bytes, bool spare_made);

@@ -1,6 +1,6 @@
 /* classify -> scan -> emit on a device, a part of the mesh at a time. */
 #include "kernels/layout.h"
-#include "tess/measures.h"
+#include "tess/arc_length.h"
 #include "tess/network.h"
 #include "tess/offset.h"
 
@@ -80,7 +80,7 @@ static camber_status measure(camber_mesh *mesh, camber_mesh_part *part, const ca
     const cl_mem classify[] = {part->x,    part->y,    part->x,    part->y,    part->x,    part->y,
                                part->info, part->info, part->info, mesh->rows, part->joins};
     const cl_mem scan[] = {part->joins, part->joins, part->info, part->offsets, part->sums};
-    const size_t item = device->item, slots = part->slot_count;
+    const size_t item = device->point_chunk, slots = part->slot_count;
     camber_status status =
         camber_stage_run(device, (camber_stage){"classify", program->classify, classify, 11, item, slots}, events);
     if (status == CAMBER_OK)
@@ -136,7 +136,7 @@ static camber_status emit(camber_mesh *mesh, camber_mesh_part *part, const cambe
                            part->measures};
     const cl_uint mem_count = mesh->mesh_info.measured ? 10 : 9;
     status = camber_stage_run(
-        device, (camber_stage){"emit", program->emit, mems, mem_count, device->item, part->slot_count}, &event);
+        device, (camber_stage){"emit", program->emit, mems, mem_count, device->point_chunk, part->slot_count}, &event);
     const cl_int code = clFinish(device->queue);
     if (status == CAMBER_OK && code != CL_SUCCESS)
         status = camber_fail_cl(device->context, "clFinish", code);
@@ -190,17 +190,17 @@ static camber_status upload_rows(camber_mesh *mesh, const camber_row *rows, size
 /* A part's slots, and what its output takes. *fits is false where the slots are too many. */
 static camber_status prepare(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program, bool *fits) {
     camber_status status = mesh->held ? camber_part_project(mesh, part, fits)
-                                      : camber_part_check_course(mesh, part, part->given_count, fits);
+                                      : camber_part_check_source_lines(mesh, part, part->given_count, fits);
     if (status == CAMBER_OK && *fits && !mesh->held)
         status = camber_part_upload(mesh, part);
     if (status == CAMBER_OK && *fits && mesh->mesh_info.measured && !mesh->held && part->given_count > 0)
-        status = camber_part_measure(mesh, part);
+        status = camber_part_sum_arc_lengths(mesh, part);
     if (status == CAMBER_OK && *fits && mesh->offsets && part->given_count > 0)
         status = camber_part_offset(mesh, part, fits);
     if (status == CAMBER_OK && *fits && part->slot_count > 0)
         status = measure(mesh, part, program);
     if (mesh->held) {
-        camber_add_ms(mesh->held->projected, &mesh->mesh_info.project_ms);
+        camber_add_ms(mesh->held->projected, &mesh->mesh_info.cull_emit_ms);
         mesh->held->projected = NULL;
     }
     return status;

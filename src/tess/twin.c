@@ -1,6 +1,6 @@
 /* The CPU twin: what the kernels are held against. It walks each polyline from its first point to its last and appends,
  * with no counts, scans or offsets, and shares only the formulas of kernels/join.h with the device. */
-#include "tess/measures.h"
+#include "tess/arc_length.h"
 #include "tess/offset.h"
 
 #include "kernels/join.h"
@@ -12,9 +12,9 @@ typedef struct twin {
     const camber_row *rows;
     camber_u32 method;
     camber_mesh_data *data;
-    const camber_measure *measures; /* of each slot. NULL: not measured */
-    camber_stages *stages;          /* NULL: not wanted */
-    uint32_t polyline, point;       /* of its next point */
+    const camber_arc_length *measures; /* of each slot. NULL: not measured */
+    camber_stages *stages;             /* NULL: not wanted */
+    uint32_t polyline, point;          /* of its next point */
     size_t record_capacity, measure_capacity, index_capacity, stage_capacity;
     bool failed; /* out of memory, or of 32-bit indices */
 } twin;
@@ -208,12 +208,12 @@ static void note_stages(twin *t, size_t slot, camber_u32 join) {
 }
 
 static void walk_point(twin *t, const place *p, float half_shorter) {
-    const bool real = p->info & CAMBER_POINT_REAL, drawn = camber_join_kind(p->join) != CAMBER_KIND_GHOST;
+    const bool real = p->info & CAMBER_POINT_REAL, drawn = camber_join_kind(p->join) != CAMBER_KIND_SENTINEL;
     if (real) {
         note_stages(t, p->slot, p->join);
         camber_mesh_info_count(&t->data->info, p->join, p->info);
     }
-    if (t->method != CAMBER_STRIP) /* a record a slot, ghosts too */
+    if (t->method != CAMBER_STRIP) /* a record a slot, sentinels too */
         push_point(t, p, camber_record_join(p->join, half_shorter), p->info);
     if (real && drawn && t->method == CAMBER_STRIP)
         walk_strip_point(t, p);
@@ -253,10 +253,10 @@ static camber_status run(camber_context *context, const camber_polylines *polyli
     camber_status status = camber_rows_create(context, polylines->row_count, desc, &rows);
     if (status != CAMBER_OK)
         return status;
-    camber_measure *measures = NULL;
+    camber_arc_length *measures = NULL;
     camber_polylines *beside = NULL;
     if (desc->measured)
-        status = camber_polylines_measure(polylines, &measures);
+        status = camber_polylines_sum_arc_lengths(polylines, &measures);
     if (status == CAMBER_OK && camber_desc_has_offsets(desc)) {
         status = camber_polylines_offset(polylines, desc, measures, &beside);
         if (beside)

@@ -1,5 +1,5 @@
 /* What a camera over a network should show, from the definition alone: in double precision, a segment at a time, cut
- * far outside the picture. Shares no formula with kernels/network.h but the steps that coordinates are rounded to,
+ * far outside the picture. Shares no formula with kernels/cull.h but the steps that coordinates are rounded to,
  * which camber.h states. */
 #ifndef CAMBER_PROOF_PROJECTED_H
 #define CAMBER_PROOF_PROJECTED_H

@@ -111,8 +111,8 @@ static void free_result(bench *b, result *r) {
 
 static void assert_same(const result *a, const result *b) {
     camber_mesh_info x = a->mesh.info, y = b->mesh.info;
-    x.classify_ms = x.scan_ms = x.emit_ms = x.survey_ms = x.project_ms = 0;
-    y.classify_ms = y.scan_ms = y.emit_ms = y.survey_ms = y.project_ms = 0;
+    x.classify_ms = x.scan_ms = x.emit_ms = x.cull_count_ms = x.cull_emit_ms = 0;
+    y.classify_ms = y.scan_ms = y.emit_ms = y.cull_count_ms = y.cull_emit_ms = 0;
     assert_memory_equal(&x, &y, sizeof x);
     assert_memory_equal(a->mesh.records, b->mesh.records, x.record_count * sizeof *a->mesh.records);
     if (a->mesh.corners)

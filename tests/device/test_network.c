@@ -142,7 +142,7 @@ static void compare_words(const bench *b, size_t which, cl_mem mem, const void *
     free(got);
 }
 
-/* Slots of a part, with the ghosts around them. */
+/* Slots of a part, with the sentinels around them. */
 static void compare_part(const bench *b, size_t which, const camber_mesh_part *part, const camber_polylines *twin) {
     const camber_mesh *mesh = b->meshes[which];
     const size_t first = twin->first_slots[part->first_polyline];
@@ -416,7 +416,7 @@ static void test_keeps_everything(void **state) {
         assert_int_equal(got.dots, had.dots);
         assert_int_equal(camber_network_get_stats(network).invalid_points, had.invalid_points);
         assert_int_equal(camber_network_get_stats(network).repeated_points, had.repeated_points);
-        size_t k = 0; /* ghosts that turned out not to be needed are told apart by their words alone */
+        size_t k = 0; /* sentinels that turned out not to be needed are told apart by their words alone */
         for (size_t i = 1; i <= plain->slot_count; i++) {
             if (!(plain->info[i] & CAMBER_POINT_REAL))
                 continue;

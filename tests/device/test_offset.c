@@ -422,8 +422,8 @@ static void test_in_turn(void **state) {
     for (int i = 0; i < 6; i++) {
         const camber_tessellation_desc desc = {i % 2 ? with : without, SCENE_ROWS, CAMBER_METHOD_STRIP, 0, i > 2};
         compare(b, b->mesh, polylines, &desc);
-        assert_int_equal(b->mesh->shifts != NULL, i % 2);
-        assert_int_equal(b->mesh->parts[0].course.x != NULL, i % 2);
+        assert_int_equal(b->mesh->offset_rows != NULL, i % 2);
+        assert_int_equal(b->mesh->parts[0].source_line.x != NULL, i % 2);
     }
     camber_polylines_destroy(polylines);
     scene_free(&s);
@@ -605,7 +605,7 @@ static void test_cut_rings(void **state) {
 /* ---- Measures and arguments ---- */
 
 /* Along a line beside, what is measured is the line: it grows from 0 to all of it. */
-static void test_measures(void **state) {
+static void test_arc_length(void **state) {
     bench *b = *state;
     line l = {0};
     add(&l, 10, 10);
@@ -621,7 +621,7 @@ static void test_measures(void **state) {
         assert_int_equal(camber_tessellate_on_host(b->context, polylines, &desc, &data), CAMBER_OK);
         double before = 0;
         for (size_t i = 0; i < data.info.record_count; i++) {
-            const camber_measure m = data.measures[i];
+            const camber_arc_length m = data.measures[i];
             assert_true(fabs((double)m.total_px - total) < 0.01);
             assert_true((double)m.along_px >= before - 1e-3 && (double)m.along_px <= total + 1e-3);
             before = (double)m.along_px;
@@ -662,7 +662,7 @@ int main(void) {
         cmocka_unit_test(test_walks),        cmocka_unit_test(test_device_equals_twin),
         cmocka_unit_test(test_parts),        cmocka_unit_test(test_in_turn),
         cmocka_unit_test(test_windows),      cmocka_unit_test(test_cut_rings),
-        cmocka_unit_test(test_measures),     cmocka_unit_test(test_arguments),
+        cmocka_unit_test(test_arc_length),   cmocka_unit_test(test_arguments),
         cmocka_unit_test(test_vanishes),
     };
     return cmocka_run_group_tests(tests, bench_set_up, bench_tear_down);

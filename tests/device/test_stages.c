@@ -43,7 +43,7 @@ static void check_against_mesh(bench *b, const camber_polylines *polylines, cons
         else
             assert_int_equal(p.point, 0);
         assert_true(i == 0 || p.polyline >= before.polyline);
-        if (camber_join_kind(p.join) == CAMBER_KIND_GHOST)
+        if (camber_join_kind(p.join) == CAMBER_KIND_SENTINEL)
             continue;
         drawn++;
         rings += p.point == 0 && camber_join_kind(p.join) >= CAMBER_KIND_CUT;
@@ -92,7 +92,7 @@ static void test_wrong_words_show(void **state) {
     camber_stages good = on_device(b);
     /* Without rings and repeated points a point's slot is its place in the list. */
     assert_int_equal(good.point_count, polylines->first_slots[polylines->polyline_count]);
-    const size_t item = b->mesh->device->item; /* an offset is that of a run */
+    const size_t item = b->mesh->device->point_chunk; /* an offset is that of a run */
     const cl_mem mems[] = {b->mesh->parts->x, b->mesh->parts->y, b->mesh->parts->joins, b->mesh->parts->offsets};
     for (size_t k = 0; k < 4; k++) {
         const size_t points[] = {0, 255, 256, 1000, good.point_count - 1};

@@ -199,8 +199,8 @@ static void check_stages(fuzz_run *run, const camber_polylines *polylines, const
         kinds[at->join >> CAMBER_JOIN_KIND_SHIFT]++;
     }
     const camber_polylines_stats stats = camber_polylines_get_stats(polylines);
-    REQUIRE(kinds[CAMBER_KIND_GHOST] == info->undrawn_dots);
-    REQUIRE(offset || kinds[CAMBER_KIND_GHOST] + kinds[CAMBER_KIND_DOT] == stats.dots);
+    REQUIRE(kinds[CAMBER_KIND_SENTINEL] == info->undrawn_dots);
+    REQUIRE(offset || kinds[CAMBER_KIND_SENTINEL] + kinds[CAMBER_KIND_DOT] == stats.dots);
     /* A ring's seam stands at both of its ends. */
     REQUIRE(offset ||
             kinds[CAMBER_KIND_CUT] + kinds[CAMBER_KIND_TIGHT] + kinds[CAMBER_KIND_SPLIT] == info->joins + stats.rings);

@@ -30,15 +30,15 @@ static void require_equal_words(const float *got, const float *expected, size_t 
 
 static void compare(const camber_drawing_stages *got, const camber_drawing_stages *expected) {
     const size_t tiles = (size_t)expected->columns * expected->rows;
-    REQUIRE(got->shape_count == expected->shape_count);
+    REQUIRE(got->segment_count == expected->segment_count);
     REQUIRE(!got->measures == !expected->measures && !got->planes == !expected->planes);
-    for (size_t i = 0; i < expected->shape_count; i++) {
-        const size_t word = expected->shape_words * i, measure = expected->measure_words * i,
+    for (size_t i = 0; i < expected->segment_count; i++) {
+        const size_t word = expected->segment_words * i, measure = expected->measure_words * i,
                      plane = expected->plane_words * i;
         REQUIRE(got->boxes[i] == expected->boxes[i]);
         if (!is_drawn(got->boxes[i]))
             continue;
-        require_equal_words(got->shapes + word, expected->shapes + word, expected->shape_words);
+        require_equal_words(got->segments + word, expected->segments + word, expected->segment_words);
         if (expected->measures)
             require_equal_words(got->measures + measure, expected->measures + measure, expected->measure_words);
         if (expected->planes)

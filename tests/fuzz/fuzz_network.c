@@ -128,8 +128,8 @@ static void check_network(const camber_network *network) {
     REQUIRE(stats.kept_points == network->point_count);
     for (size_t i = 0; i < network->point_count; i++)
         REQUIRE(network->x[i] >= 0 && network->y[i] >= 0 && network->importance[i] >= 0.0f);
-    for (size_t i = 0; i < network->run_count; i++)
-        REQUIRE(network->runs[i].first < network->runs[i + 1].first);
+    for (size_t i = 0; i < network->stretch_count; i++)
+        REQUIRE(network->stretches[i].first < network->stretches[i + 1].first);
 }
 
 /* How far outside the picture a point may lie. */
@@ -181,11 +181,11 @@ static void check_chunks(fuzz_run *run, const camber_network *network, const inp
     camber_projection p;
     if (!fuzz_done(run, camber_network_aim(network, &from->camera, &from->tessellation, &p)))
         return;
-    const camber_run *first = network->runs;
+    const camber_stretch *first = network->stretches;
     size_t at = 1;
-    for (uint32_t chunk = 0; chunk * CAMBER_CHUNK < network->point_count; chunk++) {
-        float x[3 * CAMBER_CHUNK] = {0}, y[3 * CAMBER_CHUNK] = {0};
-        camber_u32 info[3 * CAMBER_CHUNK] = {0}, begin, end;
+    for (uint32_t chunk = 0; chunk * CAMBER_CULL_CHUNK < network->point_count; chunk++) {
+        float x[3 * CAMBER_CULL_CHUNK] = {0}, y[3 * CAMBER_CULL_CHUNK] = {0};
+        camber_u32 info[3 * CAMBER_CULL_CHUNK] = {0}, begin, end;
         camber_walk counts = camber_network_walk(network), puts = counts;
         camber_chunk_bounds(&p, chunk, &begin, &end);
         while (first[1].first <= begin)

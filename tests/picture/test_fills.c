@@ -145,7 +145,7 @@ static void compare_with_gl(const studio *s, camber_renderer *cl, drawing *d, do
 
 /* GL rounds to 8 bits at each line, each fill and each group, and a fill rounds the whole picture: with four of them
  * most pixels are a level off in one channel. Single pixels on the bisectors of sharp joins belong to another segment:
- * test_cover.c. */
+ * test_rasterize.c. */
 static void test_gl(void **state) {
     const studio *s = *state;
     camber_renderer *cl = NULL;

@@ -91,7 +91,7 @@ static void test_packing(void **state) {
     assert_int_equal(camber_turn_pack((camber_turn){.c = 0, .s = 1.001f}), 32767); /* rounding past 1 stays in range */
 }
 
-/* Vectors no longer than the repeated points that cleaning drops, and ghosts: no NaN comes of them. */
+/* Vectors no longer than the repeated points that cleaning drops, and sentinels: no NaN comes of them. */
 static void test_degenerate_vectors(void **state) {
     (void)state;
     static const float sizes[] = {0.0f, 1e-45f, 1e-20f, 1e-18f, 1.0f, 2e9f};

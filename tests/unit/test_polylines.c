@@ -25,7 +25,7 @@ enum {
     RING_LAST = LAST | CAMBER_POINT_RING
 };
 
-/* The slots are those wanted, and ghosts around and behind them. */
+/* The slots are those wanted, and sentinels around and behind them. */
 static void assert_slots(const camber_polylines *p, const slot *wanted, size_t count) {
     assert_int_equal(p->first_slots[p->polyline_count], count);
     assert_int_equal(p->slot_count, (count + CAMBER_BLOCK - 1) / CAMBER_BLOCK * CAMBER_BLOCK);
@@ -159,7 +159,7 @@ static void test_odd_rings(void **state) {
     camber_polylines *p = make(context, &(camber_polylines_desc){points, 23, offsets, 6, NULL, false});
     const slot wanted[] = {
         {2, 2, 0},     {1, 1, RING_FIRST}, {2, 2, REAL},  {1, 1, RING_LAST}, {2, 2, 0}, /* 0 */
-        {3, 3, 0},     {3, 3, DOT},                                                     /* 1: its ghost is unused */
+        {3, 3, 0},     {3, 3, DOT},                                                     /* 1: its sentinel is unused */
         {4, 4, FIRST}, {5, 4, LAST},       {5, 5, FIRST}, {4, 4, LAST},                 /* 2 */
         {7, 7, 0},     {6, 6, RING_FIRST}, {7, 6, REAL},  {7, 7, REAL},      {6, 6, RING_LAST}, {7, 6, 0}, /* 3 */
         {1, 1, 0},     {0, 0, RING_FIRST}, {1, 0, REAL},  {1, 1, REAL},      {0, 0, RING_LAST}, {1, 0, 0}, /* 4 */
@@ -283,7 +283,7 @@ static void count_polyline(const float *points, size_t count, bool keep_open, ca
     }
 }
 
-/* Each run of slots of one polyline: first, ..., last, its row throughout; rings have their ghosts. */
+/* Each run of slots of one polyline: first, ..., last, its row throughout; rings have their sentinels. */
 static void check_slots(const camber_polylines *p, const uint32_t *rows) {
     for (size_t i = 0; i < p->polyline_count; i++) {
         bool inside = false;

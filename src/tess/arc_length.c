@@ -1,0 +1,91 @@
+/* How far along its polyline each point lies, for what is drawn along lines: tally -> measure -> lay on a device, and
+ * the twin's way, from each polyline's first point to its last. */
+#include "tess/arc_length.h"
+
+#include "kernels/arc_length.h"
+
+#include <string.h>
+
+/* ---- Device ---- */
+
+/* Turns the sums of chunks into what lies before and behind each of them, in their place. */
+static void carry(camber_u64 *sums, size_t chunk_count) {
+    camber_u64 before = 0, behind = 0;
+    for (size_t i = 0; i < chunk_count; i++) {
+        const camber_u64 sum = sums[2 * i];
+        sums[2 * i] = before;
+        before = (sum & CAMBER_SUM_CLOSED ? 0 : before) + (sum >> CAMBER_SUM_SHIFT);
+    }
+    for (size_t i = chunk_count; i-- > 0;) {
+        const camber_u64 sum = sums[2 * i + 1];
+        sums[2 * i + 1] = behind;
+        behind = (sum & CAMBER_SUM_CLOSED ? 0 : behind) + (sum >> CAMBER_SUM_SHIFT);
+    }
+}
+
+static camber_status carry_sums(const camber_device *device, cl_mem sums, size_t chunk_count) {
+    cl_int code;
+    camber_u64 *mapped = clEnqueueMapBuffer(device->queue, sums, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0,
+                                            16 * chunk_count, 0, NULL, NULL, &code);
+    if (code != CL_SUCCESS)
+        return camber_fail_cl(device->context, "clEnqueueMapBuffer", code);
+    carry(mapped, chunk_count);
+    code = clEnqueueUnmapMemObject(device->queue, sums, mapped, 0, NULL, NULL);
+    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(device->context, "clEnqueueUnmapMemObject", code);
+}
+
+camber_status camber_part_sum_arc_lengths(camber_mesh *mesh, camber_mesh_part *part) {
+    const camber_device *device = mesh->device;
+    camber_program *program = NULL;
+    camber_status status = camber_device_arc_length_program(mesh->device, &program);
+    if (status != CAMBER_OK)
+        return status;
+    const camber_source_line_buffers *c = &part->source_line;
+    const cl_mem mems[] = {mesh->offsets ? c->x : part->x, mesh->offsets ? c->y : part->y,
+                           mesh->offsets ? c->info : part->info, mesh->offsets ? c->lengths : part->lengths,
+                           mesh->offsets ? c->measures : part->measures};
+    const camber_stage stages[] = {
+        {"arc_length_sum", program->arc_length_sum, mems, 4, CAMBER_ARC_LENGTH_CHUNK, part->given_count},
+        {"arc_length_scan", program->arc_length_scan, mems, 5, CAMBER_ARC_LENGTH_CHUNK, part->given_count}};
+    status = camber_stage_run(device, stages[0], NULL);
+    if (status == CAMBER_OK)
+        status = carry_sums(device, mems[3], part->given_count / CAMBER_ARC_LENGTH_CHUNK);
+    if (status == CAMBER_OK)
+        status = camber_stage_run(device, stages[1], NULL);
+    return status;
+}
+
+/* ---- Twin ---- */
+
+/* The slots [first, end) of a polyline's piece: from a first point to its last. */
+static void measure_piece(const camber_polylines *p, size_t first, size_t end, camber_arc_length *measures) {
+    camber_u64 sum = 0;
+    for (size_t pass = 0; pass < 2; pass++) {
+        const camber_u64 total = sum;
+        sum = 0;
+        for (size_t i = first; i < end; i++) {
+            if (i > first)
+                sum += camber_length_of(p->x[i] - p->x[i - 1], p->y[i] - p->y[i - 1], CAMBER_LENGTH_UNITS);
+            if (pass == 1)
+                measures[i - 1] = (camber_arc_length){camber_length_px(sum), camber_length_px(total)};
+        }
+    }
+}
+
+camber_status camber_polylines_sum_arc_lengths(const camber_polylines *polylines, camber_arc_length **measures) {
+    camber_arc_length *made = camber_alloc_zero(polylines->context, polylines->slot_count + 1, sizeof *made);
+    if (!made)
+        return CAMBER_ERROR_MEMORY;
+    if (polylines->measures)
+        memcpy(made, polylines->measures, polylines->slot_count * sizeof *made);
+    for (size_t i = 1; i <= polylines->slot_count && !polylines->measures; i++) {
+        if (!(polylines->info[i] & CAMBER_POINT_FIRST))
+            continue;
+        const size_t first = i;
+        while (!(polylines->info[i] & CAMBER_POINT_LAST))
+            i++;
+        measure_piece(polylines, first, i + 1, made);
+    }
+    *measures = made;
+    return CAMBER_OK;
+}

@@ -1,0 +1,403 @@
+/* What a mesh holds of a network on the device, and cull_count -> cull_emit, which make a part's slots of it. */
+#include "tess/network.h"
+#include "tess/offset.h"
+
+#include <string.h>
+
+/* ---- Upload ---- */
+
+void camber_section_release(const camber_mesh *mesh, camber_section *section) {
+    cl_mem *mems[] = {
+        &section->x,       &section->y,     &section->importance, &section->stretches, &section->chunk_stretches,
+        &section->lengths, &section->totals};
+    for (size_t i = 0; i < sizeof mems / sizeof *mems; i++)
+        camber_release_buffer(mesh->device, mems[i]);
+    camber_section_count(mesh, section);
+}
+
+void camber_mesh_let_go(camber_mesh *mesh) {
+    struct camber_held_network *held = mesh->held;
+    if (mesh->holds_polylines)
+        camber_polylines_destroy((camber_polylines *)(uintptr_t)mesh->polylines);
+    mesh->polylines = NULL;
+    mesh->holds_polylines = false;
+    if (!held)
+        return;
+    for (size_t i = 0; i < held->section_count; i++)
+        camber_section_release(mesh, held->sections + i);
+    camber_release_buffer(mesh->device, &held->counts);
+    camber_release_buffer(mesh->device, &held->bases);
+    camber_free(mesh->device->context, held->sections);
+    camber_network_destroy(held->network);
+    camber_free(mesh->device->context, held);
+    mesh->held = NULL;
+    mesh->serial = 0;
+    camber_mesh_count(mesh);
+}
+
+/* A buffer that the kernels read. A device that works in host memory reads the network's own, which is held as long. */
+static camber_status upload(const camber_device *device, const void *bytes, size_t size_bytes, bool is_kept,
+                            cl_mem *mem) {
+    const cl_mem_flags from = device->host_memory && is_kept ? CL_MEM_USE_HOST_PTR : CL_MEM_COPY_HOST_PTR;
+    return camber_make_buffer(device, CL_MEM_READ_ONLY | from, size_bytes, bytes, mem);
+}
+
+static size_t chunks_of(size_t points) {
+    return (points + CAMBER_CULL_CHUNK - 1) / CAMBER_CULL_CHUNK;
+}
+
+static camber_status upload_chunk_runs(const camber_device *device, const camber_network *network,
+                                       camber_section *section) {
+    const size_t count = chunks_of(section->end_point - section->first_point);
+    uint32_t *chunk_stretches = camber_alloc(device->context, count, sizeof *chunk_stretches);
+    if (!chunk_stretches)
+        return CAMBER_ERROR_MEMORY;
+    const camber_stretch *first = network->stretches + network->entry_stretches[section->first_entry], *run = first;
+    for (size_t i = 0; i < count; i++) {
+        while (run[1].first <= section->first_point + i * CAMBER_CULL_CHUNK)
+            run++;
+        chunk_stretches[i] = (uint32_t)(run - first);
+    }
+    const camber_status status = upload(device, chunk_stretches, 4 * count, false, &section->chunk_stretches);
+    camber_free(device->context, chunk_stretches);
+    return status;
+}
+
+static camber_status upload_section(camber_mesh *mesh, camber_mesh_part *part) {
+    const camber_device *device = mesh->device;
+    const camber_network *network = mesh->held->network;
+    camber_section *section = mesh->held->sections + part->section;
+    if (section->x)
+        return CAMBER_OK;
+    const uint64_t size_bytes = camber_section_bytes(network, section, !device->host_memory);
+    camber_status status = camber_mesh_make_room(mesh, part, size_bytes);
+    if (status != CAMBER_OK)
+        return status;
+    const size_t first = section->first_point, points = section->end_point - first;
+    const size_t first_run = network->entry_stretches[section->first_entry];
+    const size_t stretches = network->entry_stretches[section->end_entry] - first_run + 1;
+    status = upload(device, network->x + first, 4 * points, true, &section->x);
+    if (status == CAMBER_OK)
+        status = upload(device, network->y + first, 4 * points, true, &section->y);
+    if (status == CAMBER_OK)
+        status = upload(device, network->importance + first, 4 * points, true, &section->importance);
+    if (status == CAMBER_OK)
+        status = upload(device, network->stretches + first_run, stretches * sizeof *network->stretches, true,
+                        &section->stretches);
+    if (status == CAMBER_OK && network->lengths)
+        status = upload(device, network->lengths + first, 4 * points, true, &section->lengths);
+    if (status == CAMBER_OK && network->lengths)
+        status = upload(device, network->totals + first_run, 4 * (stretches - 1), true, &section->totals);
+    if (status == CAMBER_OK)
+        status = upload_chunk_runs(device, network, section);
+    if (status == CAMBER_OK)
+        camber_section_count(mesh, section);
+    else
+        camber_section_release(mesh, section);
+    return status;
+}
+
+/* ---- Layout ---- */
+
+static camber_section make_section(const camber_network *network, size_t first, size_t end) {
+    return (camber_section){.first_entry = first,
+                            .end_entry = end,
+                            .first_point = camber_network_first_point(network, first),
+                            .end_point = camber_network_first_point(network, end)};
+}
+
+static uint64_t bytes_of_runs(const camber_network *network, const camber_section *section) {
+    return ((uint64_t)network->entry_stretches[section->end_entry] - network->entry_stretches[section->first_entry] +
+            1) *
+           (sizeof(camber_stretch) + (network->lengths ? sizeof *network->totals : 0));
+}
+
+static uint64_t larger_bytes(const camber_network *network, const camber_section *section) {
+    const uint64_t points = 4 * ((uint64_t)section->end_point - section->first_point);
+    const uint64_t stretches = bytes_of_runs(network, section);
+    return points > stretches ? points : stretches;
+}
+
+uint64_t camber_section_bytes(const camber_network *network, const camber_section *section, bool copied) {
+    const uint64_t points = (uint64_t)section->end_point - section->first_point;
+    const uint64_t arrays = network->lengths ? 16 : 12;
+    return (copied ? arrays * points + bytes_of_runs(network, section) : 0) + 4 * (uint64_t)chunks_of((size_t)points);
+}
+
+/* Whether the device makes the buffers of a section, and its share of memory takes them. */
+static bool fits(const camber_mesh *mesh, const camber_section *section) {
+    const camber_network *network = mesh->held->network;
+    return larger_bytes(network, section) <= mesh->device->info.largest_buffer_bytes &&
+           camber_section_bytes(network, section, true) <= camber_device_share(mesh->device, 1);
+}
+
+/* The entry behind the last that fits a section beginning with first; first itself where none does. */
+static size_t find_end(const camber_mesh *mesh, size_t first) {
+    const camber_network *network = mesh->held->network;
+    size_t low = first, high = network->entry_count + 1;
+    while (high - low > 1) {
+        const size_t middle = low + (high - low) / 2;
+        const camber_section section = make_section(network, first, middle);
+        if (fits(mesh, &section))
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+static camber_status fail_entry(const camber_mesh *mesh, size_t entry) {
+    const camber_network *network = mesh->held->network;
+    const camber_section section = make_section(network, entry, entry + 1);
+    const uint64_t larger = larger_bytes(network, &section), all = camber_section_bytes(network, &section, true);
+    return larger > mesh->device->info.largest_buffer_bytes ? camber_fail_polyline(mesh, entry, larger)
+                                                            : camber_fail_memory(mesh, entry, 4 * all);
+}
+
+static camber_status lay_out(camber_mesh *mesh) {
+    struct camber_held_network *held = mesh->held;
+    const camber_network *network = held->network;
+    const size_t count = network->point_count ? network->entry_count : 0;
+    for (size_t first = 0; first < count;) {
+        const size_t end = find_end(mesh, first);
+        if (end == first)
+            return fail_entry(mesh, first);
+        if (!camber_grow(mesh->device->context, &held->sections, &held->section_capacity, held->section_count + 1,
+                         sizeof *held->sections))
+            return CAMBER_ERROR_MEMORY;
+        camber_section *section = held->sections + held->section_count++;
+        *section = make_section(network, first, end);
+        first = end;
+        if (section->first_point == section->end_point)
+            continue;
+        const camber_status status = camber_mesh_add_part(mesh, section->first_entry, section->end_entry);
+        if (status != CAMBER_OK)
+            return status;
+    }
+    return CAMBER_OK;
+}
+
+static camber_status hold(camber_mesh *mesh, camber_network *network) {
+    camber_context *context = mesh->device->context;
+    const size_t count = network->entry_count;
+    if (!camber_grow(context, &mesh->polyline_rows, &mesh->row_list_capacity, count, sizeof *mesh->polyline_rows) ||
+        !(mesh->held = camber_alloc_zero(context, 1, sizeof *mesh->held)))
+        return CAMBER_ERROR_MEMORY;
+    mesh->held->network = network;
+    camber_network_hold(network);
+    if (count)
+        memcpy(mesh->polyline_rows, network->entry_rows, count * sizeof *mesh->polyline_rows);
+    mesh->polyline_count = count;
+    mesh->row_count = network->row_count;
+    return lay_out(mesh);
+}
+
+camber_status camber_mesh_plan_network(camber_mesh *mesh, camber_network *network) {
+    if (mesh->serial == network->serial) {
+        camber_mesh_tidy(mesh);
+        return CAMBER_OK;
+    }
+    camber_mesh_let_go(mesh);
+    mesh->serial = mesh->part_count = mesh->polyline_count = 0;
+    const camber_status status = hold(mesh, network);
+    if (status != CAMBER_OK) {
+        camber_mesh_let_go(mesh);
+        mesh->part_count = 0;
+        return status;
+    }
+    camber_mesh_trim_parts(mesh);
+    mesh->serial = network->serial;
+    return CAMBER_OK;
+}
+
+camber_status camber_mesh_aim(camber_mesh *mesh, const camber_camera *camera, const camber_tessellation_desc *desc) {
+    const camber_status status = camber_network_aim(mesh->held->network, camera, desc, &mesh->held->projection);
+    return status == CAMBER_OK ? camber_device_network_program(mesh->device, desc->measured, camera->pitch_deg > 0.0,
+                                                               &mesh->held->program)
+                               : status;
+}
+
+bool camber_mesh_holds(const camber_mesh *mesh, const camber_network *network) {
+    return mesh->done && mesh->serial == network->serial;
+}
+
+/* ---- Parts ---- */
+
+void camber_part_set_points(const camber_mesh *mesh, camber_mesh_part *part) {
+    const struct camber_held_network *held = mesh->held;
+    part->section = held->section_count - 1;
+    while (held->sections[part->section].first_entry > part->first_polyline)
+        part->section--;
+    part->first_point = camber_network_first_point(held->network, part->first_polyline);
+    part->end_point = camber_network_first_point(held->network, part->first_polyline + part->polyline_count);
+}
+
+/* The projection of a part: its points are counted from the start of its section. */
+static camber_projection projection_of(const camber_mesh *mesh, const camber_mesh_part *part) {
+    const size_t first = mesh->held->sections[part->section].first_point;
+    camber_projection p = mesh->held->projection;
+    p.first_point = (uint32_t)first;
+    p.begin = (uint32_t)(part->first_point - first);
+    p.end = (uint32_t)(part->end_point - first);
+    return p;
+}
+
+static size_t part_chunks(const camber_projection *p) {
+    return chunks_of(p->end) - p->begin / CAMBER_CULL_CHUNK;
+}
+
+size_t camber_part_network_slot(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline) {
+    const camber_projection p = projection_of(mesh, part);
+    const size_t point = camber_network_first_point(mesh->held->network, polyline);
+    if (part->given_count == 0 || point >= part->end_point)
+        return part->given_count ? part->chunk_bases[part_chunks(&p)] : 0;
+    const size_t chunk = (point - p.first_point) / CAMBER_CULL_CHUNK, start = p.first_point + chunk * CAMBER_CULL_CHUNK;
+    const size_t begin = start > part->first_point ? start : part->first_point;
+    return part->chunk_bases[chunk - p.begin / CAMBER_CULL_CHUNK] +
+           (size_t)camber_network_count(mesh->held->network, &p, begin, point);
+}
+
+/* ---- Stages ---- */
+
+typedef struct stage {
+    const char *name;
+    cl_kernel kernel;
+    const cl_mem *mems;
+    cl_uint mem_count;
+} stage;
+
+/* Runs a stage over the chunks of a part; the projection is its last argument. */
+static camber_status run_stage(const camber_device *device, const camber_projection *p, stage s, cl_event *event) {
+    const size_t local = device->block * CAMBER_WALKERS / CAMBER_BLOCK;
+    const size_t global = (part_chunks(p) + local - 1) / local * local;
+    cl_int code = CL_SUCCESS;
+    for (cl_uint i = 0; i < s.mem_count && code == CL_SUCCESS; i++)
+        code = clSetKernelArg(s.kernel, i, sizeof *s.mems, s.mems + i);
+    if (code == CL_SUCCESS)
+        code = clSetKernelArg(s.kernel, s.mem_count, sizeof *p, p);
+    if (code != CL_SUCCESS)
+        return camber_fail_stage(device, "clSetKernelArg", s.name, code);
+    code = clEnqueueNDRangeKernel(device->queue, s.kernel, 1, NULL, &global, &local, 0, NULL, event);
+    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_stage(device, "clEnqueueNDRangeKernel", s.name, code);
+}
+
+static camber_status reserve_chunks(camber_mesh *mesh, camber_mesh_part *part, size_t chunks) {
+    struct camber_held_network *held = mesh->held;
+    const uint64_t on_host = chunks < part->chunk_capacity ? 0 : 8 * (uint64_t)chunks + 64;
+    camber_status status =
+        camber_mesh_make_room(mesh, part, on_host + (chunks <= held->chunk_capacity ? 0 : 8 * (uint64_t)chunks + 4));
+    if (status != CAMBER_OK)
+        return status;
+    const bool there = camber_grow(mesh->device->context, &part->chunk_bases, &part->chunk_capacity, chunks + 1,
+                                   sizeof *part->chunk_bases);
+    camber_part_count(mesh, part);
+    if (!there)
+        return CAMBER_ERROR_MEMORY;
+    if (chunks <= held->chunk_capacity)
+        return CAMBER_OK;
+    camber_release_buffer(mesh->device, &held->counts);
+    camber_release_buffer(mesh->device, &held->bases);
+    held->chunk_capacity = 0;
+    status = camber_make_buffer(mesh->device, CL_MEM_READ_WRITE, 4 * chunks, NULL, &held->counts);
+    if (status == CAMBER_OK)
+        status = camber_make_buffer(mesh->device, CL_MEM_READ_WRITE, 4 * (chunks + 1), NULL, &held->bases);
+    if (status == CAMBER_OK)
+        held->chunk_capacity = chunks;
+    camber_mesh_count(mesh);
+    return status;
+}
+
+/* How many slots the part has, and how many each chunk has before it. */
+static camber_status survey(camber_mesh *mesh, camber_mesh_part *part, const camber_projection *p, uint64_t *slots) {
+    const camber_device *device = mesh->device;
+    const struct camber_held_network *held = mesh->held;
+    const camber_section *section = held->sections + part->section;
+    const size_t chunks = part_chunks(p);
+    const cl_mem mems[] = {section->x,  section->y, section->importance, section->stretches, section->chunk_stretches,
+                           held->counts};
+    cl_event event = NULL;
+    const camber_status status =
+        run_stage(device, p, (stage){"cull_count", held->program->cull_count, mems, 6}, &event);
+    if (status != CAMBER_OK)
+        return status;
+    cl_int code;
+    const cl_uint *counts =
+        clEnqueueMapBuffer(device->queue, held->counts, CL_TRUE, CL_MAP_READ, 0, 4 * chunks, 0, NULL, NULL, &code);
+    camber_add_ms(event, &mesh->mesh_info.cull_count_ms);
+    if (code != CL_SUCCESS)
+        return camber_fail_cl(device->context, "clEnqueueMapBuffer", code);
+    *slots = 0;
+    for (size_t i = 0; i <= chunks; i++) {
+        part->chunk_bases[i] = (uint32_t)*slots;
+        *slots += i < chunks ? counts[i] : 0;
+    }
+    clEnqueueUnmapMemObject(device->queue, held->counts, (void *)(uintptr_t)counts, 0, NULL, NULL);
+    return CAMBER_OK;
+}
+
+/* Gives a part room for slots, and some more where the device has it: the next frame may take them. */
+static camber_status reserve_slots(camber_mesh *mesh, camber_mesh_part *part, size_t slots) {
+    const size_t block = mesh->device->block, more = slots + slots / 4 / block * block;
+    const uint64_t largest = mesh->device->info.largest_buffer_bytes;
+    const bool enough =
+        slots <= part->slot_capacity || 4 * ((uint64_t)more + 2) > largest ||
+        !camber_device_is_roomy(mesh->device, camber_input_bytes(mesh->device, mesh->mesh_info.measured, more));
+    part->slot_count = slots;
+    return camber_part_reserve(mesh, part, enough ? slots : more);
+}
+
+camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, bool *fits) {
+    const camber_device *device = mesh->device;
+    const camber_projection p = projection_of(mesh, part);
+    const size_t block = device->block;
+    uint64_t slots = 0;
+    part->given_count = part->slot_count = part->record_count = part->vertex_count = part->index_count = 0;
+    if (p.begin == p.end)
+        return CAMBER_OK;
+    camber_status status = upload_section(mesh, part);
+    if (status == CAMBER_OK)
+        status = reserve_chunks(mesh, part, part_chunks(&p));
+    if (status == CAMBER_OK)
+        status = survey(mesh, part, &p, &slots);
+    const uint64_t padded = (slots + block - 1) / block * block;
+    const uint64_t size_bytes = 4 * (padded + 2);
+    if (status != CAMBER_OK || slots == 0)
+        return status;
+    if (size_bytes > device->info.largest_buffer_bytes || padded > UINT32_MAX - 1024u) {
+        *fits = false;
+        return part->polyline_count > 1 ? CAMBER_OK : camber_fail_polyline(mesh, part->first_polyline, size_bytes);
+    }
+    part->given_count = (size_t)padded;
+    status = camber_part_check_source_lines(mesh, part, padded, fits);
+    if (status != CAMBER_OK || !*fits)
+        return status;
+    if (!camber_part_may_hold(mesh, part, padded)) {
+        *fits = false;
+        return CAMBER_OK;
+    }
+    status = mesh->offsets ? camber_part_reserve_source_lines(mesh, part, (size_t)padded)
+                           : reserve_slots(mesh, part, (size_t)padded);
+    if (status == CAMBER_OK)
+        status = camber_write_buffer(device, mesh->held->bases, 0, 4 * (part_chunks(&p) + 1), part->chunk_bases);
+    if (status != CAMBER_OK)
+        return status;
+    const camber_section *section = mesh->held->sections + part->section;
+    /* Of lines that others lie beside nobody reads the joins: what comes behind overwrites them. */
+    const camber_source_line_buffers *source_line = &part->source_line;
+    const cl_mem mems[] = {section->x,
+                           section->y,
+                           section->importance,
+                           section->stretches,
+                           section->chunk_stretches,
+                           mesh->held->bases,
+                           mesh->offsets ? source_line->x : part->x,
+                           mesh->offsets ? source_line->y : part->y,
+                           mesh->offsets ? source_line->info : part->info,
+                           mesh->offsets ? source_line->clips : part->joins,
+                           section->lengths,
+                           section->totals,
+                           mesh->offsets ? source_line->measures : part->measures};
+    const cl_uint mem_count = mesh->mesh_info.measured ? 13 : 10;
+    return run_stage(device, &p, (stage){"cull_emit", mesh->held->program->cull_emit, mems, mem_count},
+                     &mesh->held->projected);
+}

@@ -1,0 +1,206 @@
+/* The CPU twin of survey and project: the same walk, an entry after the other. */
+#include "tess/network.h"
+
+#include <string.h>
+
+camber_walk camber_network_walk(const camber_network *network) {
+    return (camber_walk){.x = network->x,
+                         .y = network->y,
+                         .importance = network->importance,
+                         .lengths = network->lengths,
+                         .totals = network->totals,
+                         .stretches = network->stretches};
+}
+
+/* The run that has a point. */
+static const camber_stretch *find_run(const camber_network *network, size_t point) {
+    size_t low = 0, high = network->stretch_count;
+    while (high - low > 1) {
+        const size_t middle = low + (high - low) / 2;
+        if (network->stretches[middle].first <= point)
+            low = middle;
+        else
+            high = middle;
+    }
+    return network->stretches + low;
+}
+
+uint64_t camber_network_count(const camber_network *network, const camber_projection *projection, size_t begin,
+                              size_t end) {
+    /* A piece at a time: the walk counts in 32 bits. */
+    static const size_t PIECE = (size_t)1 << 28;
+    camber_projection p = *projection;
+    uint64_t count = 0;
+    p.first_point = 0;
+    while (begin < end) {
+        const size_t until = end - begin > PIECE ? begin + PIECE : end;
+        camber_walk w = camber_network_walk(network);
+        camber_walk_chunk(&w, &p, find_run(network, begin), (uint32_t)begin, (uint32_t)until);
+        count += w.at;
+        begin = until;
+    }
+    return count;
+}
+
+static camber_status check_strokes(const camber_network *network, const camber_tessellation_desc *desc) {
+    camber_row *rows = NULL;
+    const camber_status status = camber_rows_create(network->context, network->row_count, desc, &rows);
+    camber_free(network->context, rows);
+    return status;
+}
+
+static void count_slots(camber_polylines *p) {
+    for (size_t i = 1; i <= p->slot_count; i++) {
+        const uint32_t info = p->info[i], ends = info & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST);
+        p->stats.kept_points += info & CAMBER_POINT_REAL;
+        p->stats.kept_segments += (info & CAMBER_POINT_REAL) && !(info & CAMBER_POINT_FIRST);
+        p->stats.dots += ends == (CAMBER_POINT_FIRST | CAMBER_POINT_LAST);
+        p->stats.rings += (info & CAMBER_POINT_FIRST) && (info & CAMBER_POINT_RING);
+    }
+}
+
+static camber_status make_slots(const camber_network *network, const camber_projection *projection, size_t count,
+                                camber_polylines *p) {
+    camber_context *context = network->context;
+    const size_t slots = (count + CAMBER_BLOCK - 1) / CAMBER_BLOCK * CAMBER_BLOCK;
+    if (!(p->x = camber_alloc_zero(context, slots + 2, sizeof *p->x)) ||
+        !(p->y = camber_alloc_zero(context, slots + 2, sizeof *p->y)) ||
+        !(p->info = camber_alloc_zero(context, slots + 2, sizeof *p->info)) ||
+        (network->lengths && !(p->measures = camber_alloc_zero(context, slots, sizeof *p->measures))) ||
+        !(p->first_slots = camber_alloc(context, network->entry_count + 1, sizeof *p->first_slots)) ||
+        !(p->polyline_rows = camber_alloc(context, network->entry_count, sizeof *p->polyline_rows)))
+        return CAMBER_ERROR_MEMORY;
+    camber_walk w = camber_network_walk(network);
+    w.slot_x = p->x;
+    w.slot_y = p->y;
+    w.slot_info = p->info;
+    w.slot_measures = (float *)p->measures;
+    w.puts = 1;
+    w.at = 1;
+    for (size_t i = 0; i < network->entry_count; i++) {
+        const size_t begin = camber_network_first_point(network, i), end = camber_network_first_point(network, i + 1);
+        p->first_slots[i] = w.at - 1;
+        p->polyline_rows[i] = network->entry_rows[i];
+        if (begin < end)
+            camber_walk_chunk(&w, projection, network->stretches + network->entry_stretches[i], (uint32_t)begin,
+                              (uint32_t)end);
+    }
+    p->first_slots[network->entry_count] = w.at - 1;
+    p->slot_count = slots;
+    return CAMBER_OK;
+}
+
+camber_status camber_network_project(const camber_network *network, const camber_camera *camera,
+                                     const camber_tessellation_desc *desc, camber_polylines **polylines) {
+    camber_context *context = network->context;
+    camber_projection projection;
+    camber_status status = check_strokes(network, desc);
+    if (status == CAMBER_OK)
+        status = camber_network_aim(network, camera, desc, &projection);
+    if (status != CAMBER_OK)
+        return status;
+    const uint64_t count = camber_network_count(network, &projection, 0, network->point_count);
+    if (count > UINT32_MAX - 1024u)
+        return camber_fail(context, CAMBER_ERROR_LIMIT,
+                           "%llu points are more than 32-bit slots hold; draw a smaller part or simplify more",
+                           (unsigned long long)count);
+    camber_polylines *made = camber_alloc_zero(context, 1, sizeof *made);
+    if (!made)
+        return CAMBER_ERROR_MEMORY;
+    made->context = context;
+    made->serial = context->next_serial++;
+    made->polyline_count = made->stats.polylines = network->entry_count;
+    made->row_count = network->row_count;
+    made->stats.points = network->stats.points;
+    status = make_slots(network, &projection, (size_t)count, made);
+    if (status != CAMBER_OK) {
+        camber_polylines_destroy(made);
+        return status;
+    }
+    count_slots(made);
+    *polylines = made;
+    return CAMBER_OK;
+}
+
+/* ---- Pieces ---- */
+
+typedef struct pieces {
+    const camber_polylines *slots;
+    camber_lines lines;
+    uint32_t *entries;
+} pieces;
+
+static void put_slot(pieces *p, size_t slot) {
+    p->lines.points[2 * p->lines.point_count] = p->slots->x[slot + 1];
+    p->lines.points[2 * p->lines.point_count + 1] = p->slots->y[slot + 1];
+    p->lines.point_count++;
+}
+
+/* The slots [first, last] are a piece. */
+static void begin_piece(pieces *p, size_t entry) {
+    p->entries[p->lines.polyline_count] = (uint32_t)entry;
+    p->lines.offsets[p->lines.polyline_count++] = (uint32_t)p->lines.point_count;
+}
+
+static size_t last_of(const pieces *p, size_t first) {
+    while (!(p->slots->info[first + 1] & CAMBER_POINT_LAST))
+        first++;
+    return first;
+}
+
+/* Of a ring that is cut, the piece before the seam waits for the one behind it, which comes first. */
+static void put_entry(pieces *p, size_t entry) {
+    const uint32_t *info = p->slots->info + 1;
+    size_t seam = SIZE_MAX, seam_end = 0;
+    for (size_t i = p->slots->first_slots[entry]; i < p->slots->first_slots[entry + 1]; i++) {
+        if (!(info[i] & CAMBER_POINT_FIRST))
+            continue;
+        const size_t first = i;
+        i = last_of(p, i);
+        if ((info[first] & CAMBER_POINT_RING) && !(info[i] & CAMBER_POINT_RING)) {
+            seam = first;
+            seam_end = i;
+            continue;
+        }
+        begin_piece(p, entry);
+        for (size_t k = first; k <= i; k++)
+            put_slot(p, k);
+        if (seam == SIZE_MAX || !(info[i] & CAMBER_POINT_RING))
+            continue;
+        for (size_t k = seam + 1; k <= seam_end; k++)
+            put_slot(p, k);
+        seam = SIZE_MAX;
+    }
+}
+
+camber_status camber_network_lines(const camber_network *network, const camber_camera *camera,
+                                   const camber_tessellation_desc *desc, camber_lines *lines, uint32_t **entries) {
+    camber_context *context = network->context;
+    camber_polylines *slots = NULL;
+    camber_status status = camber_network_project(network, camera, desc, &slots);
+    if (status != CAMBER_OK || !slots)
+        return status;
+    size_t count = 0;
+    for (size_t i = 0; i < slots->slot_count; i++)
+        count += (slots->info[i + 1] & CAMBER_POINT_FIRST) != 0;
+    pieces p = {.slots = slots};
+    status = CAMBER_ERROR_MEMORY;
+    if ((p.lines.points = camber_alloc(context, slots->stats.kept_points, 2 * sizeof *p.lines.points)) &&
+        (p.lines.offsets = camber_alloc(context, count + 1, sizeof *p.lines.offsets)) &&
+        (p.entries = camber_alloc(context, count, sizeof *p.entries))) {
+        for (size_t i = 0; i < network->entry_count; i++)
+            put_entry(&p, i);
+        p.lines.offsets[p.lines.polyline_count] = (uint32_t)p.lines.point_count;
+        status = CAMBER_OK;
+        *lines = p.lines;
+        *entries = p.entries;
+    } else {
+        camber_lines_free(context, &p.lines);
+    }
+    camber_polylines_destroy(slots);
+    return status;
+}
+
+void camber_entries_free(camber_context *context, uint32_t *entries) {
+    camber_free(context, entries);
+}

@@ -1,5 +1,7 @@
-/* total: of each tile the segments in the chunks before, and in all; sixteen tiles a work-item.
+/* bin_scan: for each tile the segments in the chunks before, and in all of them; sixteen tiles a work-item.
  * Turns counts[chunks * tiles] into sums before each chunk; writes totals[tiles]. */
+#include "segment.h"
+
 #if CAMBER_LANES == 16
 CAMBER_KERNEL(1, bin_scan,
               (global camber_u32 *restrict counts, global camber_u32 *restrict totals, const camber_u32 tiles,

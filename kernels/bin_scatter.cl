@@ -1,7 +1,9 @@
-/* fill: the list of each tile, its segments in drawing order. A chunk, a work-item, puts its own where count and total
- * say, so that the order is the same however many there are.
- * Reads shapes, boxes[shape_count], starts[tiles]; counts[chunks * tiles] go on to the chunk's end; writes
- * lists[pairs]. */
+/* bin_scatter: the list of each tile, its segments in drawing order. A chunk, a work-item, puts its own where bin_count
+ * and bin_scan say, so that the order is the same however many chunks there are.
+ * Reads segments[CAMBER_SEGMENT_WORDS * segment_count], boxes[segment_count], starts[tiles]; moves
+ * counts[chunks * tiles] on to each chunk's end; writes lists[starts[tiles]]. */
+#include "segment.h"
+
 #if CAMBER_LANES == 16
 CAMBER_KERNEL(1, bin_scatter,
               (global const float *restrict segments, global const camber_u32 *restrict boxes,
@@ -14,14 +16,14 @@ CAMBER_KERNEL(1, bin_scatter,
     global camber_u32 *own = counts + chunk * c.tiles;
     for (size_t i = first; i < end; i++) {
         const camber_u32 box = boxes[i];
-        if (FIRST_X(box) > LAST_X(box))
+        if (CAMBER_BOX_FIRST_X(box) > CAMBER_BOX_LAST_X(box))
             continue;
-        if (is_one_tile(box, of.columns)) {
-            const camber_u32 tile = FIRST_Y(box) * of.columns + FIRST_X(box);
+        if (camber_box_is_one_tile(box, of.columns)) {
+            const camber_u32 tile = CAMBER_BOX_FIRST_Y(box) * of.columns + CAMBER_BOX_FIRST_X(box);
             lists[starts[tile] + own[tile]++] = (camber_u32)i;
             continue;
         }
-        for (camber_u32 y = FIRST_Y(box); y <= LAST_Y(box); y++) {
+        for (camber_u32 y = CAMBER_BOX_FIRST_Y(box); y <= CAMBER_BOX_LAST_Y(box); y++) {
             const camber_u32 span = camber_tile_span(segments + CAMBER_SEGMENT_WORDS * i, box, y, &of);
             for (camber_u32 x = span & 255u; x <= span >> 8; x++) {
                 const camber_u32 tile = y * of.columns + x;

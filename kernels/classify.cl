@@ -5,6 +5,8 @@
  * registers as wide as there are: that leaves more points in flight than the vectoriser would by itself. x_before,
  * x_after and their like are x and y once more: where the compiler can see that a point's two neighbours lie together,
  * it packs them into a float2, and PoCL does not vectorise over the points any more (5 times slower). */
+#include "join.h"
+
 #define LANES (CAMBER_BLOCK / CAMBER_POINT_CHUNK)
 
 CAMBER_KERNEL(LANES, classify,

@@ -27,7 +27,7 @@
 #define CAMBER_NEAR_PX 4096.0f
 #define CAMBER_NO_POINT 0xffffffffu
 /* Whether a walk carries how far along its run each slot lies; the host's does both. */
-#if defined(__OPENCL_VERSION__) && !CAMBER_HAS_ARC_LENGTH
+#if defined(CAMBER_DEVICE) && !CAMBER_HAS_ARC_LENGTH
 #define CAMBER_WALK_ARC_LENGTHS 0
 #else
 #define CAMBER_WALK_ARC_LENGTHS 1
@@ -36,7 +36,7 @@
 #ifndef CAMBER_PITCHED
 #define CAMBER_PITCHED 0
 #endif
-#if defined(__OPENCL_VERSION__) && !CAMBER_PITCHED
+#if defined(CAMBER_DEVICE) && !CAMBER_PITCHED
 #define CAMBER_WALK_PITCHED 0
 #else
 #define CAMBER_WALK_PITCHED 1
@@ -394,7 +394,7 @@ CAMBER_FN void camber_chunk_bounds(const camber_projection *p, camber_u32 chunk,
     *end = p->end > first && p->end - first > CAMBER_CULL_CHUNK ? first + CAMBER_CULL_CHUNK : p->end;
 }
 
-#ifdef __OPENCL_VERSION__
+#ifdef CAMBER_DEVICE
 typedef char camber_projection_is_104_bytes[sizeof(camber_projection) == 104 ? 1 : -1];
 typedef char camber_stretch_is_24_bytes[sizeof(camber_stretch) == 24 ? 1 : -1];
 #else

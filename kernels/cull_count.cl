@@ -2,6 +2,8 @@
  * Reads x, y, importance[n], the runs and one behind them, chunk_runs[n / CAMBER_CULL_CHUNK, rounded up], which is the
  * run of each chunk's first point; writes counts[chunks], the chunks between the projection's begin and end. A
  * work-item a chunk. */
+#include "cull.h"
+
 CAMBER_KERNEL(CAMBER_WALKERS, cull_count,
               (global const camber_i32 *restrict x, global const camber_i32 *restrict y,
                global const float *restrict importance, global const camber_stretch *restrict stretches,

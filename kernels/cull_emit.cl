@@ -3,23 +3,18 @@
  * with s these rounded up to CAMBER_BLOCK, a sentinel before them and sentinels behind, and the joins of the first
  * sentinel and the last, which classify leaves. Measured, it reads lengths[n] and totals[runs] as well and writes
  * slot_measures[2 * s]. A work-item a chunk. */
-#if CAMBER_HAS_ARC_LENGTH
-#define MEASURES                                                                                                       \
-    , global const float *restrict lengths, global const float *restrict totals, global float *restrict slot_measures
-#define MEASURES_GIVEN , lengths, totals, slot_measures
-#else
-#define MEASURES
-#define MEASURES_GIVEN
-#endif
+#include "cull.h"
 
 CAMBER_KERNEL(CAMBER_WALKERS, cull_emit,
               (global const camber_i32 *restrict x, global const camber_i32 *restrict y,
                global const float *restrict importance, global const camber_stretch *restrict stretches,
                global const camber_u32 *restrict chunk_stretches, global const camber_u32 *restrict bases,
                global float *restrict slot_x, global float *restrict slot_y, global camber_u32 *restrict slot_info,
-               global camber_u32 *restrict joins MEASURES, const camber_projection projection),
-              (x, y, importance, stretches, chunk_stretches, bases, slot_x, slot_y, slot_info, joins MEASURES_GIVEN,
-               projection)) {
+               global camber_u32 *restrict joins, global const float *restrict lengths,
+               global const float *restrict totals, global float *restrict slot_measures,
+               const camber_projection projection),
+              (x, y, importance, stretches, chunk_stretches, bases, slot_x, slot_y, slot_info, joins, lengths, totals,
+               slot_measures, projection)) {
     const camber_u32 item = (camber_u32)CAMBER_WORK_ITEM, chunk = projection.begin / CAMBER_CULL_CHUNK + item;
     camber_u32 begin, end;
     camber_chunk_bounds(&projection, chunk, &begin, &end);

@@ -3,6 +3,8 @@
  * first vertex and first index); writes records[CAMBER_RECORD_WORDS * record count], indices[index count]. Lists and
  * their order: camber_strip_records and camber_join_counts in join.h. A work-item appends what a run of
  * CAMBER_POINT_CHUNK points has. Measured, it reads measures[2 * n] as well, and records are twice as long. */
+#include "join.h"
+
 #define LANES (CAMBER_BLOCK / CAMBER_POINT_CHUNK)
 
 /* No restrict in what is inlined into kernels: oclgrind does not know what becomes of it there. */
@@ -13,8 +15,6 @@ static inline void put_record(global camber_u32 *records, size_t k, float x, flo
 }
 
 #if CAMBER_HAS_ARC_LENGTH
-#define MEASURES , global const float *restrict measures
-#define MEASURES_GIVEN , measures
 /* The records [k, k + count) lie as far along their line as point i. */
 static inline void put_measures(global camber_u32 *records, size_t k, size_t count, global const float *measures,
                                 size_t i) {
@@ -22,9 +22,6 @@ static inline void put_measures(global camber_u32 *records, size_t k, size_t cou
     for (size_t r = 0; r < count; r++)
         vstore4((uint4)(along, in_all, 0u, 0u), 2 * (k + r) + 1, records);
 }
-#else
-#define MEASURES
-#define MEASURES_GIVEN
 #endif
 
 #if CAMBER_METHOD == CAMBER_STRIP
@@ -82,8 +79,9 @@ CAMBER_KERNEL(LANES, emit,
               (global const float *restrict x, global const float *restrict y, global const camber_u32 *restrict info,
                global const camber_row *restrict rows, global const camber_u32 *restrict joins,
                global const camber_u32 *restrict offsets, global const camber_u64 *restrict bases,
-               global camber_u32 *restrict records, global camber_u32 *restrict indices MEASURES),
-              (x, y, info, rows, joins, offsets, bases, records, indices MEASURES_GIVEN)) {
+               global camber_u32 *restrict records, global camber_u32 *restrict indices,
+               global const float *restrict measures),
+              (x, y, info, rows, joins, offsets, bases, records, indices, measures)) {
     const size_t first = CAMBER_WORK_ITEM * CAMBER_POINT_CHUNK + 1;
     /* two indices a record */
     size_t k = ((size_t)bases[2 * (CAMBER_WORK_ITEM / LANES) + 1] + (offsets[CAMBER_WORK_ITEM] >> 16)) / 2;
@@ -209,8 +207,9 @@ CAMBER_KERNEL(LANES, emit,
               (global const float *restrict x, global const float *restrict y, global const camber_u32 *restrict info,
                global const camber_row *restrict rows, global const camber_u32 *restrict joins,
                global const camber_u32 *restrict offsets, global const camber_u64 *restrict bases,
-               global camber_u32 *restrict records, global camber_u32 *restrict indices MEASURES),
-              (x, y, info, rows, joins, offsets, bases, records, indices MEASURES_GIVEN)) {
+               global camber_u32 *restrict records, global camber_u32 *restrict indices,
+               global const float *restrict measures),
+              (x, y, info, rows, joins, offsets, bases, records, indices, measures)) {
     const size_t first = CAMBER_WORK_ITEM * CAMBER_POINT_CHUNK + 1;
     size_t at = (size_t)bases[2 * (CAMBER_WORK_ITEM / LANES) + 1] + (offsets[CAMBER_WORK_ITEM] >> 16);
     for (size_t i = first; i < first + CAMBER_POINT_CHUNK; i++) {

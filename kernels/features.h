@@ -5,7 +5,7 @@
 
 #include "coverage.h"
 
-#if defined(__OPENCL_VERSION__) && CAMBER_LANES == 16
+#if defined(CAMBER_DEVICE) && CAMBER_LANES == 16
 #define CAMBER_TRUNCATE(x) convert_float16(convert_int16(x))
 #else
 #define CAMBER_TRUNCATE(x) ((float)(camber_i32)(x))
@@ -360,7 +360,7 @@ CAMBER_FN void camber_ramp_over(const camber_edge *p, const camber_extras *e, ca
         color[k] += e->stops[8 * last + 4 + k] * past;
 }
 
-#ifdef __OPENCL_VERSION__
+#ifdef CAMBER_DEVICE
 typedef char camber_brush_ext_is_whole_vectors[sizeof(camber_brush_ext) % 16 == 0 ? 1 : -1];
 #else
 _Static_assert(sizeof(camber_brush_ext) % 16 == 0, "the device reads whole float4s");

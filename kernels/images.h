@@ -16,7 +16,7 @@
 #define CAMBER_IMAGE_WORDS 16u
 #define CAMBER_SAMPLES_MAX 8.0f /* to a side of a pixel that shows many texels */
 
-#ifdef __OPENCL_VERSION__
+#ifdef CAMBER_DEVICE
 #define CAMBER_BITS(x) as_uint(x)
 #define CAMBER_WORDS(x) convert_uint16(x)
 #define CAMBER_NUMBERS(words) convert_float16(words)
@@ -138,7 +138,7 @@ CAMBER_FN camber_real camber_before_joint(camber_real t, float tangent, camber_r
 /* Two texels that lie side by side, of each pixel. */
 CAMBER_FN void camber_texels_at(CAMBER_GLOBAL const float *side_table, camber_words at, camber_words *left,
                                 camber_words *right) {
-#ifdef __OPENCL_VERSION__
+#ifdef CAMBER_DEVICE
     camber_u32 places[16], from[16], to[16];
     vstore16(at, 0, places);
     for (int k = 0; k < 16; k++) {

@@ -3,7 +3,7 @@
 #ifndef CAMBER_KERNEL_LAYOUT_H
 #define CAMBER_KERNEL_LAYOUT_H
 
-#ifdef __OPENCL_VERSION__
+#ifdef CAMBER_DEVICE
 #pragma OPENCL FP_CONTRACT OFF
 typedef uint camber_u32;
 typedef int camber_i32;
@@ -38,7 +38,7 @@ typedef uint64_t camber_u64;
 /* A kernel, work-groups of `size` work-items; its body finds its work-item's number in CAMBER_WORK_ITEM. On a CPU the
  * body is a function that the kernel calls: PoCL puts a kernel's body into three entries of each build and compiles its
  * loop over work-items around each, which takes twice as long and runs no faster. */
-#ifdef __OPENCL_VERSION__
+#ifdef CAMBER_DEVICE
 #define CAMBER_LIST(...) __VA_ARGS__
 #if CAMBER_POINT_CHUNK == CAMBER_BLOCK
 #define CAMBER_WORK_ITEM item_id
@@ -132,7 +132,7 @@ typedef struct camber_row {
 
 #define CAMBER_NO_LIMIT_PX 3.0e38f
 
-#ifdef __OPENCL_VERSION__
+#ifdef CAMBER_DEVICE
 typedef char camber_row_is_32_bytes[sizeof(camber_row) == 32 ? 1 : -1];
 #else
 _Static_assert(sizeof(camber_row) == 32, "the device reads rows of 32 bytes");

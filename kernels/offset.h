@@ -250,7 +250,7 @@ CAMBER_FN camber_u32 camber_offset_arc_count(camber_u32 word) {
     return word >> 16;
 }
 
-#ifdef __OPENCL_VERSION__
+#ifdef CAMBER_DEVICE
 typedef char camber_offset_row_is_16_bytes[sizeof(camber_offset_row) == 16 ? 1 : -1];
 typedef char camber_offset_clip_is_12_bytes[sizeof(camber_offset_clip) == 12 ? 1 : -1];
 #else

@@ -28,11 +28,6 @@
 /* Nearer to the camera than this nothing is projected. */
 #define CAMBER_PITCH_LEAST 1e-3f
 
-/* As stroke.vert has it: half the picture's size, px; cosine of the pitch; depth lost a px towards the viewer. */
-typedef struct camber_eye {
-    float x, y, cosine, fall;
-} camber_eye;
-
 /* ---- Shapes ---- */
 
 typedef struct camber_plane {

@@ -1,155 +1,11 @@
-/* The stages on a GPU: a work-item is a record, a segment, a tile or a pixel, and neighbours read and write what lies
- * side by side. They read and write what the kernels of their names do, to the same bytes. */
+/* rasterize on a GPU: a row of a tile's cells is a work-group, a pixel a work-item. It reads and writes what
+ * rasterize.cl does, to the same bytes. All sixteen work-items of a cell decide alike, from what they all have or from
+ * the largest of their values, so that barriers are the same for the whole group. Only plain frames are drawn so. */
+#include "tile_state.cl"
+
 #if CAMBER_LANES == 1
 
-/* ---- shape: a record a work-item. Shapes go through local memory, so that they are written in order. */
-
-#define SHAPE_LANES 64
-#define SHAPE_STRIDE (CAMBER_SEGMENT_WORDS + 1) /* so that the lanes' words lie in different banks */
-
-static inline void segment_at(global const camber_u32 *records, global const float *rows, int i, camber_setup_args r,
-                              local float *words, global camber_u32 *box) {
-    const uint4 b = record_at(records, i, r), before = record_at(records, i - 1, r);
-    const uint kind = b.s2 >> CAMBER_JOIN_KIND_SHIFT;
-    const int is_dot = kind == CAMBER_KIND_DOT, again = (before.s3 & CAMBER_RECORD_START) != 0u;
-    const int is_real = (b.s3 & CAMBER_POINT_REAL) != 0u && kind != CAMBER_KIND_SENTINEL && i < (int)r.end;
-    const int ends = is_real && (r.strips ? (b.s3 & STARTS) == 0u : (b.s3 & CAMBER_POINT_FIRST) == 0u || is_dot);
-    const uint4 a = is_dot ? b : before;
-    const uint4 p =
-        record_at(records, again && before.s2 >> CAMBER_JOIN_KIND_SHIFT == CAMBER_KIND_TIGHT ? i - 3 : i - 2, r);
-    const float4 row = vload4(r.first_row + (ends ? b.s3 >> CAMBER_POINT_ROW_SHIFT : 0u), rows);
-    const camber_segment s = camber_segment_of(
-        as_float(p.s0) + row.s1, as_float(p.s1) + row.s2, as_float(a.s0) + row.s1, as_float(a.s1) + row.s2,
-        as_float(b.s0) + row.s1, as_float(b.s1) + row.s2, a.s2, b.s2, row.s0, r.linear);
-    *box = camber_segment_box(&s, ends && row.s0 >= 0.0f, r.left, r.top, r.columns, r.rows);
-    words[CAMBER_SEGMENT_AX] = s.ax;
-    words[CAMBER_SEGMENT_AY] = s.ay;
-    words[CAMBER_SEGMENT_BX] = s.bx;
-    words[CAMBER_SEGMENT_BY] = s.by;
-    words[CAMBER_SEGMENT_UX] = s.ux;
-    words[CAMBER_SEGMENT_UY] = s.uy;
-    words[CAMBER_SEGMENT_NAX] = s.nax;
-    words[CAMBER_SEGMENT_NAY] = s.nay;
-    words[CAMBER_SEGMENT_NBX] = s.nbx;
-    words[CAMBER_SEGMENT_NBY] = s.nby;
-    words[CAMBER_SEGMENT_HALF_WIDTH] = s.half_width;
-    words[CAMBER_SEGMENT_REACH] = s.reach;
-    words[CAMBER_SEGMENT_SLOPE] = s.slope;
-    words[CAMBER_SEGMENT_CURVE] = s.curve;
-    words[CAMBER_SEGMENT_FLAGS] = as_float(s.flags);
-    words[CAMBER_SEGMENT_BRUSH] = row.s3;
-}
-
-kernel __attribute__((reqd_work_group_size(SHAPE_LANES, 1, 1))) void setup(global const camber_u32 *restrict records,
-                                                                           global const float *restrict rows,
-                                                                           global float *restrict segments,
-                                                                           global camber_u32 *restrict boxes,
-                                                                           const camber_setup_args r) {
-    local float words[SHAPE_LANES * SHAPE_STRIDE];
-    const camber_u32 lane = (camber_u32)get_local_id(0), at = (camber_u32)get_global_id(0);
-    const camber_u32 count = (r.end - r.first + 15u) / 16u * 16u, first = at - lane;
-    if (at < count)
-        segment_at(records, rows, (int)(r.first + at), r, words + SHAPE_STRIDE * lane, boxes + r.base + at);
-    barrier(CLK_LOCAL_MEM_FENCE);
-    const camber_u32 mine = count - first < SHAPE_LANES ? count - first : SHAPE_LANES;
-    global float *to = segments + (size_t)CAMBER_SEGMENT_WORDS * (r.base + first);
-    for (camber_u32 i = lane; i < CAMBER_SEGMENT_WORDS * mine; i += SHAPE_LANES)
-        to[i] = words[SHAPE_STRIDE * (i / CAMBER_SEGMENT_WORDS) + i % CAMBER_SEGMENT_WORDS];
-}
-
-/* ---- count and fill: a chunk a work-group, a segment a work-item. Behind the counts of all chunks lie as many words
- * of marks. */
-
-#define LIST_LANES 32 /* bits of a mark */
-
-kernel __attribute__((reqd_work_group_size(LIST_LANES, 1, 1))) void bin_count(global const float *restrict segments,
-                                                                              global const camber_u32 *restrict boxes,
-                                                                              global camber_u32 *restrict counts,
-                                                                              const camber_bin_args c) {
-    const size_t chunk = get_group_id(0), first = chunk * c.a_chunk;
-    const size_t end = first + c.a_chunk < c.segment_count ? first + c.a_chunk : c.segment_count;
-    const camber_u32 lane = (camber_u32)get_local_id(0);
-    const camber_tile_grid of = c.of;
-    volatile global camber_u32 *own = counts + chunk * c.tiles, *marks = own + get_num_groups(0) * c.tiles;
-    for (camber_u32 i = lane; i < c.tiles; i += LIST_LANES)
-        own[i] = marks[i] = 0;
-    barrier(CLK_GLOBAL_MEM_FENCE);
-    for (size_t i = first + lane; i < end; i += LIST_LANES) {
-        const camber_u32 box = boxes[i];
-        for (camber_u32 y = FIRST_Y(box); FIRST_X(box) <= LAST_X(box) && y <= LAST_Y(box); y++) {
-            const camber_u32 span = camber_tile_span(segments + (size_t)CAMBER_SEGMENT_WORDS * i, box, y, &of);
-            for (camber_u32 x = span & 255u; x <= span >> 8; x++)
-                atomic_inc(own + y * of.columns + x);
-        }
-    }
-}
-
-/* What a segment of a batch does in each of its tiles, one after the other: says that it is there; goes to its place,
- * behind those of the lanes before; and the first of a tile's counts them all. */
-enum { TURN_MARK, TURN_PUT, TURN_END, TURNS };
-
-static inline void take_turn(int turn, volatile global camber_u32 *own, volatile global camber_u32 *mark,
-                             camber_u32 start, global camber_u32 *lists, camber_u32 i) {
-    const camber_u32 bit = 1u << get_local_id(0), before = bit - 1u;
-    if (turn == TURN_MARK) {
-        atomic_or(mark, bit);
-    } else if (turn == TURN_PUT) {
-        lists[start + *own + popcount(*mark & before)] = i;
-    } else {
-        const camber_u32 all = atomic_or(mark, 0u); /* or 0: the first has been here */
-        if ((all & bit) != 0u && (all & before) == 0u) {
-            *own += popcount(all);
-            atomic_xchg(mark, 0u);
-        }
-    }
-}
-
-kernel __attribute__((reqd_work_group_size(LIST_LANES, 1, 1))) void bin_scatter(
-    global const float *restrict segments, global const camber_u32 *restrict boxes,
-    global const camber_u32 *restrict starts, global camber_u32 *restrict counts, global camber_u32 *restrict lists,
-    const camber_bin_args c) {
-    const camber_tile_grid of = c.of;
-    const camber_u32 chunk = (camber_u32)get_group_id(0), first = chunk * c.a_chunk;
-    const camber_u32 end = first + c.a_chunk < c.segment_count ? first + c.a_chunk : c.segment_count;
-    volatile global camber_u32 *own = counts + (size_t)chunk * c.tiles, *marks = own + get_num_groups(0) * c.tiles;
-    for (camber_u32 from = first; from < end; from += LIST_LANES) {
-        const camber_u32 i = from + (camber_u32)get_local_id(0), box = i < end ? boxes[i] : CAMBER_NO_BOX;
-        for (int turn = 0; turn < TURNS; turn++) {
-            for (camber_u32 y = FIRST_Y(box); FIRST_X(box) <= LAST_X(box) && y <= LAST_Y(box); y++) {
-                const camber_u32 span = camber_tile_span(segments + (size_t)CAMBER_SEGMENT_WORDS * i, box, y, &of);
-                for (camber_u32 x = span & 255u; x <= span >> 8; x++) {
-                    const camber_u32 tile = y * of.columns + x;
-                    take_turn(turn, own + tile, marks + tile, starts[tile], lists, i);
-                }
-            }
-            barrier(CLK_GLOBAL_MEM_FENCE);
-        }
-    }
-}
-
-/* ---- total: a tile a work-item */
-
-#define TOTAL_LANES 64
-
-kernel __attribute__((reqd_work_group_size(TOTAL_LANES, 1, 1))) void bin_scan(global camber_u32 *restrict counts,
-                                                                              global camber_u32 *restrict totals,
-                                                                              const camber_u32 tiles,
-                                                                              const camber_u32 chunks) {
-    const size_t tile = get_global_id(0);
-    camber_u32 sum = 0;
-    for (camber_u32 i = 0; i < chunks && tile < tiles; i++) {
-        const camber_u32 here = counts[(size_t)i * tiles + tile];
-        counts[(size_t)i * tiles + tile] = sum;
-        sum += here;
-    }
-    if (tile < tiles)
-        totals[tile] = sum;
-}
-
-/* ---- cover: a row of a tile's cells a work-group, a pixel a work-item. What a cell decides, all of its sixteen lanes
- * do: from what they all have, or from the most of their values. */
-
-#define COVER_LANES (CAMBER_TILE_PX * CAMBER_CELL_PX)
+#define RASTERIZE_LANES (CAMBER_TILE_PX * CAMBER_CELL_PX)
 #define CELL_LANES (CAMBER_CELL_PX * CAMBER_CELL_PX)
 #define BATCH CAMBER_LOOK_EVERY /* segments that are drawn at once: of no more can a cell be looked at only once */
 
@@ -386,8 +242,8 @@ static inline void take_level(global const float *planes, size_t plane, size_t a
 
 static inline void spill_pixel(private const tile_state *c, global float *spill, camber_spill_args s, camber_u32 now) {
     global ushort *cells = (global ushort *)spill + CAMBER_TILE_CELLS * c->row;
-    global float *planes = spill + SPILL_WORDS;
-    const size_t lane = get_local_id(0), at = (size_t)(COVER_LANES * c->row) + lane;
+    global float *planes = spill + CAMBER_SPILL_WORDS;
+    const size_t lane = get_local_id(0), at = (size_t)(RASTERIZE_LANES * c->row) + lane;
     if (lane % CELL_LANES == 0)
         cells[c->column] =
             (ushort)((c->brushed != 0) | (c->filled != 0) << 1 | (c->done != 0) << 2 | (c->touched[0] != 0) << 3 |
@@ -407,11 +263,11 @@ static inline void spill_pixel(private const tile_state *c, global float *spill,
         keep_level(planes, s.layer, at, &c->levels[2]);
 }
 
-/* Gives the brush that was drawn last, ~0 where none was, or KEPT_FULL. */
+/* Gives the brush that was drawn last, ~0 where none was, or CAMBER_SPILL_FULL. */
 static inline camber_u32 restore_pixel(private tile_state *c, global const float *spill,
                                        global const camber_brush *brushes, camber_spill_args s) {
-    global const float *planes = spill + SPILL_WORDS;
-    const size_t at = (size_t)(COVER_LANES * c->row) + get_local_id(0);
+    global const float *planes = spill + CAMBER_SPILL_WORDS;
+    const size_t at = (size_t)(RASTERIZE_LANES * c->row) + get_local_id(0);
     const camber_u32 cell = ((global const ushort *)spill)[CAMBER_TILE_CELLS * c->row + c->column];
     const camber_u32 now = ((global const camber_u32 *)spill)[LANES_ROWS + c->row];
     c->brushed = cell & 1u;
@@ -422,7 +278,7 @@ static inline camber_u32 restore_pixel(private tile_state *c, global const float
     c->blend_count = cell >> 6;
     c->brush = planes[at];
     take_level(planes, 1, at, &c->levels[0]);
-    if (now == SPILL_FULL)
+    if (now == CAMBER_SPILL_FULL)
         return now;
     c->is_open[1] = now >> 30 & 1u;
     c->is_open[2] = now >> 31 & 1u;
@@ -430,15 +286,15 @@ static inline camber_u32 restore_pixel(private tile_state *c, global const float
         take_level(planes, s.group, at, &c->levels[1]);
     if (c->is_open[2])
         take_level(planes, s.layer, at, &c->levels[2]);
-    if ((now & SPILL_BRUSH) == SPILL_BRUSH)
+    if ((now & CAMBER_SPILL_BRUSH) == CAMBER_SPILL_BRUSH)
         return ~0u;
-    c->now = brushes[now & SPILL_BRUSH];
+    c->now = brushes[now & CAMBER_SPILL_BRUSH];
     if (c->now.mode == CAMBER_BRUSH_UNION) {
         c->sum = planes[s.sums * PLANE + at];
         c->normal_x = planes[(s.sums + 1) * PLANE + at];
         c->normal_y = planes[(s.sums + 2) * PLANE + at];
     }
-    return now & SPILL_BRUSH;
+    return now & CAMBER_SPILL_BRUSH;
 }
 
 /* ---- The row */
@@ -461,15 +317,17 @@ static inline void write_pixel(private const tile_state *c, global camber_u32 *p
                                level_of(1.0f - l.through + l.through * s.a) << 24;
 }
 
-kernel __attribute__((reqd_work_group_size(COVER_LANES, 1, 1))) void rasterize(
+kernel __attribute__((reqd_work_group_size(RASTERIZE_LANES, 1, 1))) void rasterize(
     global const float *restrict segments, global const camber_u32 *restrict starts,
     global const camber_u32 *restrict lists, global const camber_brush *restrict brushes,
     global const camber_u32 *restrict jobs, global camber_u32 *restrict pixels, const camber_target_args s,
-    global float *restrict spill, const camber_spill_args slice) {
+    global float *restrict spill, const camber_spill_args slice, global const float *restrict measures,
+    global const camber_brush_ext *restrict brush_ext, global const float *restrict side_table,
+    global const float *restrict planes) {
     local sixteen b;
-    local float values[COVER_LANES];
+    local float values[RASTERIZE_LANES];
     tile_state c;
-    const size_t item = get_global_id(0) / COVER_LANES + s.first_job;
+    const size_t item = get_global_id(0) / RASTERIZE_LANES + s.first_job;
     const camber_u32 tile = jobs[2 * item], column = tile % s.columns, row = tile / s.columns, from = starts[tile];
     const float2 corner = (float2)(s.left + (float)(column * CAMBER_TILE_PX), s.top + (float)(row * CAMBER_TILE_PX));
     global float *own_spill = spill + (size_t)tile * slice.tile_words;
@@ -480,7 +338,7 @@ kernel __attribute__((reqd_work_group_size(COVER_LANES, 1, 1))) void rasterize(
     if (!slice.is_first && !idles)
         current = restore_pixel(&c, own_spill, brushes, slice);
     barrier(CLK_GLOBAL_MEM_FENCE); /* before one of them keeps what all have taken */
-    int full = current == SPILL_FULL;
+    int full = current == CAMBER_SPILL_FULL;
     while (end > from && !full) {
         const camber_u32 most = end - from < BATCH ? end - from : BATCH;
         load_batch(&b, segments, lists, end, most);
@@ -504,7 +362,8 @@ kernel __attribute__((reqd_work_group_size(COVER_LANES, 1, 1))) void rasterize(
         write_pixel(&c, pixels, s, column, row);
     else if (!idles)
         spill_pixel(&c, own_spill, slice,
-                    full ? SPILL_FULL
-                         : (current & SPILL_BRUSH) | (camber_u32)c.is_open[1] << 30 | (camber_u32)c.is_open[2] << 31);
+                    full ? CAMBER_SPILL_FULL
+                         : (current & CAMBER_SPILL_BRUSH) | (camber_u32)c.is_open[1] << 30 |
+                               (camber_u32)c.is_open[2] << 31);
 }
 #endif

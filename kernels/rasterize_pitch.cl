@@ -1,5 +1,14 @@
-/* What rasterize.cl draws of a plane that is seen at an angle, of which kernels/pitch_coverage.h says what it is. */
+/* Segments of a plane that is seen at an angle: kernels/pitch_coverage.h says how. */
+#include "pitch_features.h"
+#include "rasterize_rich.cl"
+
 #if CAMBER_RASTER_PITCHED
+
+/* A segment that is seen at an angle. */
+typedef struct tilted {
+    global const float *segment, *plane, *measure, *side_table;
+    camber_eye eye;
+} tilted;
 
 static inline void put_tilted(private tile_state *c, private const camber_pitch_edge *p, int i, float16 area,
                               private const camber_pitch_pixel *at) {

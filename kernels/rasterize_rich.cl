@@ -1,4 +1,10 @@
-/* What rasterize.cl draws of brushes with features, of which kernels/features.h says what they are. */
+/* Segments of brushes with features: kernels/features.h says what these are. */
+#ifndef CAMBER_RASTERIZE_RICH_CL
+#define CAMBER_RASTERIZE_RICH_CL
+
+#include "pitch_images.h"
+#include "rasterize_cells.cl"
+
 #if CAMBER_RASTER_RICH
 
 /* Colours that change from pixel to pixel go straight under what the level has. */
@@ -59,8 +65,7 @@ static inline void image_line(global const float *side_table, private const camb
         color[channel] *= rgba[channel];
 }
 
-/* As draw_segment. */
-/* As draw_segment. */
+/* Draws what draw_segment draws. */
 static __attribute__((noinline)) void draw_rich(private tile_state *c, private const places *at,
                                                 global const float *segment, place where, global const float *measure,
                                                 global const float *side_table) {
@@ -117,4 +122,6 @@ static __attribute__((noinline)) void draw_rich(private tile_state *c, private c
 }
 
 #endif
+#endif
+
 #endif

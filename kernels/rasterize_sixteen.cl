@@ -1,7 +1,18 @@
-/* What rasterize.cl draws of segments of one brush that is no union: sixteen at a time. What is to be known of them is
- * worked out side by side, as camber_edge_of and camber_cell_masks_of say it of one, to the same bits. Then their cells
- * follow each other in one list: a processor that guesses which way branches go guesses few of them wrong. */
+/* Segments of one brush that is no union, sixteen at a time. What is to be known of them is worked out side by side, as
+ * camber_edge_of and camber_cell_masks_of say it of one, to the same bits. Then their cells follow each other in one
+ * list: a processor that guesses which way branches go guesses few of them wrong. */
+#include "rasterize_cells.cl"
+#include "transpose.cl"
+
 #if CAMBER_LANES == 16
+/* Segments of a brush that is no union wait until there are so many. */
+#define CAMBER_SIXTEEN 16
+
+typedef struct sixteen {
+    uint which[CAMBER_SIXTEEN];
+    uint count;
+} sixteen;
+
 #define CELL_NEAR_END 64u
 #define CELL_FULL 128u
 #define CELL_LANE 8

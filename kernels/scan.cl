@@ -4,6 +4,8 @@
  * offsets[n / CAMBER_POINT_CHUNK] and sums[n / CAMBER_BLOCK], both vertices | indices << 16. The sums of blocks are
  * few; the host adds them up in 64 bits and learns the sizes by it. joins_before is joins once more, for the
  * vectoriser's sake. */
+#include "join.h"
+
 #define LANES (CAMBER_BLOCK / CAMBER_POINT_CHUNK)
 
 CAMBER_KERNEL(LANES, scan,

@@ -4,7 +4,7 @@
 #ifndef CAMBER_SEGMENT_H
 #define CAMBER_SEGMENT_H
 
-#include "layout.h"
+#include "raster_args.h"
 
 /* The host has all there is; what the device is built for, its build says. */
 #ifndef CAMBER_RASTER_RICH
@@ -19,7 +19,7 @@
 #define CAMBER_LANES 16
 #endif
 
-#if defined(__OPENCL_VERSION__) && CAMBER_LANES == 16
+#if defined(CAMBER_DEVICE) && CAMBER_LANES == 16
 typedef float16 camber_real;
 typedef uint16 camber_words;
 typedef int16 camber_mask;
@@ -219,7 +219,7 @@ CAMBER_FN camber_words camber_segment_box(const camber_segment *s, camber_mask d
     const camber_mask meets = drawn & (x0 < right + 1.0f) & (y0 < bottom + 1.0f) & (x1 >= 0.0f) & (y1 >= 0.0f);
     const camber_real fx = CAMBER_MORE(x0, none), fy = CAMBER_MORE(y0, none);
     const camber_real lx = x1 < right ? x1 : CAMBER_REAL(right), ly = y1 < bottom ? y1 : CAMBER_REAL(bottom);
-#if defined(__OPENCL_VERSION__) && CAMBER_LANES == 16
+#if defined(CAMBER_DEVICE) && CAMBER_LANES == 16
     const camber_words box = convert_uint16(meets ? fx : none) | convert_uint16(meets ? fy : none) << 8 |
                              convert_uint16(meets ? lx : none) << 16 | convert_uint16(meets ? ly : none) << 24;
 #else
@@ -271,11 +271,16 @@ CAMBER_FN camber_u32 camber_segment_is_narrow(CAMBER_GLOBAL const float *segment
            camber_same_tile(CAMBER_LESS(ay, by) - reach, CAMBER_MORE(ay, by) + reach);
 }
 
-/* An area of the picture: its first tile, px, and its tiles. */
-typedef struct camber_tile_grid {
-    float left, top;
-    camber_u32 columns, rows;
-} camber_tile_grid;
+/* The tiles of a box: camber_segment_box. */
+#define CAMBER_BOX_FIRST_X(box) ((box)&255u)
+#define CAMBER_BOX_FIRST_Y(box) ((box) >> 8 & 255u)
+#define CAMBER_BOX_LAST_X(box) ((box) >> 16 & 255u)
+#define CAMBER_BOX_LAST_Y(box) ((box) >> 24)
+
+/* Whether a box is one tile that camber_tile_span says nothing of. */
+CAMBER_FN camber_u32 camber_box_is_one_tile(camber_u32 box, camber_u32 columns) {
+    return box >> 16 == (box & 0xffffu) && CAMBER_BOX_FIRST_X(box) - 1u < columns - 2u;
+}
 
 /* Of a box, the tiles in row y that a segment meets, as camber_row_span has them: boxes of one column or row have all.
  * What lies at the area's edge may be cut, and must be as it is in any other area. */
@@ -291,7 +296,7 @@ CAMBER_FN camber_u32 camber_tile_span(CAMBER_GLOBAL const float *segment, camber
     return camber_row_span(segment, middle, of->left, first, last, CAMBER_TILE_PX);
 }
 
-#ifdef __OPENCL_VERSION__
+#ifdef CAMBER_DEVICE
 typedef char camber_brush_is_48_bytes[sizeof(camber_brush) == 48 ? 1 : -1];
 #else
 _Static_assert(sizeof(camber_brush) == 48, "the device reads brushes of 48 bytes");

@@ -1,26 +1,16 @@
-/* shape: sixteen records a work-item, the segments that end with them and the tiles that their boxes meet.
- * Reads records[CAMBER_RECORD_WORDS * stride * record_count], rows[CAMBER_RASTER_ROW_WORDS * row count]; writes
- * shapes[CAMBER_SEGMENT_WORDS * n] and boxes[n] from base on for the records from first on, n of them rounded up to
- * sixteens, with CAMBER_NO_BOX where no segment ends that is drawn. Of CAMBER_RASTER_RICH writes measures[4 * n] too:
- * how far along its line A lies, how fast that grows, how long the line is; 0 where nothing is measured. Of
- * CAMBER_RASTER_PITCHED shapes are bands of the picture, and planes[CAMBER_PLANE_WORDS * n] has what lies in the plane.
- */
-#define STARTS (CAMBER_POINT_FIRST | CAMBER_RECORD_BREAK | CAMBER_RECORD_START)
-
-typedef struct camber_setup_args {
-    camber_u32 first, end, record_count; /* records: of the run, and all */
-    camber_u32 stride, strips, linear;   /* stride: 2 where they are measured */
-    camber_u32 base, first_row;          /* of the shapes, and of the table of rows */
-    float left, top;                     /* of what is drawn, in the picture, px */
-    camber_u32 columns, rows;            /* tiles */
-    float horizon;                       /* in the picture, px from its top */
-    camber_eye eye;
-} camber_setup_args;
-
-static inline uint4 record_at(global const camber_u32 *records, int i, camber_setup_args r) {
-    const int last = (int)r.record_count - 1, at = i < 0 ? 0 : i > last ? last : i;
-    return vload4((size_t)at * r.stride, records);
-}
+/* setup: sixteen records a work-item, the segments that end with them and the tiles that their boxes meet.
+ * Reads records[CAMBER_RECORD_WORDS * stride * record_count], rows[CAMBER_RASTER_ROW_WORDS * row count]. From the
+ * record first on, for n records rounded up to sixteens, it writes from base on:
+ *     segments[CAMBER_SEGMENT_WORDS * n]; CAMBER_RASTER_PITCHED: as bands of the picture
+ *     boxes[n], CAMBER_NO_BOX where no segment ends that is drawn
+ *     measures[CAMBER_SEGMENT_MEASURES * n], only CAMBER_RASTER_RICH: how far along its line A lies, how fast that
+ *         grows, how long the line is; 0 where records have no arc lengths
+ *     planes[CAMBER_PLANE_WORDS * n], only CAMBER_RASTER_PITCHED: the segment in its plane
+ * setup_gpu.cl does the same with a work-item a record. */
+#include "features.h"
+#include "pitch_segment.h"
+#include "record_at.cl"
+#include "transpose.cl"
 
 #if CAMBER_LANES == 16
 /* Sixteen records from one on, or the nearest there are. */
@@ -77,33 +67,7 @@ static inline void take_rows(global const float *rows, camber_u32 first, uint16 
         row[k] = vload16(0, words[k]);
 }
 
-static inline float16 put_together(float16 high, float16 low, int upper) {
-    return upper ? (float16)(high.s8, low.s8, high.s9, low.s9, high.sa, low.sa, high.sb, low.sb, high.sc, low.sc,
-                             high.sd, low.sd, high.se, low.se, high.sf, low.sf)
-                 : (float16)(high.s0, low.s0, high.s1, low.s1, high.s2, low.s2, high.s3, low.s3, high.s4, low.s4,
-                             high.s5, low.s5, high.s6, low.s6, high.s7, low.s7);
-}
-
-/* Sixteen words of sixteen segments: four perfect shuffles turn the square over. */
-static inline void turn_over(private float16 *words) {
-#pragma unroll
-    for (int turn = 0; turn < 4; turn++) {
-        float16 next[16];
-#pragma unroll
-        for (int i = 0; i < 8; i++) {
-            next[2 * i] = put_together(words[i], words[i + 8], 0);
-            next[2 * i + 1] = put_together(words[i], words[i + 8], 1);
-        }
-#pragma unroll
-        for (int i = 0; i < 16; i++)
-            words[i] = next[i];
-    }
-}
-
 #if CAMBER_RASTER_RICH
-#define MEASURES , global float *restrict measures
-#define MEASURES_GIVEN , measures
-
 static inline float2 measure_at(global const camber_u32 *records, int i, camber_setup_args r) {
     const int last = (int)r.record_count - 1, at = i < 0 ? 0 : i > last ? last : i;
     return r.stride == 2 ? as_float2(vload2(4 * (size_t)at + 2, records)) : (float2)(0.0f);
@@ -124,9 +88,6 @@ static inline void put_measures(global const camber_u32 *records, int first, cam
     for (int k = 0; k < 16; k++)
         vstore4((float4)(from[k], ((private const float *)&rates)[k], total[k], 0.0f), (size_t)k, measures);
 }
-#else
-#define MEASURES
-#define MEASURES_GIVEN
 #endif
 
 static inline void put_segments(private float16 *words, global float *segments, size_t segment_words) {
@@ -136,9 +97,6 @@ static inline void put_segments(private float16 *words, global float *segments, 
 }
 
 #if CAMBER_RASTER_PITCHED
-#define PLANES , global float *restrict planes
-#define PLANES_GIVEN , planes
-
 static inline void put_planes(private const camber_segment *s, private const camber_plane *p, global float *planes) {
     const float16 none = (float16)(0.0f);
     float16 words[16] = {s->ax,  s->ay,  s->bx,         s->by,      s->ux,      s->uy,       s->nax,      s->nay,
@@ -148,16 +106,13 @@ static inline void put_planes(private const camber_segment *s, private const cam
                         p->left[1],  p->left[2],  p->right[0], p->right[1], p->right[2], none,    none,      none};
     put_segments(rest, planes + 16, CAMBER_PLANE_WORDS);
 }
-#else
-#define PLANES
-#define PLANES_GIVEN
 #endif
 
 CAMBER_KERNEL(1, setup,
               (global const camber_u32 *restrict records, global const float *restrict rows,
-               global float *restrict segments, global camber_u32 *restrict boxes,
-               const camber_setup_args r MEASURES PLANES),
-              (records, rows, segments, boxes, r MEASURES_GIVEN PLANES_GIVEN)) {
+               global float *restrict segments, global camber_u32 *restrict boxes, const camber_setup_args r,
+               global float *restrict measures, global float *restrict planes),
+              (records, rows, segments, boxes, r, measures, planes)) {
     const size_t group = CAMBER_WORK_ITEM;
     const int first = (int)(r.first + 16 * (uint)group);
     const int16 lanes = (int16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);

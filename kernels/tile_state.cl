@@ -1,32 +1,12 @@
-/* What is gathered of a tile: colours as what they let through, the levels that they go under (a group or a layer of a
- * picture), front to back, and what is kept of it where shapes are cut into slices. */
+/* What rasterize gathers of a tile: the brush as what it lets through, and the levels that it goes under (the picture,
+ * a group, a layer), front to back. How a tile spills that between slices, and takes it back. */
+#ifndef CAMBER_TILE_STATE_CL
+#define CAMBER_TILE_STATE_CL
+
+#include "features.h"
+
 #define CELLS (CAMBER_TILE_CELLS * CAMBER_TILE_CELLS)
 #define LEVELS 3 /* the picture, a group, a layer */
-
-typedef struct camber_target_args {
-    float left, top; /* of the first tile in the picture, px */
-    camber_u32 columns, stride;
-    float r, g, b, a; /* background, premultiplied */
-    camber_u32 above; /* rows of pixels before these */
-    float horizon;    /* of CAMBER_RASTER_PITCHED: rows of pixels of the picture in which nothing is drawn */
-    camber_eye eye;
-    float sky[4];         /* what they have, premultiplied */
-    camber_u32 first_job; /* an offset of work-items would be a build of its own with PoCL */
-} camber_target_args;
-
-/* Slices of the shapes are drawn one after the other, the last in drawing order first. Of a tile there is kept between
- * them: bits and counts of its cells, a word a row of cells, and planes of a cell's sixteen floats, from KEPT_WORDS on:
- * the brush, the picture's level, and from where it is said here, what unions, groups and layers have besides. */
-typedef struct camber_spill_args {
-    camber_u32 is_first, is_last; /* as they are drawn */
-    camber_u32 tile_words, sums, group, layer;
-} camber_spill_args;
-
-#define SPILL_WORDS 48
-#define SPILL_BLEND_COUNTS 48 /* bytes: six of a bit a cell lie before them */
-#define SPILL_ROWS 28         /* words */
-#define SPILL_BRUSH 0x3fffffffu
-#define SPILL_FULL 0x3ffffffeu /* a row of cells that nothing shows through */
 
 #if CAMBER_LANES == 16
 typedef struct tile_state {
@@ -243,9 +223,9 @@ static inline void restore_planes(global const float *planes, private float16 (*
 /* As far as cells are not what they begin as. */
 static inline void spill_cells(private const tile_state *c, global float *spill, camber_spill_args s, int first,
                                int last, camber_u32 now) {
-    global uchar *bits = (global uchar *)spill, *blend_count = bits + SPILL_BLEND_COUNTS;
-    global camber_u32 *rows = (global camber_u32 *)spill + SPILL_ROWS;
-    global float *planes = spill + SPILL_WORDS;
+    global uchar *bits = (global uchar *)spill, *blend_count = bits + CAMBER_SPILL_BLEND_COUNTS;
+    global camber_u32 *rows = (global camber_u32 *)spill + CAMBER_SPILL_ROWS;
+    global float *planes = spill + CAMBER_SPILL_WORDS;
     const ulong of[6] = {c->brushed, c->filled, c->done, c->touched[0], c->touched[1], c->touched[2]};
     for (int j = first; j <= last; j++) {
         for (int k = 0; k < 6; k++)
@@ -265,20 +245,20 @@ static inline void spill_cells(private const tile_state *c, global float *spill,
 #endif
 }
 
-/* Gives the brush that was drawn last, or KEPT_FULL. Rows of cells that are not full have seen the same list, so that
- * all of them have the same brush and levels. */
+/* Gives the brush that was drawn last, or CAMBER_SPILL_FULL. Rows of cells that are not full have seen the same list,
+ * so that all of them have the same brush and levels. */
 static inline camber_u32 restore_cells(private tile_state *c, global const float *spill,
                                        global const camber_brush *brushes, camber_spill_args s, int first, int last) {
-    global const uchar *bits = (global const uchar *)spill, *blend_count = bits + SPILL_BLEND_COUNTS;
-    global const camber_u32 *rows = (global const camber_u32 *)spill + SPILL_ROWS;
-    global const float *planes = spill + SPILL_WORDS;
+    global const uchar *bits = (global const uchar *)spill, *blend_count = bits + CAMBER_SPILL_BLEND_COUNTS;
+    global const camber_u32 *rows = (global const camber_u32 *)spill + CAMBER_SPILL_ROWS;
+    global const float *planes = spill + CAMBER_SPILL_WORDS;
     ulong of[6] = {0, 0, 0, 0, 0, 0};
-    camber_u32 now = SPILL_FULL;
+    camber_u32 now = CAMBER_SPILL_FULL;
     for (int j = first; j <= last; j++) {
         for (int k = 0; k < 6; k++)
             of[k] |= (ulong)bits[CAMBER_TILE_CELLS * k + j] << (CAMBER_TILE_CELLS * j);
         vstore8(vload8((size_t)j, blend_count), (size_t)j, c->blend_count);
-        now = rows[j] == SPILL_FULL ? now : rows[j];
+        now = rows[j] == CAMBER_SPILL_FULL ? now : rows[j];
     }
     c->brushed = of[0];
     c->filled = of[1];
@@ -287,16 +267,16 @@ static inline camber_u32 restore_cells(private tile_state *c, global const float
         c->touched[k] = of[3 + k];
     restore_planes(planes, c->brush, 0, 1, c->brushed);
     restore_planes(planes, c->level[0], 1, 4, c->touched[0]);
-    if (now == SPILL_FULL)
+    if (now == CAMBER_SPILL_FULL)
         return now;
     for (int k = 1; k < LEVELS; k++)
         if (now >> (29 + k) & 1u) {
             open_level(c, k);
             restore_planes(planes, c->level[k], k == 1 ? s.group : s.layer, 4, c->touched[k]);
         }
-    if ((now & SPILL_BRUSH) == SPILL_BRUSH)
+    if ((now & CAMBER_SPILL_BRUSH) == CAMBER_SPILL_BRUSH)
         return ~0u;
-    c->now = brushes[now & SPILL_BRUSH];
+    c->now = brushes[now & CAMBER_SPILL_BRUSH];
     if (c->now.mode == CAMBER_BRUSH_UNION) {
         clear_sums(c);
         restore_planes(planes, c->brush + 1, s.sums, 3, c->brushed);
@@ -305,6 +285,8 @@ static inline camber_u32 restore_cells(private tile_state *c, global const float
     if (c->now.mode == CAMBER_BRUSH_MASKED)
         restore_planes(planes, &c->mask, s.layer + 4, 1, c->touched[2]);
 #endif
-    return now & SPILL_BRUSH;
+    return now & CAMBER_SPILL_BRUSH;
 }
+#endif
+
 #endif

@@ -53,38 +53,24 @@ if(CLANG_FORMAT_IS_PINNED)
   lint_step(format COMMAND ${CLANG_FORMAT} --dry-run -Werror ${lint_sources} ${lint_headers} ${lint_others} DEPENDS ${lint_sources} ${lint_headers} ${lint_others})
 endif()
 
-foreach(method 0 1 2)
-  # As for a GPU, and as for a CPU, where a kernel calls its body (CAMBER_KERNEL).
-  lint_step(kernels_cpu_${method}
-    COMMAND ${CLANG} -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only ${lint_warnings}
-            -Wno-unused-function -Wno-unused-parameter -Wno-ignored-pragmas -DCAMBER_METHOD=${method} -DCAMBER_POINT_CHUNK=256 -D__OPENCL_VERSION__=120 ${CMAKE_BINARY_DIR}/src/kernels.cl
-    DEPENDS ${CMAKE_BINARY_DIR}/src/kernels.cl)
-  lint_step(kernels_${method}
-    COMMAND ${CLANG} -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only ${lint_warnings}
-            -Wno-unused-function -Wno-unused-parameter -Wno-ignored-pragmas -DCAMBER_METHOD=${method} -D__OPENCL_VERSION__=120 ${CMAKE_BINARY_DIR}/src/kernels.cl
-    DEPENDS ${CMAKE_BINARY_DIR}/src/kernels.cl)
+# Each kernel file by itself, as editors check it, in as many builds as show all of it: as for a CPU, where a kernel
+# calls its body (CAMBER_KERNEL), and as for a GPU.
+file(GLOB kernels CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/kernels/*.cl)
+file(GLOB kernel_headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/kernels/*.h)
+file(STRINGS ${PROJECT_SOURCE_DIR}/kernels/compile_flags.txt kernel_flags)
+set(build_plain)
+set(build_cpu -DCAMBER_POINT_CHUNK=256 -DCAMBER_HAS_ARC_LENGTH=1 -UCAMBER_METHOD -DCAMBER_METHOD=1 -DCAMBER_RASTER_RICH=1)
+set(build_pitched -DCAMBER_PITCHED=1 -DCAMBER_RASTER_RICH=1 -DCAMBER_RASTER_PITCHED=1)
+set(build_gpu -DCAMBER_LANES=1 -Wno-bitwise-instead-of-logical -UCAMBER_METHOD -DCAMBER_METHOD=2)
+foreach(kernel IN LISTS kernels)
+  get_filename_component(name ${kernel} NAME_WE)
+  foreach(build plain cpu pitched gpu)
+    lint_step(kernel_${name}_${build}
+      COMMAND ${CLANG} ${kernel_flags} -fsyntax-only ${lint_warnings} -Wno-unused-function -Wno-unused-parameter
+              -Wno-ignored-pragmas -Wno-missing-field-initializers ${build_${build}} ${kernel}
+      DEPENDS ${kernels} ${kernel_headers} ${PROJECT_SOURCE_DIR}/kernels/compile_flags.txt)
+  endforeach()
 endforeach()
-
-lint_step(kernels_network
-  COMMAND ${CLANG} -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only ${lint_warnings}
-          -Wno-unused-function -Wno-unused-parameter -Wno-ignored-pragmas -D__OPENCL_VERSION__=120 ${CMAKE_BINARY_DIR}/src/network.cl
-  DEPENDS ${CMAKE_BINARY_DIR}/src/network.cl)
-
-foreach(variant 0,0 1,0 1,1)
-  string(REGEX REPLACE "(.),(.)" "-DCAMBER_RASTER_RICH=\\1;-DCAMBER_RASTER_PITCHED=\\2" macros ${variant})
-  string(REPLACE "," "_" variant ${variant})
-  lint_step(kernels_cover_${variant}
-    COMMAND ${CLANG} -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only ${lint_warnings}
-            -Wno-unused-function -Wno-unused-parameter -Wno-ignored-pragmas -D__OPENCL_VERSION__=120 ${macros}
-            ${CMAKE_BINARY_DIR}/src/rasterize.cl
-    DEPENDS ${CMAKE_BINARY_DIR}/src/rasterize.cl)
-endforeach()
-
-lint_step(kernels_cover_lanes
-  COMMAND ${CLANG} -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only ${lint_warnings}
-          -Wno-unused-function -Wno-unused-parameter -Wno-ignored-pragmas -D__OPENCL_VERSION__=120 -Wno-bitwise-instead-of-logical -DCAMBER_LANES=1
-          ${CMAKE_BINARY_DIR}/src/rasterize.cl
-  DEPENDS ${CMAKE_BINARY_DIR}/src/rasterize.cl)
 
 file(GLOB public_headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/camber*.h)
 foreach(header IN LISTS public_headers)

@@ -2,16 +2,11 @@
 #ifndef CAMBER_EMBEDDED_H
 #define CAMBER_EMBEDDED_H
 
-extern const char camber_kernels_source[]; /* kernels/ as one program */
-extern const unsigned long camber_kernels_source_size;
-extern const char camber_network_kernels_source[]; /* those of networks, as another */
-extern const unsigned long camber_network_kernels_source_size;
-extern const char camber_arc_length_kernels_source[]; /* those of measures */
-extern const unsigned long camber_arc_length_kernels_source_size;
-extern const char camber_offset_kernels_source[]; /* those of offsets */
-extern const unsigned long camber_offset_kernels_source_size;
-extern const char camber_raster_kernels_source[]; /* those that draw */
-extern const unsigned long camber_raster_kernels_source_size;
+/* The programs of kernels/, each with all that it includes. */
+extern const char camber_tessellate_kernels[], camber_cull_kernels[], camber_arc_length_kernels[];
+extern const unsigned long camber_tessellate_kernels_size, camber_cull_kernels_size, camber_arc_length_kernels_size;
+extern const char camber_offset_kernels[], camber_raster_kernels[];
+extern const unsigned long camber_offset_kernels_size, camber_raster_kernels_size;
 extern const char camber_edge_glsl[]; /* shaders/ without their #version line */
 extern const unsigned long camber_edge_glsl_size;
 extern const char camber_stroke_vert[], camber_stroke_frag[];

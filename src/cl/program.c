@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const OPTIONS = "-cl-std=CL1.2 -w -DCAMBER_METHOD=%d%s%s -DCAMBER_POINT_CHUNK=%zu%s";
+static const char *const OPTIONS = "-cl-std=CL1.2 -w -DCAMBER_DEVICE=1 -DCAMBER_METHOD=%d%s%s -DCAMBER_POINT_CHUNK=%zu%s";
 
 /* Which kernels a program has. */
 typedef enum program_kind {
@@ -25,7 +25,7 @@ typedef struct recipe {
     const char *name;
     const char *source;
     size_t source_size;
-    char options[192];
+    char options[256];
 } recipe;
 
 /* Everything that a binary depends on. */
@@ -240,7 +240,7 @@ static void set_options(const camber_device *device, int method, bool measured, 
 #ifdef CAMBER_KERNEL_FOLDER
 /* For who changes kernels: their text is read where the build has written it, and a change is no build. */
 static camber_status make_current(camber_device *device, recipe *from, camber_program **program) {
-    static const char *const files[] = {"kernels.cl", "network.cl", "arc_length.cl", "offset.cl", "rasterize.cl"};
+    static const char *const files[] = {"tessellate.cl", "cull.cl", "arc_length.cl", "offset.cl", "raster.cl"};
     char path[CAMBER_FOLDER_SIZE], *text = NULL;
     snprintf(path, sizeof path, "%s/%s", CAMBER_KERNEL_FOLDER, files[from->kind]);
     camber_status status = camber_read_file(device->context, path, CAMBER_NAMED_BY_CALLER, &text, &from->source_size);
@@ -263,7 +263,7 @@ static camber_status use_program(camber_device *device, recipe *from, camber_pro
 }
 
 camber_status camber_device_program(camber_device *device, camber_program_desc desc, camber_program **program) {
-    recipe from = {PROGRAM_METHOD, camber_method_name(desc.method), camber_kernels_source, camber_kernels_source_size,
+    recipe from = {PROGRAM_METHOD, camber_method_name(desc.method), camber_tessellate_kernels, camber_tessellate_kernels_size,
                    ""};
     set_options(device, (int)desc.method, desc.measured, &from);
     const size_t used = strlen(from.options);
@@ -273,20 +273,20 @@ camber_status camber_device_program(camber_device *device, camber_program_desc d
 }
 
 camber_status camber_device_arc_length_program(camber_device *device, camber_program **program) {
-    recipe from = {PROGRAM_ARC_LENGTHS, "measures", camber_arc_length_kernels_source,
-                   camber_arc_length_kernels_source_size, ""};
+    recipe from = {PROGRAM_ARC_LENGTHS, "measures", camber_arc_length_kernels,
+                   camber_arc_length_kernels_size, ""};
     set_options(device, -1, false, &from);
     return use_program(device, &from, &device->arc_length_program, program);
 }
 
 camber_status camber_device_offset_program(camber_device *device, bool measured, camber_program **program) {
-    recipe from = {PROGRAM_OFFSETS, "offsets", camber_offset_kernels_source, camber_offset_kernels_source_size, ""};
+    recipe from = {PROGRAM_OFFSETS, "offsets", camber_offset_kernels, camber_offset_kernels_size, ""};
     set_options(device, -1, measured, &from);
     return use_program(device, &from, &device->offset_programs[measured], program);
 }
 
 camber_status camber_device_raster_program(camber_device *device, unsigned variant, camber_program **program) {
-    recipe from = {PROGRAM_RASTER, "drawing", camber_raster_kernels_source, camber_raster_kernels_source_size, ""};
+    recipe from = {PROGRAM_RASTER, "drawing", camber_raster_kernels, camber_raster_kernels_size, ""};
     set_options(device, -1, false, &from);
     const size_t used = strlen(from.options);
     snprintf(from.options + used, sizeof from.options - used, "%s%s%s",
@@ -298,7 +298,7 @@ camber_status camber_device_raster_program(camber_device *device, unsigned varia
 
 camber_status camber_device_network_program(camber_device *device, bool measured, bool pitched,
                                             camber_program **program) {
-    recipe from = {PROGRAM_NETWORK, "networks", camber_network_kernels_source, camber_network_kernels_source_size, ""};
+    recipe from = {PROGRAM_NETWORK, "networks", camber_cull_kernels, camber_cull_kernels_size, ""};
     set_options(device, -1, measured, &from);
     const size_t used = strlen(from.options);
     if (pitched)

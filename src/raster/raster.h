@@ -107,17 +107,6 @@ void camber_raster_stages_free(camber_context *context, camber_raster_stages *st
 
 /* ---- What both need ---- */
 
-/* As the kernels of that name read them. */
-typedef struct camber_setup_args {
-    uint32_t first, end, record_count;
-    uint32_t stride, strips, linear;
-    uint32_t base, first_row;
-    float left, top;
-    uint32_t columns, rows;
-    float horizon;
-    camber_eye eye;
-} camber_setup_args;
-
 /* Runs of records that are drawn by one table. */
 typedef struct camber_record_range {
     camber_mesh *mesh; /* NULL: the records of a fill */

@@ -1,6 +1,8 @@
 /* setup -> bin_count -> bin_scan -> bin_scatter -> rasterize on a device, an area of the picture at a time. */
 #include "raster/rasterizer.h"
 
+#include "cl/launch.h"
+
 #include <string.h>
 
 /* Segments a chunk, at least; chunks, at most: each has a count of every tile. A tile with more segments than HEAVY is
@@ -12,29 +14,7 @@ static const char *const stage_names[STAGES] = {"setup", "bin_count", "bin_scan"
 /* Work-items a work-group, and how many of those that one takes else: kernels/rasterize_gpu.cl. */
 static const struct { size_t lanes, jobs; } lanes_of[STAGES] = {{64, 4}, {32, 1}, {64, 4}, {32, 1}, {128, 1}};
 
-/* As count and fill read them. */
-typedef struct chunks {
-    uint32_t segment_count, a_chunk, tiles;
-    camber_tile_grid of;
-} chunks;
-
-/* As cover reads it. */
-typedef struct sheet {
-    float left, top;
-    uint32_t columns, stride;
-    float background[4];
-    uint32_t above; /* rows of pixels before these */
-    float horizon;
-    camber_eye eye;
-    float sky[4];
-    uint32_t first_job;
-} sheet;
-
-/* What tiles keep between slices, as cover reads it. */
-typedef struct spill {
-    uint32_t is_first, is_last, tile_words, sums, group, layer;
-} spill;
-enum { SPILL_WORDS = 48, PLANE_WORDS = CAMBER_TILE_PX * CAMBER_TILE_PX };
+enum { PLANE_WORDS = CAMBER_TILE_PX * CAMBER_TILE_PX };
 
 /* What is drawn of an area. */
 typedef struct picture {
@@ -45,15 +25,7 @@ typedef struct picture {
 
 /* ---- Stages ---- */
 
-typedef struct argument {
-    size_t size_bytes;
-    const void *value;
-} argument;
-
-#define BUFFER(which)                                                                                                  \
-    { sizeof(cl_mem), raster->buffers + (which) }
-#define VALUE(value)                                                                                                   \
-    { sizeof(value), &(value) }
+#define BUFFER(which) CAMBER_ARG_BUFFER(raster->buffers[which])
 
 /* Waits for what runs: once, as every waking up costs time. */
 static camber_status settle(camber_raster *raster) {
@@ -75,36 +47,26 @@ static bool has_lanes(const camber_raster *raster) {
 }
 
 /* So many work-items, each a work-group, or what does their work. */
-static camber_status run(camber_raster *raster, int stage, const argument *arguments, cl_uint argument_count,
+static camber_status run(camber_raster *raster, int stage, const camber_kernel_arg *args, size_t arg_count,
                          size_t job_count) {
-    const camber_device *device = raster->device;
     const cl_kernel kernels[STAGES] = {raster->program->setup, raster->program->bin_count, raster->program->bin_scan,
                                        raster->program->bin_scatter, raster->program->rasterize};
     const bool by_lanes = has_lanes(raster);
     const size_t lanes = by_lanes ? lanes_of[stage].lanes : 1, jobs = by_lanes ? lanes_of[stage].jobs : 1;
-    const size_t count = (job_count + jobs - 1) / jobs * lanes;
+    const camber_launch launch = {
+        stage_names[stage], kernels[stage], args, arg_count, (job_count + jobs - 1) / jobs * lanes, lanes};
     cl_event event = NULL;
-    if (count == 0)
+    if (job_count == 0)
         return CAMBER_OK;
-    for (cl_uint i = 0; i < argument_count; i++) {
-        const cl_int code = clSetKernelArg(kernels[stage], i, arguments[i].size_bytes, arguments[i].value);
-        if (code != CL_SUCCESS)
-            return camber_fail_stage(device, "clSetKernelArg", stage_names[stage], code);
-    }
-    cl_int code = clEnqueueNDRangeKernel(device->queue, kernels[stage], 1, NULL, &count, &lanes, 0, NULL, &event);
-    if (code != CL_SUCCESS)
-        return camber_fail_stage(device, "clEnqueueNDRangeKernel", stage_names[stage], code);
+    const camber_status status = camber_launch_kernel(raster->device, &launch, &event);
+    if (status != CAMBER_OK)
+        return status;
     raster->pending[raster->pending_count++] = (camber_raster_pending){event, stage};
     return raster->pending_count == CAMBER_RASTER_PENDING ? settle(raster) : CAMBER_OK;
 }
 
 static bool is_pitched(const camber_raster *raster) {
     return raster->variant & CAMBER_RASTER_PITCHED;
-}
-
-/* Of a kernel: those of the rich variants, and one more of those that are pitched. */
-static cl_uint more_arguments(const camber_raster *raster, cl_uint rich) {
-    return (raster->variant ? rich : 0) + is_pitched(raster);
 }
 
 /* What of a piece lies in the slice: its first record begins a work-item, as the piece's does. */
@@ -131,12 +93,12 @@ static camber_status make_segments(camber_raster *raster, const camber_raster_sc
         status = part ? camber_part_use(mesh, part) : CAMBER_OK;
         if (status != CAMBER_OK)
             break;
-        const cl_mem *records = part ? &part->buffers[CAMBER_BUFFER_RECORDS].mem : raster->buffers + BUFFER_FILL;
-        const argument arguments[] = {{sizeof(cl_mem), records}, BUFFER(BUFFER_ROWS), BUFFER(BUFFER_SEGMENTS),
-                                      BUFFER(BUFFER_BOXES),      VALUE(args),         BUFFER(BUFFER_ARC_LENGTHS),
-                                      BUFFER(BUFFER_PLANES)};
+        const cl_mem records = part ? part->buffers[CAMBER_BUFFER_RECORDS].mem : raster->buffers[BUFFER_FILL];
+        const camber_kernel_arg arguments[] = {
+            CAMBER_ARG_BUFFER(records), BUFFER(BUFFER_ROWS),        BUFFER(BUFFER_SEGMENTS), BUFFER(BUFFER_BOXES),
+            CAMBER_ARG_VALUE(args),     BUFFER(BUFFER_ARC_LENGTHS), BUFFER(BUFFER_PLANES)};
         const size_t jobs = (range.end - range.first + 15) / 16;
-        status = run(raster, STAGE_SETUP, arguments, 5 + more_arguments(raster, 1), jobs);
+        status = run(raster, STAGE_SETUP, arguments, sizeof arguments / sizeof *arguments, jobs);
     }
     return status;
 }
@@ -146,7 +108,7 @@ static size_t count_words(const camber_raster *raster) {
     return has_lanes(raster) ? 2 : 1;
 }
 
-static chunks cut_chunks(const camber_raster *raster, uint32_t *chunk_count) {
+static camber_bin_args cut_chunks(const camber_raster *raster, uint32_t *chunk_count) {
     const camber_raster_area *area = &raster->band;
     const bool by_lanes = has_lanes(raster);
     const size_t least = by_lanes ? CHUNK_OF_LANES : CHUNK, chunks_max = by_lanes ? CHUNKS_OF_LANES_MAX : CHUNKS_MAX;
@@ -156,20 +118,22 @@ static chunks cut_chunks(const camber_raster *raster, uint32_t *chunk_count) {
     const size_t count = wanted < bound || bound == 0 ? wanted : bound;
     const size_t a_chunk = count ? (raster->segment_count + count - 1) / count : 0;
     *chunk_count = (uint32_t)count;
-    return (chunks){
+    return (camber_bin_args){
         (uint32_t)raster->segment_count,
         (uint32_t)a_chunk,
         (uint32_t)tiles,
         {(float)area->x, (float)area->y, camber_raster_tiles(area->width), camber_raster_tiles(area->height)}};
 }
 
-static camber_status count_segments(camber_raster *raster, chunks c, uint32_t chunk_count) {
+static camber_status count_segments(camber_raster *raster, camber_bin_args c, uint32_t chunk_count) {
     camber_status status = camber_raster_reserve(raster, BUFFER_COUNTS,
                                                  count_words(raster) * 4 * c.tiles * (chunk_count ? chunk_count : 1));
     if (status == CAMBER_OK)
         status = camber_raster_reserve(raster, BUFFER_TOTALS, 4 * (size_t)c.tiles);
-    const argument count[] = {BUFFER(BUFFER_SEGMENTS), BUFFER(BUFFER_BOXES), BUFFER(BUFFER_COUNTS), VALUE(c)};
-    const argument total[] = {BUFFER(BUFFER_COUNTS), BUFFER(BUFFER_TOTALS), VALUE(c.tiles), VALUE(chunk_count)};
+    const camber_kernel_arg count[] = {BUFFER(BUFFER_SEGMENTS), BUFFER(BUFFER_BOXES), BUFFER(BUFFER_COUNTS),
+                                       CAMBER_ARG_VALUE(c)};
+    const camber_kernel_arg total[] = {BUFFER(BUFFER_COUNTS), BUFFER(BUFFER_TOTALS), CAMBER_ARG_VALUE(c.tiles),
+                                       CAMBER_ARG_VALUE(chunk_count)};
     if (status == CAMBER_OK)
         status = run(raster, STAGE_BIN_COUNT, count, 4, chunk_count);
     if (status == CAMBER_OK)
@@ -209,9 +173,9 @@ static camber_status start_lists(camber_raster *raster, bool *fits) {
     return status;
 }
 
-static camber_status scatter_segments(camber_raster *raster, chunks c, uint32_t chunk_count) {
-    const argument fill[] = {BUFFER(BUFFER_SEGMENTS), BUFFER(BUFFER_BOXES), BUFFER(BUFFER_STARTS),
-                             BUFFER(BUFFER_COUNTS),   BUFFER(BUFFER_LISTS), VALUE(c)};
+static camber_status scatter_segments(camber_raster *raster, camber_bin_args c, uint32_t chunk_count) {
+    const camber_kernel_arg fill[] = {BUFFER(BUFFER_SEGMENTS), BUFFER(BUFFER_BOXES), BUFFER(BUFFER_STARTS),
+                                      BUFFER(BUFFER_COUNTS),   BUFFER(BUFFER_LISTS), CAMBER_ARG_VALUE(c)};
     return run(raster, STAGE_BIN_SCATTER, fill, 6, chunk_count);
 }
 
@@ -247,7 +211,7 @@ static camber_status list_jobs(camber_raster *raster, size_t *heavy_count, size_
 
 /* Where planes lie that a scene needs: a brush's and the picture's five, three of unions, four a level, one of masks.
  */
-static spill plan_spill(const camber_raster_scene *scene) {
+static camber_spill_args plan_spill(const camber_raster_scene *scene) {
     bool unions = false, groups = false, layers = false, masks = false;
     for (size_t i = 0; i < scene->brush_count; i++) {
         unions = unions || scene->brushes[i].mode == CAMBER_BRUSH_UNION;
@@ -255,41 +219,39 @@ static spill plan_spill(const camber_raster_scene *scene) {
         layers = layers || scene->brushes[i].layer;
         masks = masks || scene->brushes[i].mode == CAMBER_BRUSH_MASKED;
     }
-    spill k = {.sums = 5};
+    camber_spill_args k = {.sums = 5};
     k.group = k.sums + (unions ? 3 : 0);
     k.layer = k.group + (groups ? 4 : 0);
-    k.tile_words = SPILL_WORDS + (k.layer + (layers ? 4 : 0) + (masks ? 1 : 0)) * PLANE_WORDS;
+    k.tile_words = CAMBER_SPILL_WORDS + (k.layer + (layers ? 4 : 0) + (masks ? 1 : 0)) * PLANE_WORDS;
     return k;
 }
 
-static camber_status rasterize_tiles(camber_raster *raster, const camber_raster_scene *scene, spill k, size_t heavy,
-                                     size_t jobs) {
+static camber_status rasterize_tiles(camber_raster *raster, const camber_raster_scene *scene, camber_spill_args k,
+                                     size_t heavy, size_t jobs) {
     const camber_raster_area *band = &raster->band;
-    sheet s = {.left = (float)band->x,
-               .top = (float)band->y,
-               .columns = raster->columns,
-               .stride = raster->columns * CAMBER_TILE_PX,
-               .above = band->y - raster->area.y,
-               .horizon = (float)scene->horizon,
-               .eye = scene->eye};
-    memcpy(s.background, scene->background, sizeof s.background);
+    camber_target_args s = {.left = (float)band->x,
+                            .top = (float)band->y,
+                            .columns = raster->columns,
+                            .stride = raster->columns * CAMBER_TILE_PX,
+                            .r = scene->background[0],
+                            .g = scene->background[1],
+                            .b = scene->background[2],
+                            .a = scene->background[3],
+                            .above = band->y - raster->area.y,
+                            .horizon = (float)scene->horizon,
+                            .eye = scene->eye};
     memcpy(s.sky, scene->sky, sizeof s.sky);
     camber_status status = camber_raster_reserve(raster, BUFFER_SPILL,
                                                  k.is_first && k.is_last ? 4 : 4 * raster->tile_count * k.tile_words);
-    const argument arguments[] = {BUFFER(BUFFER_SEGMENTS),
-                                  BUFFER(BUFFER_STARTS),
-                                  BUFFER(BUFFER_LISTS),
-                                  BUFFER(BUFFER_BRUSHES),
-                                  BUFFER(BUFFER_JOBS),
-                                  {sizeof(cl_mem), raster->given ? &raster->given : raster->buffers + BUFFER_PIXELS},
-                                  VALUE(s),
-                                  BUFFER(BUFFER_SPILL),
-                                  VALUE(k),
-                                  BUFFER(BUFFER_ARC_LENGTHS),
-                                  BUFFER(BUFFER_BRUSH_EXT),
-                                  BUFFER(BUFFER_SIDE_TABLE),
-                                  BUFFER(BUFFER_PLANES)};
-    const cl_uint count = 9 + more_arguments(raster, 3);
+    const camber_kernel_arg arguments[] = {
+        BUFFER(BUFFER_SEGMENTS),  BUFFER(BUFFER_STARTS),
+        BUFFER(BUFFER_LISTS),     BUFFER(BUFFER_BRUSHES),
+        BUFFER(BUFFER_JOBS),      CAMBER_ARG_BUFFER(raster->given ? raster->given : raster->buffers[BUFFER_PIXELS]),
+        CAMBER_ARG_VALUE(s),      BUFFER(BUFFER_SPILL),
+        CAMBER_ARG_VALUE(k),      BUFFER(BUFFER_ARC_LENGTHS),
+        BUFFER(BUFFER_BRUSH_EXT), BUFFER(BUFFER_SIDE_TABLE),
+        BUFFER(BUFFER_PLANES)};
+    const size_t count = sizeof arguments / sizeof *arguments;
     if (status == CAMBER_OK)
         status = run(raster, STAGE_RASTERIZE, arguments, count, heavy);
     s.first_job = (uint32_t)heavy;
@@ -341,9 +303,9 @@ static camber_status prepare(camber_raster *raster, const camber_raster_scene *s
 }
 
 /* Draws the slice of the band, unless its lists do not fit. */
-static camber_status draw_slice(camber_raster *raster, const picture *p, spill k, bool *fits) {
+static camber_status draw_slice(camber_raster *raster, const picture *p, camber_spill_args k, bool *fits) {
     uint32_t chunk_count;
-    const chunks c = cut_chunks(raster, &chunk_count);
+    const camber_bin_args c = cut_chunks(raster, &chunk_count);
     camber_status status = make_segments(raster, p->scene, p->ranges, p->range_count);
     if (status == CAMBER_OK)
         status = count_segments(raster, c, chunk_count);
@@ -363,7 +325,7 @@ static camber_status draw_slice(camber_raster *raster, const picture *p, spill k
  */
 static camber_status draw_band(camber_raster *raster, const picture *p, bool *fits) {
     size_t most = segments_at_once(raster), left = p->segment_count;
-    spill k = plan_spill(p->scene);
+    camber_spill_args k = plan_spill(p->scene);
     camber_status status = CAMBER_OK;
     raster->tile_count = (size_t)raster->columns * camber_raster_tiles(raster->band.height);
     do {

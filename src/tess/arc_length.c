@@ -2,6 +2,7 @@
  * the twin's way, from each polyline's first point to its last. */
 #include "tess/arc_length.h"
 
+#include "cl/launch.h"
 #include "kernels/arc_length.h"
 
 #include <string.h>
@@ -41,17 +42,20 @@ camber_status camber_part_sum_arc_lengths(camber_mesh *mesh, camber_mesh_part *p
     if (status != CAMBER_OK)
         return status;
     const camber_source_line_buffers *c = &part->source_line;
-    const cl_mem mems[] = {mesh->offsets ? c->x : part->x, mesh->offsets ? c->y : part->y,
-                           mesh->offsets ? c->info : part->info, mesh->offsets ? c->lengths : part->lengths,
-                           mesh->offsets ? c->measures : part->measures};
-    const camber_stage stages[] = {
-        {"arc_length_sum", program->arc_length_sum, mems, 4, CAMBER_ARC_LENGTH_CHUNK, part->given_count},
-        {"arc_length_scan", program->arc_length_scan, mems, 5, CAMBER_ARC_LENGTH_CHUNK, part->given_count}};
-    status = camber_stage_run(device, stages[0], NULL);
+    const bool beside = mesh->offsets;
+    const cl_mem sums = beside ? c->lengths : part->lengths;
+    const camber_kernel_arg args[] = {CAMBER_ARG_BUFFER(beside ? c->x : part->x),
+                                      CAMBER_ARG_BUFFER(beside ? c->y : part->y),
+                                      CAMBER_ARG_BUFFER(beside ? c->info : part->info), CAMBER_ARG_BUFFER(sums),
+                                      CAMBER_ARG_BUFFER(beside ? c->measures : part->measures)};
+    const size_t chunks = part->given_count / CAMBER_ARC_LENGTH_CHUNK, group = device->block / CAMBER_ARC_LENGTH_CHUNK;
+    const camber_launch launches[] = {{"arc_length_sum", program->arc_length_sum, args, 4, chunks, group},
+                                      {"arc_length_scan", program->arc_length_scan, args, 5, chunks, group}};
+    status = camber_launch_kernel(device, launches, NULL);
     if (status == CAMBER_OK)
-        status = carry_sums(device, mems[3], part->given_count / CAMBER_ARC_LENGTH_CHUNK);
+        status = carry_sums(device, sums, chunks);
     if (status == CAMBER_OK)
-        status = camber_stage_run(device, stages[1], NULL);
+        status = camber_launch_kernel(device, launches + 1, NULL);
     return status;
 }
 

@@ -1,4 +1,5 @@
 /* What a mesh holds of a network on the device, and cull_count -> cull_emit, which make a part's slots of it. */
+#include "cl/launch.h"
 #include "tess/network.h"
 #include "tess/offset.h"
 
@@ -259,26 +260,13 @@ size_t camber_part_network_slot(const camber_mesh *mesh, const camber_mesh_part 
 
 /* ---- Stages ---- */
 
-typedef struct stage {
-    const char *name;
-    cl_kernel kernel;
-    const cl_mem *mems;
-    cl_uint mem_count;
-} stage;
-
-/* Runs a stage over the chunks of a part; the projection is its last argument. */
-static camber_status run_stage(const camber_device *device, const camber_projection *p, stage s, cl_event *event) {
-    const size_t local = device->block * CAMBER_WALKERS / CAMBER_BLOCK;
-    const size_t global = (part_chunks(p) + local - 1) / local * local;
-    cl_int code = CL_SUCCESS;
-    for (cl_uint i = 0; i < s.mem_count && code == CL_SUCCESS; i++)
-        code = clSetKernelArg(s.kernel, i, sizeof *s.mems, s.mems + i);
-    if (code == CL_SUCCESS)
-        code = clSetKernelArg(s.kernel, s.mem_count, sizeof *p, p);
-    if (code != CL_SUCCESS)
-        return camber_fail_stage(device, "clSetKernelArg", s.name, code);
-    code = clEnqueueNDRangeKernel(device->queue, s.kernel, 1, NULL, &global, &local, 0, NULL, event);
-    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_stage(device, "clEnqueueNDRangeKernel", s.name, code);
+/* A stage over the chunks of a part. */
+static camber_launch over_chunks(const camber_device *device, const camber_projection *p, const char *name,
+                                 cl_kernel kernel) {
+    return (camber_launch){.name = name,
+                           .kernel = kernel,
+                           .work_items = part_chunks(p),
+                           .group_size = device->block * CAMBER_WALKERS / CAMBER_BLOCK};
 }
 
 static camber_status reserve_chunks(camber_mesh *mesh, camber_mesh_part *part, size_t chunks) {
@@ -313,11 +301,18 @@ static camber_status survey(camber_mesh *mesh, camber_mesh_part *part, const cam
     const struct camber_held_network *held = mesh->held;
     const camber_section *section = held->sections + part->section;
     const size_t chunks = part_chunks(p);
-    const cl_mem mems[] = {section->x,  section->y, section->importance, section->stretches, section->chunk_stretches,
-                           held->counts};
+    const camber_kernel_arg args[] = {CAMBER_ARG_BUFFER(section->x),
+                                      CAMBER_ARG_BUFFER(section->y),
+                                      CAMBER_ARG_BUFFER(section->importance),
+                                      CAMBER_ARG_BUFFER(section->stretches),
+                                      CAMBER_ARG_BUFFER(section->chunk_stretches),
+                                      CAMBER_ARG_BUFFER(held->counts),
+                                      CAMBER_ARG_VALUE(*p)};
+    camber_launch launch = over_chunks(device, p, "cull_count", held->program->cull_count);
     cl_event event = NULL;
-    const camber_status status =
-        run_stage(device, p, (stage){"cull_count", held->program->cull_count, mems, 6}, &event);
+    launch.args = args;
+    launch.arg_count = sizeof args / sizeof *args;
+    const camber_status status = camber_launch_kernel(device, &launch, &event);
     if (status != CAMBER_OK)
         return status;
     cl_int code;
@@ -384,20 +379,25 @@ camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, boo
     const camber_section *section = mesh->held->sections + part->section;
     /* Of lines that others lie beside nobody reads the joins: what comes behind overwrites them. */
     const camber_source_line_buffers *source_line = &part->source_line;
-    const cl_mem mems[] = {section->x,
-                           section->y,
-                           section->importance,
-                           section->stretches,
-                           section->chunk_stretches,
-                           mesh->held->bases,
-                           mesh->offsets ? source_line->x : part->x,
-                           mesh->offsets ? source_line->y : part->y,
-                           mesh->offsets ? source_line->info : part->info,
-                           mesh->offsets ? source_line->clips : part->joins,
-                           section->lengths,
-                           section->totals,
-                           mesh->offsets ? source_line->measures : part->measures};
-    const cl_uint mem_count = mesh->mesh_info.measured ? 13 : 10;
-    return run_stage(device, &p, (stage){"cull_emit", mesh->held->program->cull_emit, mems, mem_count},
-                     &mesh->held->projected);
+    const bool beside = mesh->offsets, along = mesh->mesh_info.measured;
+    const camber_kernel_arg args[] = {CAMBER_ARG_BUFFER(section->x),
+                                      CAMBER_ARG_BUFFER(section->y),
+                                      CAMBER_ARG_BUFFER(section->importance),
+                                      CAMBER_ARG_BUFFER(section->stretches),
+                                      CAMBER_ARG_BUFFER(section->chunk_stretches),
+                                      CAMBER_ARG_BUFFER(mesh->held->bases),
+                                      CAMBER_ARG_BUFFER(beside ? source_line->x : part->x),
+                                      CAMBER_ARG_BUFFER(beside ? source_line->y : part->y),
+                                      CAMBER_ARG_BUFFER(beside ? source_line->info : part->info),
+                                      CAMBER_ARG_BUFFER(beside ? source_line->clips : part->joins),
+                                      CAMBER_ARG_BUFFER(along ? section->lengths : NULL),
+                                      CAMBER_ARG_BUFFER(along ? section->totals : NULL),
+                                      CAMBER_ARG_BUFFER(!along   ? NULL
+                                                        : beside ? source_line->measures
+                                                                 : part->measures),
+                                      CAMBER_ARG_VALUE(p)};
+    camber_launch launch = over_chunks(device, &p, "cull_emit", mesh->held->program->cull_emit);
+    launch.args = args;
+    launch.arg_count = sizeof args / sizeof *args;
+    return camber_launch_kernel(device, &launch, &mesh->held->projected);
 }

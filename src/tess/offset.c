@@ -2,6 +2,7 @@
  * Where buffers begin is in offsets.c. */
 #include "tess/offset.h"
 
+#include "cl/launch.h"
 #include "kernels/arc_length.h"
 
 #include <math.h>
@@ -184,13 +185,26 @@ static camber_status check_slots(const camber_mesh *mesh, const camber_mesh_part
 static camber_status run_emit(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program,
                               cl_event *event) {
     const camber_source_line_buffers *c = &part->source_line;
-    const cl_mem mems[] = {c->x,    c->y,       c->info,     mesh->offset_rows, c->clips,    c->counts,     part->x,
-                           part->y, part->info, part->joins, c->places,         c->measures, part->measures};
-    const cl_uint mem_count = mesh->mesh_info.measured ? 13 : 11;
-    return camber_stage_run(
-        mesh->device,
-        (camber_stage){"offset_emit", program->offset_emit, mems, mem_count, CAMBER_OFFSET_CHUNK, part->given_count},
-        event);
+    const camber_kernel_arg args[] = {CAMBER_ARG_BUFFER(c->x),
+                                      CAMBER_ARG_BUFFER(c->y),
+                                      CAMBER_ARG_BUFFER(c->info),
+                                      CAMBER_ARG_BUFFER(mesh->offset_rows),
+                                      CAMBER_ARG_BUFFER(c->clips),
+                                      CAMBER_ARG_BUFFER(c->counts),
+                                      CAMBER_ARG_BUFFER(part->x),
+                                      CAMBER_ARG_BUFFER(part->y),
+                                      CAMBER_ARG_BUFFER(part->info),
+                                      CAMBER_ARG_BUFFER(part->joins),
+                                      CAMBER_ARG_BUFFER(c->places),
+                                      CAMBER_ARG_BUFFER(mesh->mesh_info.measured ? c->measures : NULL),
+                                      CAMBER_ARG_BUFFER(mesh->mesh_info.measured ? part->measures : NULL)};
+    const camber_launch launch = {"offset_emit",
+                                  program->offset_emit,
+                                  args,
+                                  13,
+                                  part->given_count / CAMBER_OFFSET_CHUNK,
+                                  mesh->device->block / CAMBER_OFFSET_CHUNK};
+    return camber_launch_kernel(mesh->device, &launch, event);
 }
 
 /* The lines' measures do not depend on where they lie: they are those of the lines beside which they do. */
@@ -198,7 +212,9 @@ camber_status camber_part_offset(camber_mesh *mesh, camber_mesh_part *part, bool
     const camber_device *device = mesh->device;
     const camber_source_line_buffers *c = &part->source_line;
     const size_t block = device->block, given = part->given_count;
-    const cl_mem mems[] = {c->x, c->y, c->info, mesh->offset_rows, c->clips, c->counts};
+    const camber_kernel_arg args[] = {CAMBER_ARG_BUFFER(c->x),     CAMBER_ARG_BUFFER(c->y),
+                                      CAMBER_ARG_BUFFER(c->info),  CAMBER_ARG_BUFFER(mesh->offset_rows),
+                                      CAMBER_ARG_BUFFER(c->clips), CAMBER_ARG_BUFFER(c->counts)};
     cl_event events[3] = {NULL, NULL, NULL};
     camber_program *program = NULL;
     uint64_t slots = 0;
@@ -207,12 +223,13 @@ camber_status camber_part_offset(camber_mesh *mesh, camber_mesh_part *part, bool
     part->source_line.made_count = 0;
     camber_status status = camber_device_offset_program(mesh->device, mesh->mesh_info.measured, &program);
     if (status == CAMBER_OK)
-        status =
-            camber_stage_run(device, (camber_stage){"offset_clip", program->offset_clip, mems, 5, 1, given}, events);
+        status = camber_launch_kernel(
+            device, &(camber_launch){"offset_clip", program->offset_clip, args, 5, given, block}, events);
     if (status == CAMBER_OK)
-        status = camber_stage_run(
-            device, (camber_stage){"offset_count", program->offset_count, mems, 6, CAMBER_OFFSET_CHUNK, given},
-            events + 1);
+        status = camber_launch_kernel(device,
+                                      &(camber_launch){"offset_count", program->offset_count, args, 6,
+                                                       given / CAMBER_OFFSET_CHUNK, block / CAMBER_OFFSET_CHUNK},
+                                      events + 1);
     if (status == CAMBER_OK)
         status = add_up(device, c->counts, given / CAMBER_OFFSET_CHUNK, &slots);
     const uint64_t padded = (slots + block - 1) / block * block;

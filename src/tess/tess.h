@@ -264,22 +264,6 @@ void camber_part_set_points(const camber_mesh *mesh, camber_mesh_part *part);
  * is large enough. */
 camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, bool *fits);
 size_t camber_part_network_slot(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline);
-/* A stage: a kernel, its arguments, how many points a work-item takes, and of how many. */
-typedef struct camber_stage {
-    const char *name;
-    cl_kernel kernel;
-    const cl_mem *mems;
-    cl_uint mem_count;
-    size_t points;
-    size_t slots;
-} camber_stage;
-
-/* Runs a stage over slots, a work-group a block. */
-camber_status camber_stage_run(const camber_device *device, camber_stage stage, cl_event *event);
-/* Adds the time of a command to ms and releases the event, which may be NULL. */
-void camber_add_ms(cl_event event, double *ms);
-camber_status camber_fail_stage(const camber_device *device, const char *call, const char *name, cl_int code);
-
 /* memory.c. So many eighths of what the device's meshes may hold. */
 uint64_t camber_device_share(const camber_device *device, unsigned eighths);
 

@@ -1,4 +1,5 @@
 /* classify -> scan -> emit on a device, a part of the mesh at a time. */
+#include "cl/launch.h"
 #include "kernels/layout.h"
 #include "tess/arc_length.h"
 #include "tess/network.h"
@@ -8,23 +9,6 @@
 #include <string.h>
 
 /* ---- Stages ---- */
-
-camber_status camber_fail_stage(const camber_device *device, const char *call, const char *name, cl_int code) {
-    char what[64];
-    snprintf(what, sizeof what, "%s of %s", call, name);
-    return camber_fail_cl(device->context, what, code);
-}
-
-camber_status camber_stage_run(const camber_device *device, camber_stage s, cl_event *event) {
-    const size_t global = s.slots / s.points, local = device->block / s.points;
-    for (cl_uint i = 0; i < s.mem_count; i++) {
-        const cl_int code = clSetKernelArg(s.kernel, i, sizeof *s.mems, s.mems + i);
-        if (code != CL_SUCCESS)
-            return camber_fail_stage(device, "clSetKernelArg", s.name, code);
-    }
-    const cl_int code = clEnqueueNDRangeKernel(device->queue, s.kernel, 1, NULL, &global, &local, 0, NULL, event);
-    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_stage(device, "clEnqueueNDRangeKernel", s.name, code);
-}
 
 size_t camber_records_max(camber_method method) {
     return method == CAMBER_METHOD_STRIP ? (size_t)1 << 30 : (size_t)1 << (32 - CAMBER_CORNER_BITS);
@@ -63,28 +47,24 @@ static camber_status scan_blocks(const camber_mesh *mesh, camber_mesh_part *part
     return camber_part_records(mesh, part, &part->record_count);
 }
 
-void camber_add_ms(cl_event event, double *ms) {
-    cl_ulong begin = 0, end = 0;
-    if (!event)
-        return;
-    clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_START, sizeof begin, &begin, NULL);
-    clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_END, sizeof end, &end, NULL);
-    clReleaseEvent(event);
-    *ms += (double)(end - begin) * 1e-6;
-}
-
 /* classify and scan: what the part's output takes. */
 static camber_status measure(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program) {
     const camber_device *device = mesh->device;
     cl_event events[2] = {NULL, NULL};
-    const cl_mem classify[] = {part->x,    part->y,    part->x,    part->y,    part->x,    part->y,
-                               part->info, part->info, part->info, mesh->rows, part->joins};
-    const cl_mem scan[] = {part->joins, part->joins, part->info, part->offsets, part->sums};
-    const size_t item = device->point_chunk, slots = part->slot_count;
-    camber_status status =
-        camber_stage_run(device, (camber_stage){"classify", program->classify, classify, 11, item, slots}, events);
+    const camber_kernel_arg classify[] = {
+        CAMBER_ARG_BUFFER(part->x),    CAMBER_ARG_BUFFER(part->y),    CAMBER_ARG_BUFFER(part->x),
+        CAMBER_ARG_BUFFER(part->y),    CAMBER_ARG_BUFFER(part->x),    CAMBER_ARG_BUFFER(part->y),
+        CAMBER_ARG_BUFFER(part->info), CAMBER_ARG_BUFFER(part->info), CAMBER_ARG_BUFFER(part->info),
+        CAMBER_ARG_BUFFER(mesh->rows), CAMBER_ARG_BUFFER(part->joins)};
+    const camber_kernel_arg scan[] = {CAMBER_ARG_BUFFER(part->joins), CAMBER_ARG_BUFFER(part->joins),
+                                      CAMBER_ARG_BUFFER(part->info), CAMBER_ARG_BUFFER(part->offsets),
+                                      CAMBER_ARG_BUFFER(part->sums)};
+    const size_t work_items = part->slot_count / device->point_chunk, group = device->block / device->point_chunk;
+    const camber_launch launches[] = {{"classify", program->classify, classify, 11, work_items, group},
+                                      {"scan", program->scan, scan, 5, work_items, group}};
+    camber_status status = camber_launch_kernel(device, launches, events);
     if (status == CAMBER_OK)
-        status = camber_stage_run(device, (camber_stage){"scan", program->scan, scan, 5, item, slots}, events + 1);
+        status = camber_launch_kernel(device, launches + 1, events + 1);
     if (status == CAMBER_OK)
         status = scan_blocks(mesh, part);
     camber_add_ms(events[0], &mesh->mesh_info.classify_ms);
@@ -124,19 +104,20 @@ static camber_status emit(camber_mesh *mesh, camber_mesh_part *part, const cambe
     if (status != CAMBER_OK)
         return status;
     cl_event event = NULL;
-    const cl_mem mems[] = {part->x,
-                           part->y,
-                           part->info,
-                           mesh->rows,
-                           part->joins,
-                           part->offsets,
-                           part->bases,
-                           part->buffers[CAMBER_BUFFER_RECORDS].mem,
-                           part->buffers[mesh->mesh_info.strips ? CAMBER_BUFFER_RECORDS : CAMBER_BUFFER_INDICES].mem,
-                           part->measures};
-    const cl_uint mem_count = mesh->mesh_info.measured ? 10 : 9;
-    status = camber_stage_run(
-        device, (camber_stage){"emit", program->emit, mems, mem_count, device->point_chunk, part->slot_count}, &event);
+    const size_t second = mesh->mesh_info.strips ? CAMBER_BUFFER_RECORDS : CAMBER_BUFFER_INDICES; /* no indices */
+    const camber_kernel_arg args[] = {CAMBER_ARG_BUFFER(part->x),
+                                      CAMBER_ARG_BUFFER(part->y),
+                                      CAMBER_ARG_BUFFER(part->info),
+                                      CAMBER_ARG_BUFFER(mesh->rows),
+                                      CAMBER_ARG_BUFFER(part->joins),
+                                      CAMBER_ARG_BUFFER(part->offsets),
+                                      CAMBER_ARG_BUFFER(part->bases),
+                                      CAMBER_ARG_BUFFER(part->buffers[CAMBER_BUFFER_RECORDS].mem),
+                                      CAMBER_ARG_BUFFER(part->buffers[second].mem),
+                                      CAMBER_ARG_BUFFER(mesh->mesh_info.measured ? part->measures : NULL)};
+    const camber_launch launch = {
+        "emit", program->emit, args, 10, part->slot_count / device->point_chunk, device->block / device->point_chunk};
+    status = camber_launch_kernel(device, &launch, &event);
     const cl_int code = clFinish(device->queue);
     if (status == CAMBER_OK && code != CL_SUCCESS)
         status = camber_fail_cl(device->context, "clFinish", code);

@@ -25,7 +25,7 @@ fail() {
 # The tool reads its kernels from the build tree: one that no twin shares is written there, and nothing is compiled here.
 build() { # [FILE THAT HAS CHANGED]
     local targets=(camber_tool)
-    [[ ${1:-} != kernels/*.cl ]] || targets=(src/kernels.cl src/network.cl src/arc_length.cl src/offset.cl src/rasterize.cl)
+    [[ ${1:-} != kernels/*.cl ]] || targets=(src/tessellate.cl src/cull.cl src/arc_length.cl src/offset.cl src/raster.cl)
     ninja -C "$tmp/build" "${targets[@]}" >"$tmp/build.log" 2>&1
 }
 
@@ -160,8 +160,8 @@ mutant fan kernels/emit.cl "a fan from the inner edge" 'outer > 0.0f ? CAMBER_CO
 mutant strip kernels/layout.h "a pad of another width on the device" '#define CAMBER_PAD_PX 0.75f' \
     '#define CAMBER_PAD_PX 0.7f'
 
-mutant strip kernels/offset.cl "slots that begin one too far" 'writer.at = bases[chunk] + 1u' 'writer.at = bases[chunk] + 2u'
-mutant strip kernels/offset.cl "what is left of a neighbour" 'camber_offset_clip_of(&source_line, slot)' \
+mutant strip kernels/offset_emit.cl "slots that begin one too far" 'writer.at = bases[chunk] + 1u' 'writer.at = bases[chunk] + 2u'
+mutant strip kernels/offset_clip.cl "what is left of a neighbour" 'camber_offset_clip_of(&source_line, slot)' \
     'camber_offset_clip_of(&source_line, slot > 1u ? slot - 1u : slot)'
 
 # ---- Offsets, which kernels and twin share: where points lie tells ----
@@ -257,7 +257,7 @@ mutant strip shaders/stroke.frag "steps at the pixel before" 'float from = along
 mutant strip shaders/stroke.frag "colours at the ends of pieces" 'mix(color, next_color, part)' 'color'
 mutant strip shaders/stroke.frag "translucent ramps that are opaque" 'o_alpha = vec4(o_color.a' 'o_alpha = vec4(area'
 mutant strip shaders/flatten.frag "alphas that are left beside" 'vec4(layer.rgb, texelFetch' 'vec4(layer.rgb, layer.a) + 0.0 * vec4(texelFetch'
-mutant strip kernels/arc_length.cl "lengths that are not summed" 'FIRST ? 0 : sum + ' 'FIRST ? 0 : '
+mutant strip kernels/arc_length_scan.cl "lengths that are not summed" 'FIRST ? 0 : sum + ' 'FIRST ? 0 : '
 mutant strip kernels/emit.cl "measures of the neighbour" 'as_uint(measures[2 * i])' 'as_uint(measures[2 * i + 2])'
 
 # ---- Kernels that draw: the twin tells ----
@@ -282,9 +282,9 @@ mutant strip kernels/tile_state.cl "groups that are opaque" 'seen = through * op
 mutant strip kernels/tile_state.cl "united lines: areas that are not summed" 'c->brush[1][i] += ' 'c->brush[1][i] = '
 mutant strip kernels/rasterize_sixteen.cl "tight joins that cut strokes narrower than their mesh" ' & (limit * c < outer)' ''
 mutant strip kernels/rasterize_sixteen.cl "cells that are whole too soon" 'full = h - p->extent - reach' 'full = h - p->extent'
-mutant strip kernels/rasterize_gpu.cl "places behind those of later lanes" 'popcount(*mark & before)' 'popcount(*mark & ~before) - 1'
+mutant strip kernels/bin_gpu.cl "places behind those of later lanes" 'popcount(*mark & before)' 'popcount(*mark & ~before) - 1'
 mutant strip kernels/rasterize_gpu.cl "cells that are full without a look" '& (next <= BATCH)' '& (next > BATCH)'
-mutant strip kernels/rasterize_gpu.cl "segments between two strips" 'r.strips ? (b.s3 & STARTS) == 0u' 'r.strips ? (b.s3 & STARTS) != 1u'
+mutant strip kernels/setup_gpu.cl "segments between two strips" 'r.strips ? (b.s3 & STARTS) == 0u' 'r.strips ? (b.s3 & STARTS) != 1u'
 mutant strip kernels/rasterize.cl "lists that end too soon" 'k-- > starts[tile];' 'k-- > starts[tile] + 1u;'
 
 # ---- Coverage, which these kernels and their twin share: pixels tell ----

@@ -22,20 +22,20 @@ typedef struct camber_edge {
 
 CAMBER_FN float camber_owner_from(camber_u32 end, camber_u32 own) {
     const float own_from = own ? 0.0f : CAMBER_ALWAYS_PX;
-    return end & 3u << 3 ? own_from : CAMBER_NEVER_PX;
+    return end & CAMBER_END_CLASS_BITS ? own_from : CAMBER_NEVER_PX;
 }
 
 CAMBER_FN float camber_cap_tip(camber_u32 end, float half_width) {
     const float past = half_width > 0.5f ? 1.2f * (half_width - 0.5f) : 0.0f;
-    return (end & 31u) == 0u ? 0.5f + 0.785398f * half_width + past : CAMBER_NEVER_PX;
+    return CAMBER_END_IS_ROUND_CAP(end) ? 0.5f + 0.785398f * half_width + past : CAMBER_NEVER_PX;
 }
 
 /* The line that bounds a tight join's inner side, from the inner vertex, limit px before the end, to the outer one on
  * the bisector. Of other ends it lies nowhere. */
 CAMBER_FN void camber_tight_line(camber_u32 end, float c, float s, float half_width, float *slope, float *from) {
-    const float reach = half_width + CAMBER_PAD_PX, limit = (float)(end >> 5 & 127u) * (CAMBER_PAD_PX / 127.0f);
+    const float reach = half_width + CAMBER_PAD_PX, limit = (float)(CAMBER_END_LIMIT(end)) * (CAMBER_PAD_PX / 127.0f);
     const float outer = CAMBER_FABS(s) * reach;
-    const camber_u32 tight = ((end >> 3 & 3u) == CAMBER_CLASS_TIGHT) & (limit * c < outer);
+    const camber_u32 tight = (CAMBER_END_CLASS(end) == CAMBER_CLASS_TIGHT) & (limit * c < outer);
     const float scale = 0.5f / (tight ? reach * c : 1.0f);
     const float more = (outer + limit * c) * scale, less = (outer - limit * c) * scale;
     *slope = tight ? (s > 0.0f ? more : -more) : 0.0f;
@@ -68,13 +68,13 @@ CAMBER_FN __attribute__((always_inline)) void camber_edge_of(CAMBER_GLOBAL const
     p->sa = p->nax * p->uy - p->nay * p->ux;
     p->cb = p->nbx * p->ux + p->nby * p->uy;
     p->sb = p->nby * p->ux - p->nbx * p->uy;
-    const camber_u32 end_a = flags & 0x1fffu, end_b = flags >> CAMBER_SEGMENT_END_BITS & 0x1fffu;
-    p->end_a = end_a & 7u;
-    p->end_b = end_b & 7u;
-    p->flat_a = p->end_a == 1u ? 0.0f : p->end_a == 2u ? h : CAMBER_NEVER_PX;
-    p->flat_b = p->end_b == 1u ? 0.0f : p->end_b == 2u ? h : CAMBER_NEVER_PX;
-    p->round_a = p->end_a == 0u || p->end_a == 5u ? 0.0f : CAMBER_NEVER_PX;
-    p->round_b = p->end_b == 0u || p->end_b == 5u ? 0.0f : CAMBER_NEVER_PX;
+    const camber_u32 end_a = CAMBER_END_OF_A(flags), end_b = CAMBER_END_OF_B(flags);
+    p->end_a = CAMBER_END_KIND(end_a);
+    p->end_b = CAMBER_END_KIND(end_b);
+    p->flat_a = p->end_a == CAMBER_ENDS_BUTT ? 0.0f : p->end_a == CAMBER_ENDS_SQUARE ? h : CAMBER_NEVER_PX;
+    p->flat_b = p->end_b == CAMBER_ENDS_BUTT ? 0.0f : p->end_b == CAMBER_ENDS_SQUARE ? h : CAMBER_NEVER_PX;
+    p->round_a = p->end_a == CAMBER_ENDS_ROUND || p->end_a == CAMBER_ENDS_SPLIT_ROUND ? 0.0f : CAMBER_NEVER_PX;
+    p->round_b = p->end_b == CAMBER_ENDS_ROUND || p->end_b == CAMBER_ENDS_SPLIT_ROUND ? 0.0f : CAMBER_NEVER_PX;
     p->tip_a = camber_cap_tip(end_a, h);
     p->tip_b = camber_cap_tip(end_b, h);
     p->owner_a = camber_owner_from(end_a, flags & CAMBER_SEGMENT_OWNER_A);
@@ -83,8 +83,8 @@ CAMBER_FN __attribute__((always_inline)) void camber_edge_of(CAMBER_GLOBAL const
     p->tips = h < CAMBER_TIPS_PX && flags & CAMBER_SEGMENT_ROUNDED;
     p->flat = flags & CAMBER_SEGMENT_FLAT;
     p->sharp = flags & CAMBER_SEGMENT_SHARP;
-    const camber_u32 tight_a = (end_a >> 3 & 3u) == CAMBER_CLASS_TIGHT,
-                     tight_b = (end_b >> 3 & 3u) == CAMBER_CLASS_TIGHT;
+    const camber_u32 tight_a = CAMBER_END_CLASS(end_a) == CAMBER_CLASS_TIGHT,
+                     tight_b = CAMBER_END_CLASS(end_b) == CAMBER_CLASS_TIGHT;
     p->tight = tight_a | tight_b;
     camber_tight_line(end_a, p->ca, p->sa, h, &p->slope_a, &p->from_a);
     camber_tight_line(end_b, p->cb, p->sb, h, &p->slope_b, &p->from_b);
@@ -116,8 +116,8 @@ typedef struct camber_second {
 /* second_line of stroke.frag. */
 CAMBER_FN void camber_second_of(camber_u32 end, float c, float s, camber_second *l) {
     const float sine = CAMBER_FABS(s);
-    l->bevel = end == 4u || end == 6u;
-    l->miter = end == 3u || end == 7u;
+    l->bevel = end == CAMBER_ENDS_BEVEL || end == CAMBER_ENDS_SPLIT_BEVEL;
+    l->miter = end == CAMBER_ENDS_MITER || end == CAMBER_ENDS_SPLIT_MITER;
     l->outer = s > 0.0f ? -1.0f : 1.0f;
     l->nx = l->bevel ? sine : 2.0f * sine * c;
     l->ny = l->bevel ? l->outer * c : l->outer * (c * c - sine * sine);

@@ -41,7 +41,7 @@
 #else
 #define CAMBER_WALK_PITCHED 1
 #endif
-/* Of a run's word, whose row stands at CAMBER_POINT_ROW_SHIFT. */
+/* In a stretch's word, whose row stands at CAMBER_POINT_ROW_SHIFT. */
 #define CAMBER_STRETCH_RING CAMBER_POINT_RING
 
 /* A polyline without invalid points. Behind the last run stands one that begins with the number of points. */

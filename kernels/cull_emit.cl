@@ -1,8 +1,8 @@
-/* project: the slots of a network that the camera sees, in px, as classify reads them.
- * Reads what survey reads and bases[chunks + 1], the slots before each chunk and all of them; writes x, y, info[s + 2]
- * with s these rounded up to CAMBER_BLOCK, a sentinel before them and sentinels behind, and the joins of the first
- * sentinel and the last, which classify leaves. Measured, it reads lengths[n] and totals[runs] as well and writes
- * slot_measures[2 * s]. A work-item a chunk. */
+/* cull_emit: the slots of a network that the camera sees, in px, as classify reads them.
+ * Reads what cull_count reads and bases[chunks + 1], the slots before each chunk and all of them; writes x, y, info[s +
+ * 2] with s these rounded up to CAMBER_BLOCK, a sentinel before them and sentinels behind, and the joins of the first
+ * sentinel and the last, which classify leaves. With CAMBER_HAS_ARC_LENGTH it reads lengths[n] and totals[stretches] as
+ * well and writes slot_measures[2 * s]; else these are NULL. A work-item a chunk. */
 #include "cull.h"
 
 CAMBER_KERNEL(CAMBER_WALKERS, cull_emit,

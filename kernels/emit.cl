@@ -2,7 +2,8 @@
  * Reads x, y, info[n + 2], joins[n + 2], offsets[n / CAMBER_POINT_CHUNK], bases[2 * n / CAMBER_BLOCK] (each block's
  * first vertex and first index); writes records[CAMBER_RECORD_WORDS * record count], indices[index count]. Lists and
  * their order: camber_strip_records and camber_join_counts in join.h. A work-item appends what a run of
- * CAMBER_POINT_CHUNK points has. Measured, it reads measures[2 * n] as well, and records are twice as long. */
+ * CAMBER_POINT_CHUNK points has. With CAMBER_HAS_ARC_LENGTH it reads measures[2 * n] as well, and records
+ * are twice as long; else measures is NULL. */
 #include "join.h"
 
 #define LANES (CAMBER_BLOCK / CAMBER_POINT_CHUNK)
@@ -59,7 +60,7 @@ static inline size_t put_any(global const float *x, global const float *y, size_
 
 /* What a second record has of its point's first, and what it has beside: of one that goes on at a tight join, and of
  * the break before a polyline. */
-constant camber_u32 KEPT[8] = {~0u, ~0u, ~0u, ~0u, ~0u, ~0u, 0u, CAMBER_ROW_BITS};
+constant camber_u32 SAME[8] = {~0u, ~0u, ~0u, ~0u, ~0u, ~0u, 0u, CAMBER_ROW_BITS};
 constant camber_u32 ADDED[8] = {0u, 0u, 0u, CAMBER_RECORD_START, 0u, 0u, 0u, CAMBER_RECORD_BREAK};
 
 /* The one or two records of most points, in an order that no processor foresees. So two are stored for each: what may
@@ -69,7 +70,7 @@ static inline __attribute__((always_inline)) size_t put_two(camber_u32 join, cam
     const camber_u32 ends = point & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST);
     const camber_u32 begins = point / CAMBER_POINT_FIRST & 1u;
     const camber_u32 goes_on = ((camber_join_kind(join) ^ CAMBER_KIND_TIGHT) | ends) == 0u ? 1u : 0u;
-    vstore4((record & vload4(begins, KEPT)) | vload4(begins, ADDED), k + goes_on, records);
+    vstore4((record & vload4(begins, SAME)) | vload4(begins, ADDED), k + goes_on, records);
     vstore4(record, k + begins, records);
     return 1u + begins + goes_on;
 }
@@ -198,7 +199,7 @@ static inline size_t put_point(global const float *x, global const float *y, glo
     if (!joined)
         return body;
     put_join(index + body, here, camber_join_triangles(join),
-             CAMBER_METHOD == CAMBER_FAN && camber_join_end(join) == 0u,
+             CAMBER_METHOD == CAMBER_FAN && camber_join_end(join) == CAMBER_ENDS_ROUND,
              camber_turn_unpack(join) > 0.0f ? -1.0f : 1.0f);
     return body + 3u * camber_join_triangles(join);
 }

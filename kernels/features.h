@@ -28,8 +28,9 @@
 /* Stops of a ramp that a cell looks at; where it sees more, several are taken for one. */
 #define CAMBER_STOPS_SEEN 1024u
 
-/* Behind each brush. What it names in the tail is by float4s: dashes are one each, from where to where, with a period's
- * last one before it once more and its first one behind it; stops of ramps two, the place and the premultiplied colour.
+/* Behind each brush. What it names in the side table is by float4s: dashes are one each, from where to where, with a
+ * period's last one before it once more and its first one behind it; stops of ramps two, the place and the
+ * premultiplied colour.
  */
 typedef struct camber_brush_ext {
     camber_u32 features;
@@ -48,7 +49,7 @@ CAMBER_FN camber_real camber_segment_rate(const camber_segment *s, camber_real f
 
 /* ---- A segment ---- */
 
-/* What is constant over a segment, beside its pen. */
+/* What is constant over a segment, besides its edge. */
 typedef struct camber_extras {
     camber_u32 features;
     float half_gap, blur;

@@ -7,9 +7,9 @@
 
 #if CAMBER_LANES == 16 /* as rich frames are drawn */
 
-/* Where a brush names an image, the tail has
- *     the first word of its texels in the tail, texels a row and rows (the bits of unsigned integers); px along a line
- *     of a fill: where the corner of one image lies, px of the picture; images a px to the right, along their x and y
+/* Where a brush names an image, the side table has
+ *     the first word of its texels in the side table, texels a row and rows (the bits of unsigned integers); px along a
+ * line of a fill: where the corner of one image lies, px of the picture; images a px to the right, along their x and y
  *     the same a px down, and 0
  *     the mean, 0 to 255
  * and texels are premultiplied RGBA8, a word each, from the top down, with one more beyond each edge. */

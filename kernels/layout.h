@@ -1,5 +1,5 @@
-/* Layouts that host and device share. Scalar C that both compilers read; the build declares the dialect
- * (__OPENCL_VERSION__ is OpenCL's own). Sizes are asserted on both sides. */
+/* Layouts that host and device share. Scalar C that both compilers read; the build declares the dialect:
+ * CAMBER_DEVICE is defined for OpenCL C. Sizes are asserted on both sides. */
 #ifndef CAMBER_KERNEL_LAYOUT_H
 #define CAMBER_KERNEL_LAYOUT_H
 
@@ -111,6 +111,7 @@ typedef struct camber_row {
  * kind. The limit of a tight join, in units of CAMBER_PAD_PX / 127: half the shorter segment, and the pad at most. The
  * kind comes last, so that no mask narrows it to three bits: oclgrind 21.10 gets such integers wrong. */
 #define CAMBER_JOIN_END_SHIFT 16
+#define CAMBER_JOIN_END_MASK 7u
 #define CAMBER_JOIN_TRIANGLES_SHIFT 19
 #define CAMBER_JOIN_LIMIT_SHIFT 19
 #define CAMBER_JOIN_AFTER_FIRST (1u << 26)
@@ -125,10 +126,25 @@ typedef struct camber_row {
 #define CAMBER_KIND_TIGHT 4u    /* cut on the outer side; the inner side has no room */
 #define CAMBER_KIND_SPLIT 5u    /* too sharp to cut: both segments end here */
 
-/* The methods, as camber_method, and the ends, as camber_end: numbers that the preprocessor can compare. */
+/* The public enums, which OpenCL C does not read: camber_method, camber_join, camber_cap. */
 #define CAMBER_STRIP 0
 #define CAMBER_KITE 1
 #define CAMBER_FAN 2
+#define CAMBER_JOINS_ROUND 0u
+#define CAMBER_JOINS_MITER 1u
+#define CAMBER_JOINS_BEVEL 2u
+#define CAMBER_CAPS_BUTT 0u
+#define CAMBER_CAPS_ROUND 1u
+#define CAMBER_CAPS_SQUARE 2u
+/* camber_end: how a segment ends. stroke.vert and stroke.frag have the same names without the prefix. */
+#define CAMBER_ENDS_ROUND 0u
+#define CAMBER_ENDS_BUTT 1u
+#define CAMBER_ENDS_SQUARE 2u
+#define CAMBER_ENDS_MITER 3u
+#define CAMBER_ENDS_BEVEL 4u
+#define CAMBER_ENDS_SPLIT_ROUND 5u
+#define CAMBER_ENDS_SPLIT_BEVEL 6u
+#define CAMBER_ENDS_SPLIT_MITER 7u
 
 #define CAMBER_NO_LIMIT_PX 3.0e38f
 
@@ -140,6 +156,16 @@ _Static_assert(sizeof(camber_record) == 4 * CAMBER_RECORD_WORDS, "the device wri
 _Static_assert(CAMBER_METHOD_STRIP == CAMBER_STRIP && CAMBER_METHOD_KITE == CAMBER_KITE &&
                    CAMBER_METHOD_FAN == CAMBER_FAN,
                "the build passes the method to the device as a number");
+_Static_assert(CAMBER_JOIN_ROUND == CAMBER_JOINS_ROUND && CAMBER_JOIN_MITER == CAMBER_JOINS_MITER &&
+                   CAMBER_JOIN_BEVEL == CAMBER_JOINS_BEVEL && CAMBER_CAP_BUTT == CAMBER_CAPS_BUTT &&
+                   CAMBER_CAP_ROUND == CAMBER_CAPS_ROUND && CAMBER_CAP_SQUARE == CAMBER_CAPS_SQUARE,
+               "rows have joins and caps as numbers");
+_Static_assert(CAMBER_END_ROUND == CAMBER_ENDS_ROUND && CAMBER_END_BUTT == CAMBER_ENDS_BUTT &&
+                   CAMBER_END_SQUARE == CAMBER_ENDS_SQUARE && CAMBER_END_MITER == CAMBER_ENDS_MITER &&
+                   CAMBER_END_BEVEL == CAMBER_ENDS_BEVEL && CAMBER_END_SPLIT_ROUND == CAMBER_ENDS_SPLIT_ROUND &&
+                   CAMBER_END_SPLIT_BEVEL == CAMBER_ENDS_SPLIT_BEVEL &&
+                   CAMBER_END_SPLIT_MITER == CAMBER_ENDS_SPLIT_MITER,
+               "join words and vertices have ends as numbers");
 #endif
 
 #endif

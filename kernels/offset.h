@@ -219,9 +219,9 @@ CAMBER_FN camber_offset_arc camber_offset_arc_of(const camber_offset_corner *cor
     float c = corner->c, s = corner->s;
     camber_offset_arc arc = {0.0f, 0.0f, 1.0f, 0.0f, 1u};
     const camber_u32 gentle = d * (1.0f - c) <= CAMBER_OFFSET_ARC_TOLERANCE_PX * c ? 1u : 0u;
-    if (!gentle && row.join != 0u)
-        arc.count = row.join == 1u && c * row.miter_limit >= 1.0f ? 1u : 0u;
-    if (row.join == 0u)
+    if (!gentle && row.join != CAMBER_JOINS_ROUND)
+        arc.count = row.join == CAMBER_JOINS_MITER && c * row.miter_limit >= 1.0f ? 1u : 0u;
+    if (row.join == CAMBER_JOINS_ROUND)
         while (d * (1.0f - c) > CAMBER_OFFSET_ARC_TOLERANCE_PX * c && arc.count < CAMBER_OFFSET_ARC_POINTS_MAX) {
             const float cosine = CAMBER_SQRT(0.5f + 0.5f * c);
             s = 0.5f * s / cosine;

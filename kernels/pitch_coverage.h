@@ -66,7 +66,7 @@ CAMBER_FN void camber_pitch_edge_of(camber_eye e, CAMBER_GLOBAL const float *seg
     const float ax = plane[CAMBER_SEGMENT_AX], ay = plane[CAMBER_SEGMENT_AY], bx = plane[CAMBER_SEGMENT_BX];
     const float by = plane[CAMBER_SEGMENT_BY], nax = plane[CAMBER_SEGMENT_NAX], nay = plane[CAMBER_SEGMENT_NAY];
     const float nbx = plane[CAMBER_SEGMENT_NBX], nby = plane[CAMBER_SEGMENT_NBY], h = plane[CAMBER_SEGMENT_HALF_WIDTH];
-    const camber_u32 end_a = flags & 0x1fffu, end_b = flags >> CAMBER_SEGMENT_END_BITS & 0x1fffu;
+    const camber_u32 end_a = CAMBER_END_OF_A(flags), end_b = CAMBER_END_OF_B(flags);
     p->by_cosine = 1.0f / e.cosine;
     p->fall = e.fall;
     p->ux = plane[CAMBER_SEGMENT_UX];
@@ -96,17 +96,18 @@ CAMBER_FN void camber_pitch_edge_of(camber_eye e, CAMBER_GLOBAL const float *seg
     p->wide_b = cut_b[3];
     p->owner_a = plane[CAMBER_PLANE_OWNER_A];
     p->owner_b = plane[CAMBER_PLANE_OWNER_B];
-    p->end_a = end_a & 7u;
-    p->end_b = end_b & 7u;
-    p->flat_a = p->end_a == 1u ? 0.0f : p->end_a == 2u ? h : CAMBER_NEVER_PX;
-    p->flat_b = p->end_b == 1u ? 0.0f : p->end_b == 2u ? h : CAMBER_NEVER_PX;
-    p->round_a = p->end_a == 0u || p->end_a == 5u ? 0.0f : CAMBER_NEVER_PX;
-    p->round_b = p->end_b == 0u || p->end_b == 5u ? 0.0f : CAMBER_NEVER_PX;
-    p->tip_a = (end_a & 31u) == 0u;
-    p->tip_b = (end_b & 31u) == 0u;
+    p->end_a = CAMBER_END_KIND(end_a);
+    p->end_b = CAMBER_END_KIND(end_b);
+    p->flat_a = p->end_a == CAMBER_ENDS_BUTT ? 0.0f : p->end_a == CAMBER_ENDS_SQUARE ? h : CAMBER_NEVER_PX;
+    p->flat_b = p->end_b == CAMBER_ENDS_BUTT ? 0.0f : p->end_b == CAMBER_ENDS_SQUARE ? h : CAMBER_NEVER_PX;
+    p->round_a = p->end_a == CAMBER_ENDS_ROUND || p->end_a == CAMBER_ENDS_SPLIT_ROUND ? 0.0f : CAMBER_NEVER_PX;
+    p->round_b = p->end_b == CAMBER_ENDS_ROUND || p->end_b == CAMBER_ENDS_SPLIT_ROUND ? 0.0f : CAMBER_NEVER_PX;
+    p->tip_a = CAMBER_END_IS_ROUND_CAP(end_a);
+    p->tip_b = CAMBER_END_IS_ROUND_CAP(end_b);
     p->flat = p->flat_a < CAMBER_NEVER_PX || p->flat_b < CAMBER_NEVER_PX;
     p->bends = CAMBER_FABS(p->sa) + CAMBER_FABS(p->sb) > 1e-3f;
-    p->sharp = p->end_a == 3u || p->end_a == 4u || p->end_a > 5u || p->end_b == 3u || p->end_b == 4u || p->end_b > 5u;
+    p->sharp = p->end_a == CAMBER_ENDS_MITER || p->end_a == CAMBER_ENDS_BEVEL || p->end_a > CAMBER_ENDS_SPLIT_ROUND ||
+               p->end_b == CAMBER_ENDS_MITER || p->end_b == CAMBER_ENDS_BEVEL || p->end_b > CAMBER_ENDS_SPLIT_ROUND;
     p->narrow = p->wide_a < 1.0f || p->wide_b < 1.0f;
     p->margin = plane[CAMBER_PLANE_MARGIN];
     const float sx = segment[CAMBER_SEGMENT_AX] - e.x, sy = segment[CAMBER_SEGMENT_AY] - e.y;

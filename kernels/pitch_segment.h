@@ -84,14 +84,14 @@ CAMBER_FN void camber_pitch_cut(camber_eye e, const camber_segment *s, const cam
     const camber_mask bends = length > 1e-5f;
     const camber_real scale = one / (bends ? length : one);
     const camber_real x = bends ? sum_x * scale : along[0], y = bends ? sum_y * scale : along[1];
-    const camber_words class = end >> 3 & 3u;
+    const camber_words class = CAMBER_END_CLASS(end);
     const camber_mask is_cap = class == CAMBER_CLASS_CAP;
     const camber_mask wide = is_cap | (1.0f - e.fall * place[1] < CAMBER_PITCH_LEAST);
     cut[0] = wide ? none : turns * x;
     cut[1] = wide ? none : turns * y;
     cut[2] = wide ? none : turns * (x * seen_x + y * seen_y);
     cut[3] = wide ? one : camber_clamp_to_one(1.5f * narrowest - 0.75f);
-    const camber_real soon = (end >> 12 & 1u) != 0u ? CAMBER_REAL(0.35f) : CAMBER_REAL(0.6f);
+    const camber_real soon = CAMBER_END_IS_LAST(end) ? CAMBER_REAL(0.35f) : CAMBER_REAL(0.6f);
     const camber_mask spill = (class != CAMBER_CLASS_CUT) & (0.5f * narrowest * CAMBER_FABS(sine) > soon * c);
     const camber_real own_side = spill ? none : CAMBER_REAL(CAMBER_ALWAYS_PX);
     *own = is_cap ? CAMBER_REAL(CAMBER_NEVER_PX) : own_side;
@@ -100,9 +100,10 @@ CAMBER_FN void camber_pitch_cut(camber_eye e, const camber_segment *s, const cam
 /* How far the stroke reaches past an end, px of the plane. */
 CAMBER_FN camber_real camber_pitch_reach(camber_words end, camber_real c, camber_real sine, camber_real half_width) {
     const camber_real one = CAMBER_REAL(1.0f), least = CAMBER_REAL(1e-5f), aside = CAMBER_FABS(sine);
-    const camber_words kind = end & 7u, class = end >> 3 & 3u;
-    const camber_real tip = ((kind == 3u) | (kind == 7u)) ? aside / CAMBER_MORE(c, least) : aside;
-    const camber_real whole = CAMBER_MORE(tip, one), cap = kind == 1u ? CAMBER_REAL(0.0f) : one;
+    const camber_words kind = CAMBER_END_KIND(end), class = CAMBER_END_CLASS(end);
+    const camber_real tip =
+        ((kind == CAMBER_ENDS_MITER) | (kind == CAMBER_ENDS_SPLIT_MITER)) ? aside / CAMBER_MORE(c, least) : aside;
+    const camber_real whole = CAMBER_MORE(tip, one), cap = kind == CAMBER_ENDS_BUTT ? CAMBER_REAL(0.0f) : one;
     return half_width * (class == CAMBER_CLASS_CAP ? cap : class == CAMBER_CLASS_SPLIT ? whole : tip);
 }
 
@@ -183,7 +184,7 @@ CAMBER_FN void camber_pitch_project_edge(camber_eye e, camber_real nx, camber_re
 CAMBER_FN camber_mask camber_pitch_shape_of(camber_eye e, float horizon, const camber_segment *s, camber_segment *band,
                                             camber_plane *plane) {
     const camber_real h = s->half_width, none = CAMBER_REAL(0.0f);
-    const camber_words end_a = s->flags & 0x1fffu, end_b = s->flags >> CAMBER_SEGMENT_END_BITS & 0x1fffu;
+    const camber_words end_a = CAMBER_END_OF_A(s->flags), end_b = CAMBER_END_OF_B(s->flags);
     const camber_real ca = s->nax * s->ux + s->nay * s->uy, sa = s->nax * s->uy - s->nay * s->ux;
     const camber_real cb = s->nbx * s->ux + s->nby * s->uy, sb = s->nby * s->ux - s->nbx * s->uy;
     const camber_real a[2] = {s->ax, s->ay}, b[2] = {s->bx, s->by};

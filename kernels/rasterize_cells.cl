@@ -58,7 +58,7 @@ static inline ulong box_of(global const float *segment, place where, private cel
            << (CAMBER_TILE_CELLS * from_y);
 }
 
-/* Of four by four cells, the bits as a tile has them. */
+/* Turns the masks of four by four cells into bits as a tile has them. */
 static inline uint bits_of(int16 cells) {
     const uint16 each = (uint16)(0x1, 0x2, 0x4, 0x8, 0x100, 0x200, 0x400, 0x800, 0x10000, 0x20000, 0x40000, 0x80000,
                                  0x1000000, 0x2000000, 0x4000000, 0x8000000);
@@ -69,7 +69,7 @@ static inline uint bits_of(int16 cells) {
     return e.x | e.y;
 }
 
-/* Of a box's cells, those that the segment meets, those near its ends, and those all inside the stroke. */
+/* The cells of a box, a bit each: those that the segment meets, those near its ends, and those all inside it. */
 typedef struct cell_sets {
     ulong partial, near_end, full;
 } cell_sets;
@@ -109,7 +109,7 @@ static inline void find_pixels(private const camber_edge *p, private const place
     set->fb = (px - p->bx) * p->nbx + (py - p->by) * p->nby;
 }
 
-/* A segment at once: of unions. */
+/* Draws a segment of a union by itself. */
 static inline void draw_segment(private tile_state *c, private const places *at, global const float *segment,
                                 place where) {
     cell_box box;

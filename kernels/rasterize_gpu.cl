@@ -9,7 +9,7 @@
 #define CELL_LANES (CAMBER_CELL_PX * CAMBER_CELL_PX)
 #define BATCH CAMBER_LOOK_EVERY /* segments that are drawn at once: of no more can a cell be looked at only once */
 
-/* Of functions that are given local memory: PoCL 3.1 loses it where they are called. */
+/* For functions that are given local memory: PoCL 3.1 loses it where they are called. */
 #define HERE inline __attribute__((always_inline))
 
 /* Segments of one colour, as all lanes read them. */
@@ -23,7 +23,7 @@ typedef struct level {
     float r, g, b, through;
 } level;
 
-/* Of a pixel, and from done on of its cell. */
+/* The state of a pixel, and from done on that of its cell. */
 typedef struct tile_state {
     float x, y;      /* its middle in its cell, px */
     int column, row; /* of the cell in its tile */
@@ -150,7 +150,7 @@ static inline void put_area(private tile_state *c, private const camber_edge *p,
     }
 }
 
-/* Whether it has to be looked now whether the cell is filled. */
+/* Returns whether the caller has to look now whether the cell is filled. */
 static inline int draw_segment(private tile_state *c, private const camber_edge *p, float reach, float left,
                                float top) {
     if (c->done || c->filled || !is_in_box(c, p, reach, left, top))

@@ -28,9 +28,9 @@ typedef struct edges {
 
 static inline void find_tight_lines(uint16 end, float16 c, float16 s, float16 h, private float16 *slope,
                                     private float16 *from) {
-    const float16 reach = h + CAMBER_PAD_PX, limit = convert_float16(end >> 5 & 127u) * (CAMBER_PAD_PX / 127.0f);
+    const float16 reach = h + CAMBER_PAD_PX, limit = convert_float16(CAMBER_END_LIMIT(end)) * (CAMBER_PAD_PX / 127.0f);
     const float16 outer = fabs(s) * reach;
-    const int16 tight = ((end >> 3 & 3u) == CAMBER_CLASS_TIGHT) & (limit * c < outer);
+    const int16 tight = (CAMBER_END_CLASS(end) == CAMBER_CLASS_TIGHT) & (limit * c < outer);
     const float16 scale = 0.5f / (tight ? reach * c : (float16)(1.0f));
     const float16 more = (outer + limit * c) * scale, less = (outer - limit * c) * scale;
     *slope = tight ? (s > 0.0f ? more : -more) : (float16)(0.0f);
@@ -39,21 +39,22 @@ static inline void find_tight_lines(uint16 end, float16 c, float16 s, float16 h,
 
 static inline float16 find_owner_from(uint16 end, uint16 own) {
     const float16 from = own != 0u ? (float16)(0.0f) : (float16)(CAMBER_ALWAYS_PX);
-    return (end & 3u << 3) != 0u ? from : (float16)(CAMBER_NEVER_PX);
+    return (end & CAMBER_END_CLASS_BITS) != 0u ? from : (float16)(CAMBER_NEVER_PX);
 }
 
 static inline float16 find_round(uint16 kind) {
-    return ((kind == 0u) | (kind == 5u)) ? (float16)(0.0f) : (float16)(CAMBER_NEVER_PX);
+    return ((kind == CAMBER_ENDS_ROUND) | (kind == CAMBER_ENDS_SPLIT_ROUND)) ? (float16)(0.0f)
+                                                                             : (float16)(CAMBER_NEVER_PX);
 }
 
 static inline float16 find_flat(uint16 kind, float16 h) {
-    return kind == 1u ? (float16)(0.0f) : kind == 2u ? h : (float16)(CAMBER_NEVER_PX);
+    return kind == CAMBER_ENDS_BUTT ? (float16)(0.0f) : kind == CAMBER_ENDS_SQUARE ? h : (float16)(CAMBER_NEVER_PX);
 }
 
 /* Of the words that are there already. */
 static inline void find_edges(private edges *p) {
     const uint16 flags = as_uint16(WORD(p, FLAGS)), one = (uint16)(1u);
-    const uint16 end_a = flags & 0x1fffu, end_b = flags >> CAMBER_SEGMENT_END_BITS & 0x1fffu;
+    const uint16 end_a = CAMBER_END_OF_A(flags), end_b = CAMBER_END_OF_B(flags);
     const float16 ux = WORD(p, UX), uy = WORD(p, UY), nx = fabs(ux), ny = fabs(uy), h = WORD(p, HALF_WIDTH);
     const float16 nax = WORD(p, NAX), nay = WORD(p, NAY), nbx = WORD(p, NBX), nby = WORD(p, NBY);
     const int16 linear = (flags & CAMBER_SEGMENT_LINEAR) != 0u;
@@ -62,16 +63,17 @@ static inline void find_edges(private edges *p) {
     p->corner = linear ? (float16)(0.0f) : nx < ny ? nx : ny;
     p->sa = nax * uy - nay * ux;
     p->sb = nby * ux - nbx * uy;
-    p->round_a = find_round(end_a & 7u);
-    p->round_b = find_round(end_b & 7u);
-    p->flat_a = find_flat(end_a & 7u, h);
-    p->flat_b = find_flat(end_b & 7u, h);
+    p->round_a = find_round(CAMBER_END_KIND(end_a));
+    p->round_b = find_round(CAMBER_END_KIND(end_b));
+    p->flat_a = find_flat(CAMBER_END_KIND(end_a), h);
+    p->flat_b = find_flat(CAMBER_END_KIND(end_b), h);
     p->owner_a = find_owner_from(end_a, flags & CAMBER_SEGMENT_OWNER_A);
     p->owner_b = find_owner_from(end_b, flags & CAMBER_SEGMENT_OWNER_B);
     find_tight_lines(end_a, nax * ux + nay * uy, p->sa, h, &p->slope_a, &p->from_a);
     find_tight_lines(end_b, nbx * ux + nby * uy, p->sb, h, &p->slope_b, &p->from_b);
     const int16 tips = (h < CAMBER_TIPS_PX) & ((flags & CAMBER_SEGMENT_ROUNDED) != 0u);
-    p->odd = as_uint16(tips) | ((one << (end_a & 7u) | one << (end_b & 7u)) & CAMBER_SECOND_ENDS);
+    p->odd =
+        as_uint16(tips) | ((one << (CAMBER_END_KIND(end_a)) | one << (CAMBER_END_KIND(end_b))) & CAMBER_SECOND_ENDS);
     p->flat = flags & CAMBER_SEGMENT_FLAT;
     p->thin = as_uint16(h < p->extent);
 }

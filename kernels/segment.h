@@ -46,7 +46,7 @@ typedef int camber_mask;
 #define CAMBER_TIPS_PX 1.85f /* half as wide, the ends of round caps are judged by themselves */
 #define CAMBER_FILL_PX 1e6f  /* a fill is a line along y = 0, so long to either side and half so wide */
 
-/* What is kept of a tile between slices of segments, at most: seventeen planes of its pixels, and a few words. */
+/* What a tile spills between slices of segments, at most: seventeen planes of its pixels, and a few words. */
 #define CAMBER_SPILL_BYTES (17 * 4096 + 192)
 
 /* Of a segment that is not drawn: its first tile lies behind the last one. */
@@ -69,9 +69,11 @@ typedef struct camber_brush {
     float layer_opacity, group_opacity, spares[2];
 } camber_brush;
 
-/* ---- Shapes: a segment as tiles and pixels read it ---- */
+/* ---- A segment as tiles and pixels read it ---- */
 
-#define CAMBER_SECOND_ENDS 0xd8u /* ends that a second line cuts: miters and bevels, a bit each */
+/* Ends that a second line cuts, a bit each. */
+#define CAMBER_SECOND_ENDS                                                                                             \
+    (1u << CAMBER_ENDS_MITER | 1u << CAMBER_ENDS_BEVEL | 1u << CAMBER_ENDS_SPLIT_BEVEL | 1u << CAMBER_ENDS_SPLIT_MITER)
 #define CAMBER_CLASS_CAP 0u
 #define CAMBER_CLASS_CUT 1u
 #define CAMBER_CLASS_TIGHT 2u
@@ -80,6 +82,19 @@ typedef struct camber_brush {
 /* Of an end, 13 bits: camber_end 0-2, class 3-4, a tight join's limit 5-11, whether the line ends with the next segment
  * 12. The end at A, then that at B, then: coverage is a ramp. */
 #define CAMBER_SEGMENT_END_BITS 13
+#define CAMBER_END_MASK 0x1fffu
+#define CAMBER_END_CLASS_SHIFT 3
+#define CAMBER_END_LIMIT_SHIFT 5
+#define CAMBER_END_LAST_SHIFT 12
+#define CAMBER_END_CLASS_BITS (3u << CAMBER_END_CLASS_SHIFT)
+#define CAMBER_END_OF_A(flags) ((flags)&CAMBER_END_MASK)
+#define CAMBER_END_OF_B(flags) ((flags) >> CAMBER_SEGMENT_END_BITS & CAMBER_END_MASK)
+#define CAMBER_END_KIND(end) ((end)&CAMBER_JOIN_END_MASK)
+#define CAMBER_END_CLASS(end) ((end) >> CAMBER_END_CLASS_SHIFT & 3u)
+#define CAMBER_END_LIMIT(end) ((end) >> CAMBER_END_LIMIT_SHIFT & 127u)
+#define CAMBER_END_IS_LAST(end) (((end) >> CAMBER_END_LAST_SHIFT & 1u) != 0u)
+#define CAMBER_END_IS_ROUND_CAP(end)                                                                                   \
+    (((end) & (CAMBER_JOIN_END_MASK | CAMBER_END_CLASS_BITS)) == (CAMBER_ENDS_ROUND | CAMBER_CLASS_CAP << 3))
 #define CAMBER_SEGMENT_LINEAR (1u << 26)
 /* Past a split end the segment has what is wide on its inner side too: camber_owner_side. */
 #define CAMBER_SEGMENT_OWNER_A (1u << 27)
@@ -89,7 +104,7 @@ typedef struct camber_brush {
 #define CAMBER_SEGMENT_FLAT (1u << 30)
 #define CAMBER_SEGMENT_ROUNDED (1u << 31)
 
-/* Where the words of a shape are. */
+/* The words of a segment. */
 #define CAMBER_SEGMENT_AX 0u
 #define CAMBER_SEGMENT_AY 1u
 #define CAMBER_SEGMENT_BX 2u
@@ -118,33 +133,37 @@ typedef struct camber_segment {
 
 /* camber_end, class, limit of a join word's end. kite and fan say at which joins they split by the kind alone. */
 CAMBER_FN camber_words camber_segment_end(camber_words join) {
-    const camber_words kind = join >> CAMBER_JOIN_KIND_SHIFT, end = join >> CAMBER_JOIN_END_SHIFT & 7u;
-    const camber_words split = end == 0u ? (camber_words)(5u) : end == 4u ? (camber_words)(6u) : (camber_words)(7u);
-    const camber_words spill = ((kind >= CAMBER_KIND_TIGHT) & (end < 5u)) ? split : end;
+    const camber_words kind = join >> CAMBER_JOIN_KIND_SHIFT,
+                       end = join >> CAMBER_JOIN_END_SHIFT & CAMBER_JOIN_END_MASK;
+    const camber_words split = end == CAMBER_ENDS_ROUND   ? (camber_words)(CAMBER_ENDS_SPLIT_ROUND)
+                               : end == CAMBER_ENDS_BEVEL ? (camber_words)(CAMBER_ENDS_SPLIT_BEVEL)
+                                                          : (camber_words)(CAMBER_ENDS_SPLIT_MITER);
+    const camber_words drawn = ((kind >= CAMBER_KIND_TIGHT) & (end < CAMBER_ENDS_SPLIT_ROUND)) ? split : end;
     const camber_words class = kind < CAMBER_KIND_CUT ? (camber_words)(0u) : kind - 2u;
     const camber_words limit = kind == CAMBER_KIND_TIGHT ? join >> CAMBER_JOIN_LIMIT_SHIFT & 127u : (camber_words)(0u);
-    return spill | class << 3 | limit << 5;
+    return drawn | class << CAMBER_END_CLASS_SHIFT | limit << CAMBER_END_LIMIT_SHIFT;
 }
 
 /* Whether a segment has more of a split end than its own side of the bisector: of what is wide, as stroke.vert has it.
  * c and s: of half the turn. */
 CAMBER_FN camber_mask camber_owner_side(camber_words end, camber_real c, camber_real s, camber_real half_width) {
-    const camber_real bound = ((end >> 12 & 1u) != 0u ? CAMBER_REAL(0.35f) : CAMBER_REAL(0.6f)) * c;
-    return ((end >> 3 & 3u) > CAMBER_CLASS_CUT) & (half_width * CAMBER_FABS(s) > bound);
+    const camber_real bound = (CAMBER_END_IS_LAST(end) ? CAMBER_REAL(0.35f) : CAMBER_REAL(0.6f)) * c;
+    return (CAMBER_END_CLASS(end) > CAMBER_CLASS_CUT) & (half_width * CAMBER_FABS(s) > bound);
 }
 
 CAMBER_FN camber_words camber_end_flags(camber_words end) {
-    const camber_words none = (camber_words)(0u), kind = end & 7u, class = end >> 3 & 3u;
-    const camber_mask sharp = (kind == 3u) | (kind == 4u) | (kind > 5u) | (class == CAMBER_CLASS_TIGHT);
-    const camber_mask flat = (kind == 1u) | (kind == 2u), rounded = (kind == 0u) & (class == CAMBER_CLASS_CAP);
+    const camber_words none = (camber_words)(0u), kind = CAMBER_END_KIND(end), class = CAMBER_END_CLASS(end);
+    const camber_mask sharp = (kind == CAMBER_ENDS_MITER) | (kind == CAMBER_ENDS_BEVEL) |
+                              (kind > CAMBER_ENDS_SPLIT_ROUND) | (class == CAMBER_CLASS_TIGHT);
+    const camber_mask flat = (kind == CAMBER_ENDS_BUTT) | (kind == CAMBER_ENDS_SQUARE),
+                      rounded = (kind == CAMBER_ENDS_ROUND) & (class == CAMBER_CLASS_CAP);
     return (sharp ? (camber_words)(CAMBER_SEGMENT_SHARP) : none) | (flat ? (camber_words)(CAMBER_SEGMENT_FLAT) : none) |
            (rounded ? (camber_words)(CAMBER_SEGMENT_ROUNDED) : none);
 }
 
 /* What is known of the ends before any pixel is. */
 CAMBER_FN void camber_segment_judge(camber_segment *s) {
-    const camber_words none = (camber_words)(0u), end_a = s->flags & 0x1fffu,
-                       end_b = s->flags >> CAMBER_SEGMENT_END_BITS & 0x1fffu;
+    const camber_words none = (camber_words)(0u), end_a = CAMBER_END_OF_A(s->flags), end_b = CAMBER_END_OF_B(s->flags);
     const camber_real ca = s->nax * s->ux + s->nay * s->uy, sa = s->nax * s->uy - s->nay * s->ux;
     const camber_real cb = s->nbx * s->ux + s->nby * s->uy, sb = s->nby * s->ux - s->nbx * s->uy;
     s->flags |= camber_owner_side(end_a, ca, sa, s->half_width) ? (camber_words)(CAMBER_SEGMENT_OWNER_A) : none;
@@ -154,11 +173,13 @@ CAMBER_FN void camber_segment_judge(camber_segment *s) {
 
 /* How far an end reaches out of the box of A and B, in units of half the width and the pad. */
 CAMBER_FN camber_real camber_segment_reach(camber_words join, camber_real q) {
-    const camber_words end = join >> CAMBER_JOIN_END_SHIFT & 7u;
+    const camber_words end = join >> CAMBER_JOIN_END_SHIFT & CAMBER_JOIN_END_MASK;
     const camber_real below = 1.0f - q * q;
     const camber_real miter = (1.0f + q * q) / CAMBER_MORE(below, CAMBER_REAL(1e-3f));
-    const camber_real corner = end == 0u || end == 1u || end == 5u ? CAMBER_REAL(1.0f) : CAMBER_REAL(1.4143f);
-    return ((end == 3u) | (end == 7u)) ? miter : corner;
+    const camber_real corner = end == CAMBER_ENDS_ROUND || end == CAMBER_ENDS_BUTT || end == CAMBER_ENDS_SPLIT_ROUND
+                                   ? CAMBER_REAL(1.0f)
+                                   : CAMBER_REAL(1.4143f);
+    return ((end == CAMBER_ENDS_MITER) | (end == CAMBER_ENDS_SPLIT_MITER)) ? miter : corner;
 }
 
 /* Of the segment from A to B that is half_width wide; (px, py) is where the segment before it comes from. Both segments
@@ -179,7 +200,7 @@ CAMBER_FN camber_segment camber_segment_of(camber_real px, camber_real py, cambe
     const camber_real ca = (1.0f - qa * qa) * ta, sa = 2.0f * qa * ta;
     const camber_real cb = (1.0f - qb * qb) * tb, sb = 2.0f * qb * tb;
     const camber_words end_a = camber_segment_end(join_a), end_b = camber_segment_end(join_b);
-    const camber_mask cap_a = (end_a >> 3 & 3u) == CAMBER_CLASS_CAP;
+    const camber_mask cap_a = CAMBER_END_CLASS(end_a) == CAMBER_CLASS_CAP;
     const camber_words soon_a = join_a & CAMBER_JOIN_AFTER_FIRST, soon_b = join_b & CAMBER_JOIN_BEFORE_LAST;
     s.nax = cap_a ? s.ux : ix * ca - iy * sa;
     s.nay = cap_a ? s.uy : ix * sa + iy * ca;
@@ -197,6 +218,7 @@ CAMBER_FN camber_segment camber_segment_of(camber_real px, camber_real py, cambe
     s.slope = linear ? one : one / p;
     const camber_real curve = q > 1e-4f ? CAMBER_REAL(0.5f) / (p * safe) : none;
     s.curve = linear ? none : curve;
+    /* from bits 26 and 27 of the join word to CAMBER_END_LAST_SHIFT */
     s.flags = end_a | soon_a >> 14 | (end_b | soon_b >> 15) << CAMBER_SEGMENT_END_BITS;
     s.flags |= linear ? CAMBER_SEGMENT_LINEAR : 0u;
     camber_segment_judge(&s);
@@ -232,7 +254,7 @@ CAMBER_FN camber_words camber_segment_box(const camber_segment *s, camber_mask d
 /* ---- Tiles ---- */
 
 /* Of a box's squares in one row of them, tiles or cells of side px, those that a segment's band meets: the first | the
- * last << 8. middle: of the row, px; left: of the first square; shape: its words. */
+ * last << 8. middle: of the row, px; left: of the first square; segment: its words. */
 CAMBER_FN camber_u32 camber_row_span(CAMBER_GLOBAL const float *segment, float middle, float left, camber_u32 first,
                                      camber_u32 last, float side) {
     const float ax = segment[CAMBER_SEGMENT_AX], ay = segment[CAMBER_SEGMENT_AY], ux = segment[CAMBER_SEGMENT_UX],

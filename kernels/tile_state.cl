@@ -26,7 +26,7 @@ typedef struct tile_state {
 } tile_state;
 
 #if CAMBER_RASTER_RICH
-/* Of the area that is covered, what is seen of it. */
+/* How much of the covered area is seen: masked colours are seen by their alpha. */
 #define WITH_LAYER_ALPHA(c, i, seen) with_layer_alpha(c, i, seen)
 static inline float16 with_layer_alpha(private tile_state *c, int i, float16 seen) {
     const float16 shown = seen * c->layer_alpha;
@@ -122,7 +122,7 @@ static inline void close_brush(private tile_state *c) {
     c->brushed = c->filled = 0;
 }
 
-/* A layer or a group goes under what the level below it has. */
+/* Puts a layer or a group under what the level below it has. */
 static inline void close_level(private tile_state *c, int level, float opacity) {
     const int below = level == 2 && c->is_open[1] ? 1 : 0;
     for (ulong left = c->touched[level]; left; left &= left - 1) {
@@ -169,7 +169,7 @@ static inline void change_brush(private tile_state *c, camber_brush next) {
     c->now = next;
 }
 
-/* What a segment of a brush that is no union lets through. */
+/* Adds a segment of a brush that is no union to what the brush lets through. */
 static inline void put_over(private tile_state *c, int i, float16 area, float opacity) {
     const float16 through = c->brush[0][i] * (1.0f - area * opacity);
     c->brush[0][i] = through;
@@ -194,7 +194,7 @@ static inline void put_area(private tile_state *c, private const camber_edge *p,
     }
 }
 
-/* All of a cell's pixels lie inside the stroke. */
+/* Fills cells whose pixels all lie inside the stroke. */
 static inline void put_whole(private tile_state *c, ulong cells) {
     const int is_union = c->now.mode == CAMBER_BRUSH_UNION;
     const float through = is_union ? 0.0f : 1.0f - c->now.a;
@@ -220,7 +220,7 @@ static inline void restore_planes(global const float *planes, private float16 (*
             to[k][lowest(cells)] = vload16((size_t)(plane + k) * CELLS + (size_t)lowest(cells), planes);
 }
 
-/* As far as cells are not what they begin as. */
+/* Spills what cells have beyond their beginning. */
 static inline void spill_cells(private const tile_state *c, global float *spill, camber_spill_args s, int first,
                                int last, camber_u32 now) {
     global uchar *bits = (global uchar *)spill, *blend_count = bits + CAMBER_SPILL_BLEND_COUNTS;

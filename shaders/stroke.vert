@@ -61,7 +61,7 @@ flat out vec4 v_cut_a, v_cut_b;
 const float PAD_PX = 0.75, NO_LIMIT_PX = 3.0e38;
 const uint FIRST = 2u, RING = 8u, BREAK = 16u, START = 32u; // of a record
 const uint AFTER_FIRST = 1u << 26u, BEFORE_LAST = 1u << 27u; // of a join
-const uint GHOST = 0u, DOT = 1u, CUT = 3u, TIGHT = 4u, SPLIT = 5u; // kinds of joins
+const uint SENTINEL = 0u, DOT = 1u, CUT = 3u, TIGHT = 4u, SPLIT = 5u; // kinds of joins
 const uint ROUND = 0u, BUTT = 1u, SQUARE = 2u, MITER = 3u, SPLIT_ROUND = 5u, SPLIT_MITER = 7u; // camber_end
 const float ALWAYS_PX = -1e30;
 
@@ -324,7 +324,7 @@ void hand_over(vec2 a, vec2 b, vec2 u, float len, float half_width, uint join_a,
 // Whether a segment ends at a record, from the record before it; of a dot of kite and fan, at itself.
 bool ends_segment(Record r) {
     bool first = (r.last & FIRST) != 0u && (METHOD == 0 || kind_of(r.join) != DOT);
-    return kind_of(r.join) != GHOST && (r.last & (BREAK | START)) == 0u && !first;
+    return kind_of(r.join) != SENTINEL && (r.last & (BREAK | START)) == 0u && !first;
 }
 #endif
 

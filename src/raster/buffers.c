@@ -4,8 +4,8 @@
 #include <assert.h>
 #include <string.h>
 
-/* What shapes, lists, and what is kept of tiles may take each where memory has no bound. Shapes that take more are
- * drawn in slices, from the last one to the first. Where lists or what is kept would take more, rows of tiles are drawn
+/* The bytes that segments, lists and spills may take each where memory has no bound. Segments that take more are
+ * drawn in slices, from the last one to the first. Where lists or spills would take more, rows of tiles are drawn
  * by halves, and where the lists of one row do, half the slice. */
 static const uint64_t MOST_BYTES = 256 * 1024 * 1024;
 

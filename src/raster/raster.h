@@ -5,8 +5,9 @@
  * which one a scene takes:
  *
  * - 0: brushes alone.
- * - CAMBER_RASTER_RICH: scene.more says for each brush what kernels/features.h lists, and the tail has the float4s that
- *   it names. shape writes measures besides; a brush without features gets the same bytes as from the plain variant.
+ * - CAMBER_RASTER_RICH: scene.brush_ext says for each brush what kernels/features.h lists, and the side table has the
+ * float4s that it names. setup writes measures besides; a brush without features gets the same bytes as from the plain
+ * variant.
  * - CAMBER_RASTER_RICH | CAMBER_RASTER_PITCHED: the plane of the lines is seen at an angle.
  *
  * In kernels a variant is what #if CAMBER_RASTER_RICH and #if CAMBER_RASTER_PITCHED leave; the twin has all of them and
@@ -79,9 +80,9 @@ camber_status camber_raster_draw_into(camber_raster *raster, const camber_raster
 camber_status camber_raster_map(camber_raster *raster, camber_raster_pixels *pixels);
 void camber_raster_unmap(camber_raster *raster, camber_raster_pixels pixels);
 camber_raster_times camber_raster_get_times(const camber_raster *raster);
-/* px; of an area, where memory is bounded: a row of its tiles can be kept between slices. */
+/* px; of an area, where memory is bounded: a row of its tiles can be spilled between slices. */
 uint32_t camber_raster_widest(const camber_raster *raster);
-/* How many slices of shapes, in bands, the area that was drawn last took. */
+/* How many slices of segments, in bands, the area that was drawn last took. */
 uint32_t camber_raster_slice_count(const camber_raster *raster);
 
 /* ---- Stages in host memory, for proofs: freed with camber_raster_stages_free ---- */
@@ -107,16 +108,16 @@ void camber_raster_stages_free(camber_context *context, camber_raster_stages *st
 
 /* ---- What both need ---- */
 
-/* Runs of records that are drawn by one table. */
+/* Records that are drawn by one table. */
 typedef struct camber_record_range {
     camber_mesh *mesh; /* NULL: the records of a fill */
     size_t part;
     size_t first, end; /* records of the part */
-    size_t base;       /* the first shape: a multiple of 16 */
+    size_t base;       /* the first segment: a multiple of 16 */
     size_t first_row;
 } camber_record_range;
 
-/* Lists the pieces of a scene; shape_count is what they take. *pieces is freed with camber_free. */
+/* Lists the ranges of a scene; segment_count is what they take. *ranges is freed with camber_free. */
 camber_status camber_raster_list_ranges(camber_context *context, const camber_raster_scene *scene,
                                         camber_record_range **ranges, size_t *range_count, size_t *segment_count);
 camber_setup_args camber_raster_setup_args(const camber_raster_scene *scene, const camber_record_range *range,

@@ -69,7 +69,7 @@ static bool is_pitched(const camber_raster *raster) {
     return raster->variant & CAMBER_RASTER_PITCHED;
 }
 
-/* What of a piece lies in the slice: its first record begins a work-item, as the piece's does. */
+/* Cuts a range to what lies in the slice: its first record begins a work-item, as the range's does. */
 static bool cut_range(const camber_raster *raster, camber_record_range *range) {
     const size_t from = raster->first_segment, to = from + raster->segment_count, base = range->base;
     const size_t before = from > base ? from - base : 0, past = to > base ? to - base : 0;

@@ -54,7 +54,7 @@ struct camber_raster {
     double ms[STAGES];
 };
 
-/* Of shapes, of lists, and of what is kept of tiles, each. */
+/* The bytes that segments, lists and spills may take, each. */
 uint64_t camber_raster_most_bytes(const camber_raster *raster);
 /* A buffer of that size at least; what it had is lost where it grows. */
 camber_status camber_raster_reserve(camber_raster *raster, int which, size_t size_bytes);

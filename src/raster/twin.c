@@ -1,4 +1,4 @@
-/* The CPU twin of what draws: the same shapes, boxes, lists and pixels, a segment, a tile and a pixel at a time, with
+/* The CPU twin of what draws: the same segments, boxes, lists and pixels, a segment, a tile and a pixel at a time, with
  * neither chunks nor sums. */
 #include "raster/twin.h"
 
@@ -140,7 +140,7 @@ static camber_status make_segments(const camber_twin *t, const camber_record_ran
 
 /* ---- Lists ---- */
 
-/* Calls put for each tile that a shape meets, from the first to the last. */
+/* Calls put for each tile that a segment meets, from the first to the last. */
 static void each_tile(const camber_twin *t, size_t segment, uint32_t *counts, bool fill) {
     const uint32_t box = t->stages->boxes[segment];
     const uint32_t x0 = box & 255u, y0 = box >> 8 & 255u, x1 = box >> 16 & 255u, y1 = box >> 24;

@@ -1,5 +1,5 @@
-/* How far along its polyline each point lies, for what is drawn along lines: tally -> measure -> lay on a device, and
- * the twin's way, from each polyline's first point to its last. */
+/* How far along its polyline each point lies, for what is drawn along lines: arc_length_sum -> arc_length_scan on a
+ * device; the twin goes from each polyline's first point to its last. */
 #include "tess/arc_length.h"
 
 #include "cl/launch.h"

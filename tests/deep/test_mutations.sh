@@ -176,11 +176,11 @@ mutant strip kernels/offset.h "arcs of a single point" 'define CAMBER_OFFSET_ARC
 mutant strip kernels/join.h "turns to the other side" 'aside = dx * ey - dy * ex' 'aside = dy * ex - dx * ey'
 mutant strip kernels/join.h "turns of half the angle" 'turn.c) * 32767.0f' 'turn.c) * 16383.0f'
 mutant strip kernels/join.h "no join is tight" 'tight = row->reach_px * sine > ' 'tight = -row->reach_px * sine > '
-mutant strip kernels/join.h "split miters cut like bevels" 'miter ? 7u : bevel ? 6u' 'miter ? 6u : bevel ? 7u'
+mutant strip kernels/join.h "split miters cut like bevels" 'split_end = miter   ?' 'split_end = !miter ?'
 mutant strip kernels/join.h "tight joins that forget the bisector" 'end = split || tight ?' 'end = split ?'
 mutant strip kernels/join.h "a miter past its limit" 'turn.c * row->miter_limit >= 1.0f' 'turn.c * row->miter_limit <= 1.0f'
 mutant strip kernels/join.h "round joins past their limit" 'turn.c > row->round_cos' 'turn.c < row->round_cos'
-mutant strip kernels/join.h "round and square caps swapped" 'cap == 1u ? 0u : cap == 2u ? 2u' 'cap == 1u ? 2u : cap == 2u ? 0u'
+mutant strip kernels/join.h "round and square caps swapped" 'cap == CAMBER_CAPS_ROUND ' 'cap == CAMBER_CAPS_SQUARE '
 mutant fan kernels/join.h "fans of one triangle" 'x > turn_cos && y > 0.0f' 'x < turn_cos && y > 0.0f'
 
 # ---- Networks: the twin tells of the cull stages, pixels and the window of what they share with it ----

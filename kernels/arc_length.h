@@ -10,7 +10,7 @@
 
 /* Points a work-item measures. */
 #define CAMBER_ARC_LENGTH_CHUNK 64
-/* Of slots, whose coordinates are px: 1 / 1024 px. */
+/* The unit of lengths of slots, whose coordinates are px: 1 / 1024 px. */
 #define CAMBER_LENGTH_UNITS 1024.0f
 
 /* A chunk's sum, and whether a line begins (or, seen from behind, ends) in it, so that what lies before is not part of
@@ -22,7 +22,7 @@ CAMBER_FN camber_u64 camber_length_of(float dx, float dy, float units) {
     return (camber_u64)(CAMBER_SQRT(dx * dx + dy * dy) * units + 0.5f);
 }
 
-/* Of the segment into a slot; 0 into a line's first point, and into sentinels. */
+/* The length of the segment into a slot; 0 into a line's first point, and into sentinels. */
 CAMBER_FN camber_u64 camber_length_into(float dx, float dy, camber_u32 info) {
     const camber_u32 inside = (info & (CAMBER_POINT_REAL | CAMBER_POINT_FIRST)) == CAMBER_POINT_REAL;
     return inside ? camber_length_of(dx, dy, CAMBER_LENGTH_UNITS) : 0ul;

@@ -30,8 +30,8 @@ kernel __attribute__((reqd_work_group_size(BIN_LANES, 1, 1))) void bin_count(glo
     }
 }
 
-/* What a segment of a batch does in each of its tiles, one after the other: says that it is there; goes to its place,
- * behind those of the lanes before; and the first of a tile's counts them all. */
+/* The turns that a segment takes in each of its tiles, one after the other: it says that it is there; goes to its
+ * place, behind those of the lanes before; and the first of a tile's counts them all. */
 enum { TURN_MARK, TURN_PUT, TURN_END, TURNS };
 
 static inline void take_turn(int turn, volatile global camber_u32 *own, volatile global camber_u32 *mark,

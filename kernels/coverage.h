@@ -5,7 +5,7 @@
 
 #include "segment.h"
 
-/* What is constant over a segment. */
+/* The coefficients of a segment: all that is constant over its pixels. */
 typedef struct camber_edge {
     float ax, ay, bx, by, ux, uy, nax, nay, nbx, nby;
     float length, half_width;
@@ -107,7 +107,7 @@ CAMBER_FN camber_real camber_clamp_to_one(camber_real x) {
     return least < 1.0f ? least : CAMBER_REAL(1.0f);
 }
 
-/* Of the second line across a sharp join: what does not turn over with the end of it that is looked out of. */
+/* The second line across a sharp join: what does not turn over with the end of it that is looked out of. */
 typedef struct camber_second {
     camber_u32 bevel, miter;
     float outer, nx, ny; /* the side it lies on; its normal along and across */
@@ -180,7 +180,7 @@ CAMBER_FN camber_real camber_edge_band(const camber_edge *p, float half_width, c
     return both > 0.0f ? both : CAMBER_REAL(0.0f);
 }
 
-/* What the round caps of thin lines leave of pixels, and flat caps. */
+/* The share of pixels that round caps of thin lines leave, and flat caps. */
 CAMBER_FN camber_real camber_edge_tips(const camber_edge *p, camber_real x) {
     const camber_real past_a = -x, past_b = x - p->length;
     const camber_real tips = camber_clamp_to_one(p->tip_a - past_a) + camber_clamp_to_one(p->tip_b - past_b) - 1.0f;
@@ -246,8 +246,8 @@ CAMBER_FN void camber_edge_normal(const camber_edge *p, camber_real x, camber_re
     *ny = in_x * p->uy + in_y * p->ux;
 }
 
-/* Of cells, by their middles: which a segment may meet; which of them lie near its ends, so that these matter; which
- * lie all inside the stroke. */
+/* Masks of cells, by their middles: which a segment may meet; which of them lie near its ends, so that these matter;
+ * which lie all inside the stroke. */
 typedef struct camber_cell_masks {
     camber_mask partial, near_end, full;
 } camber_cell_masks;
@@ -258,7 +258,7 @@ CAMBER_FN void camber_cell_masks_of(const camber_edge *p, camber_real mx, camber
     const float reach_b = 1.5f * (CAMBER_FABS(p->nbx) + CAMBER_FABS(p->nby));
     const float far_a = p->owner_a == CAMBER_ALWAYS_PX ? -reach_a : CAMBER_ALWAYS_PX;
     const float far_b = p->owner_b == CAMBER_ALWAYS_PX ? reach_b : -CAMBER_ALWAYS_PX;
-    /* What corners and tight joins cut off may lie far from them. */
+    /* The parts that corners and tight joins cut off may lie far from them. */
     const float near = p->sharp ? CAMBER_NEVER_PX : reach + 0.75f;
     const camber_real qx = mx - p->ax, qy = my - p->ay, rx = mx - p->bx, ry = my - p->by;
     const camber_real x = qx * p->ux + qy * p->uy, aside = CAMBER_FABS(qy * p->ux - qx * p->uy);

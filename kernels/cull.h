@@ -62,14 +62,14 @@ typedef struct camber_projection {
     camber_u32 first_point;                           /* where the arrays of points begin in the network */
     camber_u32 begin, end;                            /* the points to walk, counted from there */
     float step_px;
-    /* Of a camera with a pitch. The window is a trapezoid then: its sides come so many px closer a px down, and are at
+    /* For a camera with a pitch. The window is a trapezoid then: its sides come so many px closer a px down, and are at
      * window_x0 and window_x1 at its bottom. Depth is 1 at middle_y, and so much less a px down; tolerance is what is
      * borne there. */
     float slope; /* 0: no pitch */
     float middle_y, fall, nearest, inverse_cosine;
 } camber_projection;
 
-/* What a walk reads and where it puts slots. */
+/* A walk over points: the arrays that it reads, and where it puts slots. */
 typedef struct camber_walk {
     CAMBER_GLOBAL const camber_i32 *x, *y;
     CAMBER_GLOBAL const float *importance;
@@ -206,7 +206,7 @@ CAMBER_FN float camber_part_within_pitched(const camber_projection *p, camber_ke
     return t > 0.0f ? t : 0.0f;
 }
 
-/* What is borne where a point lies: a px there is depth px of the plane from side to side, and more from front to
+/* The tolerance where a point lies: a px there is depth px of the plane from side to side, and more from front to
  * back, but near the camera less. */
 CAMBER_FN float camber_tolerance_at(const camber_projection *p, camber_i32 x, camber_i32 y) {
     const float depth = 1.0f - p->fall * (camber_project_y(p, x, y) - p->middle_y);
@@ -249,7 +249,7 @@ CAMBER_FN void camber_put_slot(camber_walk *w, float x, float y, camber_u32 info
 }
 
 #if CAMBER_WALK_ARC_LENGTHS
-/* Of the slot that has been put last. */
+/* Puts the arc length of the slot that has been put last. */
 CAMBER_FN void camber_walk_put_arc_length(const camber_walk *w, const camber_projection *p, float along) {
     if (w->puts && w->lengths) {
         w->slot_measures[2 * (w->at - 2u)] = along * p->step_px;

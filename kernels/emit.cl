@@ -58,8 +58,8 @@ static inline size_t put_any(global const float *x, global const float *y, size_
     return camber_strip_records(kind, point);
 }
 
-/* What a second record has of its point's first, and what it has beside: of one that goes on at a tight join, and of
- * the break before a polyline. */
+/* The bits that a second record takes from its point's first, and those that it has besides: for one that goes on at a
+ * tight join, and of the break before a polyline. */
 constant camber_u32 SAME[8] = {~0u, ~0u, ~0u, ~0u, ~0u, ~0u, 0u, CAMBER_ROW_BITS};
 constant camber_u32 ADDED[8] = {0u, 0u, 0u, CAMBER_RECORD_START, 0u, 0u, 0u, CAMBER_RECORD_BREAK};
 

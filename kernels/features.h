@@ -1,5 +1,5 @@
-/* What frames have that CAMBER_RASTER_RICH draws: strokes of two bands, that fade, are dashed, drawn in part, or change
- * their colour along them. stroke.frag says the same of fragments. */
+/* The features that CAMBER_RASTER_RICH draws: strokes with a gap, strokes that fade, are dashed, drawn in part, or
+ * change their colour along them. stroke.frag says the same of fragments. */
 #ifndef CAMBER_FEATURES_H
 #define CAMBER_FEATURES_H
 
@@ -15,7 +15,7 @@
  */
 #define CAMBER_SEGMENT_MEASURES 4
 
-/* What a row has beside its brush, as bits. A brush with none is drawn as one of a plain frame is. */
+/* The features of a row, as bits. A brush with none is drawn as one of a plain frame is. */
 #define CAMBER_FEATURE_GAP 1u
 #define CAMBER_FEATURE_BLUR 2u
 #define CAMBER_FEATURE_DASH 4u
@@ -49,7 +49,7 @@ CAMBER_FN camber_real camber_segment_rate(const camber_segment *s, camber_real f
 
 /* ---- A segment ---- */
 
-/* What is constant over a segment, besides its edge. */
+/* The coefficients of a segment with features, besides its edge. */
 typedef struct camber_extras {
     camber_u32 features;
     float half_gap, blur;
@@ -61,7 +61,7 @@ typedef struct camber_extras {
     CAMBER_GLOBAL const float *dashes, *stops;
 } camber_extras;
 
-/* Of the period, how much is drawn. */
+/* How much of the period is drawn. */
 CAMBER_FN float camber_dashes_drawn(CAMBER_GLOBAL const float *dashes, camber_u32 count, float period) {
     float drawn = 0.0f;
     for (camber_u32 i = 0; i < count; i++) {
@@ -103,7 +103,7 @@ CAMBER_FN void camber_extras_of(const camber_brush_ext *brush_ext, const camber_
 
 /* ---- Along the line ---- */
 
-/* Of what is not below 0: floor. Floats this large are whole. */
+/* floor, for numbers that are not below 0. Floats this large are whole. */
 CAMBER_FN camber_real camber_whole(camber_real x) {
     const camber_real large = CAMBER_REAL(8388608.0f), bounded = x < large ? x : large;
     const camber_real whole = CAMBER_TRUNCATE(bounded);
@@ -151,7 +151,7 @@ CAMBER_FN camber_real camber_dash_distance(const camber_extras *e, camber_real t
 
 /* ---- Pixels ---- */
 
-/* Of the gap, both edges of which may lie in a pixel. */
+/* The area of the gap, both edges of which may lie in a pixel. */
 CAMBER_FN camber_real camber_gap_area(const camber_edge *p, float half_gap, camber_real d) {
     const camber_real both = camber_inside_edge(p, half_gap - d) + camber_inside_edge(p, half_gap + d) - 1.0f;
     return both > 0.0f ? both : CAMBER_REAL(0.0f);
@@ -226,7 +226,7 @@ CAMBER_FN camber_real camber_extras_area(const camber_edge *p, const camber_extr
 
 /* ---- Cells ---- */
 
-/* What a cell has of a segment: nothing; it lies near the ends; on the sides; all inside the stroke. */
+/* How a cell lies to a segment: it has nothing of it; it lies near the ends; on the sides; all inside the stroke. */
 #define CAMBER_CELL_OUTSIDE 0u
 #define CAMBER_CELL_NEAR_END 1u
 #define CAMBER_CELL_PARTIAL 2u

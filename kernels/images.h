@@ -41,7 +41,7 @@ CAMBER_FN camber_u32 camber_bits_of(float value) {
 }
 #endif
 
-/* What is constant over a segment or a fill. */
+/* How an image is looked up, constant over a segment or a fill. */
 typedef struct camber_image_sampler {
     camber_u32 first, stride; /* words */
     float width, height;      /* texels */
@@ -52,7 +52,7 @@ typedef struct camber_image_sampler {
     float mean[4];
 } camber_image_sampler;
 
-/* What is behind the whole numbers; of those past 2^23 nothing. */
+/* The fraction of a number; 0 past 2^23. */
 CAMBER_FN float camber_fraction(float x) {
     const float held = CAMBER_FABS(x) < 8388608.0f ? x : 0.0f, rest = held - (float)(camber_i32)held;
     return rest < 0.0f ? rest + 1.0f : rest;
@@ -85,12 +85,12 @@ CAMBER_FN float camber_image_tangent(float cosine, float sine) {
     return CAMBER_FABS(tangent) < 1e-6f ? 0.0f : tangent;
 }
 
-/* Of a segment: half its width, and cosine and sine of half its turns at A and B. */
+/* A segment: half its width, and cosine and sine of half its turns at A and B. */
 typedef struct camber_image_line {
     float length, half_width, ca, sa, cb, sb;
 } camber_image_line;
 
-/* Of a line, too: measure is the segment's. */
+/* The same for a line: measure is the segment's. */
 CAMBER_FN void camber_image_line_of(CAMBER_GLOBAL const float *side_table, camber_u32 at,
                                     CAMBER_GLOBAL const float *measure, const camber_image_line *p,
                                     camber_image_sampler *m) {

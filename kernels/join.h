@@ -18,8 +18,8 @@
 #define CAMBER_ROUND_LIMITS 1
 #endif
 
-/* Of half the turn: a join that turns by less, 0.011 degrees, has no triangles of its own in kite and fan. Their
- * corners would fall on each other, and it is the rasteriser's rounding that says which way they wind. */
+/* The sine of half the turn: a join that turns by less, 0.011 degrees, has no triangles of its own in kite and fan.
+ * Their corners would fall on each other, and it is the rasteriser's rounding that says which way they wind. */
 #define CAMBER_STRAIGHT_SINE 1e-4f
 
 typedef struct camber_turn {
@@ -41,7 +41,7 @@ CAMBER_FN camber_turn camber_turn_between(float dx, float dy, float ex, float ey
     const float product = along * along + aside * aside; /* of the squared lengths */
     const float scale = 1.0f / CAMBER_SQRT(product > 1e-36f ? product : 1e-36f);
     const float dot = along * scale, cross = aside * scale;
-    /* Of c and s the larger comes from a root that loses nothing, the smaller from cross = 2 s c. */
+    /* The larger one of c and s comes from a root that loses nothing, the smaller from cross = 2 s c. */
     const float larger = CAMBER_SQRT(0.5f + 0.5f * CAMBER_FABS(dot));
     const float smaller = 0.5f * cross / larger;
     camber_turn turn;
@@ -79,8 +79,8 @@ CAMBER_FN camber_u32 camber_join_end(camber_u32 join) {
     return join >> CAMBER_JOIN_END_SHIFT & CAMBER_JOIN_END_MASK;
 }
 
-/* What a join word tells of the line beyond the next point, from the info of the points beside it. A ring has neither
- * first nor last. */
+/* The bits of a join word that tell of the line beyond the next point, from the info of the points beside it. A ring
+ * has neither first nor last. */
 CAMBER_FN camber_u32 camber_line_ends(camber_u32 before, camber_u32 after) {
     const camber_u32 first = (before & (CAMBER_POINT_FIRST | CAMBER_POINT_RING)) == CAMBER_POINT_FIRST;
     const camber_u32 last = (after & (CAMBER_POINT_LAST | CAMBER_POINT_RING)) == CAMBER_POINT_LAST;

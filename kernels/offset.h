@@ -1,27 +1,27 @@
 /* Offset: the line that lies beside another, the one place where it is decided which points it has.
  *
- *     leg    the segment from a slot to the next, moved aside
- *     bend   where two legs meet: on the outer side an arc about the point, on the inner one where they cross
+ *     offset segment   the one from a slot to the next, moved aside
+ *     corner           where two of them meet: an arc about the point outside, a crossing inside
  *
  *         T0___T1                 outer: points on tangents, so that none lies nearer than the offset;
- *         /       \               the first and the last lie on the legs
- *        /    P----T2---- leg
- *       /    /                        leg ------J   P      inner: J, where both legs have room
- *      leg  /                                    \   \
+ *         /       \               the first and the last lie on the segments
+ *        /    P----T2---- segment
+ *       /    /                        seg ------J   P      inner: J, where both have room
+ *      seg  /                                    \   \
  *
- * What has no room goes: of a leg, and of an arc, that is left which lies no nearer than the offset to what the line
- * passes within its reach, CAMBER_OFFSET_REACH offsets around the end of the leg. As a capsule is convex, it hides one
- * interval of a leg; the line before hides the leg's beginning up to there, that behind its end. What is left is linked
- * in the order of the line. So a line has no more pieces than it had, and what lies farther along it than its reach
- * does not count: a line that crosses itself is drawn through. */
+ * What has no room goes: of a segment, and of an arc, that is left which lies no nearer than the offset to what the
+ * line passes within its reach, CAMBER_OFFSET_REACH offsets around the end of the segment. As a capsule is convex, it
+ * hides one interval of a segment; the line before hides the segment's beginning up to there, that behind its end. What
+ * is left is linked in the order of the line. So a line has no more segments than it had, and what lies farther along
+ * it than its reach does not count: a line that crosses itself is drawn through. */
 #ifndef CAMBER_KERNEL_OFFSET_H
 #define CAMBER_KERNEL_OFFSET_H
 
 #include "join.h"
 
-/* Slots whose points a work-item counts and puts. */
+/* Slots whose points a work-item counts and emits. */
 #define CAMBER_OFFSET_CHUNK 16
-/* How far around a leg's end the line is looked at, in offsets, and how many segments of it at most. */
+/* How far around a segment's end the line is looked at, in offsets, and how many segments of it at most. */
 #define CAMBER_OFFSET_REACH 3.0f
 #define CAMBER_OFFSET_SEGMENTS 128u
 /* Slots that are passed at most to find a ring's other end, where its seam is looked across. */
@@ -29,15 +29,15 @@
 /* An arc's points lie no farther outside it; it has no more of them. */
 #define CAMBER_OFFSET_ARC_TOLERANCE_PX 0.125f
 #define CAMBER_OFFSET_ARC_POINTS_MAX 64u
-/* What is left of a leg is longer. Pieces that are linked are so by one point where they end closer. */
+/* The rest of a cut segment is longer. Elements that are linked are so by one point where they end closer. */
 #define CAMBER_OFFSET_SEGMENT_SHORTEST_PX (1.0f / 1024.0f)
 #define CAMBER_OFFSET_GAP_PX 0.25f
 /* Legs that are cut may end so far from where they cross. */
 #define CAMBER_OFFSET_SLACK_PX 1.0f
-/* Of a leg that is not cut at its end. */
+/* The end of a segment that is not cut there. */
 #define CAMBER_OFFSET_SEGMENT_WHOLE 1.0e30f
 
-/* What of a row an offset needs. */
+/* The part of a row that an offset needs. */
 typedef struct camber_offset_row {
     float offset_px; /* to the right, as seen with y down */
     float miter_limit;
@@ -45,7 +45,7 @@ typedef struct camber_offset_row {
     camber_u32 spare;
 } camber_offset_row;
 
-/* What is left of the leg that begins at a slot, px along it, and of the arc there. */
+/* The rest of the offset segment that begins at a slot, px along it, and of the arc there. */
 typedef struct camber_offset_clip {
     float from, to; /* nothing where to is not above from */
     camber_u32 arc; /* its first point | the one behind its last << 8 | how many it would have << 16 */
@@ -108,7 +108,8 @@ CAMBER_FN camber_u32 camber_is_open_end(camber_u32 info) {
 
 /* ---- Legs ---- */
 
-/* Of a direction: 0 where two slots have one place, as they may where a camera sees a whole city in a pixel. */
+/* A component of a direction: 0 where two slots have one place, as they may where a camera sees a whole city in a
+ * pixel. */
 CAMBER_FN float camber_direction(float offset, float length) {
     return length > 0.0f ? offset / length : 0.0f;
 }
@@ -145,14 +146,14 @@ CAMBER_FN camber_u32 camber_offset_has_segment(camber_offset_clip clip) {
 
 typedef struct camber_offset_corner {
     float c, s;    /* cosine and sine of half the turn that the offset makes, positive from x to y */
-    float in, out; /* lengths of the legs */
+    float in, out; /* lengths of the segments */
     float ix, iy;  /* direction of the one that comes in */
     float x, y;    /* px */
     camber_u32 inner;
 } camber_offset_corner;
 
-/* Of a slot that has neighbours. Legs that lie on each other, as of a way to a dead end and back, are gone around on
- * either side. */
+/* The corner at a slot that has neighbours. Segments that lie on each other, as of a way to a dead end and back, are
+ * gone around on either side. */
 CAMBER_FN camber_offset_corner camber_offset_corner_at(const camber_source_line *c, camber_u32 slot, float offset) {
     const float x = c->x[slot], y = c->y[slot];
     const float dx = x - c->x[slot - 1u], dy = y - c->y[slot - 1u];
@@ -180,14 +181,14 @@ CAMBER_FN camber_offset_corner camber_offset_corner_at(const camber_source_line 
     return corner;
 }
 
-/* How far along both legs the place lies where they cross. */
+/* How far along both segments the place lies where they cross. */
 CAMBER_FN float camber_offset_corner_overlap(const camber_offset_corner *corner, float offset) {
     const float c = corner->c > 1.0e-6f ? corner->c : 1.0e-6f;
     return CAMBER_FABS(offset * corner->s) / c;
 }
 
-/* How much of a leg its neighbour over an inner bend hides. That may be too short to reach where both cross: then it is
- * the disc about its other end that does. */
+/* How much of a segment its neighbour over an inner corner hides. That may be too short to reach where both cross: then
+ * it is the disc about its other end that does. */
 CAMBER_FN float camber_offset_corner_hides(const camber_offset_corner *corner, float offset, float neighbour) {
     const float d = CAMBER_FABS(offset), reach = CAMBER_OFFSET_REACH * d;
     const float length = neighbour < reach ? neighbour : reach, room = camber_offset_corner_overlap(corner, offset);
@@ -200,7 +201,7 @@ CAMBER_FN float camber_offset_corner_hides(const camber_offset_corner *corner, f
     return hidden > 0.0f ? hidden : 0.0f;
 }
 
-/* An arc: where its next point lies from the bend, and the turn to the one behind. */
+/* An arc: where its next point lies from the corner, and the turn to the one behind. */
 typedef struct camber_offset_arc {
     float vx, vy;
     float c, s;
@@ -213,7 +214,7 @@ CAMBER_FN void camber_offset_arc_step(camber_offset_arc *arc) {
     arc->vx = vx;
 }
 
-/* Of an outer bend; none of a bevel. One point is the tip. */
+/* The arc of an outer corner; a bevel has none. One point is the tip. */
 CAMBER_FN camber_offset_arc camber_offset_arc_of(const camber_offset_corner *corner, camber_offset_row row) {
     const float d = CAMBER_FABS(row.offset_px);
     float c = corner->c, s = corner->s;
@@ -254,8 +255,8 @@ CAMBER_FN camber_u32 camber_offset_arc_count(camber_u32 word) {
 typedef char camber_offset_row_is_16_bytes[sizeof(camber_offset_row) == 16 ? 1 : -1];
 typedef char camber_offset_clip_is_12_bytes[sizeof(camber_offset_clip) == 12 ? 1 : -1];
 #else
-_Static_assert(sizeof(camber_offset_row) == 16, "the device reads shifts of 16 bytes");
-_Static_assert(sizeof(camber_offset_clip) == 12, "the device writes spans of 12 bytes");
+_Static_assert(sizeof(camber_offset_row) == 16, "the device reads rows of 16 bytes");
+_Static_assert(sizeof(camber_offset_clip) == 12, "the device writes clips of 12 bytes");
 #endif
 
 #endif

@@ -1,4 +1,4 @@
-/* What of a leg and of an arc is left where the line passes nearer to it than the offset: offset.h says the rule. */
+/* Clips offset segments and arcs where the line passes nearer to it than the offset: offset.h says the rule. */
 #ifndef CAMBER_OFFSET_CLIP_H
 #define CAMBER_OFFSET_CLIP_H
 
@@ -83,14 +83,14 @@ CAMBER_FN camber_u32 camber_hidden_part(float near, float ax, float ha, float bx
     return *lo < *hi ? 1u : 0u;
 }
 
-/* What counts as nearer than the offset: rounding does not. */
+/* How much nearer than the offset counts as nearer: rounding does not. */
 CAMBER_FN float camber_offset_near(float offset) {
     const float d = CAMBER_FABS(offset);
     const float least = d < 0.5f ? d * (1.0f / 16.0f) : 1.0f / 32.0f, coarse = d * (1.0f / 65536.0f);
     return d - (coarse > least ? coarse : least);
 }
 
-/* What a line passes is looked at both ways in turn: of a ring that lies within the reach each way sees half. */
+/* The walks go both ways in turn: of a ring that lies within the reach each way sees half. */
 typedef struct camber_neighbour_walks {
     camber_neighbour_walk back, ahead;
     camber_u32 turn; /* 1: back went last */
@@ -126,7 +126,7 @@ CAMBER_FN camber_u32 camber_neighbour_walks_on(const camber_source_line *c, camb
     return 0u;
 }
 
-/* Cuts a leg by what the line passes before it and behind it, but for the neighbours of the leg. */
+/* Cuts a segment by what the line passes before it and behind it, but for the neighbours of the segment. */
 CAMBER_FN void camber_offset_segment_cut(const camber_source_line *c, camber_u32 slot,
                                          const camber_offset_segment *segment, float offset, float *from, float *to) {
     const float d = CAMBER_FABS(offset), near = camber_offset_near(offset), side = offset < 0.0f ? -1.0f : 1.0f;
@@ -152,7 +152,7 @@ CAMBER_FN void camber_offset_segment_cut(const camber_source_line *c, camber_u32
     }
 }
 
-/* What is left of an arc: as with a leg, what comes before hides its beginning. */
+/* Clips an arc: as with a segment, what comes before hides its beginning. */
 CAMBER_FN void camber_offset_arc_cut(const camber_source_line *c, camber_u32 slot, const camber_offset_corner *corner,
                                      const camber_offset_arc *arc, float offset, camber_u32 *first, camber_u32 *end) {
     const float near = camber_offset_near(offset);
@@ -178,7 +178,7 @@ CAMBER_FN void camber_offset_arc_cut(const camber_source_line *c, camber_u32 slo
 
 /* ---- Spans ---- */
 
-/* Of the leg from a slot to the next. */
+/* Clips the segment from a slot to the next. */
 CAMBER_FN void camber_offset_clip_segment(const camber_source_line *c, camber_u32 slot, float offset,
                                           camber_offset_clip *clip) {
     const camber_offset_segment segment = camber_offset_segment_at(c, slot);
@@ -197,7 +197,7 @@ CAMBER_FN void camber_offset_clip_segment(const camber_source_line *c, camber_u3
         folds = folds && corner.inner && CAMBER_FABS(corner.s) < 0.5f ? 1u : 0u;
         room += camber_offset_corner_overlap(&corner, offset);
     }
-    /* The inside of a narrow curve: the leg would run backwards. */
+    /* The inside of a narrow curve: the segment would run backwards. */
     if (folds && room > segment.length)
         to = clip->from;
     if (to > clip->from)
@@ -207,7 +207,7 @@ CAMBER_FN void camber_offset_clip_segment(const camber_source_line *c, camber_u3
                    : -1.0f;
 }
 
-/* Of the arc at a slot. */
+/* Clips the arc at a slot. */
 CAMBER_FN camber_u32 camber_offset_clip_arc(const camber_source_line *c, camber_u32 slot, camber_offset_row row) {
     const camber_offset_corner corner = camber_offset_corner_at(c, slot, row.offset_px);
     if (corner.inner)
@@ -219,8 +219,8 @@ CAMBER_FN camber_u32 camber_offset_clip_arc(const camber_source_line *c, camber_
     return end > first ? first | end << 8 | arc.count << 16 : 0u;
 }
 
-/* What is left at a slot: of the leg that begins there, and of the arc, which a ring's last point leaves to its first.
- * An arc of a single point needs a leg behind it. */
+/* Clips the segment that begins at a slot, and the arc there, which a ring's last point leaves to its first.
+ * An arc of a single point needs a segment behind it. */
 CAMBER_FN camber_offset_clip camber_offset_clip_of(const camber_source_line *c, camber_u32 slot) {
     const camber_u32 info = c->info[slot];
     camber_offset_clip clip = {0.0f, -1.0f, 0u};

@@ -16,7 +16,7 @@ typedef struct camber_offset_element {
     camber_u32 seam;  /* 1: a ring's seam lies between */
 } camber_offset_element;
 
-/* An arc that is one point, the tip, is there where both its legs reach it. */
+/* An arc that is one point, the tip, is there where both its segments reach it. */
 CAMBER_FN camber_u32 camber_has_arc(const camber_source_line *c, camber_u32 slot) {
     const camber_offset_clip clip = c->clips[slot];
     if (camber_offset_arc_count(clip.arc) != 1u)
@@ -28,7 +28,7 @@ CAMBER_FN camber_u32 camber_has_arc(const camber_source_line *c, camber_u32 slot
                : 0u;
 }
 
-/* The last piece before a slot's own. */
+/* The last element before a slot's own. */
 CAMBER_FN camber_offset_element camber_offset_element_before(const camber_source_line *c, camber_u32 slot) {
     camber_offset_element element = {CAMBER_OFFSET_NONE, slot, 0u, 0u};
     camber_u32 around = c->info[slot] & CAMBER_POINT_LAST ? 1u : 0u; /* all of a ring has been seen at its seam */
@@ -104,7 +104,7 @@ CAMBER_FN float camber_offset_along_segment(const camber_source_line *c, camber_
     return from + (to - from) * (along / segment->length);
 }
 
-/* Where a piece ends. */
+/* Where an element ends. */
 typedef struct camber_offset_point {
     float x, y, along;
 } camber_offset_point;
@@ -142,7 +142,7 @@ CAMBER_FN void camber_offset_emit_end(const camber_source_line *c, camber_offset
     camber_offset_writer_point(writer, place.x, place.y, place.along);
 }
 
-/* What is left of an arc, but for its last point, which what follows puts. */
+/* Emits the rest of an arc, but for its last point, which the next element emits. */
 CAMBER_FN void camber_offset_emit_arc(const camber_source_line *c, camber_offset_element before, camber_u32 slot,
                                       camber_offset_row row, camber_offset_writer *writer) {
     const camber_offset_clip clip = c->clips[slot];
@@ -164,7 +164,7 @@ CAMBER_FN void camber_offset_emit_arc(const camber_source_line *c, camber_offset
     }
 }
 
-/* Whether legs end about where they cross, and each keeps the half that lies away from there. */
+/* Whether segments end about where they cross, and each keeps the half that lies away from there. */
 CAMBER_FN camber_u32 camber_crossing_holds(float p, float q, camber_offset_clip a, float a_length, camber_offset_clip b,
                                            float b_length) {
     const float a_to = a.to < a_length ? a.to : a_length, b_to = b.to < b_length ? b.to : b_length;
@@ -174,7 +174,7 @@ CAMBER_FN camber_u32 camber_crossing_holds(float p, float q, camber_offset_clip 
                : 0u;
 }
 
-/* Links a leg to one behind it: by the place where they cross, else by both ends. */
+/* Links a segment to one behind it: by the place where they cross, else by both ends. */
 CAMBER_FN void camber_offset_emit_crossing(const camber_source_line *c, camber_offset_element before, camber_u32 slot,
                                            const camber_offset_segment *segment, camber_offset_row row,
                                            camber_offset_writer *writer) {
@@ -237,7 +237,7 @@ CAMBER_FN void camber_offset_emit_segment(const camber_source_line *c, camber_of
     camber_offset_writer_point(writer, x, y, camber_offset_along_segment(c, slot, &segment, clip.from));
 }
 
-/* The points that a slot's arc and leg make, linked to the piece before: none, or one at least. */
+/* The points that a slot's arc and segment make, linked to the element before: none, or one at least. */
 CAMBER_FN void camber_offset_emit_elements(const camber_source_line *c, camber_offset_element before, camber_u32 slot,
                                            camber_offset_row row, camber_offset_writer *writer) {
     if (camber_has_arc(c, slot)) {
@@ -259,7 +259,7 @@ CAMBER_FN camber_offset_writer camber_offset_writer_counting(void) {
     return writer;
 }
 
-/* The last point of a line: the end of its last piece, or, where that is linked to a ring's first over the seam, the
+/* The last point of a line: the end of its last element, or, where that is linked to a ring's first over the seam, the
  * first point again, and a sentinel of the second. */
 CAMBER_FN void camber_offset_emit_last(const camber_source_line *c, camber_offset_element before, camber_u32 slot,
                                        camber_offset_row row, camber_offset_writer *writer) {

@@ -11,7 +11,7 @@
 
 /* ---- Pens ---- */
 
-/* What lies past a line of the plane, by the depth there: linear in the picture. */
+/* How far a place lies past a line of the plane, by the depth there: linear in the picture. */
 typedef struct camber_form {
     float at, x, y;
 } camber_form;
@@ -169,7 +169,7 @@ CAMBER_FN void camber_pitch_cell_masks_of(const camber_pitch_edge *p, camber_rea
 
 /* ---- Pixels ---- */
 
-/* Of a pixel: its place in the picture and in the plane, what is there along the segment and across it, and which place
+/* A pixel: its place in the picture and in the plane, what is there along the segment and across it, and which place
  * of the line is nearest. */
 typedef struct camber_pitch_pixel {
     camber_real seen_x, seen_y, by_depth, ground_x, ground_y;
@@ -291,7 +291,7 @@ CAMBER_FN void camber_pitch_turn(const camber_pitch_edge *p, camber_pitch_pixel 
     at->side_y = x * p->uy + y * p->ux;
 }
 
-/* What lies within a distance from the line. */
+/* The share of a pixel within a distance from the line. */
 CAMBER_FN camber_real camber_pitch_band_area(const camber_pitch_edge *p, const camber_pitch_pixel *at,
                                              camber_real half_width) {
     const camber_real none = CAMBER_REAL(0.0f);
@@ -308,7 +308,7 @@ CAMBER_FN camber_real camber_inside_both(camber_real a, camber_real b, camber_re
     return a * b * (1.0f - weight) + bound * weight;
 }
 
-/* What the join at B, or at A, leaves of the band within half_width. */
+/* The share that the join at B, or at A, leaves of the band within half_width. */
 CAMBER_FN camber_real camber_pitch_join(const camber_pitch_edge *p, const camber_pitch_pixel *at, camber_real area,
                                         float half_width, int at_b) {
     const float c = at_b ? p->cb : p->ca, out = at_b ? 1.0f : -1.0f;
@@ -336,7 +336,7 @@ CAMBER_FN camber_real camber_pitch_joins(const camber_pitch_edge *p, const cambe
     return camber_pitch_join(p, at, area, half_width, 1);
 }
 
-/* Of a line that is seen aslant flat caps meet the sides at any angle. One with both sides in the pixel has none. */
+/* Flat caps of a line that is seen aslant meet the sides at any angle. One with both sides in the pixel has none. */
 CAMBER_FN camber_real camber_pitch_caps(const camber_pitch_edge *p, const camber_pitch_pixel *at, camber_real area) {
     camber_real side[2];
     const camber_real lies = at->side_x * at->ground_x + at->side_y * at->ground_y;
@@ -361,7 +361,7 @@ CAMBER_FN camber_real camber_pitch_owner(const camber_pitch_pixel *at, const cam
     return share * (1.0f - wide) + whole * wide;
 }
 
-/* What of a pixel is the segment's at all. */
+/* The share of a pixel that is the segment's at all. */
 CAMBER_FN camber_real camber_pitch_share(const camber_pitch_edge *p, const camber_pitch_pixel *at) {
     const camber_real none = CAMBER_REAL(0.0f);
     const camber_mask foreign_a = (at->fa < 0.0f) & (at->past_a > p->owner_a);

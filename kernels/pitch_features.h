@@ -47,7 +47,7 @@ CAMBER_FN camber_real camber_pitch_off_dash(const camber_extras *e, camber_real 
     return nearest;
 }
 
-/* Of a line with round dashes, the share of its area. */
+/* The share of its area that a line with round dashes has. */
 CAMBER_FN float camber_round_dashes_drawn(const camber_extras *e, float half_width) {
     float drawn = 0.0f;
     for (camber_u32 i = 0; i < e->dash_count; i++) {
@@ -107,7 +107,7 @@ CAMBER_FN camber_real camber_pitch_blurred(const camber_pitch_edge *p, const cam
     return camber_clamp_to_one((rim + 0.5f) / (e->blur + 1.0f));
 }
 
-/* What a gap and a blur leave. */
+/* The share that a gap and a blur leave. */
 CAMBER_FN camber_real camber_pitch_hollow(const camber_pitch_edge *p, const camber_extras *e,
                                           const camber_pitch_pixel *at, camber_real area) {
     if (e->features & CAMBER_FEATURE_BLUR)

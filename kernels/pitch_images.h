@@ -7,7 +7,7 @@
 
 #if CAMBER_LANES == 16 /* as rich frames are drawn */
 
-/* Of a fill; x, y: of the pixel from the picture's middle. */
+/* The spot of a fill; x, y: where the pixel lies from the picture's middle. */
 CAMBER_FN void camber_plane_spot(camber_eye e, camber_real x, camber_real y, camber_image_spot *spot) {
     const camber_real by_depth = 1.0f + y * (e.fall / e.cosine), least = CAMBER_REAL(CAMBER_PITCH_LEAST);
     const camber_real depth = 1.0f / CAMBER_MORE(by_depth, least);
@@ -18,7 +18,7 @@ CAMBER_FN void camber_plane_spot(camber_eye e, camber_real x, camber_real y, cam
     spot->reach_y = depth * depth / e.cosine;
 }
 
-/* Of a line; at: as camber_pitch_area leaves it. */
+/* The spot of a line; at: as camber_pitch_area leaves it. */
 CAMBER_FN void camber_pitch_spot(const camber_pitch_edge *p, const camber_pitch_pixel *at, camber_image_spot *spot) {
     const camber_real lies = at->side_x * at->ground_x + at->side_y * at->ground_y, least = CAMBER_REAL(1e-4f);
     camber_real seen[2];

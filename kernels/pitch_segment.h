@@ -10,9 +10,9 @@
 
 #include "coverage.h"
 
-/* A segment in the plane, behind its band in the picture, which is a shape: the words that pens read. */
+/* A segment in the plane, behind its band in the picture, which is a segment: the words that edges read. */
 #define CAMBER_PLANE_WORDS 32
-#define CAMBER_PLANE_AX 0          /* A, B, the direction, the bisectors' normals: as of a shape */
+#define CAMBER_PLANE_AX 0          /* A, B, the direction, the bisectors' normals: as of a segment */
 #define CAMBER_PLANE_HALF_WIDTH 10 /* px of the plane */
 #define CAMBER_PLANE_OWNER_A 11    /* camber_owner_side, by how wide the line is seen */
 #define CAMBER_PLANE_OWNER_B 12
@@ -23,7 +23,7 @@
 #define CAMBER_PLANE_LEFT 23   /* its edges in the picture, three words each: camber_pitch_project_edge */
 #define CAMBER_PLANE_RIGHT 26
 
-/* What a band is wider than what is drawn of it, so that what rounding makes of either does not matter. */
+/* By how much a band is wider than what is drawn, so that what rounding makes of either does not matter. */
 #define CAMBER_PITCH_SLACK_PX 0.02f
 /* Nearer to the camera than this nothing is projected. */
 #define CAMBER_PITCH_LEAST 1e-3f
@@ -64,7 +64,7 @@ CAMBER_FN void camber_pitch_direction(camber_eye e, const camber_real place[2], 
     seen[1] = y * scale;
 }
 
-/* Of the end of a segment at a place: what its own side is, and where the join is narrower than a pixel as it is seen
+/* The end of a segment at a place: what its own side is, and where the join is narrower than a pixel as it is seen
  * the line between the two segments in the picture: its normal, where it lies, and 1 where the line is wide and the
  * bisector in the plane parts them, down to 0. turns: 1 at B, -1 at A; c and s: of half the turn. */
 CAMBER_FN void camber_pitch_cut(camber_eye e, const camber_segment *s, const camber_real place[2], camber_words end,
@@ -107,11 +107,12 @@ CAMBER_FN camber_real camber_pitch_reach(camber_words end, camber_real c, camber
     return half_width * (class == CAMBER_CLASS_CAP ? cap : class == CAMBER_CLASS_SPLIT ? whole : tip);
 }
 
-/* Of a segment's part of the stroke: from where to where it is seen, px along it from A, or whether it may be all over
+/* A segment's part of the stroke: from where to where it is seen, px along it from A, or whether it may be all over
  * the picture: wider than this, a line whose one side is behind the camera may be seen. Returns whether it is seen. */
 CAMBER_FN camber_mask camber_pitch_clip(camber_eye e, const camber_segment *s, camber_real *from, camber_real *to,
                                         camber_mask *all_over) {
-    /* What lies less deep than the picture's bottom is not seen, and what does by half cannot be projected well. */
+    /* A place that lies less deep than the picture's bottom is not seen, and one half as deep cannot be projected well.
+     */
     const float nearest = e.cosine / (e.cosine + e.fall * e.y), hidden = 0.5f * nearest;
     const camber_real spread = e.fall * CAMBER_FABS(s->ux) * s->half_width, rate = e.fall * s->uy;
     const camber_real room = 1.0f - e.fall * s->ay - spread - hidden;
@@ -179,7 +180,7 @@ CAMBER_FN void camber_pitch_project_edge(camber_eye e, camber_real nx, camber_re
     edge[2] = y * scale;
 }
 
-/* Of a segment in the plane: its band in the picture, a shape, and all else that pens read. Returns whether it is seen:
+/* For a segment in the plane: its band in the picture, and all else that edges read. Returns whether it is seen:
  * past the horizon, px from the picture's top, nothing is. */
 CAMBER_FN camber_mask camber_pitch_shape_of(camber_eye e, float horizon, const camber_segment *s, camber_segment *band,
                                             camber_plane *plane) {

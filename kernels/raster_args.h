@@ -1,4 +1,4 @@
-/* What the host tells the kernels of the rasterizer besides buffers: structs that both compile, and what tiles keep
+/* The arguments of the rasterizer's kernels that are no buffers: structs that both compile, and what tiles keep
  * between slices. Their sizes are asserted on both sides. */
 #ifndef CAMBER_RASTER_ARGS_H
 #define CAMBER_RASTER_ARGS_H

@@ -51,7 +51,7 @@ static inline float16 find_flat(uint16 kind, float16 h) {
     return kind == CAMBER_ENDS_BUTT ? (float16)(0.0f) : kind == CAMBER_ENDS_SQUARE ? h : (float16)(CAMBER_NEVER_PX);
 }
 
-/* Of the words that are there already. */
+/* Works out the edges from the words that are there already. */
 static inline void find_edges(private edges *p) {
     const uint16 flags = as_uint16(WORD(p, FLAGS)), one = (uint16)(1u);
     const uint16 end_a = CAMBER_END_OF_A(flags), end_b = CAMBER_END_OF_B(flags);
@@ -153,7 +153,7 @@ static inline uint16 spread(uint16 bits) {
     return (bits & 0xfu) | (bits & 0xf0u) << 4 | (bits & 0xf00u) << 8 | (bits & 0xf000u) << 12;
 }
 
-/* Of each segment its cells, a bit each. */
+/* The cells of each segment, a bit each. */
 typedef struct sixteen_masks {
     ulong16 partial, near_end, full;
 } sixteen_masks;

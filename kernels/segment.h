@@ -14,7 +14,7 @@
 #define CAMBER_RASTER_PITCHED 0
 #endif
 
-/* Of the work-items of a device: 16 where one takes the pixels of a cell, 1 where it takes a pixel, as in the twin. */
+/* Pixels a work-item of a device: 16 where one takes the pixels of a cell, 1 where it takes a pixel, as in the twin. */
 #ifndef CAMBER_LANES
 #define CAMBER_LANES 16
 #endif
@@ -46,10 +46,10 @@ typedef int camber_mask;
 #define CAMBER_TIPS_PX 1.85f /* half as wide, the ends of round caps are judged by themselves */
 #define CAMBER_FILL_PX 1e6f  /* a fill is a line along y = 0, so long to either side and half so wide */
 
-/* What a tile spills between slices of segments, at most: seventeen planes of its pixels, and a few words. */
+/* The bytes that a tile spills between slices of segments, at most: seventeen planes of its pixels, and a few words. */
 #define CAMBER_SPILL_BYTES (17 * 4096 + 192)
 
-/* Of a segment that is not drawn: its first tile lies behind the last one. */
+/* The box of a segment that is not drawn: its first tile lies behind the last one. */
 #define CAMBER_NO_BOX 0xffu
 
 /* Words of the table of rows. */
@@ -79,7 +79,7 @@ typedef struct camber_brush {
 #define CAMBER_CLASS_TIGHT 2u
 #define CAMBER_CLASS_SPLIT 3u
 
-/* Of an end, 13 bits: camber_end 0-2, class 3-4, a tight join's limit 5-11, whether the line ends with the next segment
+/* An end has 13 bits: camber_end 0-2, class 3-4, a tight join's limit 5-11, whether the line ends with the next segment
  * 12. The end at A, then that at B, then: coverage is a ramp. */
 #define CAMBER_SEGMENT_END_BITS 13
 #define CAMBER_END_MASK 0x1fffu
@@ -99,7 +99,7 @@ typedef struct camber_brush {
 /* Past a split end the segment has what is wide on its inner side too: camber_owner_side. */
 #define CAMBER_SEGMENT_OWNER_A (1u << 27)
 #define CAMBER_SEGMENT_OWNER_B (1u << 28)
-/* Of its ends: one is cut at a corner or tight, flat, a round cap. */
+/* Flags of its ends: one is cut at a corner or tight, flat, a round cap. */
 #define CAMBER_SEGMENT_SHARP (1u << 29)
 #define CAMBER_SEGMENT_FLAT (1u << 30)
 #define CAMBER_SEGMENT_ROUNDED (1u << 31)
@@ -161,7 +161,7 @@ CAMBER_FN camber_words camber_end_flags(camber_words end) {
            (rounded ? (camber_words)(CAMBER_SEGMENT_ROUNDED) : none);
 }
 
-/* What is known of the ends before any pixel is. */
+/* Sets the flags that are known of the ends before any pixel is. */
 CAMBER_FN void camber_segment_judge(camber_segment *s) {
     const camber_words none = (camber_words)(0u), end_a = CAMBER_END_OF_A(s->flags), end_b = CAMBER_END_OF_B(s->flags);
     const camber_real ca = s->nax * s->ux + s->nay * s->uy, sa = s->nax * s->uy - s->nay * s->ux;
@@ -182,8 +182,8 @@ CAMBER_FN camber_real camber_segment_reach(camber_words join, camber_real q) {
     return ((end == CAMBER_ENDS_MITER) | (end == CAMBER_ENDS_SPLIT_MITER)) ? miter : corner;
 }
 
-/* Of the segment from A to B that is half_width wide; (px, py) is where the segment before it comes from. Both segments
- * at a join turn the bisector from the direction of the one before: its normal is the same to the last bit. */
+/* Sets up the segment from A to B that is half_width wide; (px, py) is where the segment before it comes from. Both
+ * segments at a join turn the bisector from the direction of the one before: its normal is the same to the last bit. */
 CAMBER_FN camber_segment camber_segment_of(camber_real px, camber_real py, camber_real ax, camber_real ay,
                                            camber_real bx, camber_real by, camber_words join_a, camber_words join_b,
                                            camber_real half_width, camber_u32 linear) {
@@ -253,7 +253,7 @@ CAMBER_FN camber_words camber_segment_box(const camber_segment *s, camber_mask d
 
 /* ---- Tiles ---- */
 
-/* Of a box's squares in one row of them, tiles or cells of side px, those that a segment's band meets: the first | the
+/* The squares of a box in one row, tiles or cells of side px, that a segment's band meets: the first | the
  * last << 8. middle: of the row, px; left: of the first square; segment: its words. */
 CAMBER_FN camber_u32 camber_row_span(CAMBER_GLOBAL const float *segment, float middle, float left, camber_u32 first,
                                      camber_u32 last, float side) {
@@ -267,7 +267,7 @@ CAMBER_FN camber_u32 camber_row_span(CAMBER_GLOBAL const float *segment, float m
         return first | last << 8;
     const float scale = 1.0f / uy, across = (middle - ay) * ux;
     const float one = ax + (across - reach) * scale, other = ax + (across + reach) * scale;
-    /* Of the squares' middles. */
+    /* From the squares' middles. */
     const float from = ((one < other ? one : other) - to_middle) * a_square - left * a_square;
     const float to = ((one < other ? other : one) - to_middle) * a_square - left * a_square;
     if (from > (float)last || to < (float)first)
@@ -304,7 +304,7 @@ CAMBER_FN camber_u32 camber_box_is_one_tile(camber_u32 box, camber_u32 columns) 
     return box >> 16 == (box & 0xffffu) && CAMBER_BOX_FIRST_X(box) - 1u < columns - 2u;
 }
 
-/* Of a box, the tiles in row y that a segment meets, as camber_row_span has them: boxes of one column or row have all.
+/* The tiles of a box in row y that a segment meets, as camber_row_span has them: boxes of one column or row have all.
  * What lies at the area's edge may be cut, and must be as it is in any other area. */
 CAMBER_FN camber_u32 camber_tile_span(CAMBER_GLOBAL const float *segment, camber_u32 box, camber_u32 y,
                                       const camber_tile_grid *of) {

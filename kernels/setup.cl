@@ -149,7 +149,7 @@ CAMBER_KERNEL(1, setup,
 #endif
     const uint16 box = camber_segment_box(&s, is_drawn, r.left, r.top, r.columns, r.rows);
     vstore16(box, at, boxes);
-    /* Of a picture in several areas most segments lie in others. */
+    /* In a picture of several areas most segments lie in others. */
     if (all(box == CAMBER_NO_BOX))
         return;
 #if CAMBER_RASTER_PITCHED

@@ -1,5 +1,5 @@
-/* What rasterize gathers of a tile: the brush as what it lets through, and the levels that it goes under (the picture,
- * a group, a layer), front to back. How a tile spills that between slices, and takes it back. */
+/* The state of a tile while rasterize draws it: the brush as what it lets through, and the levels that it goes under
+ * (the picture, a group, a layer), front to back. How a tile spills that between slices, and takes it back. */
 #ifndef CAMBER_TILE_STATE_CL
 #define CAMBER_TILE_STATE_CL
 
@@ -99,7 +99,7 @@ static inline void look_at_cell(private tile_state *c, int i, int level) {
         c->done |= 1ul << i;
 }
 
-/* What is inked goes under what the level has. */
+/* Puts the brush under what the level has. */
 static inline void close_brush(private tile_state *c) {
     const int level = c->is_open[2] ? 2 : c->is_open[1] ? 1 : 0;
     const int is_union = c->now.mode == CAMBER_BRUSH_UNION;

@@ -44,7 +44,7 @@ static camber_status find_range(const camber_raster_input *run, size_t which, ca
     return status;
 }
 
-/* What is listed so far. */
+/* The ranges that are listed so far. */
 typedef struct range_list {
     camber_context *context;
     camber_record_range *ranges;

@@ -28,7 +28,7 @@ typedef struct camber_raster_input {
     size_t first_row; /* of the table, in all rows */
 } camber_raster_input;
 
-/* What is drawn, in drawing order. Inks of one layer follow each other, and so do those of a group. */
+/* All that is drawn, in drawing order. Brushes of one layer follow each other, and so do those of a group. */
 typedef struct camber_raster_scene {
     const float *rows; /* row_count times CAMBER_RASTER_ROW_WORDS; the brush's number is a word like the others */
     size_t row_count;
@@ -47,7 +47,7 @@ typedef struct camber_raster_scene {
     size_t side_table_count;
 } camber_raster_scene;
 
-/* Of the program that draws it. */
+/* The variant of the program that draws it. */
 unsigned camber_raster_variant(const camber_raster_scene *scene);
 
 /* A part of the picture that is drawn at once, px; a multiple of CAMBER_TILE_PX from its edges, and no side longer than
@@ -99,7 +99,7 @@ typedef struct camber_raster_stages {
     uint8_t *rgba;   /* of the area */
 } camber_raster_stages;
 
-/* Of the area that was drawn last: the last slice of its last band. */
+/* Reads the stages of the area that was drawn last: the last slice of its last band. */
 camber_status camber_raster_read_stages(camber_raster *raster, camber_raster_stages *stages);
 /* The CPU twin, from what the meshes hold. */
 camber_status camber_raster_on_host(camber_context *context, const camber_raster_scene *scene,

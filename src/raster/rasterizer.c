@@ -16,7 +16,7 @@ static const struct { size_t lanes, jobs; } lanes_of[STAGES] = {{64, 4}, {32, 1}
 
 enum { PLANE_WORDS = CAMBER_TILE_PX * CAMBER_TILE_PX };
 
-/* What is drawn of an area. */
+/* The records to draw in an area. */
 typedef struct picture {
     const camber_raster_scene *scene;
     const camber_record_range *ranges;
@@ -103,7 +103,7 @@ static camber_status make_segments(camber_raster *raster, const camber_raster_sc
     return status;
 }
 
-/* Of a tile in a chunk: its count, and a mark where it takes one. */
+/* Words that a tile has in a chunk: its count, and a mark where it takes one. */
 static size_t count_words(const camber_raster *raster) {
     return has_lanes(raster) ? 2 : 1;
 }
@@ -183,7 +183,8 @@ static bool is_heavy(const camber_raster *raster, size_t tile) {
     return has_lanes(raster) || raster->starts[tile + 1] - raster->starts[tile] > HEAVY;
 }
 
-/* What work-items draw: heavy tiles by rows of cells, before all others; where they have a pixel each, all tiles. */
+/* Lists the jobs of work-items: heavy tiles by rows of cells, before all others; where they have a pixel each, all
+ * tiles. */
 static camber_status list_jobs(camber_raster *raster, size_t *heavy_count, size_t *job_count) {
     const size_t tiles = raster->tile_count;
     size_t heavy = 0;
@@ -260,7 +261,7 @@ static camber_status rasterize_tiles(camber_raster *raster, const camber_raster_
     return status;
 }
 
-/* What the rich variants read and write besides. */
+/* Buffers that only the rich variants read and write. */
 static camber_status prepare_more(camber_raster *raster, const camber_raster_scene *scene, size_t segments) {
     static const float nothing[4] = {0};
     const bool bare = scene->side_table_count == 0;

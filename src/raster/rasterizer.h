@@ -1,4 +1,4 @@
-/* What draws on a device, for the steps of it that lie in files of their own. */
+/* The rasterizer on a device, for the steps that lie in files of their own. */
 #ifndef CAMBER_RASTERIZER_H
 #define CAMBER_RASTERIZER_H
 
@@ -58,7 +58,7 @@ struct camber_raster {
 uint64_t camber_raster_most_bytes(const camber_raster *raster);
 /* A buffer of that size at least; what it had is lost where it grows. */
 camber_status camber_raster_reserve(camber_raster *raster, int which, size_t size_bytes);
-/* What is put must stay until what is drawn is waited for. */
+/* The bytes must stay until the drawing has been waited for. */
 camber_status camber_raster_put(camber_raster *raster, int which, const void *bytes, size_t size_bytes);
 
 #endif

@@ -10,7 +10,7 @@
 
 /* ---- Shapes ---- */
 
-/* Of a part, as the device has them: padding is sentinels. */
+/* The records of a part, as the device has them: padding is sentinels. */
 typedef struct part_records {
     camber_record *records;
     camber_arc_length *measures; /* NULL: not measured */

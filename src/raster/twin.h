@@ -1,4 +1,4 @@
-/* What the parts of the CPU twin share. */
+/* Shared by the files of the CPU twin. */
 #ifndef CAMBER_RASTER_TWIN_H
 #define CAMBER_RASTER_TWIN_H
 

@@ -32,7 +32,7 @@ typedef struct tile_state {
     float layer_alpha; /* of masked colours, which cover as if they were opaque: their alpha; else 1 */
 } tile_state;
 
-/* What is drawn of a segment. */
+/* All that draws a segment. */
 typedef struct tool {
     camber_edge pen;
     camber_extras extras; /* of no features: not there */
@@ -240,7 +240,7 @@ static void put_colors(const tile_state *c, const tool *t, cell *one, const plac
     count_colors(c, one, most, meets == CAMBER_CELL_FULL);
 }
 
-/* What a cell has of a segment. */
+/* How a cell lies to a segment. */
 static camber_u32 meets_cell(const tool *t, float middle_x, float middle_y) {
     const camber_edge *p = &t->pen;
     camber_cell_masks m;

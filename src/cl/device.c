@@ -70,7 +70,7 @@ static cl_int get_text(cl_device_id id, cl_device_info what, char *text, size_t 
 }
 
 /* Gives CL_SUCCESS, or what the device answered: one that does not tell what it is cannot be used. */
-static cl_int describe(found_device *found) {
+static cl_int query_info(found_device *found) {
     camber_device_info *info = &found->info;
     cl_device_type type = 0;
     cl_ulong memory = 0, largest = 0;
@@ -116,7 +116,7 @@ static size_t find_on_platform(cl_platform_id platform, found_device *found, siz
     for (cl_uint i = 0; i < id_count && i < DEVICES_MAX && count < capacity; i++) {
         found[count] = (found_device){.platform = platform, .id = ids[i]};
         snprintf(found[count].info.platform, sizeof found->info.platform, "%s", name);
-        code = describe(found + count);
+        code = query_info(found + count);
         if (code == CL_SUCCESS)
             count++;
         else
@@ -191,7 +191,7 @@ static int rank(const camber_device_info *info) {
     return info->type == CAMBER_DEVICE_TYPE_GPU ? 2 : info->type == CAMBER_DEVICE_TYPE_CPU ? 1 : 0;
 }
 
-static camber_status choose(camber_device *device, const char *match, uint32_t number) {
+static camber_status choose_device(camber_device *device, const char *match, uint32_t number) {
     found_device found[DEVICES_MAX];
     failed_call failed;
     const size_t count = find_devices(found, &failed);
@@ -230,7 +230,8 @@ enum { LEAST_BUFFER_BYTES = 4096, LEAST_MEMORY_BYTES = 65536 };
 static const uint64_t LARGEST_BUFFER_BYTES = INT32_MAX;
 
 /* The desc's bounds on what the kernels are given. */
-static camber_status bound(camber_device *device, const camber_device_desc *desc, const camber_surface *surface) {
+static camber_status apply_bounds(camber_device *device, const camber_device_desc *desc,
+                                  const camber_surface *surface) {
     const uint32_t size = desc->work_group_size;
     if (size != 0 && size != 64 && size != 128 && size != 256)
         return camber_fail(device->context, CAMBER_ERROR_ARGUMENT,
@@ -307,9 +308,9 @@ camber_status camber_device_create(camber_context *context, const camber_device_
     const camber_device_desc full = desc ? *desc : (camber_device_desc){0};
     camber_status status = camber_budget_check_drivers(context);
     if (status == CAMBER_OK)
-        status = choose(made, full.match, full.number);
+        status = choose_device(made, full.match, full.number);
     if (status == CAMBER_OK)
-        status = bound(made, &full, surface);
+        status = apply_bounds(made, &full, surface);
     if (status == CAMBER_OK)
         status = open_cl(made, surface);
     if (status == CAMBER_OK)

@@ -13,7 +13,7 @@ uint64_t camber_device_share(const camber_device *device, unsigned eighths);
 /* Whether there is room for that much many times over. */
 bool camber_device_is_roomy(const camber_device *device, uint64_t size_bytes);
 /* A holder that had *held_bytes now has now_bytes. */
-void camber_device_count(camber_device *device, uint64_t *held_bytes, uint64_t now_bytes);
+void camber_device_count_bytes(camber_device *device, uint64_t *held_bytes, uint64_t now_bytes);
 
 /* What a renderer's buffers may hold and do. */
 typedef struct camber_drawing_memory {
@@ -23,7 +23,7 @@ typedef struct camber_drawing_memory {
 } camber_drawing_memory;
 
 void camber_drawing_open(camber_device *device, camber_drawing_memory *memory);
-void camber_drawing_count(camber_device *device, camber_drawing_memory *memory, uint64_t now_bytes);
+void camber_drawing_count_bytes(camber_device *device, camber_drawing_memory *memory, uint64_t now_bytes);
 void camber_drawing_close(camber_device *device, camber_drawing_memory *memory);
 
 #endif

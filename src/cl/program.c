@@ -50,7 +50,7 @@ static uint64_t hash_binary(uint64_t key, const unsigned char *binary, size_t si
 }
 
 /* A program of a binary behind its hash. */
-static bool take_binary(camber_device *device, camber_program *program, const char *options, const char *bytes,
+static bool load_binary(camber_device *device, camber_program *program, const char *options, const char *bytes,
                         size_t size) {
     uint64_t hash;
     cl_int code = CL_INVALID_BINARY, binary_code = CL_INVALID_BINARY;
@@ -72,7 +72,7 @@ static bool take_binary(camber_device *device, camber_program *program, const ch
 }
 
 /* What the machine's users share, or what this one has; where it is made for all of them, what they share. */
-static bool load(camber_device *device, camber_program *program, const char *options) {
+static bool load_cached(camber_device *device, camber_program *program, const char *options) {
     bool (*const loads[])(camber_context *, const char *, char **, size_t *) = {camber_cache_load_shared,
                                                                                 camber_cache_load};
     char name[64];
@@ -84,7 +84,7 @@ static bool load(camber_device *device, camber_program *program, const char *opt
         size_t size = 0;
         if (!loads[i](device->context, name, &bytes, &size))
             continue;
-        loaded = take_binary(device, program, options, bytes, size);
+        loaded = load_binary(device, program, options, bytes, size);
         camber_free(device->context, bytes);
     }
     return loaded;
@@ -112,7 +112,7 @@ static bool is_worth_saving(const camber_device *device) {
     return strcmp(device->info.platform, "Portable Computing Language") != 0 || (specialized && specialized[0] == '0');
 }
 
-static camber_status build(camber_device *device, camber_program *program, const recipe *from) {
+static camber_status build_from_source(camber_device *device, camber_program *program, const recipe *from) {
     cl_int code;
     program->cl = clCreateProgramWithSource(device->cl, 1, (const char *[]){from->source}, &from->source_size, &code);
     if (code != CL_SUCCESS)
@@ -127,7 +127,7 @@ static camber_status build(camber_device *device, camber_program *program, const
 }
 
 /* false, and nothing fails by it: the file is not saved. */
-static bool save(camber_device *device, const camber_program *program) {
+static bool save_binary(camber_device *device, const camber_program *program) {
     size_t size = 0;
     bool saved = false;
     if (!is_worth_saving(device))
@@ -179,7 +179,7 @@ static camber_status make_kernels(camber_device *device, camber_program *program
 static bool load_alone(camber_device *device, camber_program *program, const char *options) {
     static const double LONGEST_MS = 500; /* it takes two: longer, and something else is wrong */
     const int lock = camber_cache_lock(device->context, program->key, LONGEST_MS);
-    const bool loaded = load(device, program, options);
+    const bool loaded = load_cached(device, program, options);
     camber_cache_unlock(lock);
     return loaded;
 }
@@ -189,11 +189,11 @@ static camber_status build_alone(camber_device *device, camber_program *program,
     static const double LONGEST_MS = 60e3;
     const int lock = camber_cache_lock(device->context, program->key, LONGEST_MS);
     camber_status status = CAMBER_OK;
-    program->kept = load(device, program, from->options);
+    program->kept = load_cached(device, program, from->options);
     if (!program->kept) {
         camber_progress(device->context, "compiling kernels", -1);
-        status = build(device, program, from);
-        program->kept = status == CAMBER_OK && save(device, program);
+        status = build_from_source(device, program, from);
+        program->kept = status == CAMBER_OK && save_binary(device, program);
     }
     camber_cache_unlock(lock);
     return status;
@@ -249,7 +249,8 @@ static camber_status make_current(camber_device *device, recipe *from, camber_pr
 #endif
 
 /* Makes a program unless it is there, and gives it. */
-static camber_status use_program(camber_device *device, recipe *from, camber_program **kept, camber_program **program) {
+static camber_status ensure_program(camber_device *device, recipe *from, camber_program **kept,
+                                    camber_program **program) {
     const camber_status status = *kept ? CAMBER_OK : make_current(device, from, kept);
     if (status == CAMBER_OK)
         *program = *kept;
@@ -263,19 +264,19 @@ camber_status camber_device_program(camber_device *device, camber_program_desc d
     const size_t used = strlen(from.options);
     if (!desc.round_limits)
         snprintf(from.options + used, sizeof from.options - used, " -DCAMBER_ROUND_LIMITS=0");
-    return use_program(device, &from, &device->programs[desc.measured][desc.round_limits][desc.method], program);
+    return ensure_program(device, &from, &device->programs[desc.measured][desc.round_limits][desc.method], program);
 }
 
 camber_status camber_device_measures(camber_device *device, camber_program **program) {
     recipe from = {PROGRAM_MEASURES, "measures", camber_measure_kernels_source, camber_measure_kernels_source_size, ""};
     set_options(device, -1, false, &from);
-    return use_program(device, &from, &device->measures, program);
+    return ensure_program(device, &from, &device->measures, program);
 }
 
 camber_status camber_device_offsets(camber_device *device, bool measured, camber_program **program) {
     recipe from = {PROGRAM_OFFSETS, "offsets", camber_offset_kernels_source, camber_offset_kernels_source_size, ""};
     set_options(device, -1, measured, &from);
-    return use_program(device, &from, &device->offset_programs[measured], program);
+    return ensure_program(device, &from, &device->offset_programs[measured], program);
 }
 
 camber_status camber_device_cover_program(camber_device *device, unsigned variant, camber_program **program) {
@@ -286,7 +287,7 @@ camber_status camber_device_cover_program(camber_device *device, unsigned varian
              variant == 0 && device->lanes == 1 ? " -DCAMBER_LANES=1" : "",
              variant & CAMBER_COVER_RICH ? " -DCAMBER_COVER_RICH=1" : "",
              variant & CAMBER_COVER_PITCHED ? " -DCAMBER_COVER_PITCHED=1" : "");
-    return use_program(device, &from, &device->cover[variant], program);
+    return ensure_program(device, &from, &device->cover[variant], program);
 }
 
 camber_status camber_device_network_program(camber_device *device, bool measured, bool pitched,
@@ -296,11 +297,11 @@ camber_status camber_device_network_program(camber_device *device, bool measured
     const size_t used = strlen(from.options);
     if (pitched)
         snprintf(from.options + used, sizeof from.options - used, " -DCAMBER_PITCHED=1");
-    return use_program(device, &from, &device->network_programs[measured][pitched], program);
+    return ensure_program(device, &from, &device->network_programs[measured][pitched], program);
 }
 
 /* The n-th program of all that a device can be asked for, or none; what takes longest comes first. */
-static camber_status use_nth(camber_device *device, unsigned n, camber_program **program) {
+static camber_status ensure_nth(camber_device *device, unsigned n, camber_program **program) {
     static const unsigned variants[] = {CAMBER_COVER_RICH | CAMBER_COVER_PITCHED, CAMBER_COVER_RICH, 0};
     enum { VARIANTS = sizeof variants / sizeof *variants, OFFSETS = 2, NETWORKS = 4, METHODS = 12 };
     if (n < VARIANTS)
@@ -328,7 +329,7 @@ camber_status camber_device_warm(camber_device *device, unsigned share, unsigned
         all.folder[0] = 0;
     for (unsigned n = share; status == CAMBER_OK; n += shares) {
         camber_program *program = NULL;
-        status = use_nth(device, n, &program);
+        status = ensure_nth(device, n, &program);
         if (!program)
             break;
         all.programs++;

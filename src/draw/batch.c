@@ -226,7 +226,7 @@ static camber_status draw_ranges(camber_renderer *renderer, const camber_shader 
                 continue;
             if (part != bound) {
                 draw_strips(renderer, piece); /* of the part that is bound, and may have to go */
-                status = camber_part_use(mesh, part);
+                status = camber_part_ensure_made(mesh, part);
                 if (status != CAMBER_OK)
                     break;
                 camber_renderer_bind_part(renderer, part);

@@ -46,7 +46,7 @@ static void put_slot(camber_polylines *p, const float *point, uint32_t info) {
 }
 
 /* One run of valid points: repeated points go, its ends are marked, a ring gets its ghosts. */
-static void put_run(camber_polylines *p, const float *points, size_t count, uint32_t row, bool may_close) {
+static void put_stretch(camber_polylines *p, const float *points, size_t count, uint32_t row, bool may_close) {
     const uint32_t real = row << CAMBER_POINT_ROW_SHIFT | CAMBER_POINT_REAL;
     const float *last = points + 2 * (count - 1);
     const bool closes = may_close && count > 2 && points[0] == last[0] && points[1] == last[1];
@@ -94,7 +94,7 @@ static void put_polyline(camber_polylines *p, const camber_polylines_desc *desc,
         if (i < count && camber_point_is_valid(points + 2 * i))
             continue;
         if (i > first)
-            put_run(p, points + 2 * first, i - first, row, !desc->keep_open && first == 0 && i == count);
+            put_stretch(p, points + 2 * first, i - first, row, !desc->keep_open && first == 0 && i == count);
         p->stats.invalid_points += i < count;
         first = i + 1;
     }

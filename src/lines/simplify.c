@@ -78,8 +78,8 @@ size_t camber_simplify(double *points, size_t count, double tolerance, unsigned 
 }
 
 /* Valid points, in double; what stays is copied from where it came. Gives how many stay. */
-static size_t simplify_run(const float *from, size_t count, double tolerance_px, double *points, unsigned char *keep,
-                           float *to) {
+static size_t simplify_stretch(const float *from, size_t count, double tolerance_px, double *points,
+                               unsigned char *keep, float *to) {
     for (size_t i = 0; i < 2 * count; i++)
         points[i] = (double)from[i];
     memset(keep, 1, count);
@@ -101,7 +101,7 @@ static uint32_t simplify_line(const float *from, size_t count, double tolerance_
     for (size_t i = 0; i <= count; i++) {
         if (i < count && camber_point_is_valid(from + 2 * i))
             continue;
-        kept += simplify_run(from + 2 * first, i - first, tolerance_px, points, keep, to + 2 * kept);
+        kept += simplify_stretch(from + 2 * first, i - first, tolerance_px, points, keep, to + 2 * kept);
         if (i < count) {
             memcpy(to + 2 * kept, from + 2 * i, 2 * sizeof *to);
             kept++;

@@ -46,7 +46,7 @@ static void count_buffers(camber_cover *cover) {
     uint64_t bytes = 0;
     for (int i = 0; i < BUFFERS; i++)
         bytes += i == BUFFER_PIXELS ? 0 : cover->capacities[i];
-    camber_drawing_count(cover->device, &cover->memory, bytes);
+    camber_drawing_count_bytes(cover->device, &cover->memory, bytes);
 }
 
 uint64_t camber_cover_most_bytes(const camber_cover *cover) {

@@ -36,7 +36,7 @@ static camber_status find_piece(const camber_cover_run *run, size_t which, cambe
     if (from >= to || part->index_count == 0)
         return CAMBER_OK;
     const bool whole = from == part->first_polyline && to == end;
-    camber_status status = whole ? CAMBER_OK : camber_part_use(run->mesh, part);
+    camber_status status = whole ? CAMBER_OK : camber_part_ensure_made(run->mesh, part);
     if (status == CAMBER_OK)
         status = first_record(run->mesh, part, from, &piece->first);
     if (status == CAMBER_OK)

@@ -128,7 +128,7 @@ static camber_status make_shapes(camber_cover *cover, const camber_cover_scene *
         camber_mesh *mesh = piece.mesh;
         camber_mesh_part *part = mesh ? mesh->parts + piece.part : NULL;
         const camber_shape_range range = camber_cover_range(scene, &piece, &cover->band);
-        status = part ? camber_part_use(mesh, part) : CAMBER_OK;
+        status = part ? camber_part_ensure_made(mesh, part) : CAMBER_OK;
         if (status != CAMBER_OK)
             break;
         const cl_mem *records = part ? &part->buffers[CAMBER_BUFFER_RECORDS].mem : cover->buffers + BUFFER_FILL;

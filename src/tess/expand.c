@@ -44,7 +44,7 @@ static camber_vertex make_edge(const camber_record *records, size_t at, size_t o
 /* ---- Strips ---- */
 
 /* The record beside another, which is itself where there is none. */
-static size_t beside(size_t record, size_t count, bool behind) {
+static size_t neighbour(size_t record, size_t count, bool behind) {
     if (behind)
         return record + 1 < count ? record + 1 : record;
     return record > 0 ? record - 1 : record;
@@ -54,7 +54,7 @@ static camber_vertex strip_vertex(const camber_record *records, size_t count, si
     const camber_record *r = records + record;
     const float side = right ? -1.0f : 1.0f;
     const bool out = camber_record_starts(r->last) && !camber_edge_is_shared(r->join, r->last, side);
-    return make_edge(records, record, beside(record, count, out), out, side, CAMBER_STRIP);
+    return make_edge(records, record, neighbour(record, count, out), out, side, CAMBER_STRIP);
 }
 
 /* Two indices a record: of breaks restarts, of others its vertices in the order of records. A start at a tight join has
@@ -103,7 +103,7 @@ static camber_vertex corner_vertex(const camber_mesh_data *data, uint32_t index,
     const bool out = corner == CAMBER_CORNER_CENTRE || corner == CAMBER_CORNER_OUT_LEFT ||
                      corner == CAMBER_CORNER_OUT_RIGHT || corner == CAMBER_CORNER_OUT_TIP;
     const bool dot = camber_join_kind(join) == CAMBER_KIND_DOT;
-    const size_t other = dot ? at : beside(at, data->info.record_count, out);
+    const size_t other = dot ? at : neighbour(at, data->info.record_count, out);
     if (corner >= CAMBER_CORNER_IN_LEFT && corner <= CAMBER_CORNER_OUT_RIGHT)
         return make_edge(records, at, other, out, (corner & 1u) ? 1.0f : -1.0f, (camber_u32)data->info.method);
     camber_vertex vertex = make_vertex(records, at, other, out);
@@ -147,7 +147,8 @@ static camber_status find_corners(camber_context *context, camber_mesh_data *dat
     return CAMBER_OK;
 }
 
-camber_status camber_corners_count(camber_context *context, camber_mesh_data *data, uint32_t **first_vertices) {
+camber_status camber_mesh_data_find_first_vertices(camber_context *context, camber_mesh_data *data,
+                                                   uint32_t **first_vertices) {
     corner_set *sets;
     const camber_status status = find_corners(context, data, &sets, first_vertices);
     if (status == CAMBER_OK)

@@ -41,9 +41,9 @@ camber_status camber_part_measure(camber_mesh *mesh, camber_mesh_part *part) {
     if (status != CAMBER_OK)
         return status;
     const camber_part_course *c = &part->course;
-    const cl_mem mems[] = {mesh->offsets ? c->x : part->x, mesh->offsets ? c->y : part->y,
-                           mesh->offsets ? c->info : part->info, mesh->offsets ? c->lengths : part->lengths,
-                           mesh->offsets ? c->measures : part->measures};
+    const cl_mem mems[] = {mesh->has_offsets ? c->x : part->x, mesh->has_offsets ? c->y : part->y,
+                           mesh->has_offsets ? c->info : part->info, mesh->has_offsets ? c->lengths : part->lengths,
+                           mesh->has_offsets ? c->measures : part->measures};
     const camber_stage stages[] = {{"tally", program->tally, mems, 4, CAMBER_MEASURE_CHUNK, part->given_count},
                                    {"measure", program->measure, mems, 5, CAMBER_MEASURE_CHUNK, part->given_count}};
     status = camber_stage_run(device, stages[0], NULL);

@@ -18,27 +18,27 @@ uint64_t camber_course_bytes(bool measured, size_t slots) {
            (slots ? 4 * ((uint64_t)slots / CAMBER_OFFSET_CHUNK + 1) : 0);
 }
 
-void camber_part_count(const camber_mesh *mesh, camber_mesh_part *part) {
+void camber_part_count_bytes(const camber_mesh *mesh, camber_mesh_part *part) {
     uint64_t bytes = camber_input_bytes(mesh->device, part->measures != NULL, part->slot_capacity);
     bytes += camber_course_bytes(part->course.measures != NULL, part->course.slot_capacity);
     bytes += part->base_capacity * sizeof *part->host_bases + part->chunk_capacity * sizeof *part->chunk_bases;
     for (int i = 0; i < 2; i++)
         bytes += mesh->buffer_copies * (uint64_t)part->buffers[i].capacity_bytes;
-    camber_device_count(mesh->device, &part->held_bytes, bytes);
+    camber_device_count_bytes(mesh->device, &part->held_bytes, bytes);
 }
 
-void camber_section_count(const camber_mesh *mesh, camber_section *section) {
+void camber_section_count_bytes(const camber_mesh *mesh, camber_section *section) {
     const bool copied = !mesh->device->host_memory;
-    camber_device_count(mesh->device, &section->held_bytes,
-                        section->x ? camber_section_bytes(mesh->held->network, section, copied) : 0);
+    camber_device_count_bytes(mesh->device, &section->held_bytes,
+                              section->x ? camber_section_bytes(mesh->held->network, section, copied) : 0);
 }
 
-void camber_mesh_count(camber_mesh *mesh) {
+void camber_mesh_count_bytes(camber_mesh *mesh) {
     uint64_t bytes = mesh->row_capacity * sizeof *mesh->host_rows + mesh->host_row_capacity * sizeof *mesh->host_rows;
     bytes += mesh->shift_capacity * sizeof(camber_shift);
     if (mesh->held)
         bytes += 8 * (uint64_t)mesh->held->chunk_capacity;
-    camber_device_count(mesh->device, &mesh->held_bytes, bytes);
+    camber_device_count_bytes(mesh->device, &mesh->held_bytes, bytes);
 }
 
 camber_mesh_memory camber_mesh_get_memory(const camber_mesh *mesh) {
@@ -85,12 +85,12 @@ static bool drop_part(camber_mesh *mesh, const camber_mesh_part *keep, bool spar
     if (!victim)
         return false;
     mesh->is_full |= victim->made;
-    camber_part_empty(mesh, victim);
+    camber_part_release_buffers(mesh, victim);
     return true;
 }
 
 /* What the other meshes of the device have. */
-static bool drop_of_others(const camber_mesh *mesh) {
+static bool drop_from_others(const camber_mesh *mesh) {
     for (camber_mesh *other = mesh->device->meshes; other; other = other->next)
         if (other != mesh && (drop_part(other, NULL, false) || drop_section(other, NULL)))
             return true;
@@ -103,10 +103,10 @@ static bool lacks_room(const camber_device *device, uint64_t more_bytes) {
            (device->host_memory && !camber_budget_has(device->context, more_bytes));
 }
 
-bool camber_mesh_has_room(camber_mesh *mesh, const camber_mesh_part *keep, uint64_t more_bytes, bool spare_made) {
+bool camber_mesh_evict_for(camber_mesh *mesh, const camber_mesh_part *keep, uint64_t more_bytes, bool spare_made) {
     const camber_device *device = mesh->device;
     while (device->memory_bytes && lacks_room(device, more_bytes))
-        if (!drop_part(mesh, keep, true) && !drop_of_others(mesh) && !drop_section(mesh, keep) &&
+        if (!drop_part(mesh, keep, true) && !drop_from_others(mesh) && !drop_section(mesh, keep) &&
             (spare_made || !drop_part(mesh, keep, false)))
             return false;
     return true;
@@ -114,7 +114,7 @@ bool camber_mesh_has_room(camber_mesh *mesh, const camber_mesh_part *keep, uint6
 
 camber_status camber_mesh_make_room(camber_mesh *mesh, const camber_mesh_part *keep, uint64_t more_bytes) {
     const camber_device *device = mesh->device;
-    if (camber_mesh_has_room(mesh, keep, more_bytes, false))
+    if (camber_mesh_evict_for(mesh, keep, more_bytes, false))
         return CAMBER_OK;
     return camber_fail(device->context, CAMBER_ERROR_LIMIT,
                        "meshes hold %llu bytes that cannot go, %llu more are needed, and %llu are allowed; allow more "
@@ -123,19 +123,19 @@ camber_status camber_mesh_make_room(camber_mesh *mesh, const camber_mesh_part *k
                        (unsigned long long)device->memory_bytes);
 }
 
-void camber_part_adopt(camber_mesh *mesh, camber_mesh_part *part, uint64_t wanted_bytes) {
+void camber_part_recycle_buffers(camber_mesh *mesh, camber_mesh_part *part, uint64_t wanted_bytes) {
     const camber_device *device = mesh->device;
     if (!device->memory_bytes)
         return;
     if (part->held_bytes > camber_device_share(device, 2))
-        camber_part_empty(mesh, part);
+        camber_part_release_buffers(mesh, part);
     if (part->held_bytes || device->held_bytes + wanted_bytes <= device->memory_bytes)
         return;
     camber_mesh_part *victim = find_victim(mesh, part, false);
     if (!victim || victim->held_bytes > camber_device_share(device, 2))
         return;
     mesh->is_full |= victim->made;
-    camber_part_take(part, victim);
-    camber_part_count(mesh, victim);
-    camber_part_count(mesh, part);
+    camber_part_move_buffers(part, victim);
+    camber_part_count_bytes(mesh, victim);
+    camber_part_count_bytes(mesh, part);
 }

@@ -26,7 +26,7 @@ void camber_mesh_destroy(camber_mesh *mesh) {
         return;
     camber_context *context = mesh->device->context;
     camber_mesh_release_parts(mesh);
-    camber_mesh_let_go(mesh);
+    camber_mesh_release_source(mesh);
     camber_release_buffer(mesh->device, &mesh->rows);
     camber_release_buffer(mesh->device, &mesh->shifts);
     camber_mesh **link = &mesh->device->meshes;
@@ -35,7 +35,7 @@ void camber_mesh_destroy(camber_mesh *mesh) {
     *link = mesh->next;
     camber_free(context, mesh->host_rows);
     mesh->row_capacity = mesh->host_row_capacity = mesh->shift_capacity = 0;
-    camber_mesh_count(mesh);
+    camber_mesh_count_bytes(mesh);
     camber_free(context, mesh->polyline_rows);
     camber_free(context, mesh->first_slots);
     camber_free(context, mesh);
@@ -46,7 +46,7 @@ void camber_mesh_destroy(camber_mesh *mesh) {
 static void count_words(const cl_uint *joins, const cl_uint *info, size_t slot_count, camber_mesh_info *counts,
                         size_t *segments) {
     for (size_t i = 1; i <= slot_count; i++) {
-        camber_mesh_info_count(counts, joins[i], info[i]);
+        camber_mesh_info_add_join(counts, joins[i], info[i]);
         *segments += info[i] & CAMBER_POINT_REAL && !(info[i] & CAMBER_POINT_FIRST);
         *segments += camber_join_kind(joins[i]) == CAMBER_KIND_DOT;
     }
@@ -84,7 +84,7 @@ static camber_status count_joins(camber_mesh *mesh) {
     camber_status status = CAMBER_OK;
     size_t segments = 0;
     for (size_t i = 0; i < mesh->part_count && !mesh->joins_counted && status == CAMBER_OK; i++) {
-        status = camber_part_use(mesh, mesh->parts + i);
+        status = camber_part_ensure_made(mesh, mesh->parts + i);
         if (status == CAMBER_OK)
             status = camber_part_count_joins(mesh, mesh->parts + i, &counts, &segments);
     }
@@ -107,12 +107,12 @@ camber_status camber_part_first_index(const camber_mesh *mesh, const camber_mesh
     const size_t block = slot / mesh->device->block;
     uint32_t packed = 0;
     if (slot < part->slot_count && slot % mesh->device->block != 0) {
-        camber_offsets offsets;
-        const camber_status status = camber_offsets_map(mesh, part, slot, slot + 1, &offsets);
+        camber_slot_starts starts;
+        const camber_status status = camber_slot_starts_map(mesh, part, slot, slot + 1, &starts);
         if (status != CAMBER_OK)
             return status;
-        packed = camber_offset_before(&offsets, slot);
-        camber_offsets_unmap(&offsets);
+        packed = camber_slot_starts_before(&starts, slot);
+        camber_slot_starts_unmap(&starts);
     }
     *first_index = part->slot_count ? part->host_bases[2 * block + 1] + (packed >> 16) : 0;
     return CAMBER_OK;
@@ -123,7 +123,7 @@ camber_status camber_mesh_first_index(camber_mesh *mesh, size_t polyline, uint64
     while (i + 1 < mesh->part_count && mesh->parts[i + 1].first_polyline <= polyline)
         i++;
     uint64_t first = 0;
-    camber_status status = mesh->part_count ? camber_part_use(mesh, mesh->parts + i) : CAMBER_OK;
+    camber_status status = mesh->part_count ? camber_part_ensure_made(mesh, mesh->parts + i) : CAMBER_OK;
     if (status == CAMBER_OK && mesh->part_count)
         status = camber_part_first_index(mesh, mesh->parts + i, polyline, &first);
     if (status == CAMBER_OK)
@@ -173,7 +173,7 @@ static camber_status read_records(const camber_mesh *mesh, const camber_mesh_par
 
 static camber_status read_part(camber_mesh *mesh, camber_mesh_part *part, camber_mesh_data *data) {
     const size_t buffer_count = camber_buffer_count(mesh);
-    camber_status status = camber_part_use(mesh, part);
+    camber_status status = camber_part_ensure_made(mesh, part);
     if (status == CAMBER_OK)
         status = mesh->ops->begin(mesh->ops_user, part->buffers, buffer_count);
     if (status != CAMBER_OK)

@@ -69,8 +69,8 @@ struct camber_mesh {
     cl_mem rows;
     camber_row *host_rows; /* the same */
     size_t row_capacity, host_row_capacity;
-    bool offsets;  /* a row has an offset: parts have a course */
-    cl_mem shifts; /* what of each row offsets need */
+    bool has_offsets; /* a row has an offset: parts have a course */
+    cl_mem shifts;    /* what of each row offsets need */
     size_t shift_capacity;
     camber_mesh_info mesh_info;
     bool joins_counted; /* mesh_info's counts of joins and triangles are there */
@@ -87,7 +87,7 @@ enum { CAMBER_BUFFER_RECORDS, CAMBER_BUFFER_INDICES };
 camber_status camber_mesh_create_on(camber_device *device, const camber_buffer_ops *ops, void *ops_user,
                                     camber_mesh **mesh);
 /* Makes a part, a pointer into mesh->parts, again unless its buffers hold it. Others may go. */
-camber_status camber_part_use(camber_mesh *mesh, camber_mesh_part *part);
+camber_status camber_part_ensure_made(camber_mesh *mesh, camber_mesh_part *part);
 /* First slot of a polyline in its part, which lies in its buffers; the part's first polyline + polyline_count gives the
  * end. */
 camber_status camber_part_slot(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline, size_t *slot);
@@ -108,22 +108,22 @@ camber_status camber_part_first_index(const camber_mesh *mesh, const camber_mesh
 /* The same in the indices of the mesh, as camber_mesh_read gives them. */
 camber_status camber_mesh_first_index(camber_mesh *mesh, size_t polyline, uint64_t *first_index);
 
-/* offsets.c: where slots begin within their blocks, as classify and scan left it. */
-typedef struct camber_offsets {
+/* slot_starts.c: where slots begin within their blocks, as classify and scan left it. */
+typedef struct camber_slot_starts {
     const camber_mesh *mesh;
     const camber_mesh_part *part;
     cl_uint *joins, *info, *offsets; /* mapped, from a run's first slot on */
-    size_t first, first_run;
+    size_t first, first_chunk;
     size_t at; /* the slot that was asked for last, and what it has before it */
     uint32_t sum;
-} camber_offsets;
+} camber_slot_starts;
 
 /* Of the slots [first, end) of a part; end is above first. */
-camber_status camber_offsets_map(const camber_mesh *mesh, const camber_mesh_part *part, size_t first, size_t end,
-                                 camber_offsets *offsets);
-void camber_offsets_unmap(camber_offsets *offsets);
+camber_status camber_slot_starts_map(const camber_mesh *mesh, const camber_mesh_part *part, size_t first, size_t end,
+                                     camber_slot_starts *starts);
+void camber_slot_starts_unmap(camber_slot_starts *starts);
 /* Vertices | indices << 16 that the slot's block has before it. */
-uint32_t camber_offset_before(camber_offsets *offsets, size_t slot);
+uint32_t camber_slot_starts_before(camber_slot_starts *starts, size_t slot);
 
 /* parts.c: lays out the parts of a mesh, each small enough for the device to upload; keeps them, and what is uploaded,
  * where the polylines are those of last time. CAMBER_ERROR_LIMIT names a polyline that fits no part. */
@@ -131,20 +131,20 @@ camber_status camber_mesh_plan(camber_mesh *mesh, const camber_polylines *polyli
 /* Cuts a part that has been scanned, and whose output is too large, into parts whose output fits. The part's place is
  * taken by the first of them. */
 camber_status camber_mesh_split(camber_mesh *mesh, size_t which);
-camber_status camber_part_records(const camber_mesh *mesh, const camber_mesh_part *part, size_t *count);
+camber_status camber_part_count_records(const camber_mesh *mesh, const camber_mesh_part *part, size_t *count);
 bool camber_part_fits(const camber_mesh *mesh, const camber_mesh_part *part);
 camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part);
 void camber_mesh_release_parts(camber_mesh *mesh);
 /* Lets go of a part's buffers. */
-void camber_part_empty(camber_mesh *mesh, camber_mesh_part *part);
+void camber_part_release_buffers(camber_mesh *mesh, camber_mesh_part *part);
 /* Gives an empty part the buffers of another. */
-void camber_part_take(camber_mesh_part *part, camber_mesh_part *from);
+void camber_part_move_buffers(camber_mesh_part *part, camber_mesh_part *from);
 /* Room for slots in the buffers of a part's input and its host_bases. */
 camber_status camber_part_reserve(camber_mesh *mesh, camber_mesh_part *part, size_t slots);
 /* The bytes that a part takes: input and output. */
-uint64_t camber_part_need(const camber_mesh *mesh, const camber_mesh_part *part);
+uint64_t camber_part_needed_bytes(const camber_mesh *mesh, const camber_mesh_part *part);
 /* What its output buffers lack for its output. */
-uint64_t camber_part_output_lacks(const camber_mesh *mesh, const camber_mesh_part *part);
+uint64_t camber_part_missing_output_bytes(const camber_mesh *mesh, const camber_mesh_part *part);
 /* Whether a part of several polylines may have so many slots in its share of memory. */
 bool camber_part_may_hold(const camber_mesh *mesh, const camber_mesh_part *part, uint64_t slots);
 /* Makes room in an output buffer and counts it. */
@@ -155,7 +155,7 @@ void camber_mesh_trim_parts(camber_mesh *mesh);
 camber_status camber_mesh_add_part(camber_mesh *mesh, size_t first_polyline, size_t end_polyline);
 /* After another frame of the same network: where memory was full, lets go of buffers that were far too large for it,
  * and joins parts by twos that took little of their share. */
-void camber_mesh_tidy(camber_mesh *mesh);
+void camber_mesh_compact_parts(camber_mesh *mesh);
 camber_status camber_mesh_halve(camber_mesh *mesh, size_t which);
 camber_status camber_fail_memory(const camber_mesh *mesh, size_t polyline, uint64_t size_bytes);
 camber_status camber_fail_polyline(const camber_mesh *mesh, size_t polyline, uint64_t size_bytes);
@@ -164,7 +164,7 @@ camber_status camber_fail_polyline(const camber_mesh *mesh, size_t polyline, uin
 camber_status camber_mesh_plan_network(camber_mesh *mesh, camber_network *network);
 /* Aims the network that a mesh holds. */
 camber_status camber_mesh_aim(camber_mesh *mesh, const camber_camera *camera, const camber_tessellation_desc *desc);
-void camber_mesh_let_go(camber_mesh *mesh);
+void camber_mesh_release_source(camber_mesh *mesh);
 /* Which of a network's points a part has. */
 void camber_part_set_points(const camber_mesh *mesh, camber_mesh_part *part);
 /* survey and project: makes the part's slots. *fits is false, and there are none, where the device makes no buffer that
@@ -188,19 +188,19 @@ void camber_add_ms(cl_event event, double *ms);
 camber_status camber_fail_stage(const camber_device *device, const char *call, const char *name, cl_int code);
 
 /* Counts what is held anew, after buffers have been made or let go. */
-void camber_part_count(const camber_mesh *mesh, camber_mesh_part *part);
-void camber_mesh_count(camber_mesh *mesh);
+void camber_part_count_bytes(const camber_mesh *mesh, camber_mesh_part *part);
+void camber_mesh_count_bytes(camber_mesh *mesh);
 /* Of a part's input for so many slots. */
 uint64_t camber_input_bytes(const camber_device *device, bool measured, size_t slots);
 /* Of the course of a part for so many slots. */
 uint64_t camber_course_bytes(bool measured, size_t slots);
 /* Lets parts and sections go, those of other meshes before the mesh's own, until so many more bytes can be held. keep
  * and its section stay, and with spare_made all parts of the mesh that are made. */
-bool camber_mesh_has_room(camber_mesh *mesh, const camber_mesh_part *keep, uint64_t more_bytes, bool spare_made);
+bool camber_mesh_evict_for(camber_mesh *mesh, const camber_mesh_part *keep, uint64_t more_bytes, bool spare_made);
 /* The same, sparing none; CAMBER_ERROR_LIMIT where it does not help. */
 camber_status camber_mesh_make_room(camber_mesh *mesh, const camber_mesh_part *keep, uint64_t more_bytes);
 /* Where no room is left for so many bytes, gives a part without buffers those of the part that would have to go. */
-void camber_part_adopt(camber_mesh *mesh, camber_mesh_part *part, uint64_t wanted_bytes);
+void camber_part_recycle_buffers(camber_mesh *mesh, camber_mesh_part *part, uint64_t wanted_bytes);
 
 /* Ends what ops->begin began on a part's output. Gives status where that is a failure, whose story is told. */
 camber_status camber_part_finish(const camber_mesh *mesh, camber_mesh_part *part, bool written, camber_status status);
@@ -222,7 +222,8 @@ camber_status camber_fail_records(camber_context *context, camber_method method)
 /* expand.c: makes vertices and indices of a mesh's records and corners. */
 camber_status camber_mesh_expand(camber_context *context, const camber_row *rows, camber_mesh_data *data);
 /* How many vertices the records before each have, of kite and fan: record_count + 1, freed with camber_free. */
-camber_status camber_corners_count(camber_context *context, camber_mesh_data *data, uint32_t **first_vertices);
+camber_status camber_mesh_data_find_first_vertices(camber_context *context, camber_mesh_data *data,
+                                                   uint32_t **first_vertices);
 
 /* Adds the kinds of joins that a part has, which lies in its buffers, and its segments; then takes the sums over all
  * parts. */
@@ -231,6 +232,6 @@ camber_status camber_part_count_joins(const camber_mesh *mesh, const camber_mesh
 void camber_mesh_set_counts(camber_mesh *mesh, camber_mesh_info counts, size_t segments);
 
 /* Adds a point's join word to the counts of a mesh's info. */
-void camber_mesh_info_count(camber_mesh_info *info, uint32_t join, uint32_t point);
+void camber_mesh_info_add_join(camber_mesh_info *info, uint32_t join, uint32_t point);
 
 #endif

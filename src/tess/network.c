@@ -71,7 +71,7 @@ static void add_polyline(const camber_network_desc *desc, camber_network_entry e
 }
 
 /* Checks the entries, counts their points and finds their box. */
-static camber_status measure(camber_network *n, const camber_network_desc *desc) {
+static camber_status check_entries_and_find_box(camber_network *n, const camber_network_desc *desc) {
     bounds box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
     for (size_t i = 0; i < n->entry_count; i++) {
         const camber_network_entry entry = entry_of(desc, i);
@@ -100,7 +100,7 @@ static int32_t to_step(double offset, double step) {
     return (int32_t)(steps < STEPS ? steps : STEPS);
 }
 
-static void put_point(camber_network *n, const double *point, double shift_x, float importance) {
+static void store_point(camber_network *n, const double *point, double shift_x, float importance) {
     const int32_t x = to_step(point[0] + shift_x - n->x0, n->step), y = to_step(point[1] - n->y0, n->step);
     camber_run *run = n->runs + n->run_count;
     const float weight = importance >= 0.0f ? importance : importance < 0.0f ? 0.0f : INFINITY;
@@ -120,14 +120,14 @@ static void put_point(camber_network *n, const double *point, double shift_x, fl
 }
 
 /* Valid points [first, end) of the desc. */
-static void put_run(camber_network *n, const camber_network_desc *desc, camber_network_entry entry, size_t first,
-                    size_t end, bool may_close) {
+static void store_stretch(camber_network *n, const camber_network_desc *desc, camber_network_entry entry, size_t first,
+                          size_t end, bool may_close) {
     const double *from = desc->points + 2 * first, *last = desc->points + 2 * (end - 1);
     const bool closes = may_close && end - first > 2 && from[0] == last[0] && from[1] == last[1];
     camber_run *run = n->runs + n->run_count;
     *run = (camber_run){(uint32_t)n->point_count, entry.row << CAMBER_POINT_ROW_SHIFT, INT32_MAX, INT32_MAX, -1, -1};
     for (size_t i = first; i < end; i++)
-        put_point(n, desc->points + 2 * i, entry.shift_x, desc->importance ? desc->importance[i] : INFINITY);
+        store_point(n, desc->points + 2 * i, entry.shift_x, desc->importance ? desc->importance[i] : INFINITY);
     const size_t count = n->point_count - run->first;
     n->importance[run->first] = n->importance[n->point_count - 1] = INFINITY;
     if (closes && count > 2)
@@ -139,8 +139,8 @@ static void put_run(camber_network *n, const camber_network_desc *desc, camber_n
     n->run_count++;
 }
 
-static camber_status put_entry(camber_network *n, const camber_network_desc *desc, camber_network_entry entry,
-                               size_t *run_capacity) {
+static camber_status store_entry(camber_network *n, const camber_network_desc *desc, camber_network_entry entry,
+                                 size_t *run_capacity) {
     const size_t begin = desc->offsets[entry.polyline], end = desc->offsets[entry.polyline + 1];
     n->stats.empty_polylines += begin == end;
     size_t first = begin;
@@ -150,7 +150,7 @@ static camber_status put_entry(camber_network *n, const camber_network_desc *des
         if (!camber_grow(n->context, &n->runs, run_capacity, n->run_count + 2, sizeof *n->runs))
             return CAMBER_ERROR_MEMORY;
         if (i > first)
-            put_run(n, desc, entry, first, i, !desc->keep_open && first == begin && i == end);
+            store_stretch(n, desc, entry, first, i, !desc->keep_open && first == begin && i == end);
         n->stats.invalid_points += i < end;
         first = i + 1;
     }
@@ -162,7 +162,7 @@ static double length_into(const camber_network *n, size_t point) {
 }
 
 /* A run that is all of its line, or, by two shares of that one's length, a part of it. */
-static void measure_run(camber_network *n, size_t run, const float *progress) {
+static void measure_stretch(camber_network *n, size_t run, const float *progress) {
     const size_t first = n->runs[run].first, end = n->runs[run + 1].first;
     const double from = progress ? (double)progress[0] : 0.0, part = progress ? (double)progress[1] - from : 1.0;
     const bool is_part = from >= 0.0 && from < 1.0 && part > LEAST_PART && part <= 1.0 - from + LEAST_PART;
@@ -178,17 +178,17 @@ static void measure_run(camber_network *n, size_t run, const float *progress) {
     n->totals[run] = (float)total;
 }
 
-static camber_status measure_runs(camber_network *n, const camber_network_desc *desc) {
+static camber_status measure_stretches(camber_network *n, const camber_network_desc *desc) {
     if (!(n->lengths = camber_alloc(n->context, n->point_count, sizeof *n->lengths)) ||
         !(n->totals = camber_alloc(n->context, n->run_count, sizeof *n->totals)))
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < n->entry_count; i++)
         for (size_t r = n->entry_runs[i]; r < n->entry_runs[i + 1]; r++)
-            measure_run(n, r, desc->progress ? desc->progress + 2 * entry_of(desc, i).polyline : NULL);
+            measure_stretch(n, r, desc->progress ? desc->progress + 2 * entry_of(desc, i).polyline : NULL);
     return CAMBER_OK;
 }
 
-static camber_status fill(camber_network *n, const camber_network_desc *desc) {
+static camber_status store_entries(camber_network *n, const camber_network_desc *desc) {
     camber_context *context = n->context;
     const size_t points = n->stats.points;
     size_t run_capacity = 0;
@@ -204,13 +204,13 @@ static camber_status fill(camber_network *n, const camber_network_desc *desc) {
         n->entry_runs[i] = (uint32_t)n->run_count;
         n->entry_rows[i] = entry.row;
         n->row_count = entry.row + 1 > n->row_count ? entry.row + 1 : n->row_count;
-        const camber_status status = put_entry(n, desc, entry, &run_capacity);
+        const camber_status status = store_entry(n, desc, entry, &run_capacity);
         if (status != CAMBER_OK)
             return status;
     }
     n->entry_runs[n->entry_count] = (uint32_t)n->run_count;
     n->runs[n->run_count] = (camber_run){.first = (uint32_t)n->point_count};
-    return desc->measured ? measure_runs(n, desc) : CAMBER_OK;
+    return desc->measured ? measure_stretches(n, desc) : CAMBER_OK;
 }
 
 camber_status camber_network_create(camber_context *context, const camber_network_desc *desc,
@@ -224,9 +224,9 @@ camber_status camber_network_create(camber_context *context, const camber_networ
     made->holders = 1;
     made->serial = context->next_serial++;
     made->entry_count = desc->entries ? desc->entry_count : desc->polyline_count;
-    camber_status status = measure(made, desc);
+    camber_status status = check_entries_and_find_box(made, desc);
     if (status == CAMBER_OK)
-        status = fill(made, desc);
+        status = store_entries(made, desc);
     if (status == CAMBER_OK)
         *network = made;
     else

@@ -29,8 +29,8 @@ struct camber_network {
 camber_status camber_network_aim(const camber_network *network, const camber_camera *camera,
                                  const camber_tessellation_desc *desc, camber_projection *projection);
 /* How many slots the points [begin, end) make; both lie in the network. */
-uint64_t camber_network_count(const camber_network *network, const camber_projection *projection, size_t begin,
-                              size_t end);
+uint64_t camber_network_count_slots(const camber_network *network, const camber_projection *projection, size_t begin,
+                                    size_t end);
 /* A walk over the network in host memory. */
 camber_walk camber_network_walk(const camber_network *network);
 /* The first point of an entry; of the one behind the last, the number of points. */
@@ -62,7 +62,7 @@ struct camber_held_network {
 void camber_network_hold(camber_network *network);
 /* What a section takes; copied: the device does not read the network's own memory. */
 uint64_t camber_section_bytes(const camber_network *network, const camber_section *section, bool copied);
-void camber_section_count(const camber_mesh *mesh, camber_section *section);
+void camber_section_count_bytes(const camber_mesh *mesh, camber_section *section);
 void camber_section_release(const camber_mesh *mesh, camber_section *section);
 
 #endif

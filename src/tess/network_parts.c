@@ -11,10 +11,10 @@ void camber_section_release(const camber_mesh *mesh, camber_section *section) {
                       &section->chunk_runs, &section->lengths, &section->totals};
     for (size_t i = 0; i < sizeof mems / sizeof *mems; i++)
         camber_release_buffer(mesh->device, mems[i]);
-    camber_section_count(mesh, section);
+    camber_section_count_bytes(mesh, section);
 }
 
-void camber_mesh_let_go(camber_mesh *mesh) {
+void camber_mesh_release_source(camber_mesh *mesh) {
     struct camber_held_network *held = mesh->held;
     if (mesh->holds_polylines)
         camber_polylines_destroy((camber_polylines *)(uintptr_t)mesh->polylines);
@@ -31,12 +31,12 @@ void camber_mesh_let_go(camber_mesh *mesh) {
     camber_free(mesh->device->context, held);
     mesh->held = NULL;
     mesh->serial = 0;
-    camber_mesh_count(mesh);
+    camber_mesh_count_bytes(mesh);
 }
 
 /* A buffer that the kernels read. A device that works in host memory reads the network's own, which is held as long. */
-static camber_status upload(const camber_device *device, const void *bytes, size_t size_bytes, bool is_kept,
-                            cl_mem *mem) {
+static camber_status upload_array(const camber_device *device, const void *bytes, size_t size_bytes, bool is_kept,
+                                  cl_mem *mem) {
     const cl_mem_flags from = device->host_memory && is_kept ? CL_MEM_USE_HOST_PTR : CL_MEM_COPY_HOST_PTR;
     return camber_make_buffer(device, CL_MEM_READ_ONLY | from, size_bytes, bytes, mem);
 }
@@ -45,8 +45,8 @@ static size_t chunks_of(size_t points) {
     return (points + CAMBER_CHUNK - 1) / CAMBER_CHUNK;
 }
 
-static camber_status upload_chunk_runs(const camber_device *device, const camber_network *network,
-                                       camber_section *section) {
+static camber_status upload_chunk_stretches(const camber_device *device, const camber_network *network,
+                                            camber_section *section) {
     const size_t count = chunks_of(section->end_point - section->first_point);
     uint32_t *chunk_runs = camber_alloc(device->context, count, sizeof *chunk_runs);
     if (!chunk_runs)
@@ -57,7 +57,7 @@ static camber_status upload_chunk_runs(const camber_device *device, const camber
             run++;
         chunk_runs[i] = (uint32_t)(run - first);
     }
-    const camber_status status = upload(device, chunk_runs, 4 * count, false, &section->chunk_runs);
+    const camber_status status = upload_array(device, chunk_runs, 4 * count, false, &section->chunk_runs);
     camber_free(device->context, chunk_runs);
     return status;
 }
@@ -75,21 +75,21 @@ static camber_status upload_section(camber_mesh *mesh, camber_mesh_part *part) {
     const size_t first = section->first_point, points = section->end_point - first;
     const size_t first_run = network->entry_runs[section->first_entry];
     const size_t runs = network->entry_runs[section->end_entry] - first_run + 1;
-    status = upload(device, network->x + first, 4 * points, true, &section->x);
+    status = upload_array(device, network->x + first, 4 * points, true, &section->x);
     if (status == CAMBER_OK)
-        status = upload(device, network->y + first, 4 * points, true, &section->y);
+        status = upload_array(device, network->y + first, 4 * points, true, &section->y);
     if (status == CAMBER_OK)
-        status = upload(device, network->importance + first, 4 * points, true, &section->importance);
+        status = upload_array(device, network->importance + first, 4 * points, true, &section->importance);
     if (status == CAMBER_OK)
-        status = upload(device, network->runs + first_run, runs * sizeof *network->runs, true, &section->runs);
+        status = upload_array(device, network->runs + first_run, runs * sizeof *network->runs, true, &section->runs);
     if (status == CAMBER_OK && network->lengths)
-        status = upload(device, network->lengths + first, 4 * points, true, &section->lengths);
+        status = upload_array(device, network->lengths + first, 4 * points, true, &section->lengths);
     if (status == CAMBER_OK && network->lengths)
-        status = upload(device, network->totals + first_run, 4 * (runs - 1), true, &section->totals);
+        status = upload_array(device, network->totals + first_run, 4 * (runs - 1), true, &section->totals);
     if (status == CAMBER_OK)
-        status = upload_chunk_runs(device, network, section);
+        status = upload_chunk_stretches(device, network, section);
     if (status == CAMBER_OK)
-        camber_section_count(mesh, section);
+        camber_section_count_bytes(mesh, section);
     else
         camber_section_release(mesh, section);
     return status;
@@ -104,38 +104,39 @@ static camber_section make_section(const camber_network *network, size_t first, 
                             .end_point = camber_network_first_point(network, end)};
 }
 
-static uint64_t bytes_of_runs(const camber_network *network, const camber_section *section) {
+static uint64_t bytes_of_stretches(const camber_network *network, const camber_section *section) {
     return ((uint64_t)network->entry_runs[section->end_entry] - network->entry_runs[section->first_entry] + 1) *
            (sizeof(camber_run) + (network->lengths ? sizeof *network->totals : 0));
 }
 
 static uint64_t larger_bytes(const camber_network *network, const camber_section *section) {
     const uint64_t points = 4 * ((uint64_t)section->end_point - section->first_point);
-    const uint64_t runs = bytes_of_runs(network, section);
+    const uint64_t runs = bytes_of_stretches(network, section);
     return points > runs ? points : runs;
 }
 
 uint64_t camber_section_bytes(const camber_network *network, const camber_section *section, bool copied) {
     const uint64_t points = (uint64_t)section->end_point - section->first_point;
     const uint64_t arrays = network->lengths ? 16 : 12;
-    return (copied ? arrays * points + bytes_of_runs(network, section) : 0) + 4 * (uint64_t)chunks_of((size_t)points);
+    return (copied ? arrays * points + bytes_of_stretches(network, section) : 0) +
+           4 * (uint64_t)chunks_of((size_t)points);
 }
 
 /* Whether the device makes the buffers of a section, and its share of memory takes them. */
-static bool fits(const camber_mesh *mesh, const camber_section *section) {
+static bool section_fits(const camber_mesh *mesh, const camber_section *section) {
     const camber_network *network = mesh->held->network;
     return larger_bytes(network, section) <= mesh->device->info.largest_buffer_bytes &&
            camber_section_bytes(network, section, true) <= camber_device_share(mesh->device, 1);
 }
 
 /* The entry behind the last that fits a section beginning with first; first itself where none does. */
-static size_t find_end(const camber_mesh *mesh, size_t first) {
+static size_t find_section_end(const camber_mesh *mesh, size_t first) {
     const camber_network *network = mesh->held->network;
     size_t low = first, high = network->entry_count + 1;
     while (high - low > 1) {
         const size_t middle = low + (high - low) / 2;
         const camber_section section = make_section(network, first, middle);
-        if (fits(mesh, &section))
+        if (section_fits(mesh, &section))
             low = middle;
         else
             high = middle;
@@ -151,12 +152,12 @@ static camber_status fail_entry(const camber_mesh *mesh, size_t entry) {
                                                             : camber_fail_memory(mesh, entry, 4 * all);
 }
 
-static camber_status lay_out(camber_mesh *mesh) {
+static camber_status lay_out_sections(camber_mesh *mesh) {
     struct camber_held_network *held = mesh->held;
     const camber_network *network = held->network;
     const size_t count = network->point_count ? network->entry_count : 0;
     for (size_t first = 0; first < count;) {
-        const size_t end = find_end(mesh, first);
+        const size_t end = find_section_end(mesh, first);
         if (end == first)
             return fail_entry(mesh, first);
         if (!camber_grow(mesh->device->context, &held->sections, &held->section_capacity, held->section_count + 1,
@@ -174,7 +175,7 @@ static camber_status lay_out(camber_mesh *mesh) {
     return CAMBER_OK;
 }
 
-static camber_status hold(camber_mesh *mesh, camber_network *network) {
+static camber_status hold_network(camber_mesh *mesh, camber_network *network) {
     camber_context *context = mesh->device->context;
     const size_t count = network->entry_count;
     if (!camber_grow(context, &mesh->polyline_rows, &mesh->row_list_capacity, count, sizeof *mesh->polyline_rows) ||
@@ -186,19 +187,19 @@ static camber_status hold(camber_mesh *mesh, camber_network *network) {
         memcpy(mesh->polyline_rows, network->entry_rows, count * sizeof *mesh->polyline_rows);
     mesh->polyline_count = count;
     mesh->row_count = network->row_count;
-    return lay_out(mesh);
+    return lay_out_sections(mesh);
 }
 
 camber_status camber_mesh_plan_network(camber_mesh *mesh, camber_network *network) {
     if (mesh->serial == network->serial) {
-        camber_mesh_tidy(mesh);
+        camber_mesh_compact_parts(mesh);
         return CAMBER_OK;
     }
-    camber_mesh_let_go(mesh);
+    camber_mesh_release_source(mesh);
     mesh->serial = mesh->part_count = mesh->polyline_count = 0;
-    const camber_status status = hold(mesh, network);
+    const camber_status status = hold_network(mesh, network);
     if (status != CAMBER_OK) {
-        camber_mesh_let_go(mesh);
+        camber_mesh_release_source(mesh);
         mesh->part_count = 0;
         return status;
     }
@@ -251,7 +252,7 @@ size_t camber_part_network_slot(const camber_mesh *mesh, const camber_mesh_part 
     const size_t chunk = (point - p.first_point) / CAMBER_CHUNK, start = p.first_point + chunk * CAMBER_CHUNK;
     const size_t begin = start > part->first_point ? start : part->first_point;
     return part->chunk_bases[chunk - p.begin / CAMBER_CHUNK] +
-           (size_t)camber_network_count(mesh->held->network, &p, begin, point);
+           (size_t)camber_network_count_slots(mesh->held->network, &p, begin, point);
 }
 
 /* ---- Stages ---- */
@@ -287,7 +288,7 @@ static camber_status reserve_chunks(camber_mesh *mesh, camber_mesh_part *part, s
         return status;
     const bool there = camber_grow(mesh->device->context, &part->chunk_bases, &part->chunk_capacity, chunks + 1,
                                    sizeof *part->chunk_bases);
-    camber_part_count(mesh, part);
+    camber_part_count_bytes(mesh, part);
     if (!there)
         return CAMBER_ERROR_MEMORY;
     if (chunks <= held->chunk_capacity)
@@ -300,7 +301,7 @@ static camber_status reserve_chunks(camber_mesh *mesh, camber_mesh_part *part, s
         status = camber_make_buffer(mesh->device, CL_MEM_READ_WRITE, 4 * (chunks + 1), NULL, &held->bases);
     if (status == CAMBER_OK)
         held->chunk_capacity = chunks;
-    camber_mesh_count(mesh);
+    camber_mesh_count_bytes(mesh);
     return status;
 }
 
@@ -371,8 +372,8 @@ camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, boo
         *fits = false;
         return CAMBER_OK;
     }
-    status = mesh->offsets ? camber_part_reserve_course(mesh, part, (size_t)padded)
-                           : reserve_slots(mesh, part, (size_t)padded);
+    status = mesh->has_offsets ? camber_part_reserve_course(mesh, part, (size_t)padded)
+                               : reserve_slots(mesh, part, (size_t)padded);
     if (status == CAMBER_OK)
         status = camber_write_buffer(device, mesh->held->bases, 0, 4 * (part_chunks(&p) + 1), part->chunk_bases);
     if (status != CAMBER_OK)
@@ -386,13 +387,13 @@ camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, boo
                            section->runs,
                            section->chunk_runs,
                            mesh->held->bases,
-                           mesh->offsets ? course->x : part->x,
-                           mesh->offsets ? course->y : part->y,
-                           mesh->offsets ? course->info : part->info,
-                           mesh->offsets ? course->spans : part->joins,
+                           mesh->has_offsets ? course->x : part->x,
+                           mesh->has_offsets ? course->y : part->y,
+                           mesh->has_offsets ? course->info : part->info,
+                           mesh->has_offsets ? course->spans : part->joins,
                            section->lengths,
                            section->totals,
-                           mesh->offsets ? course->measures : part->measures};
+                           mesh->has_offsets ? course->measures : part->measures};
     const cl_uint mem_count = mesh->mesh_info.measured ? 13 : 10;
     return run_stage(device, &p, (stage){"project", mesh->held->program->project, mems, mem_count},
                      &mesh->held->projected);

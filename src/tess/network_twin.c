@@ -13,7 +13,7 @@ camber_walk camber_network_walk(const camber_network *network) {
 }
 
 /* The run that has a point. */
-static const camber_run *find_run(const camber_network *network, size_t point) {
+static const camber_run *find_stretch(const camber_network *network, size_t point) {
     size_t low = 0, high = network->run_count;
     while (high - low > 1) {
         const size_t middle = low + (high - low) / 2;
@@ -25,17 +25,17 @@ static const camber_run *find_run(const camber_network *network, size_t point) {
     return network->runs + low;
 }
 
-uint64_t camber_network_count(const camber_network *network, const camber_projection *projection, size_t begin,
-                              size_t end) {
+uint64_t camber_network_count_slots(const camber_network *network, const camber_projection *projection, size_t begin,
+                                    size_t end) {
     /* A piece at a time: the walk counts in 32 bits. */
-    static const size_t PIECE = (size_t)1 << 28;
+    static const size_t POINTS_AT_ONCE = (size_t)1 << 28;
     camber_projection p = *projection;
     uint64_t count = 0;
     p.first_point = 0;
     while (begin < end) {
-        const size_t until = end - begin > PIECE ? begin + PIECE : end;
+        const size_t until = end - begin > POINTS_AT_ONCE ? begin + POINTS_AT_ONCE : end;
         camber_walk w = camber_network_walk(network);
-        camber_walk_chunk(&w, &p, find_run(network, begin), (uint32_t)begin, (uint32_t)until);
+        camber_walk_chunk(&w, &p, find_stretch(network, begin), (uint32_t)begin, (uint32_t)until);
         count += w.at;
         begin = until;
     }
@@ -98,7 +98,7 @@ camber_status camber_network_project(const camber_network *network, const camber
         status = camber_network_aim(network, camera, desc, &projection);
     if (status != CAMBER_OK)
         return status;
-    const uint64_t count = camber_network_count(network, &projection, 0, network->point_count);
+    const uint64_t count = camber_network_count_slots(network, &projection, 0, network->point_count);
     if (count > UINT32_MAX - 1024u)
         return camber_fail(context, CAMBER_ERROR_LIMIT,
                            "%llu points are more than 32-bit slots hold; draw a smaller part or simplify more",
@@ -123,32 +123,32 @@ camber_status camber_network_project(const camber_network *network, const camber
 
 /* ---- Pieces ---- */
 
-typedef struct pieces {
+typedef struct visible_lines {
     const camber_polylines *slots;
     camber_lines lines;
     uint32_t *entries;
-} pieces;
+} visible_lines;
 
-static void put_slot(pieces *p, size_t slot) {
+static void append_slot(visible_lines *p, size_t slot) {
     p->lines.points[2 * p->lines.point_count] = p->slots->x[slot + 1];
     p->lines.points[2 * p->lines.point_count + 1] = p->slots->y[slot + 1];
     p->lines.point_count++;
 }
 
 /* The slots [first, last] are a piece. */
-static void begin_piece(pieces *p, size_t entry) {
+static void begin_line(visible_lines *p, size_t entry) {
     p->entries[p->lines.polyline_count] = (uint32_t)entry;
     p->lines.offsets[p->lines.polyline_count++] = (uint32_t)p->lines.point_count;
 }
 
-static size_t last_of(const pieces *p, size_t first) {
+static size_t last_of(const visible_lines *p, size_t first) {
     while (!(p->slots->info[first + 1] & CAMBER_POINT_LAST))
         first++;
     return first;
 }
 
 /* Of a ring that is cut, the piece before the seam waits for the one behind it, which comes first. */
-static void put_entry(pieces *p, size_t entry) {
+static void append_entry(visible_lines *p, size_t entry) {
     const uint32_t *info = p->slots->info + 1;
     size_t seam = SIZE_MAX, seam_end = 0;
     for (size_t i = p->slots->first_slots[entry]; i < p->slots->first_slots[entry + 1]; i++) {
@@ -161,13 +161,13 @@ static void put_entry(pieces *p, size_t entry) {
             seam_end = i;
             continue;
         }
-        begin_piece(p, entry);
+        begin_line(p, entry);
         for (size_t k = first; k <= i; k++)
-            put_slot(p, k);
+            append_slot(p, k);
         if (seam == SIZE_MAX || !(info[i] & CAMBER_POINT_RING))
             continue;
         for (size_t k = seam + 1; k <= seam_end; k++)
-            put_slot(p, k);
+            append_slot(p, k);
         seam = SIZE_MAX;
     }
 }
@@ -182,13 +182,13 @@ camber_status camber_network_lines(const camber_network *network, const camber_c
     size_t count = 0;
     for (size_t i = 0; i < slots->slot_count; i++)
         count += (slots->info[i + 1] & CAMBER_POINT_FIRST) != 0;
-    pieces p = {.slots = slots};
+    visible_lines p = {.slots = slots};
     status = CAMBER_ERROR_MEMORY;
     if ((p.lines.points = camber_alloc(context, slots->stats.kept_points, 2 * sizeof *p.lines.points)) &&
         (p.lines.offsets = camber_alloc(context, count + 1, sizeof *p.lines.offsets)) &&
         (p.entries = camber_alloc(context, count, sizeof *p.entries))) {
         for (size_t i = 0; i < network->entry_count; i++)
-            put_entry(&p, i);
+            append_entry(&p, i);
         p.lines.offsets[p.lines.polyline_count] = (uint32_t)p.lines.point_count;
         status = CAMBER_OK;
         *lines = p.lines;

@@ -1,5 +1,5 @@
 /* Lines that lie beside others: span -> tell -> shift on a device, and the twin, slot after slot. Where buffers begin
- * is in offsets.c. */
+ * is in slot_starts.c. */
 #include "tess/offset.h"
 
 #include "kernels/measure.h"
@@ -9,14 +9,14 @@
 /* ---- Rows ---- */
 
 /* Less moves no level of a pixel, and makes segments that a float cannot square. */
-static bool shows(const camber_stroke *stroke) {
+static bool has_visible_offset(const camber_stroke *stroke) {
     return fabsf(stroke->offset_px) >= 1e-3f;
 }
 
 bool camber_desc_has_offsets(const camber_tessellation_desc *desc) {
     bool has = false;
     for (size_t i = 0; i < desc->stroke_count; i++)
-        has |= shows(desc->strokes + i);
+        has |= has_visible_offset(desc->strokes + i);
     return has;
 }
 
@@ -27,7 +27,7 @@ static camber_status make_shifts(camber_context *context, const camber_tessellat
         return CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < desc->stroke_count; i++) {
         const camber_stroke *stroke = desc->strokes + i;
-        made[i] = (camber_shift){.offset_px = shows(stroke) ? stroke->offset_px : 0.0f,
+        made[i] = (camber_shift){.offset_px = has_visible_offset(stroke) ? stroke->offset_px : 0.0f,
                                  .miter_limit = stroke->miter_limit > 0.0f ? stroke->miter_limit : 2.0f,
                                  .join = (camber_u32)stroke->join};
     }
@@ -50,7 +50,7 @@ static camber_status upload_shifts(camber_mesh *mesh, const camber_tessellation_
         if (status == CAMBER_OK)
             status = camber_make_buffer(mesh->device, CL_MEM_READ_WRITE, size_bytes, NULL, &mesh->shifts);
         mesh->shift_capacity = status == CAMBER_OK ? count : 0;
-        camber_mesh_count(mesh);
+        camber_mesh_count_bytes(mesh);
     }
     if (status == CAMBER_OK)
         status = make_shifts(mesh->device->context, desc, &shifts);
@@ -62,13 +62,13 @@ static camber_status upload_shifts(camber_mesh *mesh, const camber_tessellation_
 
 camber_status camber_mesh_set_offsets(camber_mesh *mesh, const camber_tessellation_desc *desc) {
     const bool offsets = camber_desc_has_offsets(desc);
-    if (offsets != mesh->offsets) {
+    if (offsets != mesh->has_offsets) {
         for (size_t i = 0; i < mesh->part_capacity; i++)
-            camber_part_empty(mesh, mesh->parts + i);
+            camber_part_release_buffers(mesh, mesh->parts + i);
         release_shifts(mesh);
-        camber_mesh_count(mesh);
+        camber_mesh_count_bytes(mesh);
     }
-    mesh->offsets = offsets;
+    mesh->has_offsets = offsets;
     return offsets ? upload_shifts(mesh, desc) : CAMBER_OK;
 }
 
@@ -87,7 +87,7 @@ void camber_course_release(const camber_device *device, camber_part_course *cour
 camber_status camber_part_check_course(const camber_mesh *mesh, const camber_mesh_part *part, uint64_t slots,
                                        bool *fits) {
     const uint64_t size_bytes = sizeof(camber_span) * (slots + 2);
-    if (!mesh->offsets || size_bytes <= mesh->device->info.largest_buffer_bytes)
+    if (!mesh->has_offsets || size_bytes <= mesh->device->info.largest_buffer_bytes)
         return CAMBER_OK;
     *fits = false;
     return part->polyline_count > 1 ? CAMBER_OK : camber_fail_polyline(mesh, part->first_polyline, size_bytes);
@@ -133,14 +133,14 @@ camber_status camber_part_reserve_course(camber_mesh *mesh, camber_mesh_part *pa
     if (status == CAMBER_OK)
         status = make_course(device, measured, &part->course, slots);
     part->uploaded = false;
-    camber_part_count(mesh, part);
+    camber_part_count_bytes(mesh, part);
     return status;
 }
 
 /* ---- Stages ---- */
 
 /* Turns the counts of chunks into what lies before each of them, in their place, and all of them behind the last. */
-static camber_status add_up(const camber_device *device, cl_mem counts, size_t chunk_count, uint64_t *slots) {
+static camber_status scan_counts(const camber_device *device, cl_mem counts, size_t chunk_count, uint64_t *slots) {
     cl_int code;
     uint64_t sum = 0;
     cl_uint *mapped = clEnqueueMapBuffer(device->queue, counts, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0,
@@ -208,7 +208,7 @@ camber_status camber_part_offset(camber_mesh *mesh, camber_mesh_part *part, bool
         status = camber_stage_run(device, (camber_stage){"tell", program->tell, mems, 6, CAMBER_OFFSET_CHUNK, given},
                                   events + 1);
     if (status == CAMBER_OK)
-        status = add_up(device, c->counts, given / CAMBER_OFFSET_CHUNK, &slots);
+        status = scan_counts(device, c->counts, given / CAMBER_OFFSET_CHUNK, &slots);
     const uint64_t padded = (slots + block - 1) / block * block;
     if (status == CAMBER_OK)
         status = check_slots(mesh, part, padded, fits);
@@ -240,7 +240,8 @@ static camber_course course_of(const camber_polylines *polylines, const camber_s
 }
 
 /* Puts the slots beside, or counts them. */
-static void walk(const camber_course *course, const camber_polylines *from, camber_pen *pen, uint32_t *first_slots) {
+static void emit_polylines(const camber_course *course, const camber_polylines *from, camber_pen *pen,
+                           uint32_t *first_slots) {
     size_t slot = 1;
     for (size_t i = 0; i < from->polyline_count; i++) {
         if (first_slots)
@@ -263,8 +264,8 @@ static uint64_t count_slots(const camber_course *course, const camber_polylines 
     return count;
 }
 
-static camber_status put(const camber_course *course, const camber_polylines *from, size_t count,
-                         camber_polylines *made) {
+static camber_status emit_slots(const camber_course *course, const camber_polylines *from, size_t count,
+                                camber_polylines *made) {
     camber_context *context = from->context;
     const size_t slots = (count + CAMBER_BLOCK - 1) / CAMBER_BLOCK * CAMBER_BLOCK;
     if (!(made->x = camber_alloc_zero(context, slots + 2, sizeof *made->x)) ||
@@ -280,12 +281,13 @@ static camber_status put(const camber_course *course, const camber_polylines *fr
     pen.measures = (float *)made->measures;
     pen.puts = 1;
     pen.at = 1;
-    walk(course, from, &pen, made->first_slots);
+    emit_polylines(course, from, &pen, made->first_slots);
     made->slot_count = slots;
     return CAMBER_OK;
 }
 
-static camber_status make_beside(const camber_course *course, const camber_polylines *from, camber_polylines **beside) {
+static camber_status make_offset_polylines(const camber_course *course, const camber_polylines *from,
+                                           camber_polylines **beside) {
     camber_context *context = from->context;
     const uint64_t count = count_slots(course, from);
     if (count > UINT32_MAX - 1024u)
@@ -298,7 +300,7 @@ static camber_status make_beside(const camber_course *course, const camber_polyl
     made->context = context;
     made->polyline_count = from->polyline_count;
     made->row_count = from->row_count;
-    const camber_status status = put(course, from, (size_t)count, made);
+    const camber_status status = emit_slots(course, from, (size_t)count, made);
     if (status == CAMBER_OK)
         *beside = made;
     else
@@ -316,7 +318,7 @@ camber_status camber_polylines_offset(const camber_polylines *polylines, const c
     for (size_t i = 1; i <= polylines->slot_count && status == CAMBER_OK; i++)
         spans[i] = camber_span_of(&course, (camber_u32)i);
     if (status == CAMBER_OK)
-        status = make_beside(&course, polylines, beside);
+        status = make_offset_polylines(&course, polylines, beside);
     camber_free(context, shifts);
     camber_free(context, spans);
     return status;

@@ -27,7 +27,7 @@ static void release_input(const camber_device *device, camber_mesh_part *part) {
     camber_course_release(device, &part->course);
 }
 
-void camber_part_take(camber_mesh_part *part, camber_mesh_part *from) {
+void camber_part_move_buffers(camber_mesh_part *part, camber_mesh_part *from) {
     cl_mem *to[INPUTS], *mems[INPUTS];
     list_input(part, to);
     list_input(from, mems);
@@ -113,7 +113,7 @@ camber_status camber_part_reserve(camber_mesh *mesh, camber_mesh_part *part, siz
     if (status == CAMBER_OK && !camber_grow(device->context, &part->host_bases, &part->base_capacity,
                                             2 * (part->slot_capacity / device->block + 1), sizeof *part->host_bases))
         status = CAMBER_ERROR_MEMORY;
-    camber_part_count(mesh, part);
+    camber_part_count_bytes(mesh, part);
     return status;
 }
 
@@ -124,11 +124,11 @@ camber_status camber_part_reserve_output(camber_mesh *mesh, camber_mesh_part *pa
         status = camber_mesh_make_room(mesh, part, mesh->buffer_copies * (size_bytes - buffer->capacity_bytes));
     if (status == CAMBER_OK)
         status = mesh->ops->reserve(mesh->ops_user, buffer, size_bytes);
-    camber_part_count(mesh, part);
+    camber_part_count_bytes(mesh, part);
     return status;
 }
 
-void camber_part_empty(camber_mesh *mesh, camber_mesh_part *part) {
+void camber_part_release_buffers(camber_mesh *mesh, camber_mesh_part *part) {
     for (int i = 0; i < 2; i++)
         mesh->ops->release(mesh->ops_user, part->buffers + i);
     release_input(mesh->device, part);
@@ -137,11 +137,11 @@ void camber_part_empty(camber_mesh *mesh, camber_mesh_part *part) {
     part->host_bases = NULL;
     part->chunk_bases = NULL;
     part->base_capacity = part->chunk_capacity = 0;
-    camber_part_count(mesh, part);
+    camber_part_count_bytes(mesh, part);
 }
 
 static void release_part(camber_mesh *mesh, camber_mesh_part *part) {
-    camber_part_empty(mesh, part);
+    camber_part_release_buffers(mesh, part);
     *part = (camber_mesh_part){0};
 }
 
@@ -156,7 +156,7 @@ void camber_mesh_release_parts(camber_mesh *mesh) {
 /* ---- Layout ---- */
 
 /* Parts past part_count are zero, but for the first, which keeps its buffers for the polylines that come next. */
-static bool hold_parts(camber_mesh *mesh, size_t count) {
+static bool reserve_parts(camber_mesh *mesh, size_t count) {
     const size_t before = mesh->part_capacity;
     if (!camber_grow(mesh->device->context, &mesh->parts, &mesh->part_capacity, count, sizeof *mesh->parts))
         return false;
@@ -186,11 +186,11 @@ camber_status camber_part_slot(const camber_mesh *mesh, const camber_mesh_part *
     const camber_device *device = mesh->device;
     cl_uint place = 0;
     cl_int code = CL_SUCCESS;
-    if (mesh->offsets && (given >= part->given_count || polyline >= part->first_polyline + part->polyline_count))
+    if (mesh->has_offsets && (given >= part->given_count || polyline >= part->first_polyline + part->polyline_count))
         place = (cl_uint)part->course.made_count;
-    else if (mesh->offsets && part->slot_count > 0)
+    else if (mesh->has_offsets && part->slot_count > 0)
         code = clEnqueueReadBuffer(device->queue, part->course.places, CL_TRUE, 4 * given, 4, &place, 0, NULL, NULL);
-    *slot = mesh->offsets ? place : given;
+    *slot = mesh->has_offsets ? place : given;
     return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(device->context, "clEnqueueReadBuffer", code);
 }
 
@@ -212,7 +212,7 @@ camber_status camber_fail_memory(const camber_mesh *mesh, size_t polyline, uint6
 }
 
 /* The polyline behind the last that fits a part of so many slots beginning with first. */
-static size_t find_end(const camber_mesh *mesh, size_t first, size_t slots_max) {
+static size_t find_part_end(const camber_mesh *mesh, size_t first, size_t slots_max) {
     const uint32_t *slots = mesh->first_slots;
     size_t low = first, high = mesh->polyline_count;
     if (slots[high] - slots[first] <= slots_max)
@@ -237,12 +237,12 @@ static uint64_t shared_slots(const camber_mesh *mesh) {
     const size_t block = mesh->device->block;
     const uint64_t block_bytes = camber_input_bytes(mesh->device, mesh->mesh_info.measured, block) +
                                  20 * mesh->buffer_copies * block +
-                                 (mesh->offsets ? camber_course_bytes(mesh->mesh_info.measured, block) : 0);
+                                 (mesh->has_offsets ? camber_course_bytes(mesh->mesh_info.measured, block) : 0);
     const uint64_t blocks = camber_device_share(mesh->device, 1) / block_bytes;
     return (blocks ? blocks : 1) * block;
 }
 
-static camber_status lay_out(camber_mesh *mesh) {
+static camber_status lay_out_parts(camber_mesh *mesh) {
     const size_t block = mesh->device->block, ghosts = 2;
     const uint64_t words = mesh->device->info.largest_buffer_bytes / 4, shared = shared_slots(mesh);
     const uint64_t room = words > ghosts ? (words - ghosts) / block * block : 0;
@@ -250,13 +250,13 @@ static camber_status lay_out(camber_mesh *mesh) {
     const size_t slots = shared < slots_max ? (size_t)shared : slots_max;
     const size_t polyline_count = mesh->first_slots[mesh->polyline_count] ? mesh->polyline_count : 0;
     for (size_t first = 0; first < polyline_count; mesh->part_count++) {
-        size_t end = find_end(mesh, first, slots);
+        size_t end = find_part_end(mesh, first, slots);
         if (end == first && mesh->first_slots[first + 1] - mesh->first_slots[first] <= slots_max)
             end = first + 1;
         if (end == first)
             return camber_fail_polyline(
                 mesh, first, 4 * ((uint64_t)mesh->first_slots[first + 1] - mesh->first_slots[first] + ghosts));
-        if (!hold_parts(mesh, mesh->part_count + 1))
+        if (!reserve_parts(mesh, mesh->part_count + 1))
             return CAMBER_ERROR_MEMORY;
         set_polylines(mesh, mesh->parts + mesh->part_count, first, end);
         first = end;
@@ -279,7 +279,7 @@ camber_status camber_mesh_plan(camber_mesh *mesh, const camber_polylines *polyli
         mesh->polylines = polylines;
         return CAMBER_OK;
     }
-    camber_mesh_let_go(mesh);
+    camber_mesh_release_source(mesh);
     mesh->serial = mesh->part_count = mesh->polyline_count = 0;
     hold_polylines(mesh, polylines);
     if (!camber_grow(context, &mesh->first_slots, &mesh->polyline_capacity, count + 1, sizeof *mesh->first_slots) ||
@@ -290,15 +290,15 @@ camber_status camber_mesh_plan(camber_mesh *mesh, const camber_polylines *polyli
         memcpy(mesh->polyline_rows, polylines->polyline_rows, count * sizeof *mesh->polyline_rows);
     mesh->polyline_count = count;
     mesh->row_count = polylines->row_count;
-    const camber_status status = lay_out(mesh);
+    const camber_status status = lay_out_parts(mesh);
     if (status == CAMBER_OK)
         mesh->serial = polylines->serial;
     return status;
 }
 
 /* Whether the buffers that are uploaded to have those of measures beside them, if these are wanted now. */
-static bool has_uploaded(const camber_mesh *mesh, const camber_mesh_part *part) {
-    return !mesh->mesh_info.measured || (mesh->offsets ? part->course.measures : part->measures);
+static bool has_upload_buffers(const camber_mesh *mesh, const camber_mesh_part *part) {
+    return !mesh->mesh_info.measured || (mesh->has_offsets ? part->course.measures : part->measures);
 }
 
 camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part) {
@@ -306,10 +306,10 @@ camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part) {
     const camber_device *device = mesh->device;
     const camber_polylines *polylines = mesh->polylines;
     part->slot_count = part->given_count;
-    if (part->given_count == 0 || (part->uploaded && has_uploaded(mesh, part)))
+    if (part->given_count == 0 || (part->uploaded && has_upload_buffers(mesh, part)))
         return CAMBER_OK;
-    camber_status status = mesh->offsets ? camber_part_reserve_course(mesh, part, part->given_count)
-                                         : camber_part_reserve(mesh, part, part->given_count);
+    camber_status status = mesh->has_offsets ? camber_part_reserve_course(mesh, part, part->given_count)
+                                             : camber_part_reserve(mesh, part, part->given_count);
     const camber_part_course *course = &part->course;
     const size_t words = part->given_count + 2, first = part->first_slot;
     const size_t end = part->first_polyline + part->polyline_count;
@@ -319,9 +319,9 @@ camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part) {
     const struct {
         cl_mem mem;
         const void *bytes;
-    } arrays[] = {{mesh->offsets ? course->x : part->x, polylines->x + first},
-                  {mesh->offsets ? course->y : part->y, polylines->y + first},
-                  {mesh->offsets ? course->info : part->info, polylines->info + first}};
+    } arrays[] = {{mesh->has_offsets ? course->x : part->x, polylines->x + first},
+                  {mesh->has_offsets ? course->y : part->y, polylines->y + first},
+                  {mesh->has_offsets ? course->info : part->info, polylines->info + first}};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         if (status == CAMBER_OK)
             status = camber_write_buffer(device, arrays[i].mem, 0, 4 * given, arrays[i].bytes);
@@ -329,9 +329,9 @@ camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part) {
             status = camber_write_buffer(device, arrays[i].mem, 4 * given, 4 * (words - given), zeros);
     }
     /* The words before and behind the points' are read by neighbours and written by nobody. */
-    if (status == CAMBER_OK && !mesh->offsets)
+    if (status == CAMBER_OK && !mesh->has_offsets)
         status = camber_write_buffer(device, part->joins, 0, 4, zeros);
-    if (status == CAMBER_OK && !mesh->offsets)
+    if (status == CAMBER_OK && !mesh->has_offsets)
         status = camber_write_buffer(device, part->joins, 4 * (words - 1), 4, zeros);
     part->uploaded = status == CAMBER_OK;
     return status;
@@ -359,18 +359,19 @@ static uint64_t index_bytes(const camber_mesh *mesh, part_size size) {
     return mesh->mesh_info.strips ? 0 : 4 * (size.indices ? size.indices : 1); /* no buffer is empty */
 }
 
-static uint64_t need(const camber_mesh *mesh, const camber_mesh_part *part, part_size size) {
+static uint64_t needed_bytes(const camber_mesh *mesh, const camber_mesh_part *part, part_size size) {
     const size_t given = (size_t)whole_blocks(mesh, size.given);
-    return (mesh->offsets ? camber_course_bytes(mesh->mesh_info.measured, given) : 0) +
+    return (mesh->has_offsets ? camber_course_bytes(mesh->mesh_info.measured, given) : 0) +
            bytes_of_slots(mesh, part, (size_t)whole_blocks(mesh, size.slots)) +
            mesh->buffer_copies * (record_bytes(mesh, size) + index_bytes(mesh, size));
 }
 
-uint64_t camber_part_need(const camber_mesh *mesh, const camber_mesh_part *part) {
-    return need(mesh, part, (part_size){part->slot_count, part->record_count, part->index_count, part->given_count});
+uint64_t camber_part_needed_bytes(const camber_mesh *mesh, const camber_mesh_part *part) {
+    return needed_bytes(mesh, part,
+                        (part_size){part->slot_count, part->record_count, part->index_count, part->given_count});
 }
 
-uint64_t camber_part_output_lacks(const camber_mesh *mesh, const camber_mesh_part *part) {
+uint64_t camber_part_missing_output_bytes(const camber_mesh *mesh, const camber_mesh_part *part) {
     const part_size size = {part->slot_count, part->record_count, part->index_count, part->given_count};
     const uint64_t sizes[2] = {record_bytes(mesh, size), index_bytes(mesh, size)};
     uint64_t lacks = 0;
@@ -384,14 +385,14 @@ uint64_t camber_part_output_lacks(const camber_mesh *mesh, const camber_mesh_par
 static bool is_too_large(const camber_mesh *mesh, const camber_mesh_part *part, part_size size, unsigned eighths) {
     const uint64_t records = record_bytes(mesh, size), indices = index_bytes(mesh, size);
     return (records > indices ? records : indices) > mesh->device->info.largest_buffer_bytes ||
-           need(mesh, part, size) > camber_device_share(mesh->device, eighths);
+           needed_bytes(mesh, part, size) > camber_device_share(mesh->device, eighths);
 }
 
 /* Of a part of one polyline and of several: see memory.c. */
 enum { ALONE = 4, TOGETHER = 1 };
 
 bool camber_part_may_hold(const camber_mesh *mesh, const camber_mesh_part *part, uint64_t slots) {
-    return part->polyline_count == 1 || need(mesh, part, (part_size){slots, slots, 0, part->given_count}) <=
+    return part->polyline_count == 1 || needed_bytes(mesh, part, (part_size){slots, slots, 0, part->given_count}) <=
                                             camber_device_share(mesh->device, TOGETHER);
 }
 
@@ -401,10 +402,10 @@ static camber_status fail_alone(const camber_mesh *mesh, const camber_mesh_part 
     const uint64_t larger = records > indices ? records : indices;
     return larger > mesh->device->info.largest_buffer_bytes
                ? camber_fail_polyline(mesh, polyline, larger)
-               : camber_fail_memory(mesh, polyline, need(mesh, part, size));
+               : camber_fail_memory(mesh, polyline, needed_bytes(mesh, part, size));
 }
 
-camber_status camber_part_records(const camber_mesh *mesh, const camber_mesh_part *part, size_t *count) {
+camber_status camber_part_count_records(const camber_mesh *mesh, const camber_mesh_part *part, size_t *count) {
     *count = part->index_count / 2;
     return mesh->mesh_info.strips ? CAMBER_OK
                                   : camber_part_slot(mesh, part, part->first_polyline + part->polyline_count, count);
@@ -416,38 +417,38 @@ bool camber_part_fits(const camber_mesh *mesh, const camber_mesh_part *part) {
 }
 
 /* What the part has before a polyline. */
-static camber_status size_before(const camber_mesh *mesh, const camber_mesh_part *part, camber_offsets *offsets,
+static camber_status size_before(const camber_mesh *mesh, const camber_mesh_part *part, camber_slot_starts *starts,
                                  size_t polyline, part_size *size) {
     size_t slot = 0;
     const camber_status status = camber_part_slot(mesh, part, polyline, &slot);
     if (status != CAMBER_OK)
         return status;
     const size_t block = slot / mesh->device->block;
-    const uint32_t packed = slot < part->slot_count ? camber_offset_before(offsets, slot) : 0;
+    const uint32_t packed = slot < part->slot_count ? camber_slot_starts_before(starts, slot) : 0;
     const uint64_t indices = part->host_bases[2 * block + 1] + (packed >> 16);
-    const size_t given = mesh->offsets ? camber_part_given_slot(mesh, part, polyline) : 0;
+    const size_t given = mesh->has_offsets ? camber_part_given_slot(mesh, part, polyline) : 0;
     *size = (part_size){slot, mesh->mesh_info.strips ? indices / 2 : slot, indices, given};
     return CAMBER_OK;
 }
 
-static part_size less(part_size a, part_size b) {
+static part_size subtract(part_size a, part_size b) {
     return (part_size){a.slots - b.slots, a.records - b.records, a.indices - b.indices, a.given - b.given};
 }
 
 /* The polylines that parts after the first begin with: as many in each part as its output buffers take. */
-static camber_status find_cuts(const camber_mesh *mesh, const camber_mesh_part *part, camber_offsets *offsets,
+static camber_status find_cuts(const camber_mesh *mesh, const camber_mesh_part *part, camber_slot_starts *starts,
                                size_t **cuts, size_t *cut_count) {
     const size_t end = part->first_polyline + part->polyline_count;
     size_t capacity = 0, first = part->first_polyline;
     part_size start = {0, 0, 0, 0}, before = start, after = start;
     for (size_t i = first; i < end; i++) {
-        const camber_status status = size_before(mesh, part, offsets, i + 1, &after);
+        const camber_status status = size_before(mesh, part, starts, i + 1, &after);
         if (status != CAMBER_OK)
             return status;
-        const part_size alone = less(after, before);
+        const part_size alone = subtract(after, before);
         if (is_too_large(mesh, part, alone, ALONE))
             return fail_alone(mesh, part, i, alone);
-        if (i > first && is_too_large(mesh, part, less(after, start), TOGETHER)) {
+        if (i > first && is_too_large(mesh, part, subtract(after, start), TOGETHER)) {
             if (!camber_grow(mesh->device->context, cuts, &capacity, *cut_count + 1, sizeof **cuts))
                 return CAMBER_ERROR_MEMORY;
             (*cuts)[(*cut_count)++] = i;
@@ -460,7 +461,7 @@ static camber_status find_cuts(const camber_mesh *mesh, const camber_mesh_part *
 }
 
 static camber_status insert_parts(camber_mesh *mesh, size_t which, const size_t *cuts, size_t cut_count) {
-    if (!hold_parts(mesh, mesh->part_count + cut_count))
+    if (!reserve_parts(mesh, mesh->part_count + cut_count))
         return CAMBER_ERROR_MEMORY;
     camber_mesh_part *part = mesh->parts + which;
     const size_t first = part->first_polyline, end = first + part->polyline_count;
@@ -473,38 +474,38 @@ static camber_status insert_parts(camber_mesh *mesh, size_t which, const size_t 
 }
 
 camber_status camber_mesh_add_part(camber_mesh *mesh, size_t first_polyline, size_t end_polyline) {
-    if (!hold_parts(mesh, mesh->part_count + 1))
+    if (!reserve_parts(mesh, mesh->part_count + 1))
         return CAMBER_ERROR_MEMORY;
     set_polylines(mesh, mesh->parts + mesh->part_count++, first_polyline, end_polyline);
     return CAMBER_OK;
 }
 
 /* Takes up the part behind, whose slots can be made anew with its own. */
-static void join_next(camber_mesh *mesh, size_t which) {
+static void merge_with_next(camber_mesh *mesh, size_t which) {
     camber_mesh_part *part = mesh->parts + which;
     const size_t end = part[1].first_polyline + part[1].polyline_count;
-    camber_part_empty(mesh, part + 1);
+    camber_part_release_buffers(mesh, part + 1);
     memmove(part + 1, part + 2, (mesh->part_count - which - 2) * sizeof *part);
     mesh->part_count--;
     memset(mesh->parts + mesh->part_count, 0, sizeof *part);
     set_polylines(mesh, part, part->first_polyline, end);
 }
 
-void camber_mesh_tidy(camber_mesh *mesh) {
+void camber_mesh_compact_parts(camber_mesh *mesh) {
     const uint64_t most = camber_device_share(mesh->device, 1) / 2;
     if (!mesh->device->memory_bytes)
         return;
     for (size_t i = 0; i < mesh->part_count && mesh->is_full; i++)
-        if (mesh->parts[i].held_bytes / 2 > camber_part_need(mesh, mesh->parts + i))
-            camber_part_empty(mesh, mesh->parts + i);
+        if (mesh->parts[i].held_bytes / 2 > camber_part_needed_bytes(mesh, mesh->parts + i))
+            camber_part_release_buffers(mesh, mesh->parts + i);
     for (size_t i = 0; i + 1 < mesh->part_count; i++) {
         const camber_mesh_part *part = mesh->parts + i;
         const part_size both = {part[0].slot_count + part[1].slot_count, part[0].record_count + part[1].record_count,
                                 part[0].index_count + part[1].index_count, part[0].given_count + part[1].given_count};
         const camber_mesh_part joint = {.first_point = part[0].first_point, .end_point = part[1].end_point};
         /* What it then has is not known before the next frame: it waits for that before it takes up more. */
-        if (part[0].section == part[1].section && need(mesh, &joint, both) <= most)
-            join_next(mesh, i);
+        if (part[0].section == part[1].section && needed_bytes(mesh, &joint, both) <= most)
+            merge_with_next(mesh, i);
     }
 }
 
@@ -518,12 +519,12 @@ camber_status camber_mesh_split(camber_mesh *mesh, size_t which) {
     const camber_device *device = mesh->device;
     const camber_mesh_part *part = mesh->parts + which;
     size_t *cuts = NULL, cut_count = 0;
-    camber_offsets offsets;
-    camber_status status = camber_offsets_map(mesh, part, 0, part->slot_count, &offsets);
+    camber_slot_starts starts;
+    camber_status status = camber_slot_starts_map(mesh, part, 0, part->slot_count, &starts);
     if (status != CAMBER_OK)
         return status;
-    status = find_cuts(mesh, part, &offsets, &cuts, &cut_count);
-    camber_offsets_unmap(&offsets);
+    status = find_cuts(mesh, part, &starts, &cuts, &cut_count);
+    camber_slot_starts_unmap(&starts);
     if (status == CAMBER_OK && cut_count == 0)
         status = camber_fail(device->context, CAMBER_ERROR_DEVICE,
                              "%s: the scan's offsets contradict its sums; update the driver or try another device",

@@ -73,7 +73,7 @@ camber_status camber_rows_create(camber_context *context, uint32_t row_count, co
     return CAMBER_OK;
 }
 
-void camber_mesh_info_count(camber_mesh_info *info, uint32_t join, uint32_t point) {
+void camber_mesh_info_add_join(camber_mesh_info *info, uint32_t join, uint32_t point) {
     const uint32_t kind = camber_join_kind(join);
     info->undrawn_dots += kind == CAMBER_KIND_GHOST && point & CAMBER_POINT_REAL;
     /* A ring's seam is one join, told at its last point. */

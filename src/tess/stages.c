@@ -6,7 +6,7 @@ typedef struct arrays {
     float *x, *y;
     cl_uint *info, *joins;
     cl_uint *places; /* NULL where the mesh has no offsets */
-    camber_offsets offsets;
+    camber_slot_starts starts;
 } arrays;
 
 static void *map(const camber_mesh *mesh, cl_mem mem, size_t words, camber_status *status) {
@@ -56,7 +56,7 @@ static camber_status append_points(const camber_mesh *mesh, const camber_mesh_pa
             if (!(a->info[word] & CAMBER_POINT_REAL))
                 continue;
             const uint64_t *base = part->host_bases + 2 * block;
-            const uint32_t packed = camber_offset_before(&a->offsets, slot);
+            const uint32_t packed = camber_slot_starts_before(&a->starts, slot);
             stages->points[stages->point_count++] = (camber_point_stages){
                 .polyline = (uint32_t)polyline,
                 .point = point++,
@@ -78,7 +78,7 @@ camber_status camber_mesh_read_stages(camber_mesh *mesh, camber_stages *stages) 
         camber_mesh_part *part = mesh->parts + i;
         if (part->slot_count == 0)
             continue;
-        status = camber_part_use(mesh, part);
+        status = camber_part_ensure_made(mesh, part);
         const size_t words = part->slot_count + 2;
         arrays seen = {
             .x = map(mesh, part->x, words, &status),
@@ -86,13 +86,13 @@ camber_status camber_mesh_read_stages(camber_mesh *mesh, camber_stages *stages) 
             .info = map(mesh, part->info, words, &status),
             .joins = map(mesh, part->joins, words, &status),
         };
-        if (mesh->offsets)
+        if (mesh->has_offsets)
             seen.places = map(mesh, part->course.places, part->given_count, &status);
         if (status == CAMBER_OK)
-            status = camber_offsets_map(mesh, part, 0, part->slot_count, &seen.offsets);
-        if (seen.offsets.offsets) {
+            status = camber_slot_starts_map(mesh, part, 0, part->slot_count, &seen.starts);
+        if (seen.starts.offsets) {
             status = append_points(mesh, part, &seen, &made);
-            camber_offsets_unmap(&seen.offsets);
+            camber_slot_starts_unmap(&seen.starts);
         }
         unmap(mesh, part->x, seen.x);
         unmap(mesh, part->y, seen.y);

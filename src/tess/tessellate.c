@@ -60,7 +60,7 @@ static camber_status scan_blocks(const camber_mesh *mesh, camber_mesh_part *part
     clEnqueueUnmapMemObject(device->queue, part->sums, sums, 0, NULL, NULL);
     part->vertex_count = (size_t)part->host_bases[2 * blocks];
     part->index_count = (size_t)part->host_bases[2 * blocks + 1];
-    return camber_part_records(mesh, part, &part->record_count);
+    return camber_part_count_records(mesh, part, &part->record_count);
 }
 
 void camber_add_ms(cl_event event, double *ms) {
@@ -74,7 +74,7 @@ void camber_add_ms(cl_event event, double *ms) {
 }
 
 /* classify and scan: what the part's output takes. */
-static camber_status measure(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program) {
+static camber_status classify_and_scan(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program) {
     const camber_device *device = mesh->device;
     cl_event events[2] = {NULL, NULL};
     const cl_mem classify[] = {part->x,    part->y,    part->x,    part->y,    part->x,    part->y,
@@ -180,7 +180,7 @@ static camber_status upload_rows(camber_mesh *mesh, const camber_row *rows, size
     camber_status status = camber_mesh_make_room(mesh, NULL, count > mesh->row_capacity ? size_bytes : 0);
     if (status == CAMBER_OK)
         status = reserve_rows(mesh, count);
-    camber_mesh_count(mesh);
+    camber_mesh_count_bytes(mesh);
     if (status != CAMBER_OK)
         return status;
     memcpy(mesh->host_rows, rows, count * sizeof *rows);
@@ -188,17 +188,18 @@ static camber_status upload_rows(camber_mesh *mesh, const camber_row *rows, size
 }
 
 /* A part's slots, and what its output takes. *fits is false where the slots are too many. */
-static camber_status prepare(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program, bool *fits) {
+static camber_status make_slots_and_scan(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program,
+                                         bool *fits) {
     camber_status status = mesh->held ? camber_part_project(mesh, part, fits)
                                       : camber_part_check_course(mesh, part, part->given_count, fits);
     if (status == CAMBER_OK && *fits && !mesh->held)
         status = camber_part_upload(mesh, part);
     if (status == CAMBER_OK && *fits && mesh->mesh_info.measured && !mesh->held && part->given_count > 0)
         status = camber_part_measure(mesh, part);
-    if (status == CAMBER_OK && *fits && mesh->offsets && part->given_count > 0)
+    if (status == CAMBER_OK && *fits && mesh->has_offsets && part->given_count > 0)
         status = camber_part_offset(mesh, part, fits);
     if (status == CAMBER_OK && *fits && part->slot_count > 0)
-        status = measure(mesh, part, program);
+        status = classify_and_scan(mesh, part, program);
     if (mesh->held) {
         camber_add_ms(mesh->held->projected, &mesh->mesh_info.project_ms);
         mesh->held->projected = NULL;
@@ -206,14 +207,14 @@ static camber_status prepare(camber_mesh *mesh, camber_mesh_part *part, const ca
     return status;
 }
 
-static camber_status make(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program) {
+static camber_status emit_unless_empty(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program) {
     const camber_status status = part->record_count > 0 ? emit(mesh, part, program) : CAMBER_OK;
     part->made = status == CAMBER_OK;
     return status;
 }
 
 /* Numbers a part's output behind that of the parts before. */
-static camber_status number(camber_mesh *mesh, camber_mesh_part *part) {
+static camber_status number_part(camber_mesh *mesh, camber_mesh_part *part) {
     camber_mesh_info *info = &mesh->mesh_info;
     part->first_record = info->record_count;
     part->first_vertex = info->vertex_count;
@@ -229,15 +230,15 @@ static camber_status number(camber_mesh *mesh, camber_mesh_part *part) {
 /* Part after part; one whose output turns out too large is split, and what takes its place is done anew. Once memory is
  * full, parts are measured only: the first ones stay, and are what is drawn first. Where parts may have to go, joins
  * are counted while they are there. */
-static camber_status run_parts(camber_mesh *mesh, const camber_program *program) {
+static camber_status tessellate_parts(camber_mesh *mesh, const camber_program *program) {
     camber_status status = CAMBER_OK;
     size_t segments = 0;
     mesh->is_full = false;
     for (size_t i = 0; i < mesh->part_count && status == CAMBER_OK;) {
         camber_mesh_part *part = mesh->parts + i;
         bool fits = true;
-        camber_part_adopt(mesh, part, camber_device_share(mesh->device, 1));
-        status = prepare(mesh, part, program, &fits);
+        camber_part_recycle_buffers(mesh, part, camber_device_share(mesh->device, 1));
+        status = make_slots_and_scan(mesh, part, program, &fits);
         if (status == CAMBER_OK && !fits) {
             status = camber_mesh_halve(mesh, i);
             continue;
@@ -247,13 +248,13 @@ static camber_status run_parts(camber_mesh *mesh, const camber_program *program)
             continue;
         }
         if (status == CAMBER_OK)
-            status = number(mesh, part);
+            status = number_part(mesh, part);
         if (status == CAMBER_OK && mesh->part_count > 1 && mesh->device->memory_bytes)
             status = camber_part_count_joins(mesh, part, &mesh->mesh_info, &segments);
-        if (!mesh->is_full && !camber_mesh_has_room(mesh, part, camber_part_output_lacks(mesh, part), true))
+        if (!mesh->is_full && !camber_mesh_evict_for(mesh, part, camber_part_missing_output_bytes(mesh, part), true))
             mesh->is_full = true;
         if (status == CAMBER_OK && !mesh->is_full)
-            status = make(mesh, part, program);
+            status = emit_unless_empty(mesh, part, program);
         i++;
     }
     if (status == CAMBER_OK && mesh->part_count > 1 && mesh->device->memory_bytes)
@@ -265,7 +266,7 @@ static camber_program_desc program_of(const camber_mesh *mesh) {
     return (camber_program_desc){mesh->mesh_info.method, mesh->mesh_info.measured, mesh->round_limits};
 }
 
-camber_status camber_part_use(camber_mesh *mesh, camber_mesh_part *part) {
+camber_status camber_part_ensure_made(camber_mesh *mesh, camber_mesh_part *part) {
     const camber_device *device = mesh->device;
     const camber_mesh_info told = mesh->mesh_info;
     const size_t slots = part->slot_count, records = part->record_count, vertices = part->vertex_count,
@@ -276,8 +277,8 @@ camber_status camber_part_use(camber_mesh *mesh, camber_mesh_part *part) {
         return CAMBER_OK;
     camber_status status = camber_device_program(mesh->device, program_of(mesh), &program);
     if (status == CAMBER_OK) {
-        camber_part_adopt(mesh, part, camber_part_need(mesh, part));
-        status = prepare(mesh, part, program, &fits);
+        camber_part_recycle_buffers(mesh, part, camber_part_needed_bytes(mesh, part));
+        status = make_slots_and_scan(mesh, part, program, &fits);
     }
     if (status == CAMBER_OK && (!fits || part->record_count != records || part->index_count != indices))
         status = camber_fail(device->context, CAMBER_ERROR_DEVICE,
@@ -285,7 +286,7 @@ camber_status camber_part_use(camber_mesh *mesh, camber_mesh_part *part) {
                              "device",
                              device->info.name, records, part->record_count);
     if (status == CAMBER_OK)
-        status = make(mesh, part, program);
+        status = emit_unless_empty(mesh, part, program);
     part->slot_count = slots;
     part->record_count = records;
     part->vertex_count = vertices;
@@ -303,7 +304,7 @@ typedef struct source {
     uint32_t row_count;
 } source;
 
-static camber_status plan(camber_mesh *mesh, const source *from, const camber_tessellation_desc *desc) {
+static camber_status plan_parts(camber_mesh *mesh, const source *from, const camber_tessellation_desc *desc) {
     if (from->polylines)
         return camber_mesh_plan(mesh, from->polylines);
     const camber_status status = camber_mesh_plan_network(mesh, from->network);
@@ -333,14 +334,14 @@ static camber_status tessellate(camber_mesh *mesh, const source *from, const cam
     if (status == CAMBER_OK)
         status = camber_mesh_set_offsets(mesh, desc);
     if (status == CAMBER_OK)
-        status = plan(mesh, from, desc);
+        status = plan_parts(mesh, from, desc);
     if (status == CAMBER_OK && mesh->part_count > 0) {
         mesh->joins_counted = false;
         status = camber_device_program(mesh->device, program_of(mesh), &program);
         if (status == CAMBER_OK)
             status = upload_rows(mesh, rows, desc->stroke_count);
         if (status == CAMBER_OK)
-            status = run_parts(mesh, program);
+            status = tessellate_parts(mesh, program);
         camber_mesh_info *info = &mesh->mesh_info;
         info->bytes = info->record_count * camber_record_bytes(info) + (info->strips ? 0 : 4 * info->index_count);
         mesh->joins_counted |= status != CAMBER_OK;

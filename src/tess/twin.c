@@ -20,10 +20,10 @@ typedef struct twin {
 } twin;
 
 /* What is known of a point when the walk comes to it: its join word and that before it. */
-typedef struct place {
+typedef struct visited_point {
     size_t slot;
     camber_u32 info, before, join;
-} place;
+} visited_point;
 
 static bool grow_records(twin *t) {
     camber_context *context = t->polylines->context;
@@ -62,7 +62,7 @@ static void push_triangle(twin *t, uint32_t a, uint32_t b, uint32_t c) {
 }
 
 /* A record of the point itself. */
-static void push_point(twin *t, const place *p, camber_u32 join, camber_u32 last) {
+static void push_point(twin *t, const visited_point *p, camber_u32 join, camber_u32 last) {
     push_record(t, p->slot, (camber_record){t->polylines->x[p->slot], t->polylines->y[p->slot], join, last});
 }
 
@@ -84,7 +84,7 @@ static camber_u32 join_word(const twin *t, size_t slot, float *half_shorter) {
 /* ---- strip ---- */
 
 /* A strip begins: where the segment before it comes in from, then the point. */
-static void push_start(twin *t, const place *p, size_t from, camber_u32 last) {
+static void push_start(twin *t, const visited_point *p, size_t from, camber_u32 last) {
     push_record(t, p->slot,
                 (camber_record){t->polylines->x[from], t->polylines->y[from], 0,
                                 (p->info & CAMBER_ROW_BITS) | CAMBER_RECORD_BREAK});
@@ -93,12 +93,12 @@ static void push_start(twin *t, const place *p, size_t from, camber_u32 last) {
 }
 
 /* The point again, for the segment behind it, whose inner vertex is another one. */
-static void push_tight_start(twin *t, const place *p) {
+static void push_tight_start(twin *t, const visited_point *p) {
     push_point(t, p, p->join, p->info | CAMBER_RECORD_START);
     t->data->info.vertex_count++;
 }
 
-static void walk_strip_point(twin *t, const place *p) {
+static void walk_strip_point(twin *t, const visited_point *p) {
     const bool first = p->info & CAMBER_POINT_FIRST, last = p->info & CAMBER_POINT_LAST;
     if (first)
         push_start(t, p, p->info & CAMBER_POINT_RING ? p->slot - 1 : p->slot, p->info);
@@ -119,7 +119,7 @@ static uint32_t corner_at(size_t slot, camber_u32 corner) {
     return (uint32_t)(slot - 1) << CAMBER_CORNER_BITS | corner;
 }
 
-static void push_body(twin *t, const place *p) {
+static void push_body(twin *t, const visited_point *p) {
     const uint32_t left = corner_at(p->slot - 1, camber_start_corner(p->before, 1.0f, t->method));
     const uint32_t right = corner_at(p->slot - 1, camber_start_corner(p->before, -1.0f, t->method));
     const uint32_t end_left = corner_at(p->slot, CAMBER_CORNER_IN_LEFT), end_right = end_left + 1;
@@ -147,7 +147,7 @@ static void push_body(twin *t, const place *p) {
 
 /* Triangles about the centre from the outer edge of the segment in to that of the segment out, each ending with a
  * vertex that carries the right segment; the winding is that of the bodies. */
-static void push_join(twin *t, const place *p) {
+static void push_join(twin *t, const visited_point *p) {
     const uint32_t triangles = camber_join_triangles(p->join), centre = corner_at(p->slot, CAMBER_CORNER_CENTRE);
     const bool left_is_outer = !(camber_turn_unpack(p->join) > 0.0f);
     const bool is_fan = t->method == CAMBER_FAN && camber_join_end(p->join) == CAMBER_END_ROUND;
@@ -169,7 +169,7 @@ static void push_join(twin *t, const place *p) {
     }
 }
 
-static void walk_body_point(twin *t, const place *p) {
+static void walk_body_point(twin *t, const visited_point *p) {
     const uint32_t left = corner_at(p->slot, CAMBER_CORNER_OUT_LEFT), end = corner_at(p->slot, CAMBER_CORNER_IN_LEFT);
     if (camber_join_kind(p->join) == CAMBER_KIND_DOT) {
         push_triangle(t, left, left + 1, end);
@@ -207,11 +207,11 @@ static void note_stages(twin *t, size_t slot, camber_u32 join) {
     };
 }
 
-static void walk_point(twin *t, const place *p, float half_shorter) {
+static void walk_point(twin *t, const visited_point *p, float half_shorter) {
     const bool real = p->info & CAMBER_POINT_REAL, drawn = camber_join_kind(p->join) != CAMBER_KIND_GHOST;
     if (real) {
         note_stages(t, p->slot, p->join);
-        camber_mesh_info_count(&t->data->info, p->join, p->info);
+        camber_mesh_info_add_join(&t->data->info, p->join, p->info);
     }
     if (t->method != CAMBER_STRIP) /* a record a slot, ghosts too */
         push_point(t, p, camber_record_join(p->join, half_shorter), p->info);
@@ -224,7 +224,7 @@ static void walk_point(twin *t, const place *p, float half_shorter) {
 static void walk(twin *t) {
     const camber_polylines *lines = t->polylines;
     const size_t slots = lines->first_slots[lines->polyline_count]; /* the padding behind them is no mesh's */
-    place p = {0};
+    visited_point p = {0};
     for (p.slot = 1; p.slot <= slots && !t->failed; p.slot++) {
         float half_shorter = 0.0f;
         p.info = lines->info[p.slot];
@@ -238,7 +238,7 @@ static void walk(twin *t) {
  * known when all triangles are there. */
 static camber_status number_vertices(camber_context *context, camber_mesh_data *data, camber_stages *stages) {
     uint32_t *first_vertices;
-    const camber_status status = camber_corners_count(context, data, &first_vertices);
+    const camber_status status = camber_mesh_data_find_first_vertices(context, data, &first_vertices);
     for (size_t i = 0; status == CAMBER_OK && i < stages->point_count; i++)
         stages->points[i].first_vertex = first_vertices[stages->points[i].first_vertex];
     if (status == CAMBER_OK)
@@ -247,8 +247,8 @@ static camber_status number_vertices(camber_context *context, camber_mesh_data *
 }
 
 /* Tessellates into data, and into stages where they are wanted; both are empty on failure. */
-static camber_status run(camber_context *context, const camber_polylines *polylines,
-                         const camber_tessellation_desc *desc, camber_mesh_data *data, camber_stages *stages) {
+static camber_status tessellate(camber_context *context, const camber_polylines *polylines,
+                                const camber_tessellation_desc *desc, camber_mesh_data *data, camber_stages *stages) {
     camber_row *rows = NULL;
     camber_status status = camber_rows_create(context, polylines->row_count, desc, &rows);
     if (status != CAMBER_OK)
@@ -297,7 +297,7 @@ static camber_status run(camber_context *context, const camber_polylines *polyli
 camber_status camber_tessellate_on_host(camber_context *context, const camber_polylines *polylines,
                                         const camber_tessellation_desc *desc, camber_mesh_data *data) {
     camber_mesh_data made = {0};
-    const camber_status status = run(context, polylines, desc, &made, NULL);
+    const camber_status status = tessellate(context, polylines, desc, &made, NULL);
     if (status == CAMBER_OK)
         *data = made;
     return status;
@@ -307,7 +307,7 @@ camber_status camber_stages_on_host(camber_context *context, const camber_polyli
                                     const camber_tessellation_desc *desc, camber_stages *stages) {
     camber_mesh_data mesh = {0};
     camber_stages made = {0};
-    const camber_status status = run(context, polylines, desc, &mesh, &made);
+    const camber_status status = tessellate(context, polylines, desc, &mesh, &made);
     camber_mesh_data_free(context, &mesh);
     if (status == CAMBER_OK)
         *stages = made;

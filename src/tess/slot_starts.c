@@ -19,33 +19,34 @@ static void unmap(const camber_mesh *mesh, cl_mem mem, cl_uint *words) {
         clEnqueueUnmapMemObject(mesh->device->queue, mem, words, 0, NULL, NULL);
 }
 
-camber_status camber_offsets_map(const camber_mesh *mesh, const camber_mesh_part *part, size_t first, size_t end,
-                                 camber_offsets *offsets) {
-    const size_t item = mesh->device->item, run = first / item, slot = run * item, words = end - slot + 1;
+camber_status camber_slot_starts_map(const camber_mesh *mesh, const camber_mesh_part *part, size_t first, size_t end,
+                                     camber_slot_starts *starts) {
+    const size_t chunk_slots = mesh->device->item, chunk = first / chunk_slots, slot = chunk * chunk_slots,
+                 words = end - slot + 1;
     camber_status status = CAMBER_OK;
-    camber_offsets o = {.mesh = mesh, .part = part, .first = slot, .first_run = run, .at = SIZE_MAX};
+    camber_slot_starts o = {.mesh = mesh, .part = part, .first = slot, .first_chunk = chunk, .at = SIZE_MAX};
     o.joins = map(mesh, part->joins, slot, words, &status);
     o.info = map(mesh, part->info, slot, words, &status);
-    o.offsets = map(mesh, part->offsets, run, (end - 1) / item - run + 1, &status);
+    o.offsets = map(mesh, part->offsets, chunk, (end - 1) / chunk_slots - chunk + 1, &status);
     if (status == CAMBER_OK)
-        *offsets = o;
+        *starts = o;
     else
-        camber_offsets_unmap(&o);
+        camber_slot_starts_unmap(&o);
     return status;
 }
 
-void camber_offsets_unmap(camber_offsets *o) {
+void camber_slot_starts_unmap(camber_slot_starts *o) {
     unmap(o->mesh, o->part->offsets, o->offsets);
     unmap(o->mesh, o->part->info, o->info);
     unmap(o->mesh, o->part->joins, o->joins);
     o->joins = o->info = o->offsets = NULL;
 }
 
-uint32_t camber_offset_before(camber_offsets *o, size_t slot) {
-    const size_t item = o->mesh->device->item, run = slot / item;
-    if (slot < o->at || run * item > o->at) {
-        o->at = run * item;
-        o->sum = o->offsets[run - o->first_run];
+uint32_t camber_slot_starts_before(camber_slot_starts *o, size_t slot) {
+    const size_t chunk_slots = o->mesh->device->item, chunk = slot / chunk_slots;
+    if (slot < o->at || chunk * chunk_slots > o->at) {
+        o->at = chunk * chunk_slots;
+        o->sum = o->offsets[chunk - o->first_chunk];
     }
     for (; o->at < slot; o->at++) {
         const size_t word = o->at - o->first + 1;

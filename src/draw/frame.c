@@ -61,7 +61,7 @@ camber_status camber_frame_check(camber_renderer *renderer, const camber_frame *
                            CAMBER_PITCH_MAX_DEG);
     for (size_t i = 0; i < frame->pass_count; i++) {
         const camber_pass *pass = frame->passes + i;
-        assert(!pass->mesh || pass->mesh->renderer == renderer);
+        assert(!pass->mesh || pass->mesh->owner == renderer);
         assert(pass->paint_count == 0 || pass->paints);
         camber_status status = check_images(renderer, pass);
         if (status == CAMBER_OK && pass->mesh)

@@ -314,7 +314,7 @@ static camber_status prepare(counting *c, camber_index_range **list) {
 camber_status camber_overdraw_count(camber_renderer *renderer, const camber_overdraw_desc *desc,
                                     camber_overdraw *overdraw) {
     camber_context *context = renderer->share.device->context;
-    assert(desc->mesh->renderer == renderer);
+    assert(desc->mesh->owner == renderer);
     assert(desc->paint_count == 0 || desc->paints);
     if (renderer->cover)
         return camber_fail(context, CAMBER_ERROR_ARGUMENT,

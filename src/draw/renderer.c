@@ -134,7 +134,7 @@ camber_status camber_mesh_create(camber_device *device, camber_renderer *rendere
     const bool in_gl = renderer && !renderer->cover;
     const camber_status status = camber_mesh_create_on(device, in_gl ? &current_ops : NULL, renderer, mesh);
     if (status == CAMBER_OK)
-        (*mesh)->renderer = renderer;
+        (*mesh)->owner = renderer;
     if (status == CAMBER_OK && in_gl && renderer->path->sharing == CAMBER_SHARING_COPY)
         (*mesh)->buffer_copies = 2;
     return status;

@@ -45,7 +45,7 @@ typedef struct camber_mesh_part {
 
 struct camber_mesh {
     camber_device *device;
-    camber_renderer *renderer; /* NULL: cannot be drawn */
+    const void *owner; /* the renderer that may draw it, compared and never read here; NULL: nobody */
     const camber_buffer_ops *ops;
     void *ops_user;
     unsigned buffer_copies; /* of each output buffer in memory */

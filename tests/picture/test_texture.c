@@ -546,11 +546,11 @@ static camber_status attempt_all(camber_context *context, void *user) {
     (void)context;
     camber_status status = camber_renderer_create(v->s->device, v->surface, &desc, &renderer);
     if (status == CAMBER_OK) {
-        mesh->renderer = renderer; /* it is the kernels' alike */
+        mesh->owner = renderer; /* it is the kernels' alike */
         status = camber_render_texture(renderer, &v->d.frame, &(camber_texture){.name = v->name, .keep = true}, NULL);
     }
     camber_renderer_destroy(renderer);
-    mesh->renderer = v->renderer;
+    mesh->owner = v->renderer;
     return status;
 }
 

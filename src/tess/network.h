@@ -5,6 +5,9 @@
 #include "kernels/network.h"
 #include "tess/mesh.h"
 
+/* Steps over the longer side of the box: differences of two of them are 32-bit numbers. */
+#define CAMBER_NETWORK_STEPS 2147483646.0
+
 struct camber_network {
     camber_context *context;
     size_t holders;  /* who made it, and the meshes that hold it */
@@ -31,6 +34,10 @@ camber_status camber_network_aim(const camber_network *network, const camber_cam
 /* How many slots the points [begin, end) make; both lie in the network. */
 uint64_t camber_network_count_slots(const camber_network *network, const camber_projection *projection, size_t begin,
                                     size_t end);
+/* How many chunks so many points have: a work-item walks one. */
+static inline size_t camber_network_chunk_count(size_t points) {
+    return (points + CAMBER_CHUNK - 1) / CAMBER_CHUNK;
+}
 /* A walk over the network in host memory. */
 camber_walk camber_network_walk(const camber_network *network);
 /* The first point of an entry; of the one behind the last, the number of points. */
@@ -62,6 +69,8 @@ struct camber_held_network {
 void camber_network_hold(camber_network *network);
 /* What a section takes; copied: the device does not read the network's own memory. */
 uint64_t camber_section_bytes(const camber_network *network, const camber_section *section, bool copied);
+/* Uploads the section that a part's points lie in, unless it is there. */
+camber_status camber_part_upload_section(camber_mesh *mesh, const camber_mesh_part *part);
 void camber_section_count_bytes(const camber_mesh *mesh, camber_section *section);
 void camber_section_release(const camber_mesh *mesh, camber_section *section);
 

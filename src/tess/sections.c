@@ -1,0 +1,215 @@
+/* The sections of a network: the spans of its points that lie on a device together, their layout and their upload. */
+#include "tess/network.h"
+
+#include <string.h>
+
+/* ---- Upload ---- */
+
+void camber_section_release(const camber_mesh *mesh, camber_section *section) {
+    cl_mem *mems[] = {&section->x,          &section->y,       &section->importance, &section->runs,
+                      &section->chunk_runs, &section->lengths, &section->totals};
+    for (size_t i = 0; i < sizeof mems / sizeof *mems; i++)
+        camber_release_buffer(mesh->device, mems[i]);
+    camber_section_count_bytes(mesh, section);
+}
+
+void camber_mesh_release_source(camber_mesh *mesh) {
+    struct camber_held_network *held = mesh->held;
+    if (mesh->holds_polylines)
+        camber_polylines_destroy((camber_polylines *)(uintptr_t)mesh->polylines);
+    mesh->polylines = NULL;
+    mesh->holds_polylines = false;
+    if (!held)
+        return;
+    for (size_t i = 0; i < held->section_count; i++)
+        camber_section_release(mesh, held->sections + i);
+    camber_release_buffer(mesh->device, &held->counts);
+    camber_release_buffer(mesh->device, &held->bases);
+    camber_free(mesh->device->context, held->sections);
+    camber_network_destroy(held->network);
+    camber_free(mesh->device->context, held);
+    mesh->held = NULL;
+    mesh->serial = 0;
+    camber_mesh_count_bytes(mesh);
+}
+
+/* A buffer that the kernels read. A device that works in host memory reads the network's own, which is held as long. */
+static camber_status upload_array(const camber_device *device, const void *bytes, size_t size_bytes, bool is_kept,
+                                  cl_mem *mem) {
+    const cl_mem_flags from = device->host_memory && is_kept ? CL_MEM_USE_HOST_PTR : CL_MEM_COPY_HOST_PTR;
+    return camber_make_buffer(device, CL_MEM_READ_ONLY | from, size_bytes, bytes, mem);
+}
+
+static camber_status upload_chunk_stretches(const camber_device *device, const camber_network *network,
+                                            camber_section *section) {
+    const size_t count = camber_network_chunk_count(section->end_point - section->first_point);
+    uint32_t *chunk_runs = camber_alloc(device->context, count, sizeof *chunk_runs);
+    if (!chunk_runs)
+        return CAMBER_ERROR_MEMORY;
+    const camber_run *first = network->runs + network->entry_runs[section->first_entry], *run = first;
+    for (size_t i = 0; i < count; i++) {
+        while (run[1].first <= section->first_point + i * CAMBER_CHUNK)
+            run++;
+        chunk_runs[i] = (uint32_t)(run - first);
+    }
+    const camber_status status = upload_array(device, chunk_runs, 4 * count, false, &section->chunk_runs);
+    camber_free(device->context, chunk_runs);
+    return status;
+}
+
+camber_status camber_part_upload_section(camber_mesh *mesh, const camber_mesh_part *part) {
+    const camber_device *device = mesh->device;
+    const camber_network *network = mesh->held->network;
+    camber_section *section = mesh->held->sections + part->section;
+    if (section->x)
+        return CAMBER_OK;
+    const uint64_t size_bytes = camber_section_bytes(network, section, !device->host_memory);
+    camber_status status = camber_mesh_make_room(mesh, part, size_bytes);
+    if (status != CAMBER_OK)
+        return status;
+    const size_t first = section->first_point, points = section->end_point - first;
+    const size_t first_run = network->entry_runs[section->first_entry];
+    const size_t runs = network->entry_runs[section->end_entry] - first_run + 1;
+    status = upload_array(device, network->x + first, 4 * points, true, &section->x);
+    if (status == CAMBER_OK)
+        status = upload_array(device, network->y + first, 4 * points, true, &section->y);
+    if (status == CAMBER_OK)
+        status = upload_array(device, network->importance + first, 4 * points, true, &section->importance);
+    if (status == CAMBER_OK)
+        status = upload_array(device, network->runs + first_run, runs * sizeof *network->runs, true, &section->runs);
+    if (status == CAMBER_OK && network->lengths)
+        status = upload_array(device, network->lengths + first, 4 * points, true, &section->lengths);
+    if (status == CAMBER_OK && network->lengths)
+        status = upload_array(device, network->totals + first_run, 4 * (runs - 1), true, &section->totals);
+    if (status == CAMBER_OK)
+        status = upload_chunk_stretches(device, network, section);
+    if (status == CAMBER_OK)
+        camber_section_count_bytes(mesh, section);
+    else
+        camber_section_release(mesh, section);
+    return status;
+}
+
+/* ---- Layout ---- */
+
+static camber_section make_section(const camber_network *network, size_t first, size_t end) {
+    return (camber_section){.first_entry = first,
+                            .end_entry = end,
+                            .first_point = camber_network_first_point(network, first),
+                            .end_point = camber_network_first_point(network, end)};
+}
+
+static uint64_t bytes_of_stretches(const camber_network *network, const camber_section *section) {
+    return ((uint64_t)network->entry_runs[section->end_entry] - network->entry_runs[section->first_entry] + 1) *
+           (sizeof(camber_run) + (network->lengths ? sizeof *network->totals : 0));
+}
+
+static uint64_t larger_bytes(const camber_network *network, const camber_section *section) {
+    const uint64_t points = 4 * ((uint64_t)section->end_point - section->first_point);
+    const uint64_t runs = bytes_of_stretches(network, section);
+    return points > runs ? points : runs;
+}
+
+uint64_t camber_section_bytes(const camber_network *network, const camber_section *section, bool copied) {
+    const uint64_t points = (uint64_t)section->end_point - section->first_point;
+    const uint64_t arrays = network->lengths ? 16 : 12;
+    return (copied ? arrays * points + bytes_of_stretches(network, section) : 0) +
+           4 * (uint64_t)camber_network_chunk_count((size_t)points);
+}
+
+/* Whether the device makes the buffers of a section, and its share of memory takes them. */
+static bool section_fits(const camber_mesh *mesh, const camber_section *section) {
+    const camber_network *network = mesh->held->network;
+    return larger_bytes(network, section) <= mesh->device->info.largest_buffer_bytes &&
+           camber_section_bytes(network, section, true) <= camber_device_share(mesh->device, 1);
+}
+
+/* The entry behind the last that fits a section beginning with first; first itself where none does. */
+static size_t find_section_end(const camber_mesh *mesh, size_t first) {
+    const camber_network *network = mesh->held->network;
+    size_t low = first, high = network->entry_count + 1;
+    while (high - low > 1) {
+        const size_t middle = low + (high - low) / 2;
+        const camber_section section = make_section(network, first, middle);
+        if (section_fits(mesh, &section))
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+static camber_status fail_entry(const camber_mesh *mesh, size_t entry) {
+    const camber_network *network = mesh->held->network;
+    const camber_section section = make_section(network, entry, entry + 1);
+    const uint64_t larger = larger_bytes(network, &section), all = camber_section_bytes(network, &section, true);
+    return larger > mesh->device->info.largest_buffer_bytes ? camber_fail_polyline(mesh, entry, larger)
+                                                            : camber_fail_memory(mesh, entry, 4 * all);
+}
+
+static camber_status lay_out_sections(camber_mesh *mesh) {
+    struct camber_held_network *held = mesh->held;
+    const camber_network *network = held->network;
+    const size_t count = network->point_count ? network->entry_count : 0;
+    for (size_t first = 0; first < count;) {
+        const size_t end = find_section_end(mesh, first);
+        if (end == first)
+            return fail_entry(mesh, first);
+        if (!camber_grow(mesh->device->context, &held->sections, &held->section_capacity, held->section_count + 1,
+                         sizeof *held->sections))
+            return CAMBER_ERROR_MEMORY;
+        camber_section *section = held->sections + held->section_count++;
+        *section = make_section(network, first, end);
+        first = end;
+        if (section->first_point == section->end_point)
+            continue;
+        const camber_status status = camber_mesh_add_part(mesh, section->first_entry, section->end_entry);
+        if (status != CAMBER_OK)
+            return status;
+    }
+    return CAMBER_OK;
+}
+
+static camber_status hold_network(camber_mesh *mesh, camber_network *network) {
+    camber_context *context = mesh->device->context;
+    const size_t count = network->entry_count;
+    if (!camber_grow(context, &mesh->polyline_rows, &mesh->row_list_capacity, count, sizeof *mesh->polyline_rows) ||
+        !(mesh->held = camber_alloc_zero(context, 1, sizeof *mesh->held)))
+        return CAMBER_ERROR_MEMORY;
+    mesh->held->network = network;
+    camber_network_hold(network);
+    if (count)
+        memcpy(mesh->polyline_rows, network->entry_rows, count * sizeof *mesh->polyline_rows);
+    mesh->polyline_count = count;
+    mesh->row_count = network->row_count;
+    return lay_out_sections(mesh);
+}
+
+camber_status camber_mesh_plan_network(camber_mesh *mesh, camber_network *network) {
+    if (mesh->serial == network->serial) {
+        camber_mesh_compact_parts(mesh);
+        return CAMBER_OK;
+    }
+    camber_mesh_release_source(mesh);
+    mesh->serial = mesh->part_count = mesh->polyline_count = 0;
+    const camber_status status = hold_network(mesh, network);
+    if (status != CAMBER_OK) {
+        camber_mesh_release_source(mesh);
+        mesh->part_count = 0;
+        return status;
+    }
+    camber_mesh_trim_parts(mesh);
+    mesh->serial = network->serial;
+    return CAMBER_OK;
+}
+
+camber_status camber_mesh_aim(camber_mesh *mesh, const camber_camera *camera, const camber_tessellation_desc *desc) {
+    const camber_status status = camber_network_aim(mesh->held->network, camera, desc, &mesh->held->projection);
+    return status == CAMBER_OK ? camber_device_network_program(mesh->device, desc->measured, camera->pitch_deg > 0.0,
+                                                               &mesh->held->program)
+                               : status;
+}
+
+bool camber_mesh_holds(const camber_mesh *mesh, const camber_network *network) {
+    return mesh->done && mesh->serial == network->serial;
+}

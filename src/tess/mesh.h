@@ -141,12 +141,19 @@ void camber_part_release_buffers(camber_mesh *mesh, camber_mesh_part *part);
 void camber_part_move_buffers(camber_mesh_part *part, camber_mesh_part *from);
 /* Room for slots in the buffers of a part's input and its host_bases. */
 camber_status camber_part_reserve(camber_mesh *mesh, camber_mesh_part *part, size_t slots);
+/* The same for a part whose slots a kernel makes, and sets its slot_count. Of a network it reserves a quarter more
+ * where the device has plenty: the next frame may need it. */
+camber_status camber_part_reserve_with_spare(camber_mesh *mesh, camber_mesh_part *part, size_t slots);
 /* The bytes that a part takes: input and output. */
 uint64_t camber_part_needed_bytes(const camber_mesh *mesh, const camber_mesh_part *part);
 /* What its output buffers lack for its output. */
 uint64_t camber_part_missing_output_bytes(const camber_mesh *mesh, const camber_mesh_part *part);
 /* Whether a part of several polylines may have so many slots in its share of memory. */
 bool camber_part_may_hold(const camber_mesh *mesh, const camber_mesh_part *part, uint64_t slots);
+/* Sets *fits: whether the device makes a part's buffers for so many slots, and its share of memory takes them. A part
+ * of a single polyline, which cannot be cut, fails with CAMBER_ERROR_LIMIT instead. */
+camber_status camber_part_check_slots(const camber_mesh *mesh, const camber_mesh_part *part, uint64_t slots,
+                                      bool *fits);
 /* Makes room in an output buffer and counts it. */
 camber_status camber_part_reserve_output(camber_mesh *mesh, camber_mesh_part *part, size_t which, size_t size_bytes);
 /* Frees what parts past the mesh's hold, but for the first. */

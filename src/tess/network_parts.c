@@ -115,17 +115,6 @@ static camber_status survey(camber_mesh *mesh, camber_mesh_part *part, const cam
     return CAMBER_OK;
 }
 
-/* Gives a part room for slots, and some more where the device has it: the next frame may take them. */
-static camber_status reserve_slots(camber_mesh *mesh, camber_mesh_part *part, size_t slots) {
-    const size_t block = mesh->device->block, more = slots + slots / 4 / block * block;
-    const uint64_t largest = mesh->device->info.largest_buffer_bytes;
-    const bool enough =
-        slots <= part->slot_capacity || 4 * ((uint64_t)more + 2) > largest ||
-        !camber_device_is_roomy(mesh->device, camber_input_bytes(mesh->device, mesh->mesh_info.measured, more));
-    part->slot_count = slots;
-    return camber_part_reserve(mesh, part, enough ? slots : more);
-}
-
 camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, bool *fits) {
     const camber_device *device = mesh->device;
     const camber_projection p = projection_of(mesh, part);
@@ -139,24 +128,17 @@ camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, boo
         status = reserve_chunks(mesh, part, part_chunks(&p));
     if (status == CAMBER_OK)
         status = survey(mesh, part, &p, &slots);
-    const uint64_t padded = (slots + block - 1) / block * block;
-    const uint64_t size_bytes = 4 * (padded + 2);
     if (status != CAMBER_OK || slots == 0)
         return status;
-    if (size_bytes > device->info.largest_buffer_bytes || padded > UINT32_MAX - 1024u) {
-        *fits = false;
-        return part->polyline_count > 1 ? CAMBER_OK : camber_fail_polyline(mesh, part->first_polyline, size_bytes);
-    }
-    part->given_count = (size_t)padded;
-    status = camber_part_check_course(mesh, part, padded, fits);
+    const size_t padded = (size_t)((slots + block - 1) / block * block);
+    part->given_count = padded;
+    status = camber_part_check_slots(mesh, part, padded, fits);
+    if (status == CAMBER_OK && *fits)
+        status = camber_part_check_course(mesh, part, padded, fits);
     if (status != CAMBER_OK || !*fits)
         return status;
-    if (!camber_part_may_hold(mesh, part, padded)) {
-        *fits = false;
-        return CAMBER_OK;
-    }
-    status = mesh->has_offsets ? camber_part_reserve_course(mesh, part, (size_t)padded)
-                               : reserve_slots(mesh, part, (size_t)padded);
+    status = mesh->has_offsets ? camber_part_reserve_course(mesh, part, padded)
+                               : camber_part_reserve_with_spare(mesh, part, padded);
     if (status == CAMBER_OK)
         status = camber_write_buffer(device, mesh->held->bases, 0, 4 * (part_chunks(&p) + 1), part->chunk_bases);
     if (status != CAMBER_OK)

@@ -157,27 +157,6 @@ static camber_status scan_counts(const camber_device *device, cl_mem counts, siz
     return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(device->context, "clEnqueueUnmapMemObject", code);
 }
 
-/* Room for the slots beside, and some more where there is plenty: another camera may make more of a network. */
-static camber_status reserve_slots(camber_mesh *mesh, camber_mesh_part *part, size_t slots) {
-    const size_t block = mesh->device->block, more = slots + slots / 4 / block * block;
-    const bool enough =
-        slots <= part->slot_capacity || !mesh->held ||
-        4 * ((uint64_t)more + 2) > mesh->device->info.largest_buffer_bytes ||
-        !camber_device_is_roomy(mesh->device, camber_input_bytes(mesh->device, mesh->mesh_info.measured, more));
-    part->slot_count = slots;
-    return camber_part_reserve(mesh, part, enough ? slots : more);
-}
-
-/* Whether the device makes a part's buffers for so many slots beside, and its share of memory takes them. */
-static camber_status check_slots(const camber_mesh *mesh, const camber_mesh_part *part, uint64_t slots, bool *fits) {
-    const uint64_t size_bytes = 4 * (slots + 2);
-    *fits = size_bytes <= mesh->device->info.largest_buffer_bytes && slots <= UINT32_MAX - 1024u;
-    if (!*fits && part->polyline_count == 1)
-        return camber_fail_polyline(mesh, part->first_polyline, size_bytes);
-    *fits = *fits && camber_part_may_hold(mesh, part, slots);
-    return CAMBER_OK;
-}
-
 static camber_status run_shift(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program,
                                cl_event *event) {
     const camber_part_course *c = &part->course;
@@ -211,10 +190,10 @@ camber_status camber_part_offset(camber_mesh *mesh, camber_mesh_part *part, bool
         status = scan_counts(device, c->counts, given / CAMBER_OFFSET_CHUNK, &slots);
     const uint64_t padded = (slots + block - 1) / block * block;
     if (status == CAMBER_OK)
-        status = check_slots(mesh, part, padded, fits);
+        status = camber_part_check_slots(mesh, part, padded, fits);
     if (status == CAMBER_OK && *fits && slots > 0) {
         part->course.made_count = (size_t)slots;
-        status = reserve_slots(mesh, part, (size_t)padded);
+        status = camber_part_reserve_with_spare(mesh, part, (size_t)padded);
         if (status == CAMBER_OK)
             status = run_shift(mesh, part, program, events + 2);
     }

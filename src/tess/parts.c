@@ -117,6 +117,16 @@ camber_status camber_part_reserve(camber_mesh *mesh, camber_mesh_part *part, siz
     return status;
 }
 
+camber_status camber_part_reserve_with_spare(camber_mesh *mesh, camber_mesh_part *part, size_t slots) {
+    const size_t block = mesh->device->block, more = slots + slots / 4 / block * block;
+    const bool enough =
+        slots <= part->slot_capacity || !mesh->held ||
+        4 * ((uint64_t)more + 2) > mesh->device->info.largest_buffer_bytes ||
+        !camber_device_is_roomy(mesh->device, camber_input_bytes(mesh->device, mesh->mesh_info.measured, more));
+    part->slot_count = slots;
+    return camber_part_reserve(mesh, part, enough ? slots : more);
+}
+
 camber_status camber_part_reserve_output(camber_mesh *mesh, camber_mesh_part *part, size_t which, size_t size_bytes) {
     camber_buffer *buffer = part->buffers + which;
     camber_status status = CAMBER_OK;
@@ -394,6 +404,16 @@ enum { ALONE = 4, TOGETHER = 1 };
 bool camber_part_may_hold(const camber_mesh *mesh, const camber_mesh_part *part, uint64_t slots) {
     return part->polyline_count == 1 || needed_bytes(mesh, part, (part_size){slots, slots, 0, part->given_count}) <=
                                             camber_device_share(mesh->device, TOGETHER);
+}
+
+camber_status camber_part_check_slots(const camber_mesh *mesh, const camber_mesh_part *part, uint64_t slots,
+                                      bool *fits) {
+    const uint64_t size_bytes = 4 * (slots + 2);
+    *fits = size_bytes <= mesh->device->info.largest_buffer_bytes && slots <= UINT32_MAX - 1024u;
+    if (!*fits && part->polyline_count == 1)
+        return camber_fail_polyline(mesh, part->first_polyline, size_bytes);
+    *fits = *fits && camber_part_may_hold(mesh, part, slots);
+    return CAMBER_OK;
 }
 
 static camber_status fail_alone(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline,

@@ -1,4 +1,9 @@
-/* Finding and opening OpenCL devices. */
+/* Finds, describes and opens OpenCL devices.
+ *
+ * Input: a desc with a word that the device must match and bounds on its memory. Output: a camber_device with a
+ * context, a queue, and the sizes that its kernels are built for. Every platform is asked for every device; of those
+ * that match a GPU wins over a CPU, and a CPU over anything else. Programs are built later, when they are first used
+ * (program.c). */
 #include "cl/program.h"
 
 #include "kernels/layout.h"
@@ -11,7 +16,7 @@
 
 enum { PLATFORMS_MAX = 16, DEVICES_MAX = 64 };
 
-/* clGetPlatformIDs' answer where the loader finds no driver: an extension's number, not in cl.h. */
+/* The loader answers this where it finds no driver. It belongs to an extension, so that cl.h lacks it. */
 #define PLATFORM_NOT_FOUND_KHR (-1001)
 
 static const char *cl_error_name(cl_int code) {
@@ -48,7 +53,7 @@ typedef struct found_device {
     camber_device_info info;
 } found_device;
 
-/* A call that failed while devices were looked for. */
+/* A call that failed while devices were looked for: the reason to give where none is found. */
 typedef struct failed_call {
     const char *name; /* NULL: none failed */
     cl_int code;
@@ -69,12 +74,12 @@ static cl_int get_text(cl_device_id id, cl_device_info what, char *text, size_t 
     return code;
 }
 
-/* Gives CL_SUCCESS, or what the device answered: one that does not tell what it is cannot be used. */
+/* Fills found->info. Returns the error of the first question that the device does not answer: it cannot be used. */
 static cl_int query_info(found_device *found) {
     camber_device_info *info = &found->info;
     cl_device_type type = 0;
     cl_ulong memory = 0, largest = 0;
-    char extensions[16384] = ""; /* of more, buffers are copied */
+    char extensions[16384] = ""; /* a longer list does not fit: buffers are copied then */
     const cl_int codes[] = {
         get_text(found->id, CL_DEVICE_NAME, info->name, sizeof info->name),
         get_text(found->id, CL_DEVICE_VERSION, info->version, sizeof info->version),
@@ -141,12 +146,12 @@ static size_t ask_platforms(found_device found[DEVICES_MAX], failed_call *failed
     return count;
 }
 
-/* The one lock of the whole process, as what it guards is the process's: a loader and drivers that set themselves up
- * when they are first asked. PoCL (3.1 and 6.0) tells another thread meanwhile that all is done, and gives it devices
- * without a name. Whatever else camber wants of OpenCL, it has been here before. */
+/* The only lock of the whole process. It guards state of the process: the OpenCL loader and the drivers set themselves
+ * up when they are first asked. PoCL (3.1 and 6.0) tells a second thread too early that this is done, and gives it
+ * devices without a name. Every use of OpenCL begins with find_devices, so locking here is enough. */
 static pthread_mutex_t asking = PTHREAD_MUTEX_INITIALIZER;
 
-/* failed takes what kept a device from being found, if anything did. */
+/* Returns how many devices were found. *failed takes the last call that failed, if any did. */
 static size_t find_devices(found_device found[DEVICES_MAX], failed_call *failed) {
     pthread_mutex_lock(&asking);
     const size_t count = ask_platforms(found, failed);
@@ -191,6 +196,8 @@ static int rank(const camber_device_info *info) {
     return info->type == CAMBER_DEVICE_TYPE_GPU ? 2 : info->type == CAMBER_DEVICE_TYPE_CPU ? 1 : 0;
 }
 
+/* Picks the best device that matches: a GPU, else a CPU, else another; or the number-th of those that match, where
+ * number is not 0. */
 static camber_status choose_device(camber_device *device, const char *match, uint32_t number) {
     found_device found[DEVICES_MAX];
     failed_call failed;
@@ -224,12 +231,12 @@ static camber_status choose_device(camber_device *device, const char *match, uin
     return CAMBER_OK;
 }
 
-/* A part of one block and the strokes of a style have to fit in. */
+/* Below these, a part of a single block and the strokes of a style would not fit. */
 enum { LEAST_BUFFER_BYTES = 4096, LEAST_MEMORY_BYTES = 65536 };
-/* llvmpipe finds a vertex by 32 signed bits, and falls past them. */
+/* llvmpipe addresses vertices with a signed 32-bit offset and crashes beyond it. */
 static const uint64_t LARGEST_BUFFER_BYTES = INT32_MAX;
 
-/* The desc's bounds on what the kernels are given. */
+/* Sets the work-group's size and the largest buffer, from the desc's bounds, the device's and the surface's. */
 static camber_status apply_bounds(camber_device *device, const camber_device_desc *desc,
                                   const camber_surface *surface) {
     const uint32_t size = desc->work_group_size;
@@ -257,13 +264,15 @@ static camber_status apply_bounds(camber_device *device, const camber_device_des
     return CAMBER_OK;
 }
 
-/* Without a bound of its own, a device whose memory is not the host's leaves a quarter for pictures. */
+/* Bounds what meshes may hold. Where the desc gives no bound, a device with memory of its own keeps a quarter of it for
+ * pictures. */
 static void bound_memory(camber_device *device, const camber_device_desc *desc) {
     device->memory_bytes = desc->memory_bytes;
     if (!desc->memory_bytes && !device->host_memory && device->info.memory_bytes)
         device->memory_bytes = device->info.memory_bytes / 4 * 3;
 }
 
+/* Makes the context, shared with the surface's GL context where that works, and the queue; then asks for properties. */
 static camber_status open_cl(camber_device *device, camber_surface *surface) {
     cl_int code;
     const camber_gl_handles gl =
@@ -293,7 +302,7 @@ static camber_status open_cl(camber_device *device, camber_surface *surface) {
     if (code != CL_SUCCESS)
         return camber_fail_cl(device->context, "clGetDeviceInfo", code);
     device->rounds_correctly = (rounding & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
-    cl_bool unified = CL_FALSE; /* where the device does not tell, buffers are copied */
+    cl_bool unified = CL_FALSE; /* a device that does not answer gets copies */
     (void)clGetDeviceInfo(device->id, CL_DEVICE_HOST_UNIFIED_MEMORY, sizeof unified, &unified, NULL);
     device->host_memory = device->info.type == CAMBER_DEVICE_TYPE_CPU && unified;
     return CAMBER_OK;

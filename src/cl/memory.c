@@ -1,7 +1,8 @@
-/* Counts of what a device holds, and the shares of its bound. */
+/* Counts what is held on a device, and divides its bound. memory.h has the rule. */
 #include "cl/memory.h"
 
-/* What a renderer that draws in OpenCL takes at least, beside what meshes may hold where a quarter of that is less. */
+/* An OpenCL renderer gets a quarter of the bound on meshes. Where that is less than this, it gets this much, and meshes
+ * keep their whole bound. */
 static const uint64_t DRAWING_LEAST_BYTES = 4 * 1024 * 1024;
 
 uint64_t camber_device_share(const camber_device *device, unsigned eighths) {

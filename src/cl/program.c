@@ -1,5 +1,17 @@
-/* Building the kernels, and keeping what was built: what has been compiled once on a machine is loaded from then on. Of
- * several processes that need a program which nobody has built yet, one compiles it and the others load it. */
+/* Loads and builds OpenCL programs, and keeps what was built.
+ *
+ * Input: sources embedded in the library and the options of a device. Output: a camber_program with its kernels. Main
+ * idea: a program is compiled once per machine and loaded from then on.
+ *
+ *     in the device?  -- yes --------------------------------------> use it
+ *          | no
+ *     in the cache?   -- yes -- load the binary -------------------> use it
+ *          | no
+ *     take the lock of this program: of several processes that need it, one compiles and the others wait
+ *          |
+ *     in the cache by now?  -- no -- compile, save the binary -----> use it
+ *
+ * A binary's file name is a hash of everything that it depends on, and its first 8 bytes are a hash of its contents. */
 #include "cl/program.h"
 
 #include "base/embedded.h"
@@ -20,7 +32,7 @@ typedef enum program_kind {
     PROGRAM_COVER,
 } program_kind;
 
-/* What a program is made of. */
+/* Everything that a program is made from. */
 typedef struct recipe {
     program_kind kind;
     const char *name;
@@ -29,7 +41,7 @@ typedef struct recipe {
     char options[192];
 } recipe;
 
-/* Everything that a binary depends on. */
+/* A hash of everything that a binary depends on. */
 static uint64_t cache_key(const camber_device_info *info, const recipe *from) {
     uint64_t key = camber_hash(CAMBER_HASH_START, from->source, from->source_size);
     const char *options = from->options;
@@ -43,13 +55,13 @@ static void cache_name(uint64_t key, char name[64]) {
     snprintf(name, 64, "kernels-%016llx.bin", (unsigned long long)key);
 }
 
-/* Of a binary and its key: what a crash or a full disk left is told from a whole one, and so is a file under another's
- * name. */
+/* A hash of a binary and its key. It tells a whole file from one that a crash or a full disk cut short, and from one
+ * that has another program's name. */
 static uint64_t hash_binary(uint64_t key, const unsigned char *binary, size_t size_bytes) {
     return camber_hash(camber_hash(CAMBER_HASH_START, &key, sizeof key), binary, size_bytes);
 }
 
-/* A program of a binary behind its hash. */
+/* Makes a program of a cache file: 8 bytes of hash, then the binary. Returns false where that does not work. */
 static bool load_binary(camber_device *device, camber_program *program, const char *options, const char *bytes,
                         size_t size) {
     uint64_t hash;
@@ -71,7 +83,8 @@ static bool load_binary(camber_device *device, camber_program *program, const ch
     return false;
 }
 
-/* What the machine's users share, or what this one has; where it is made for all of them, what they share. */
+/* Looks in the cache that all users of the machine share, then in this user's own. A run that fills the shared cache
+ * looks only there. */
 static bool load_cached(camber_device *device, camber_program *program, const char *options) {
     bool (*const loads[])(camber_context *, const char *, char **, size_t *) = {camber_cache_load_shared,
                                                                                 camber_cache_load};
@@ -90,6 +103,7 @@ static bool load_cached(camber_device *device, camber_program *program, const ch
     return loaded;
 }
 
+/* Fails with the compiler's log. */
 static camber_status fail_build(camber_device *device, cl_program program) {
     static const size_t LOG_MAX = 3000;
     size_t size = 0;
@@ -105,8 +119,9 @@ static camber_status fail_build(camber_device *device, cl_program program) {
     return CAMBER_ERROR_DEVICE;
 }
 
-/* A binary of PoCL's has work-groups of any size. Where PoCL makes kernels for the size, offset and count of each
- * launch instead, as it does unless it is told not to, that is compiled in vain, and PoCL's own cache has to do. */
+/* A binary from PoCL contains kernels for work-groups of any size. Unless it is told otherwise, PoCL does not run
+ * those: it compiles kernels anew for the size, offset and count of each launch. Then a saved binary is useless, and
+ * PoCL's own cache has to do. */
 static bool is_worth_saving(const camber_device *device) {
     const char *specialized = getenv("POCL_WORK_GROUP_SPECIALIZATION");
     return strcmp(device->info.platform, "Portable Computing Language") != 0 || (specialized && specialized[0] == '0');
@@ -126,7 +141,7 @@ static camber_status build_from_source(camber_device *device, camber_program *pr
     return CAMBER_OK;
 }
 
-/* false, and nothing fails by it: the file is not saved. */
+/* Saves the binary in the cache. Returns false where it could not be saved, which is no failure. */
 static bool save_binary(camber_device *device, const camber_program *program) {
     size_t size = 0;
     bool saved = false;
@@ -150,6 +165,7 @@ static bool save_binary(camber_device *device, const camber_program *program) {
     return saved;
 }
 
+/* Makes the kernels that belong to a kind of program. */
 static camber_status make_kernels(camber_device *device, camber_program *program, program_kind kind) {
     const struct {
         const char *name;
@@ -174,17 +190,17 @@ static camber_status make_kernels(camber_device *device, camber_program *program
     return CAMBER_OK;
 }
 
-/* PoCL unpacks a binary file by file, and another process that unpacks the same may look for one at the wrong moment.
- */
+/* Loads under the program's lock. PoCL unpacks a binary file by file, and a process that unpacks the same one might
+ * look for a file before it is there. */
 static bool load_alone(camber_device *device, camber_program *program, const char *options) {
-    static const double LONGEST_MS = 500; /* it takes two: longer, and something else is wrong */
+    static const double LONGEST_MS = 500; /* it takes 2 ms: after much longer something else is wrong */
     const int lock = camber_cache_lock(device->context, program->key, LONGEST_MS);
     const bool loaded = load_cached(device, program, options);
     camber_cache_unlock(lock);
     return loaded;
 }
 
-/* Unless another process does so meanwhile. */
+/* Builds under the program's lock, unless another process has done so while this one waited. */
 static camber_status build_alone(camber_device *device, camber_program *program, const recipe *from) {
     static const double LONGEST_MS = 60e3;
     const int lock = camber_cache_lock(device->context, program->key, LONGEST_MS);
@@ -221,7 +237,7 @@ static camber_status make_program(camber_device *device, const recipe *from, cam
     return CAMBER_OK;
 }
 
-/* method: one of camber_method's, or what stands for no method. */
+/* Writes the compiler's options. method: a camber_method, or -1 for programs that have none. */
 static void set_options(const camber_device *device, int method, bool measured, recipe *from) {
     char block[32] = "";
     if (device->block != CAMBER_BLOCK)
@@ -232,7 +248,8 @@ static void set_options(const camber_device *device, int method, bool measured, 
 }
 
 #ifdef CAMBER_KERNEL_FOLDER
-/* For who changes kernels: their text is read where the build has written it, and a change is no build. */
+/* For people who change kernels: sources are read at run time from the build tree, so that a change needs no compile of
+ * the library. */
 static camber_status make_current(camber_device *device, recipe *from, camber_program **program) {
     static const char *const files[] = {"kernels.cl", "network.cl", "measure.cl", "offset.cl", "cover.cl"};
     char path[CAMBER_FOLDER_SIZE], *text = NULL;
@@ -248,7 +265,7 @@ static camber_status make_current(camber_device *device, recipe *from, camber_pr
 #define make_current make_program
 #endif
 
-/* Makes a program unless it is there, and gives it. */
+/* Gives a program that the device keeps, and makes it first where it is missing. */
 static camber_status ensure_program(camber_device *device, recipe *from, camber_program **kept,
                                     camber_program **program) {
     const camber_status status = *kept ? CAMBER_OK : make_current(device, from, kept);
@@ -300,7 +317,8 @@ camber_status camber_device_network_program(camber_device *device, bool measured
     return ensure_program(device, &from, &device->network_programs[measured][pitched], program);
 }
 
-/* The n-th program of all that a device can be asked for, or none; what takes longest comes first. */
+/* Makes the n-th of all programs that a device can be asked for; past the last it leaves *program NULL. Those that take
+ * longest to compile come first. */
 static camber_status ensure_nth(camber_device *device, unsigned n, camber_program **program) {
     static const unsigned variants[] = {CAMBER_COVER_RICH | CAMBER_COVER_PITCHED, CAMBER_COVER_RICH, 0};
     enum { VARIANTS = sizeof variants / sizeof *variants, OFFSETS = 2, NETWORKS = 4, METHODS = 12 };
@@ -318,6 +336,7 @@ static camber_status ensure_nth(camber_device *device, unsigned n, camber_progra
     return n == METHODS ? camber_device_measures(device, program) : CAMBER_OK;
 }
 
+/* Programs share, share + shares, share + 2 * shares and so on: several processes can compile at once. */
 camber_status camber_device_warm(camber_device *device, unsigned share, unsigned shares, camber_warmed *warmed) {
     camber_warmed all = {0};
     camber_status status = CAMBER_OK;

@@ -13,9 +13,8 @@
  */
 struct camber_polylines {
     camber_context *context;
-    size_t holders; /* meshes that hold them, beside the creator */
-    uint64_t
-        serial; /* unique in the context: a mesh compares it to know whether it has uploaded these polylines already */
+    size_t holders;  /* meshes that hold them, beside the creator */
+    uint64_t serial; /* unique in the context: tells a mesh whether it has uploaded these already */
     /* slot_count + 2 each: a sentinel before and after the slots. slot_count is a multiple of CAMBER_BLOCK. */
     float *x, *y;
     uint32_t *info;

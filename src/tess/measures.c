@@ -1,5 +1,8 @@
-/* How far along its polyline each point lies, for what is drawn along lines: tally -> measure -> lay on a device, and
- * the twin's way, from each polyline's first point to its last. */
+/* Arc lengths: how far along its polyline each point lies, for dashes and other things drawn along lines.
+ *
+ * On a device, arc_length_sum adds up each chunk of points, the host carries the sums from chunk to chunk, and
+ * arc_length_scan writes every point's length. The CPU twin goes along each polyline from its first point to its last.
+ * Both add up integers (kernels/measure.h), so that the order does not matter and they agree bit for bit. */
 #include "tess/measures.h"
 
 #include "kernels/measure.h"
@@ -8,7 +11,9 @@
 
 /* ---- Device ---- */
 
-/* Turns the sums of chunks into what lies before and behind each of them, in their place. */
+/* Replaces each chunk's two sums by the lengths that its first line has before the chunk, and its last line behind it.
+ * A closed sum means that a line begins, or seen from behind ends, in the chunk: what lies farther is another line's.
+ */
 static void carry(camber_u64 *sums, size_t chunk_count) {
     camber_u64 before = 0, behind = 0;
     for (size_t i = 0; i < chunk_count; i++) {
@@ -56,7 +61,7 @@ camber_status camber_part_measure(camber_mesh *mesh, camber_mesh_part *part) {
 
 /* ---- Twin ---- */
 
-/* The slots [first, end) of a polyline's piece: from a first point to its last. */
+/* Measures the slots [first, end), from the first point of a stretch to its last. The first pass finds the total. */
 static void measure_piece(const camber_polylines *p, size_t first, size_t end, camber_measure *measures) {
     camber_u64 sum = 0;
     for (size_t pass = 0; pass < 2; pass++) {

@@ -1,13 +1,13 @@
-/* How far along its polyline each point lies. */
+/* Arc lengths: how far along its polyline each point lies. */
 #ifndef CAMBER_MEASURES_H
 #define CAMBER_MEASURES_H
 
 #include "tess/mesh.h"
 
-/* Makes the measures of a part's slots, which polylines have. */
+/* Makes the arc lengths of a part's slots on the device. Parts of polylines only: a network knows its own. */
 camber_status camber_part_measure(camber_mesh *mesh, camber_mesh_part *part);
 
-/* The twin: of each slot, 0 of ghosts; freed with camber_free. */
+/* The CPU twin: one for each slot, 0 for sentinels; freed with camber_free. */
 camber_status camber_polylines_measure(const camber_polylines *polylines, camber_measure **measures);
 
 #endif

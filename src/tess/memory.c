@@ -1,4 +1,19 @@
-/* What the meshes of a device hold, and which of their parts give way where that is bounded (cl/memory.h). */
+/* Counts what the meshes of a device hold, and evicts parts and sections where that is bounded (cl/memory.h).
+ *
+ * Main idea: everything evicted can be made again, parts from their source and sections from host memory. So when bytes
+ * are needed, camber_mesh_evict_for goes through this list until they are free, one step at a time, and starts again at
+ * the top after each eviction:
+ *
+ *     1  parts of this mesh that hold buffers but no valid output
+ *     2  parts, then sections, of the device's other meshes
+ *     3  sections of this mesh, but for that of the part that asks
+ *     4  parts of this mesh with valid output, unless spare_made
+ *
+ * Within step 4 the victim is the part that will be needed last. A frame goes through the parts in order, then begins
+ * again; so after the part that asks (keep) the cycle goes round, and the victim is the last before keep:
+ *
+ *     parts      0   1   2  [3 keep]  4   5
+ *     needed     4.  5.  6. now       2.  3.     so part 2 goes first */
 #include "kernels/measure.h"
 #include "tess/network.h"
 #include "tess/offset.h"
@@ -55,8 +70,8 @@ camber_mesh_memory camber_mesh_get_memory(const camber_mesh *mesh) {
 
 /* ---- Giving way ---- */
 
-/* The part that goes first of those that hold something: one whose output is not there, else the one whose turn comes
- * last when parts are gone through in order again and again from keep on. NULL: none. */
+/* Returns the part to evict, among those that hold something: one without valid output, else the one that a cycle
+ * through the parts from keep on needs last. NULL: there is none. */
 static camber_mesh_part *find_victim(const camber_mesh *mesh, const camber_mesh_part *keep, bool spare_made) {
     const size_t from = keep ? (size_t)(keep - mesh->parts) : 0;
     camber_mesh_part *victim = NULL;
@@ -70,7 +85,7 @@ static camber_mesh_part *find_victim(const camber_mesh *mesh, const camber_mesh_
     return victim;
 }
 
-/* Sections come back from host memory. */
+/* Releases one section of a network. Its points are in host memory and can be uploaded again. */
 static bool drop_section(camber_mesh *mesh, const camber_mesh_part *keep) {
     for (size_t i = 0; mesh->held && i < mesh->held->section_count; i++)
         if (mesh->held->sections[i].held_bytes && !(keep && keep->section == i)) {
@@ -80,6 +95,7 @@ static bool drop_section(camber_mesh *mesh, const camber_mesh_part *keep) {
     return false;
 }
 
+/* Evicts one part. If it had valid output, the mesh is full. */
 static bool drop_part(camber_mesh *mesh, const camber_mesh_part *keep, bool spare_made) {
     camber_mesh_part *victim = find_victim(mesh, keep, spare_made);
     if (!victim)
@@ -89,7 +105,7 @@ static bool drop_part(camber_mesh *mesh, const camber_mesh_part *keep, bool spar
     return true;
 }
 
-/* What the other meshes of the device have. */
+/* Evicts one part or section of the device's other meshes. */
 static bool drop_from_others(const camber_mesh *mesh) {
     for (camber_mesh *other = mesh->device->meshes; other; other = other->next)
         if (other != mesh && (drop_part(other, NULL, false) || drop_section(other, NULL)))
@@ -97,7 +113,7 @@ static bool drop_from_others(const camber_mesh *mesh) {
     return false;
 }
 
-/* The device's bound, or what the run may hold as a whole. */
+/* Whether so many bytes more would pass the device's bound, or the budget of the whole run. */
 static bool lacks_room(const camber_device *device, uint64_t more_bytes) {
     return device->held_bytes + more_bytes > device->memory_bytes ||
            (device->host_memory && !camber_budget_has(device->context, more_bytes));

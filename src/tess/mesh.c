@@ -1,4 +1,7 @@
-/* Meshes: making them, what is told about them, reading them back. */
+/* Meshes: creating them, their counts, where polylines begin in their output, and reading them back to the host.
+ *
+ * Input: a mesh that tessellate.c has filled. Output: camber_mesh_info and camber_mesh_data. Parts that have lost their
+ * buffers are made again as they are needed, one at a time. */
 #include "tess/mesh.h"
 
 #include "kernels/join.h"
@@ -41,8 +44,9 @@ void camber_mesh_destroy(camber_mesh *mesh) {
     camber_free(context, mesh);
 }
 
-/* ---- What is told ---- */
+/* ---- Counts ---- */
 
+/* Adds up the joins and segments of slots, from their join and info words. */
 static void count_words(const cl_uint *joins, const cl_uint *info, size_t slot_count, camber_mesh_info *counts,
                         size_t *segments) {
     for (size_t i = 1; i <= slot_count; i++) {
@@ -78,7 +82,8 @@ void camber_mesh_set_counts(camber_mesh *mesh, camber_mesh_info counts, size_t s
     mesh->joins_counted = true;
 }
 
-/* Kinds of joins and triangles, from the join words. */
+/* Counts joins and triangles from the join words on the device, unless that has been done. Few callers want them, so
+ * that this waits until one asks. */
 static camber_status count_joins(camber_mesh *mesh) {
     camber_mesh_info counts = mesh->mesh_info;
     camber_status status = CAMBER_OK;
@@ -94,7 +99,7 @@ static camber_status count_joins(camber_mesh *mesh) {
 }
 
 camber_mesh_info camber_mesh_get_info(camber_mesh *mesh) {
-    (void)count_joins(mesh); /* on failure the log tells, and the counts stay 0 */
+    (void)count_joins(mesh); /* a failure is logged, and the counts stay 0 */
     return mesh->mesh_info;
 }
 
@@ -151,7 +156,7 @@ static camber_status read_buffer(const camber_mesh *mesh, const camber_buffer *b
     return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(mesh->device->context, "clEnqueueReadBuffer", code);
 }
 
-/* Of a measured mesh: size_bytes of each record's 32, from offset_bytes on. */
+/* Reads size_bytes of each record, from its byte offset_bytes on. A record with an arc length has 32 bytes. */
 static camber_status read_words(const camber_mesh *mesh, const camber_mesh_part *part, size_t offset_bytes,
                                 size_t size_bytes, void *bytes) {
     const size_t from[3] = {offset_bytes, 0, 0}, to[3] = {0, 0, 0}, region[3] = {size_bytes, part->record_count, 1};
@@ -171,6 +176,7 @@ static camber_status read_records(const camber_mesh *mesh, const camber_mesh_par
                : status;
 }
 
+/* Reads a part's records and corners behind those of the parts before, and numbers the corners' records on. */
 static camber_status read_part(camber_mesh *mesh, camber_mesh_part *part, camber_mesh_data *data) {
     const size_t buffer_count = camber_buffer_count(mesh);
     camber_status status = camber_part_ensure_made(mesh, part);

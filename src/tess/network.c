@@ -1,17 +1,26 @@
-/* Networks: cleaning polylines in world coordinates into steps of their box. */
+/* Makes networks: cleans polylines in world coordinates and stores them as integers.
+ *
+ * Input: points in double, entries that say which polylines to draw with which rows, and importances. Output: a
+ * camber_network. Main idea: positions are counted in steps of the data's box, 2^31 - 2 over its longer side. So the
+ * difference of two positions is an exact 32-bit integer, and the device projects relative to a point near the camera
+ * without doubles.
+ *
+ *     1  check the entries, count their points, find their box
+ *     2  store the points of each entry, stretch by stretch: an invalid point ends one, a repeated point is dropped
+ *     3  with arc lengths: sum up how far along its line each point lies */
 #include "tess/network.h"
 
 #include <assert.h>
 #include <math.h>
 
-/* Where all points lie in one place, or nearly so, a step still has a size: far below a pixel at any
- * zoom, and still a normal float in px at zoom 0, where a world is 512 px. */
+/* Where all points have one position, or nearly so, a step still needs a length. This one lies far below a pixel at any
+ * zoom, and is a normal float in px at zoom 0, where a world is 512 px. */
 static const double LEAST_EXTENT = 1e-30;
-/* No difference of two coordinates is infinite. */
+/* Points farther out are invalid, so that no difference of two coordinates is infinite. */
 static const double FARTHEST = 1e300;
-/* Of slots a point: its own, a ring's ghost, and the end of a piece. */
+/* So that 32 bits number the slots: a point may make its own, a ring's sentinel, and an end where the window cuts. */
 static const size_t MOST_POINTS = INT32_MAX;
-/* Shorter parts of a line do not tell how long that is. */
+/* A stretch that is a smaller share of its line says too little about how long the line is. */
 static const double LEAST_PART = 1e-6;
 
 /* ---- Making ---- */
@@ -40,6 +49,7 @@ static bool is_valid(double x, double y) {
     return fabs(x) <= FARTHEST && fabs(y) <= FARTHEST;
 }
 
+/* A box in world coordinates. */
 typedef struct bounds {
     double x0, y0, x1, y1;
 } bounds;
@@ -56,7 +66,7 @@ static void add_polyline(const camber_network_desc *desc, camber_network_entry e
     }
 }
 
-/* Checks the entries, counts their points and finds their box. */
+/* Checks the entries, counts their points, and sets the box's origin and the step. */
 static camber_status check_entries_and_find_box(camber_network *n, const camber_network_desc *desc) {
     bounds box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
     for (size_t i = 0; i < n->entry_count; i++) {
@@ -86,6 +96,8 @@ static int32_t to_step(double offset, double step) {
     return (int32_t)(steps < CAMBER_NETWORK_STEPS ? steps : CAMBER_NETWORK_STEPS);
 }
 
+/* Stores a point, or drops it if it lies on the same step as the one before, which then keeps the larger importance. An
+ * importance that is NaN counts as infinite. */
 static void store_point(camber_network *n, const double *point, double shift_x, float importance) {
     const int32_t x = to_step(point[0] + shift_x - n->x0, n->step), y = to_step(point[1] - n->y0, n->step);
     camber_run *run = n->runs + n->run_count;
@@ -105,7 +117,8 @@ static void store_point(camber_network *n, const double *point, double shift_x, 
     run->y1 = y > run->y1 ? y : run->y1;
 }
 
-/* Valid points [first, end) of the desc. */
+/* Stores the valid points [first, end) of the desc as a stretch. Its ends have infinite importance: they always stay.
+ */
 static void store_stretch(camber_network *n, const camber_network_desc *desc, camber_network_entry entry, size_t first,
                           size_t end, bool may_close) {
     const double *from = desc->points + 2 * first, *last = desc->points + 2 * (end - 1);
@@ -125,6 +138,7 @@ static void store_stretch(camber_network *n, const camber_network_desc *desc, ca
     n->run_count++;
 }
 
+/* Stores an entry's points, a stretch between each two invalid points. */
 static camber_status store_entry(camber_network *n, const camber_network_desc *desc, camber_network_entry entry,
                                  size_t *run_capacity) {
     const size_t begin = desc->offsets[entry.polyline], end = desc->offsets[entry.polyline + 1];
@@ -147,7 +161,14 @@ static double length_into(const camber_network *n, size_t point) {
     return hypot((double)n->x[point] - n->x[point - 1], (double)n->y[point] - n->y[point - 1]);
 }
 
-/* A run that is all of its line, or, by two shares of that one's length, a part of it. */
+/* Sums up arc lengths along a stretch. Without progress the stretch is its whole line. With it, progress gives the
+ * shares of the line's length at which the stretch begins and ends, as where tiles cut a line:
+ *
+ *     line      |--------------------------------|     total
+ *     stretch         |-----------|                    length = (progress[1] - progress[0]) * total
+ *                progress[0]   progress[1]
+ *
+ * Shares that make no sense are ignored. */
 static void measure_stretch(camber_network *n, size_t run, const float *progress) {
     const size_t first = n->runs[run].first, end = n->runs[run + 1].first;
     const double from = progress ? (double)progress[0] : 0.0, part = progress ? (double)progress[1] - from : 1.0;

@@ -1,4 +1,13 @@
-/* survey and project: the slots that a camera sees of a network, made on a device for a part of a mesh. */
+/* Culls a network: makes the slots that a camera sees, on a device, for a part of a mesh.
+ *
+ * Input: the points of a section and the camera's projection. Output: the part's x, y and info, as if the visible
+ * lines had been uploaded as polylines. Main idea: two passes over the same walk (kernels/network.h), a chunk of points
+ * a work-item. The first counts the slots of each chunk; the host adds the counts up; the second writes each chunk's
+ * slots where its sum says.
+ *
+ *     chunks        |   0   |   1   |   2   |   3   |
+ *     cull_count        5       0       9       4          slots
+ *     chunk_bases       0       5       5      14     18   slots before, and all */
 #include "tess/network.h"
 #include "tess/offset.h"
 
@@ -13,7 +22,7 @@ void camber_part_set_points(const camber_mesh *mesh, camber_mesh_part *part) {
     part->end_point = camber_network_first_point(held->network, part->first_polyline + part->polyline_count);
 }
 
-/* The projection of a part: its points are counted from the start of its section. */
+/* The projection for a part's points, which are numbered from the start of their section. */
 static camber_projection projection_of(const camber_mesh *mesh, const camber_mesh_part *part) {
     const size_t first = mesh->held->sections[part->section].first_point;
     camber_projection p = mesh->held->projection;
@@ -23,6 +32,7 @@ static camber_projection projection_of(const camber_mesh *mesh, const camber_mes
     return p;
 }
 
+/* How many chunks the points of the projection have. The first and the last may be incomplete. */
 static size_t part_chunks(const camber_projection *p) {
     return camber_network_chunk_count(p->end) - p->begin / CAMBER_CHUNK;
 }
@@ -47,7 +57,7 @@ typedef struct stage {
     cl_uint mem_count;
 } stage;
 
-/* Runs a stage over the chunks of a part; the projection is its last argument. */
+/* Launches a stage over the chunks of a part. The projection is its last argument. */
 static camber_status run_stage(const camber_device *device, const camber_projection *p, stage s, cl_event *event) {
     const size_t local = device->block * CAMBER_WALKERS / CAMBER_BLOCK;
     const size_t global = (part_chunks(p) + local - 1) / local * local;
@@ -62,6 +72,7 @@ static camber_status run_stage(const camber_device *device, const camber_project
     return code == CL_SUCCESS ? CAMBER_OK : camber_fail_stage(device, "clEnqueueNDRangeKernel", s.name, code);
 }
 
+/* Makes room for the counts of so many chunks, on host and device. */
 static camber_status reserve_chunks(camber_mesh *mesh, camber_mesh_part *part, size_t chunks) {
     struct camber_held_network *held = mesh->held;
     const uint64_t on_host = chunks < part->chunk_capacity ? 0 : 8 * (uint64_t)chunks + 64;
@@ -88,7 +99,7 @@ static camber_status reserve_chunks(camber_mesh *mesh, camber_mesh_part *part, s
     return status;
 }
 
-/* How many slots the part has, and how many each chunk has before it. */
+/* Counts the part's slots, and sets how many come before each chunk. */
 static camber_status survey(camber_mesh *mesh, camber_mesh_part *part, const camber_projection *p, uint64_t *slots) {
     const camber_device *device = mesh->device;
     const struct camber_held_network *held = mesh->held;
@@ -115,6 +126,12 @@ static camber_status survey(camber_mesh *mesh, camber_mesh_part *part, const cam
     return CAMBER_OK;
 }
 
+/* Steps, each of which may fail:
+ *     1  upload the part's section, unless it is on the device
+ *     2  count the slots of each chunk (cull_count); done where the camera sees none
+ *     3  check that so many slots fit; if not, *fits is false and the caller cuts the part in two
+ *     4  make room for them: as source lines where rows have an offset, else as the slots to classify
+ *     5  write them (cull_emit) */
 camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, bool *fits) {
     const camber_device *device = mesh->device;
     const camber_projection p = projection_of(mesh, part);
@@ -144,7 +161,8 @@ camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, boo
     if (status != CAMBER_OK)
         return status;
     const camber_section *section = mesh->held->sections + part->section;
-    /* Of lines that others lie beside nobody reads the joins: what comes behind overwrites them. */
+    /* The kernel zeroes the join words of two sentinels. Source lines have no join words, so it is given a buffer there
+     * that the next stage overwrites. */
     const camber_part_course *course = &part->course;
     const cl_mem mems[] = {section->x,
                            section->y,

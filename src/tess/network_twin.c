@@ -1,4 +1,8 @@
-/* The CPU twin of survey and project: the same walk, an entry after the other. */
+/* The CPU twin of cull_count and cull_emit: projects a network on the host, and gives the visible lines as polylines.
+ *
+ * Input: a network, a camera, strokes. Output: camber_polylines with the slots that the device would make; or lines of
+ * points in px. Main idea: it runs the kernels' own walk (kernels/network.h), but an entry after the other instead of
+ * chunk by chunk, as slots do not depend on how points are divided into chunks. */
 #include "tess/network.h"
 
 #include <string.h>
@@ -12,7 +16,7 @@ camber_walk camber_network_walk(const camber_network *network) {
                          .runs = network->runs};
 }
 
-/* The run that has a point. */
+/* The stretch that has a point. */
 static const camber_run *find_stretch(const camber_network *network, size_t point) {
     size_t low = 0, high = network->run_count;
     while (high - low > 1) {
@@ -27,7 +31,7 @@ static const camber_run *find_stretch(const camber_network *network, size_t poin
 
 uint64_t camber_network_count_slots(const camber_network *network, const camber_projection *projection, size_t begin,
                                     size_t end) {
-    /* A piece at a time: the walk counts in 32 bits. */
+    /* The walk counts in 32 bits, so it is given this many points at a time. */
     static const size_t POINTS_AT_ONCE = (size_t)1 << 28;
     camber_projection p = *projection;
     uint64_t count = 0;
@@ -49,6 +53,7 @@ static camber_status check_strokes(const camber_network *network, const camber_t
     return status;
 }
 
+/* Fills the stats from the slots. */
 static void count_slots(camber_polylines *p) {
     for (size_t i = 1; i <= p->slot_count; i++) {
         const uint32_t info = p->info[i], ends = info & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST);
@@ -59,6 +64,7 @@ static void count_slots(camber_polylines *p) {
     }
 }
 
+/* Makes count slots, padded to whole blocks, and where each entry begins. */
 static camber_status make_slots(const camber_network *network, const camber_projection *projection, size_t count,
                                 camber_polylines *p) {
     camber_context *context = network->context;
@@ -121,8 +127,9 @@ camber_status camber_network_project(const camber_network *network, const camber
     return CAMBER_OK;
 }
 
-/* ---- Pieces ---- */
+/* ---- Visible lines ---- */
 
+/* Lines made from slots. entries[i] is the entry that line i belongs to. */
 typedef struct visible_lines {
     const camber_polylines *slots;
     camber_lines lines;
@@ -135,19 +142,24 @@ static void append_slot(visible_lines *p, size_t slot) {
     p->lines.point_count++;
 }
 
-/* The slots [first, last] are a piece. */
+/* Begins another line of an entry. */
 static void begin_line(visible_lines *p, size_t entry) {
     p->entries[p->lines.polyline_count] = (uint32_t)entry;
     p->lines.offsets[p->lines.polyline_count++] = (uint32_t)p->lines.point_count;
 }
 
+/* The last slot of the line that begins with slot first. */
 static size_t last_of(const visible_lines *p, size_t first) {
     while (!(p->slots->info[first + 1] & CAMBER_POINT_LAST))
         first++;
     return first;
 }
 
-/* Of a ring that is cut, the piece before the seam waits for the one behind it, which comes first. */
+/* Appends the visible lines of an entry. Where the window cuts a ring, the line over the ring's seam is in two pieces,
+ * the end of which comes first in the slots. It waits at `seam` until its beginning has been appended:
+ *
+ *     slots     S..e   b..S              S: the seam, the ring's first and last point
+ *     line      b..S..e                  from b, where the window cuts, over the seam to e */
 static void append_entry(visible_lines *p, size_t entry) {
     const uint32_t *info = p->slots->info + 1;
     size_t seam = SIZE_MAX, seam_end = 0;

@@ -1,5 +1,14 @@
-/* Lines that lie beside others: span -> tell -> shift on a device, and the twin, slot after slot. Where buffers begin
- * is in slot_starts.c. */
+/* Makes lines that lie beside others: offset_clip -> offset_count -> offset_emit on a device, and the CPU twin.
+ *
+ * Input: slots of the source lines and each row's offset. Output: slots of the offset lines, which classify reads as if
+ * they had been given. Main idea: how many slots come of a source slot is not known before, so that they are made in
+ * three steps (kernels/offset.h has the geometry):
+ *
+ *     offset_clip   a slot: how much is left of the offset segment that begins there, and of the arc at its corner
+ *     offset_count  a chunk of slots: how many slots come of it; the host adds these counts up
+ *     offset_emit   a chunk: writes its slots where the sum says, and for each source slot where its own begin (places)
+ *
+ * The twin walks the source lines slot by slot and appends. */
 #include "tess/offset.h"
 
 #include "kernels/measure.h"
@@ -8,7 +17,7 @@
 
 /* ---- Rows ---- */
 
-/* Less moves no level of a pixel, and makes segments that a float cannot square. */
+/* A smaller offset changes no pixel, and would make segments so short that a float cannot hold their square. */
 static bool has_visible_offset(const camber_stroke *stroke) {
     return fabsf(stroke->offset_px) >= 1e-3f;
 }
@@ -20,7 +29,7 @@ bool camber_desc_has_offsets(const camber_tessellation_desc *desc) {
     return has;
 }
 
-/* One more than there are strokes: never empty. */
+/* Makes the rows' values for the offset kernels: one more than there are strokes, as a buffer may not be empty. */
 static camber_status make_shifts(camber_context *context, const camber_tessellation_desc *desc, camber_shift **shifts) {
     camber_shift *made = camber_alloc_zero(context, desc->stroke_count + 1, sizeof *made);
     if (!made)
@@ -93,6 +102,7 @@ camber_status camber_part_check_course(const camber_mesh *mesh, const camber_mes
     return part->polyline_count > 1 ? CAMBER_OK : camber_fail_polyline(mesh, part->first_polyline, size_bytes);
 }
 
+/* Makes the buffers of source lines; the last two only with arc lengths. */
 static camber_status make_course(const camber_device *device, bool measured, camber_part_course *course, size_t slots) {
     const size_t words = slots + 2;
     const struct {
@@ -139,7 +149,7 @@ camber_status camber_part_reserve_course(camber_mesh *mesh, camber_mesh_part *pa
 
 /* ---- Stages ---- */
 
-/* Turns the counts of chunks into what lies before each of them, in their place, and all of them behind the last. */
+/* Replaces each chunk's count by the sum of the counts before it, and puts the sum of all behind the last. */
 static camber_status scan_counts(const camber_device *device, cl_mem counts, size_t chunk_count, uint64_t *slots) {
     cl_int code;
     uint64_t sum = 0;
@@ -168,7 +178,9 @@ static camber_status run_shift(camber_mesh *mesh, camber_mesh_part *part, const 
         event);
 }
 
-/* The lines' measures do not depend on where they lie: they are those of the lines beside which they do. */
+/* Runs the three stages, with the sum of the counts between the second and the third. It stops where nothing is left of
+ * the lines, or where the slots do not fit. An offset line has the arc lengths of its source line, so that a pattern
+ * beside a road keeps step with the road. */
 camber_status camber_part_offset(camber_mesh *mesh, camber_mesh_part *part, bool *fits) {
     const camber_device *device = mesh->device;
     const camber_part_course *c = &part->course;
@@ -177,7 +189,7 @@ camber_status camber_part_offset(camber_mesh *mesh, camber_mesh_part *part, bool
     cl_event events[3] = {NULL, NULL, NULL};
     camber_program *program = NULL;
     uint64_t slots = 0;
-    /* What the part had before is gone, though nothing may come of it now. */
+    /* The part's last output is invalid from here on, also where no slot comes out now. */
     part->slot_count = part->record_count = part->vertex_count = part->index_count = 0;
     part->course.made_count = 0;
     camber_status status = camber_device_offsets(mesh->device, mesh->mesh_info.measured, &program);
@@ -218,7 +230,7 @@ static camber_course course_of(const camber_polylines *polylines, const camber_s
                            .slots = (camber_u32)polylines->slot_count};
 }
 
-/* Puts the slots beside, or counts them. */
+/* Walks all source slots in order and emits the slots of the offset lines; first_slots takes where each line begins. */
 static void emit_polylines(const camber_course *course, const camber_polylines *from, camber_pen *pen,
                            uint32_t *first_slots) {
     size_t slot = 1;
@@ -232,7 +244,7 @@ static void emit_polylines(const camber_course *course, const camber_polylines *
         first_slots[from->polyline_count] = pen->at - 1;
 }
 
-/* So many slots, and whether there are too many for 32 bits. */
+/* Counts the slots of the offset lines in 64 bits, as there may be more than 32 bits number. */
 static uint64_t count_slots(const camber_course *course, const camber_polylines *from) {
     uint64_t count = 0;
     for (size_t slot = 1; slot <= from->first_slots[from->polyline_count]; slot++) {
@@ -243,6 +255,7 @@ static uint64_t count_slots(const camber_course *course, const camber_polylines 
     return count;
 }
 
+/* Makes arrays for count slots, padded to whole blocks, and fills them. */
 static camber_status emit_slots(const camber_course *course, const camber_polylines *from, size_t count,
                                 camber_polylines *made) {
     camber_context *context = from->context;

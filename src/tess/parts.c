@@ -1,4 +1,12 @@
-/* The parts of a mesh: which polylines each has, its buffers, and what is uploaded to them. */
+/* The parts of a mesh: which polylines each has, its buffers, and their upload.
+ *
+ * Input: polylines in slots, and the limits of the device: its largest buffer, and shares of the bound on memory.
+ * Output: mesh->parts, each with buffers of its own. Main idea: polylines are divided twice.
+ *
+ *     before  camber_mesh_plan   by slots, which are known, so that a part's input fits
+ *     after   camber_mesh_split  by the output that classify and scan have counted, where that does not fit
+ *
+ * A part is cut between polylines only. A single polyline that does not fit is an error that names it. */
 #include "kernels/measure.h"
 #include "tess/network.h"
 #include "tess/offset.h"
@@ -7,12 +15,14 @@
 
 enum { INPUTS = 9 };
 
+/* Lists a part's input buffers; the last two are there only with arc lengths. */
 static void list_input(camber_mesh_part *part, cl_mem *mems[INPUTS]) {
     cl_mem *const list[INPUTS] = {&part->x,    &part->y,     &part->info,    &part->joins,   &part->offsets,
                                   &part->sums, &part->bases, &part->lengths, &part->measures};
     memcpy(mems, list, sizeof list);
 }
 
+/* Releases the input buffers that classify reads or writes, and leaves those of source lines. */
 static void release_slots(const camber_device *device, camber_mesh_part *part) {
     cl_mem *mems[INPUTS];
     list_input(part, mems);
@@ -52,6 +62,7 @@ void camber_part_move_buffers(camber_mesh_part *part, camber_mesh_part *from) {
     from->uploaded = from->made = false;
 }
 
+/* Whether the input buffers are large enough, and those of arc lengths are there where they are wanted. */
 static bool has_input(const camber_mesh_part *part, bool measured, size_t slots) {
     return slots <= part->slot_capacity && (!measured || part->measures);
 }
@@ -59,7 +70,8 @@ static bool has_input(const camber_mesh_part *part, bool measured, size_t slots)
 static camber_status reserve_input(const camber_device *device, bool measured, camber_mesh_part *part, size_t slots) {
     if (has_input(part, measured, slots))
         return CAMBER_OK;
-    const bool uploaded = part->uploaded && part->course.x; /* to the course, which stays */
+    const bool uploaded =
+        part->uploaded && part->course.x; /* slots were uploaded to the source lines' buffers, which stay */
     release_slots(device, part);
     part->uploaded = uploaded;
     const size_t blocks = slots / device->block, words = slots + 2;
@@ -89,7 +101,8 @@ static camber_status reserve_input(const camber_device *device, bool measured, c
     return CAMBER_OK;
 }
 
-/* Of a part's input, and of what the host keeps beside it: camber_grow may double that, and gives some at least. */
+/* The bytes of a part's input, and of the arrays that the host keeps for it. The arrays count double and a little more:
+ * camber_grow makes them larger than asked, and never tiny. */
 static uint64_t bytes_of_slots(const camber_mesh *mesh, const camber_mesh_part *part, size_t slots) {
     const uint64_t chunks = mesh->held ? (part->end_point - part->first_point) / CAMBER_CHUNK + 3 : 0;
     const uint64_t blocks = slots / mesh->device->block;
@@ -165,7 +178,8 @@ void camber_mesh_release_parts(camber_mesh *mesh) {
 
 /* ---- Layout ---- */
 
-/* Parts past part_count are zero, but for the first, which keeps its buffers for the polylines that come next. */
+/* Makes room for so many parts. Parts past part_count are zero, but for the very first, which keeps its buffers for the
+ * next polylines. */
 static bool reserve_parts(camber_mesh *mesh, size_t count) {
     const size_t before = mesh->part_capacity;
     if (!camber_grow(mesh->device->context, &mesh->parts, &mesh->part_capacity, count, sizeof *mesh->parts))
@@ -174,6 +188,7 @@ static bool reserve_parts(camber_mesh *mesh, size_t count) {
     return true;
 }
 
+/* Gives a part the polylines [first, end). Whatever its buffers hold is invalid from then on. */
 static void set_polylines(const camber_mesh *mesh, camber_mesh_part *part, size_t first, size_t end) {
     const size_t block = mesh->device->block;
     const size_t slots = mesh->held ? 0 : mesh->first_slots[end] - mesh->first_slots[first];
@@ -221,7 +236,7 @@ camber_status camber_fail_memory(const camber_mesh *mesh, size_t polyline, uint6
                        polyline, (unsigned long long)size_bytes, (unsigned long long)device->memory_bytes);
 }
 
-/* The polyline behind the last that fits a part of so many slots beginning with first. */
+/* Returns the polyline behind the last that fits into a part of so many slots that begins with first. */
 static size_t find_part_end(const camber_mesh *mesh, size_t first, size_t slots_max) {
     const uint32_t *slots = mesh->first_slots;
     size_t low = first, high = mesh->polyline_count;
@@ -242,7 +257,7 @@ void camber_mesh_trim_parts(camber_mesh *mesh) {
         release_part(mesh, mesh->parts + i);
 }
 
-/* Slots of a part that its share of memory takes, with a record each or a little more: a block at least. */
+/* How many slots fit into a part's share of memory, if each makes a record or a little more; at least a block. */
 static uint64_t shared_slots(const camber_mesh *mesh) {
     const size_t block = mesh->device->block;
     const uint64_t block_bytes = camber_input_bytes(mesh->device, mesh->mesh_info.measured, block) +
@@ -278,7 +293,7 @@ static camber_status lay_out_parts(camber_mesh *mesh) {
 static void hold_polylines(camber_mesh *mesh, const camber_polylines *polylines) {
     mesh->holds_polylines = mesh->device->memory_bytes > 0;
     mesh->polylines = polylines;
-    if (mesh->holds_polylines) /* what is counted is not what they are */
+    if (mesh->holds_polylines) /* only the count of holders changes, not the polylines */
         camber_polylines_hold((camber_polylines *)(uintptr_t)polylines);
 }
 
@@ -306,7 +321,7 @@ camber_status camber_mesh_plan(camber_mesh *mesh, const camber_polylines *polyli
     return status;
 }
 
-/* Whether the buffers that are uploaded to have those of measures beside them, if these are wanted now. */
+/* Whether the buffers for the upload are complete: with those of arc lengths where these are wanted now. */
 static bool has_upload_buffers(const camber_mesh *mesh, const camber_mesh_part *part) {
     return !mesh->mesh_info.measured || (mesh->has_offsets ? part->course.measures : part->measures);
 }
@@ -323,7 +338,8 @@ camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part) {
     const camber_part_course *course = &part->course;
     const size_t words = part->given_count + 2, first = part->first_slot;
     const size_t end = part->first_polyline + part->polyline_count;
-    /* The neighbour before, the part's slots, and ghosts: the polylines' own padding, or zeros. */
+    /* The words of a part are the one before its first slot, its slots, and sentinels. The last part takes sentinels
+     * from the polylines' own padding; other parts, and what is still missing, get zeros. */
     size_t given = end < mesh->polyline_count ? mesh->first_slots[end] - first + 1 : polylines->slot_count + 2 - first;
     given = given < words ? given : words;
     const struct {
@@ -338,7 +354,7 @@ camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part) {
         if (status == CAMBER_OK && given < words)
             status = camber_write_buffer(device, arrays[i].mem, 4 * given, 4 * (words - given), zeros);
     }
-    /* The words before and behind the points' are read by neighbours and written by nobody. */
+    /* classify writes a join word for each slot. Those of the sentinels around them are read by neighbours, too. */
     if (status == CAMBER_OK && !mesh->has_offsets)
         status = camber_write_buffer(device, part->joins, 0, 4, zeros);
     if (status == CAMBER_OK && !mesh->has_offsets)
@@ -349,17 +365,19 @@ camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part) {
 
 /* ---- Splitting ---- */
 
+/* How much a part, or a range of its polylines, has. */
 typedef struct part_size {
     uint64_t slots, records, indices;
-    uint64_t given; /* slots that those are made of, where lines lie beside others */
+    uint64_t given; /* source slots, where lines have an offset */
 } part_size;
 
+/* Rounds up to whole blocks. */
 static uint64_t whole_blocks(const camber_mesh *mesh, uint64_t slots) {
     const uint64_t block = mesh->device->block;
     return (slots + block - 1) / block * block;
 }
 
-/* Where a record is a slot, the kernel writes whole blocks of them. */
+/* kite and fan have a record for each slot, and their kernel writes whole blocks. */
 static uint64_t record_bytes(const camber_mesh *mesh, part_size size) {
     return (mesh->mesh_info.strips ? size.records : whole_blocks(mesh, size.records)) *
            camber_record_bytes(&mesh->mesh_info);
@@ -369,6 +387,7 @@ static uint64_t index_bytes(const camber_mesh *mesh, part_size size) {
     return mesh->mesh_info.strips ? 0 : 4 * (size.indices ? size.indices : 1); /* no buffer is empty */
 }
 
+/* The bytes that a part of this size needs, input and output. */
 static uint64_t needed_bytes(const camber_mesh *mesh, const camber_mesh_part *part, part_size size) {
     const size_t given = (size_t)whole_blocks(mesh, size.given);
     return (mesh->has_offsets ? camber_course_bytes(mesh->mesh_info.measured, given) : 0) +
@@ -391,14 +410,14 @@ uint64_t camber_part_missing_output_bytes(const camber_mesh *mesh, const camber_
     return mesh->buffer_copies * lacks;
 }
 
-/* Whether a part of this size is too large for the device, or for so many eighths of what meshes may hold. */
+/* Whether a part of this size is too large for the device's buffers, or for so many eighths of the bound on meshes. */
 static bool is_too_large(const camber_mesh *mesh, const camber_mesh_part *part, part_size size, unsigned eighths) {
     const uint64_t records = record_bytes(mesh, size), indices = index_bytes(mesh, size);
     return (records > indices ? records : indices) > mesh->device->info.largest_buffer_bytes ||
            needed_bytes(mesh, part, size) > camber_device_share(mesh->device, eighths);
 }
 
-/* Of a part of one polyline and of several: see memory.c. */
+/* Eighths of the bound for a part of a single polyline, and of several: cl/memory.h. */
 enum { ALONE = 4, TOGETHER = 1 };
 
 bool camber_part_may_hold(const camber_mesh *mesh, const camber_mesh_part *part, uint64_t slots) {
@@ -416,6 +435,7 @@ camber_status camber_part_check_slots(const camber_mesh *mesh, const camber_mesh
     return CAMBER_OK;
 }
 
+/* Fails because a polyline alone is too large, and says for which limit. */
 static camber_status fail_alone(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline,
                                 part_size size) {
     const uint64_t records = record_bytes(mesh, size), indices = index_bytes(mesh, size);
@@ -436,7 +456,7 @@ bool camber_part_fits(const camber_mesh *mesh, const camber_mesh_part *part) {
     return !is_too_large(mesh, part, size, part->polyline_count > 1 ? TOGETHER : ALONE);
 }
 
-/* What the part has before a polyline. */
+/* Finds how much a part has before a polyline, from what the scan left. */
 static camber_status size_before(const camber_mesh *mesh, const camber_mesh_part *part, camber_slot_starts *starts,
                                  size_t polyline, part_size *size) {
     size_t slot = 0;
@@ -455,7 +475,12 @@ static part_size subtract(part_size a, part_size b) {
     return (part_size){a.slots - b.slots, a.records - b.records, a.indices - b.indices, a.given - b.given};
 }
 
-/* The polylines that parts after the first begin with: as many in each part as its output buffers take. */
+/* Finds where to cut: the polylines with which the new parts begin, but for the first. Each part takes polylines until
+ * its output would be too large.
+ *
+ *     polylines   | a | b | c | d | e |     start: what lies before the part that is being filled
+ *                     cut ^       ^         before, after: what lies before and after polyline i
+ */
 static camber_status find_cuts(const camber_mesh *mesh, const camber_mesh_part *part, camber_slot_starts *starts,
                                size_t **cuts, size_t *cut_count) {
     const size_t end = part->first_polyline + part->polyline_count;
@@ -480,6 +505,7 @@ static camber_status find_cuts(const camber_mesh *mesh, const camber_mesh_part *
     return CAMBER_OK;
 }
 
+/* Cuts a part before each of the polylines in cuts. Buffers stay with the first of the new parts. */
 static camber_status insert_parts(camber_mesh *mesh, size_t which, const size_t *cuts, size_t cut_count) {
     if (!reserve_parts(mesh, mesh->part_count + cut_count))
         return CAMBER_ERROR_MEMORY;
@@ -500,7 +526,7 @@ camber_status camber_mesh_add_part(camber_mesh *mesh, size_t first_polyline, siz
     return CAMBER_OK;
 }
 
-/* Takes up the part behind, whose slots can be made anew with its own. */
+/* Merges a part with the one behind it, which loses its buffers. The slots of both are made anew. */
 static void merge_with_next(camber_mesh *mesh, size_t which) {
     camber_mesh_part *part = mesh->parts + which;
     const size_t end = part[1].first_polyline + part[1].polyline_count;
@@ -523,7 +549,7 @@ void camber_mesh_compact_parts(camber_mesh *mesh) {
         const part_size both = {part[0].slot_count + part[1].slot_count, part[0].record_count + part[1].record_count,
                                 part[0].index_count + part[1].index_count, part[0].given_count + part[1].given_count};
         const camber_mesh_part joint = {.first_point = part[0].first_point, .end_point = part[1].end_point};
-        /* What it then has is not known before the next frame: it waits for that before it takes up more. */
+        /* How much the merged part will have is known after the next frame. Only then may it merge again. */
         if (part[0].section == part[1].section && needed_bytes(mesh, &joint, both) <= most)
             merge_with_next(mesh, i);
     }

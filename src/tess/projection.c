@@ -1,4 +1,20 @@
-/* Aiming a camera at a network: what the kernels need of the camera, in the network's steps and in px. */
+/* Aims a camera at a network.
+ *
+ * Input: the camera (where it looks, scale, bearing, pitch) and the strokes, whose widths and offsets decide how far
+ * from the picture a line still matters. Output: camber_projection, in the network's steps and in px. Main idea:
+ * doubles are used here only, once a frame. An origin near the camera is subtracted in integers, so that floats are
+ * exact enough for what is left.
+ *
+ *     seen     the box of steps that can reach the picture: stretches whose boxes miss it are skipped
+ *     window   the picture and a margin, px: segments are cut there
+ *
+ *          +----------- window --------------+        without pitch, a rectangle
+ *          |  margin                         |        with pitch, a trapezoid: far_y is its upper side
+ *          |     +------ picture ------+     |
+ *          |     |                     |     |             \----- far_y -----/
+ *          |     +---------------------+     |              \      .       /     .: where the camera looks at
+ *          +---------------------------------+               \-- near_y --/
+ */
 #include "base/perspective.h"
 #include "tess/network.h"
 
@@ -6,13 +22,13 @@
 
 #include <math.h>
 
-/* A miter limit without reason must not undo the cutting. */
+/* An absurd miter limit must not widen the window so far that nothing is cut. */
 static const double LARGEST_REACH_PX = 65536.0;
-/* How far from a place of an offset line, in offsets, lies what decides whether it is there: as far as a leg's end may
- * lie from what it hides, and what is looked at from there. kernels/offset.h */
+/* How far from a point of an offset line the source line still matters for it, in offsets. The end of an offset segment
+ * may lie this reach away from what it hides, and from there the neighbours are searched again: kernels/offset.h. */
 static const double LOOKS = 2.0 * (double)CAMBER_OFFSET_REACH + 1.0;
 
-/* No pixel of a projected point is infinite. */
+/* Bounds, so that no projected coordinate is infinite. */
 static const double LARGEST_STEP_PX = 1e9, FARTHEST_PX = 1e30;
 
 static camber_status check_camera(const camber_network *network, const camber_camera *camera) {
@@ -44,7 +60,7 @@ static camber_status check_camera(const camber_network *network, const camber_ca
     return CAMBER_OK;
 }
 
-/* How far from its polyline a stroke touches pixels. */
+/* How far from its line a stroke touches pixels, px. */
 static double reach_of(const camber_stroke *stroke) {
     const double half = 0.5 * (double)stroke->width_px;
     double factor = stroke->cap == CAMBER_CAP_SQUARE ? 1.5 : 1.0; /* a corner lies sqrt(2) away */
@@ -56,7 +72,7 @@ static double reach_of(const camber_stroke *stroke) {
     return fmin(half * factor, fmax(half, LARGEST_REACH_PX));
 }
 
-/* How far from its polyline a stroke with an offset runs. */
+/* How far from its source line a stroke with an offset runs, px, at corners too. */
 static double offset_of(const camber_stroke *stroke) {
     const double limit = stroke->miter_limit > 0.0f ? (double)stroke->miter_limit : 2.0;
     const double far = fabs((double)stroke->offset_px);
@@ -65,8 +81,8 @@ static double offset_of(const camber_stroke *stroke) {
     return fmin(far * (stroke->join == CAMBER_JOIN_MITER ? fmax(limit, 1.1) : 1.1), fmax(far, LARGEST_REACH_PX));
 }
 
-/* Steps of the network, rounded outwards, down where by is below 0, and bound to 32 bits. What is too far or too small
- * for a double is all of it. */
+/* A coordinate in steps, moved outwards by `by` steps and bound to 32 bits; by is below 0 for the lower side of a box.
+ * Where a double cannot tell, the answer is the farthest step: nothing is skipped. */
 static int32_t outwards(double offset, double step, double by) {
     const double steps = floor(offset / step) + by;
     if (isnan(steps))
@@ -74,6 +90,7 @@ static int32_t outwards(double offset, double step, double by) {
     return steps <= (double)INT32_MIN ? INT32_MIN : steps >= (double)INT32_MAX ? INT32_MAX : (int32_t)steps;
 }
 
+/* The step nearest to a coordinate, within the network's box. */
 static double origin_of(double offset, double step) {
     const double steps = floor(offset / step + 0.5);
     return !(steps > 0.0) ? 0.0 : steps >= CAMBER_NETWORK_STEPS ? CAMBER_NETWORK_STEPS : steps;
@@ -83,13 +100,14 @@ static double bound_px(double px) {
     return fmin(fmax(px, -FARTHEST_PX), FARTHEST_PX);
 }
 
-/* What is seen of the plane, px from where the camera looks at: |x| up to side - slope * y, y from far to near. */
+/* The trapezoid of the plane that a camera with a pitch sees, px from the point that it looks at: y from far_y to
+ * near_y, and |x| up to side - slope * y. */
 typedef struct trapezoid {
     double side, slope, far_y, near_y;
 } trapezoid;
 
-/* With what reaches into the picture from outside. A pixel more on each side; and past the far plane no more than twice
- * its depth, since a pixel may reach the horizon. */
+/* The trapezoid of a camera, grown by reach for strokes that reach into the picture from outside, and by a pixel on
+ * each side. A pixel may reach the horizon: the trapezoid ends at twice the depth of the far plane. */
 static trapezoid trapezoid_of(const camber_camera *camera, const camber_perspective *p, double reach) {
     const double half_x = 0.5 * camera->width + 1.0, half_y = 0.5 * camera->height + 1.0, slope = p->fall * half_x;
     const double seen_y = p->far_y - 1.5, near = half_y * camber_perspective_depth(p, half_y) / p->cosine;
@@ -101,6 +119,7 @@ static trapezoid trapezoid_of(const camber_camera *camera, const camber_perspect
                        .near_y = near + reach + 4.0};
 }
 
+/* Replaces the window and the box of a projection by those of a camera with a pitch. */
 static void aim_pitched(const camber_network *network, const camber_camera *camera, double reach,
                         camber_projection *p) {
     const camber_perspective perspective = camber_perspective_of(camera->pitch_deg, camera->height);
@@ -143,7 +162,7 @@ camber_status camber_network_aim(const camber_network *network, const camber_cam
         return camber_fail(network->context, CAMBER_ERROR_ARGUMENT,
                            "a measured mesh of a network that is not; make the network measured");
     const double angle = fmod(camera->bearing_deg, 360.0) * (3.14159265358979323846 / 180.0);
-    const bool quarters = remainder(camera->bearing_deg, 90.0) == 0.0; /* axis-parallel lines stay so */
+    const bool quarters = remainder(camera->bearing_deg, 90.0) == 0.0; /* exact, so that lines along an axis stay so */
     const double cosine = quarters ? round(cos(angle)) : cos(angle), sine = quarters ? round(sin(angle)) : sin(angle);
     const double step = network->step, scale = step * camera->scale_px;
     const double origin_x = origin_of(camera->x - network->x0, step),
@@ -158,7 +177,7 @@ camber_status camber_network_aim(const camber_network *network, const camber_cam
     }
     reach += camera->translate_px;
     const double margin = fmax(reach + looks + 16.0, 64.0);
-    /* Half the box of the turned picture and what strokes reach around it, in world units. */
+    /* Half the box of the turned picture, with the reach of strokes around it, in world units. */
     const double across = half_x + reach + 1.0, down = half_y + reach + 1.0;
     const double seen_x = (across * fabs(cosine) + down * fabs(sine)) / camera->scale_px;
     const double seen_y = (across * fabs(sine) + down * fabs(cosine)) / camera->scale_px;

@@ -1,4 +1,13 @@
-/* The sections of a network: the spans of its points that lie on a device together, their layout and their upload. */
+/* The sections of a network: spans of its points that are loaded to a device together.
+ *
+ * Input: a network, and the limits of the device. Output: the sections that a mesh holds, with buffers while they are
+ * needed, and parts that begin as one a section. Main idea: a section is as many whole entries as fit the device's
+ * largest buffer and an eighth of the bound on memory. It is uploaded when a part needs it and may be evicted
+ * afterwards (memory.c). A device that works in host memory reads the network's own arrays, without a copy.
+ *
+ *     entries     | 0 | 1 | 2 | 3 | 4 | 5 | 6 |
+ *     sections    |-- 0 ------|-- 1 ----------|
+ *     parts       |-- 0 --|-1-|-- 2 --|-- 3 --|      cut where their output is too large */
 #include "tess/network.h"
 
 #include <string.h>
@@ -33,13 +42,15 @@ void camber_mesh_release_source(camber_mesh *mesh) {
     camber_mesh_count_bytes(mesh);
 }
 
-/* A buffer that the kernels read. A device that works in host memory reads the network's own, which is held as long. */
+/* Makes a buffer that the kernels read. is_kept: the bytes stay as they are for as long as the buffer lives, so that a
+ * device that works in host memory can read them in place. */
 static camber_status upload_array(const camber_device *device, const void *bytes, size_t size_bytes, bool is_kept,
                                   cl_mem *mem) {
     const cl_mem_flags from = device->host_memory && is_kept ? CL_MEM_USE_HOST_PTR : CL_MEM_COPY_HOST_PTR;
     return camber_make_buffer(device, CL_MEM_READ_ONLY | from, size_bytes, bytes, mem);
 }
 
+/* Uploads the stretch of each chunk's first point, counted from the section's first stretch. */
 static camber_status upload_chunk_stretches(const camber_device *device, const camber_network *network,
                                             camber_section *section) {
     const size_t count = camber_network_chunk_count(section->end_point - section->first_point);
@@ -99,11 +110,13 @@ static camber_section make_section(const camber_network *network, size_t first, 
                             .end_point = camber_network_first_point(network, end)};
 }
 
+/* Counts one stretch more than the section has: each ends where the next begins. */
 static uint64_t bytes_of_stretches(const camber_network *network, const camber_section *section) {
     return ((uint64_t)network->entry_runs[section->end_entry] - network->entry_runs[section->first_entry] + 1) *
            (sizeof(camber_run) + (network->lengths ? sizeof *network->totals : 0));
 }
 
+/* The size of the section's largest buffer. */
 static uint64_t larger_bytes(const camber_network *network, const camber_section *section) {
     const uint64_t points = 4 * ((uint64_t)section->end_point - section->first_point);
     const uint64_t runs = bytes_of_stretches(network, section);
@@ -117,14 +130,14 @@ uint64_t camber_section_bytes(const camber_network *network, const camber_sectio
            4 * (uint64_t)camber_network_chunk_count((size_t)points);
 }
 
-/* Whether the device makes the buffers of a section, and its share of memory takes them. */
+/* Whether a section fits the device's buffers and its share of memory. */
 static bool section_fits(const camber_mesh *mesh, const camber_section *section) {
     const camber_network *network = mesh->held->network;
     return larger_bytes(network, section) <= mesh->device->info.largest_buffer_bytes &&
            camber_section_bytes(network, section, true) <= camber_device_share(mesh->device, 1);
 }
 
-/* The entry behind the last that fits a section beginning with first; first itself where none does. */
+/* Returns the entry behind the last that fits into a section beginning with first; first itself where none does. */
 static size_t find_section_end(const camber_mesh *mesh, size_t first) {
     const camber_network *network = mesh->held->network;
     size_t low = first, high = network->entry_count + 1;
@@ -139,6 +152,7 @@ static size_t find_section_end(const camber_mesh *mesh, size_t first) {
     return low;
 }
 
+/* Fails because an entry alone is too large, and says for which limit. */
 static camber_status fail_entry(const camber_mesh *mesh, size_t entry) {
     const camber_network *network = mesh->held->network;
     const camber_section section = make_section(network, entry, entry + 1);
@@ -147,6 +161,7 @@ static camber_status fail_entry(const camber_mesh *mesh, size_t entry) {
                                                             : camber_fail_memory(mesh, entry, 4 * all);
 }
 
+/* Divides the entries into sections, and adds a part for each that has points. */
 static camber_status lay_out_sections(camber_mesh *mesh) {
     struct camber_held_network *held = mesh->held;
     const camber_network *network = held->network;
@@ -170,6 +185,7 @@ static camber_status lay_out_sections(camber_mesh *mesh) {
     return CAMBER_OK;
 }
 
+/* Holds the network, copies its rows, and lays out sections and parts. */
 static camber_status hold_network(camber_mesh *mesh, camber_network *network) {
     camber_context *context = mesh->device->context;
     const size_t count = network->entry_count;

@@ -1,5 +1,5 @@
-/* Where a slot's vertices and indices begin within its block: what scan left for the run of slots that a work-item
- * took, and from there on the counts again. */
+/* Where a slot's vertices and indices begin within its block. The scan stores this only for the first slot of each
+ * chunk that a work-item took. From there on the host counts again, from the join words. */
 #include "tess/mesh.h"
 
 #include "kernels/join.h"

@@ -1,7 +1,10 @@
-/* What classify and scan left on the device, a point at a time, for proofs. */
+/* Reads back what classify and scan left on the device, a record a point, for checks against the CPU twin.
+ *
+ * Input: a tessellated mesh. Output: camber_stages, its points in the order of the polylines. Nothing that the device
+ * left is trusted: a broken kernel must show up as a difference, never as a read outside of a buffer. */
 #include "tess/mesh.h"
 
-/* A part's arrays as the host sees them. */
+/* A part's arrays, mapped into host memory. */
 typedef struct arrays {
     float *x, *y;
     cl_uint *info, *joins;
@@ -9,6 +12,7 @@ typedef struct arrays {
     camber_slot_starts starts;
 } arrays;
 
+/* Maps a buffer for reading. Does nothing after an earlier failure, so that calls can follow each other. */
 static void *map(const camber_mesh *mesh, cl_mem mem, size_t words, camber_status *status) {
     if (*status != CAMBER_OK)
         return NULL;
@@ -26,7 +30,7 @@ static void unmap(const camber_mesh *mesh, cl_mem mem, void *bytes) {
         clEnqueueUnmapMemObject(mesh->device->queue, mem, bytes, 0, NULL, NULL);
 }
 
-/* camber_part_slot, of which each call asks the device. */
+/* The same as camber_part_slot, but from mapped arrays: that function asks the device at each call. */
 static size_t slot_of(const camber_mesh *mesh, const camber_mesh_part *part, const arrays *a, size_t polyline) {
     const size_t given = camber_part_given_slot(mesh, part, polyline);
     if (!a->places)
@@ -35,8 +39,8 @@ static size_t slot_of(const camber_mesh *mesh, const camber_mesh_part *part, con
     return is_behind ? part->course.made_count : a->places[given];
 }
 
-/* The points of a part, behind those that stages holds. Where a device has counted wrongly, slots of polylines may lie
- * past the part's or before those of others: none is read twice. */
+/* Appends the points of a part to stages. Where a device has counted wrongly, a polyline's slots may lie past the
+ * part's end or overlap another's: slots only ever go forward, so that none is read twice. */
 static camber_status append_points(const camber_mesh *mesh, const camber_mesh_part *part, arrays *a,
                                    camber_stages *stages) {
     size_t count = 0;

@@ -1,4 +1,18 @@
-/* classify -> scan -> emit on a device, a part of the mesh at a time. */
+/* Tessellates a mesh on a device, a part at a time.
+ *
+ * Input: polylines, or a network and a camera; and strokes. Output: each part's records and indices in its buffers, and
+ * the mesh's counts. Main idea: first the sizes, then the output. So buffers are exact, no kernel needs an atomic, and
+ * the same input gives the same bytes.
+ *
+ *     slots of the part   uploaded; or projected from a network; or made beside source lines
+ *        |  classify      a slot: its join word, from its neighbours and its row
+ *        |  scan          a chunk: vertices and indices before it in its block; a block: its sum
+ *        |  the host adds the blocks' sums up, and checks that the part fits: else it is cut, and done again
+ *        v  emit          a slot: its records and indices, where the sums say
+ *     output buffers
+ *
+ * Where memory is bounded and full, the parts that come last are counted but not emitted; camber_part_ensure_made emits
+ * them when they are needed. */
 #include "kernels/layout.h"
 #include "tess/measures.h"
 #include "tess/network.h"
@@ -48,6 +62,7 @@ void camber_scan_blocks(const uint32_t *sums, size_t block_count, uint64_t *base
     }
 }
 
+/* Adds up the blocks' sums, and sets how much output the part has. */
 static camber_status scan_blocks(const camber_mesh *mesh, camber_mesh_part *part) {
     const camber_device *device = mesh->device;
     const size_t blocks = part->slot_count / device->block;
@@ -73,7 +88,7 @@ void camber_add_ms(cl_event event, double *ms) {
     *ms += (double)(end - begin) * 1e-6;
 }
 
-/* classify and scan: what the part's output takes. */
+/* Runs classify and scan: finds how much output the part has. */
 static camber_status classify_and_scan(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program) {
     const camber_device *device = mesh->device;
     cl_event events[2] = {NULL, NULL};
@@ -92,7 +107,8 @@ static camber_status classify_and_scan(camber_mesh *mesh, camber_mesh_part *part
     return status;
 }
 
-/* Room in an output buffer, and some more where there is plenty: the next frame of a network may take it. */
+/* Makes room in an output buffer. For a network a quarter more, where the device has plenty: the next frame may need
+ * it. */
 static camber_status reserve_buffer(camber_mesh *mesh, camber_mesh_part *part, size_t which, size_t size_bytes) {
     camber_buffer *buffer = part->buffers + which;
     const size_t room = size_bytes + (mesh->held ? size_bytes / 4 : 0);
@@ -115,6 +131,7 @@ static camber_status reserve_output(camber_mesh *mesh, camber_mesh_part *part) {
     return status == CAMBER_OK ? mesh->ops->begin(mesh->ops_user, part->buffers, camber_buffer_count(mesh)) : status;
 }
 
+/* Runs emit and waits for it. */
 static camber_status emit(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program) {
     const camber_device *device = mesh->device;
     camber_status status =
@@ -170,7 +187,7 @@ static camber_status upload_rows(camber_mesh *mesh, const camber_row *rows, size
                            "%zu strokes take a buffer of %zu bytes, and %s makes none above %llu; merge equal ones",
                            row_count, count * sizeof *rows, device->info.name,
                            (unsigned long long)device->info.largest_buffer_bytes);
-    /* Here and on the device, and half as many again where more come than last time. */
+    /* Rows lie on the host and on the device, and camber_grow may make the host's array half as large again. */
     const uint64_t size_bytes = count * sizeof *rows * 5 / 2;
     if (size_bytes > camber_device_share(device, 1))
         return camber_fail(device->context, CAMBER_ERROR_LIMIT,
@@ -187,7 +204,10 @@ static camber_status upload_rows(camber_mesh *mesh, const camber_row *rows, size
     return camber_write_buffer(device, mesh->rows, 0, count * sizeof *rows, rows);
 }
 
-/* A part's slots, and what its output takes. *fits is false where the slots are too many. */
+/* Makes a part's slots, then finds how much output it has. *fits is false, and nothing is there, where the slots are
+ * too many. The steps, each only where the mesh has such a thing: 1  slots: project them from the network, or upload
+ * them 2  arc lengths of polylines; a network's slots come with theirs 3  offset lines in place of their source lines
+ *     4  classify and scan */
 static camber_status make_slots_and_scan(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program,
                                          bool *fits) {
     camber_status status = mesh->held ? camber_part_project(mesh, part, fits)
@@ -207,13 +227,14 @@ static camber_status make_slots_and_scan(camber_mesh *mesh, camber_mesh_part *pa
     return status;
 }
 
+/* Emits a part that has been counted; from then on it is made. */
 static camber_status emit_unless_empty(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program) {
     const camber_status status = part->record_count > 0 ? emit(mesh, part, program) : CAMBER_OK;
     part->made = status == CAMBER_OK;
     return status;
 }
 
-/* Numbers a part's output behind that of the parts before. */
+/* Numbers a part's output behind that of the parts before it. */
 static camber_status number_part(camber_mesh *mesh, camber_mesh_part *part) {
     camber_mesh_info *info = &mesh->mesh_info;
     part->first_record = info->record_count;
@@ -227,9 +248,12 @@ static camber_status number_part(camber_mesh *mesh, camber_mesh_part *part) {
                : CAMBER_OK;
 }
 
-/* Part after part; one whose output turns out too large is split, and what takes its place is done anew. Once memory is
- * full, parts are measured only: the first ones stay, and are what is drawn first. Where parts may have to go, joins
- * are counted while they are there. */
+/* Goes through the parts. i stays where a part is cut, so that the first of the new parts is next.
+ *     slots do not fit    -> cut the part in two at the middle of its polylines
+ *     output does not fit -> cut it where the scan says that the output fits
+ *     else                -> number it; emit it unless memory is full
+ * Once memory is full, parts are only counted. The first ones stay, as they are drawn first. Joins are counted while
+ * each part is there, if parts may be evicted later. */
 static camber_status tessellate_parts(camber_mesh *mesh, const camber_program *program) {
     camber_status status = CAMBER_OK;
     size_t segments = 0;
@@ -296,7 +320,7 @@ camber_status camber_part_ensure_made(camber_mesh *mesh, camber_mesh_part *part)
     return status;
 }
 
-/* What is tessellated: polylines, or else a network as a camera sees it. */
+/* The source of a tessellation: polylines, or else a network as a camera sees it. */
 typedef struct source {
     const camber_polylines *polylines;
     camber_network *network;
@@ -304,6 +328,7 @@ typedef struct source {
     uint32_t row_count;
 } source;
 
+/* Divides the source into parts, and aims the camera at a network. */
 static camber_status plan_parts(camber_mesh *mesh, const source *from, const camber_tessellation_desc *desc) {
     if (from->polylines)
         return camber_mesh_plan(mesh, from->polylines);
@@ -311,6 +336,8 @@ static camber_status plan_parts(camber_mesh *mesh, const source *from, const cam
     return status == CAMBER_OK ? camber_mesh_aim(mesh, from->camera, desc) : status;
 }
 
+/* Resets the mesh, notes which kinds of joins and caps its rows have, plans its parts and tessellates them. On failure
+ * the mesh is empty. */
 static camber_status tessellate(camber_mesh *mesh, const source *from, const camber_tessellation_desc *desc) {
     const camber_mesh_info nothing = {
         .method = desc->method, .strips = desc->method == CAMBER_METHOD_STRIP, .measured = desc->measured};

@@ -1,5 +1,17 @@
-/* The CPU twin: what the kernels are held against. It walks each polyline from its first point to its last and appends,
- * with no counts, scans or offsets, and shares only the formulas of kernels/join.h with the device. */
+/* The CPU twin of classify, scan and emit: the specification that the kernels are compared with.
+ *
+ * Input: polylines and strokes. Output: camber_mesh_data, and where wanted camber_stages. Main idea: it walks each
+ * polyline from its first point to its last and appends records and triangles. It needs no counts and no scan, and
+ * shares only the formulas of kernels/join.h with the device. So a mistake in the kernels' bookkeeping cannot hide in a
+ * copy of it.
+ *
+ * A strip's records, for an open line A B C D that has a tight join at B and a split join at C:
+ *
+ *     point        A             B           C                   D
+ *     record   break start    end start   end break start       end
+ *
+ * A plain join has a single end, with which the strip goes on. For kite and fan there is one record a slot, and the
+ * walk appends triangles: the body of each segment when it reaches the segment's end, then that point's join. */
 #include "tess/measures.h"
 #include "tess/offset.h"
 
@@ -7,19 +19,20 @@
 
 #include <string.h>
 
+/* The walk's state: what it reads, and what it appends to. */
 typedef struct twin {
     const camber_polylines *polylines;
     const camber_row *rows;
     camber_u32 method;
     camber_mesh_data *data;
-    const camber_measure *measures; /* of each slot. NULL: not measured */
+    const camber_measure *measures; /* one a slot. NULL: without arc lengths */
     camber_stages *stages;          /* NULL: not wanted */
-    uint32_t polyline, point;       /* of its next point */
+    uint32_t polyline, point;       /* of the next point in stages */
     size_t record_capacity, measure_capacity, index_capacity, stage_capacity;
-    bool failed; /* out of memory, or of 32-bit indices */
+    bool failed; /* out of memory, or out of 32-bit indices: nothing is appended any more */
 } twin;
 
-/* What is known of a point when the walk comes to it: its join word and that before it. */
+/* The point that the walk has reached: its slot, info and join word, and the join word of the slot before. */
 typedef struct visited_point {
     size_t slot;
     camber_u32 info, before, join;
@@ -32,7 +45,7 @@ static bool grow_records(twin *t) {
            (!t->measures || camber_grow(context, &t->data->measures, &t->measure_capacity, count, sizeof *t->measures));
 }
 
-/* A record of a slot, whose place may be another's. */
+/* Appends a record that belongs to a slot. Its coordinates may be another slot's. */
 static void push_record(twin *t, size_t slot, camber_record record) {
     camber_mesh_info *info = &t->data->info;
     if (t->failed || info->record_count >= camber_records_max(t->data->info.method) || !grow_records(t)) {
@@ -61,12 +74,12 @@ static void push_triangle(twin *t, uint32_t a, uint32_t b, uint32_t c) {
     t->data->info.triangle_count++;
 }
 
-/* A record of the point itself. */
+/* Appends a record at the point itself. */
 static void push_point(twin *t, const visited_point *p, camber_u32 join, camber_u32 last) {
     push_record(t, p->slot, (camber_record){t->polylines->x[p->slot], t->polylines->y[p->slot], join, last});
 }
 
-/* Rings and open ends are told apart by the flags of the point. */
+/* Makes the join word of a slot: 0 for a sentinel, a cap at the end of an open line, else a join. */
 static camber_u32 join_word(const twin *t, size_t slot, float *half_shorter) {
     const camber_polylines *p = t->polylines;
     const camber_u32 info = p->info[slot];
@@ -83,7 +96,7 @@ static camber_u32 join_word(const twin *t, size_t slot, float *half_shorter) {
 
 /* ---- strip ---- */
 
-/* A strip begins: where the segment before it comes in from, then the point. */
+/* Begins a strip: a break at the slot `from`, where the segment before the point comes from, then the point. */
 static void push_start(twin *t, const visited_point *p, size_t from, camber_u32 last) {
     push_record(t, p->slot,
                 (camber_record){t->polylines->x[from], t->polylines->y[from], 0,
@@ -92,12 +105,13 @@ static void push_start(twin *t, const visited_point *p, size_t from, camber_u32 
     t->data->info.vertex_count += 2;
 }
 
-/* The point again, for the segment behind it, whose inner vertex is another one. */
+/* Repeats the point at a tight join for the segment that goes out, which has an inner vertex of its own. */
 static void push_tight_start(twin *t, const visited_point *p) {
     push_point(t, p, p->join, p->info | CAMBER_RECORD_START);
     t->data->info.vertex_count++;
 }
 
+/* Appends the records of a point: the table is above camber_strip_records in kernels/join.h. */
 static void walk_strip_point(twin *t, const visited_point *p) {
     const bool first = p->info & CAMBER_POINT_FIRST, last = p->info & CAMBER_POINT_LAST;
     if (first)
@@ -119,6 +133,14 @@ static uint32_t corner_at(size_t slot, camber_u32 corner) {
     return (uint32_t)(slot - 1) << CAMBER_CORNER_BITS | corner;
 }
 
+/* Appends the triangles of a segment's body, which ends at the point. At a join the body has the point as a vertex (a,
+ * b), so that the join's triangles can meet it there; at a cap it is a plain quad's side.
+ *
+ *     left ----------------- end_left          both ends joined: four triangles around a and b
+ *       |                        |             one joined: three
+ *       a                        b             none: two
+ *       |                        |
+ *     right ---------------- end_right */
 static void push_body(twin *t, const visited_point *p) {
     const uint32_t left = corner_at(p->slot - 1, camber_start_corner(p->before, 1.0f, t->method));
     const uint32_t right = corner_at(p->slot - 1, camber_start_corner(p->before, -1.0f, t->method));
@@ -145,8 +167,9 @@ static void push_body(twin *t, const visited_point *p) {
     }
 }
 
-/* Triangles about the centre from the outer edge of the segment in to that of the segment out, each ending with a
- * vertex that carries the right segment; the winding is that of the bodies. */
+/* Appends a join's triangles. They turn around the centre on the outer side, from the outer edge of the segment in to
+ * that of the segment out. A triangle's last vertex tells the shader its segment, so that its order depends on which
+ * vertex carries the right one. The winding is that of the bodies. */
 static void push_join(twin *t, const visited_point *p) {
     const uint32_t triangles = camber_join_triangles(p->join), centre = corner_at(p->slot, CAMBER_CORNER_CENTRE);
     const bool left_is_outer = !(camber_turn_unpack(p->join) > 0.0f);
@@ -181,7 +204,7 @@ static void walk_body_point(twin *t, const visited_point *p) {
     }
 }
 
-/* Where the walk is: what has been appended so far is where this point's vertices and indices begin. */
+/* Notes the point's stages. Whatever has been appended so far is where its vertices and indices begin. */
 static void note_stages(twin *t, size_t slot, camber_u32 join) {
     const camber_polylines *p = t->polylines;
     camber_stages *stages = t->stages;
@@ -213,7 +236,7 @@ static void walk_point(twin *t, const visited_point *p, float half_shorter) {
         note_stages(t, p->slot, p->join);
         camber_mesh_info_add_join(&t->data->info, p->join, p->info);
     }
-    if (t->method != CAMBER_STRIP) /* a record a slot, ghosts too */
+    if (t->method != CAMBER_STRIP) /* a record for each slot, sentinels too */
         push_point(t, p, camber_record_join(p->join, half_shorter), p->info);
     if (real && drawn && t->method == CAMBER_STRIP)
         walk_strip_point(t, p);
@@ -223,7 +246,8 @@ static void walk_point(twin *t, const visited_point *p, float half_shorter) {
 
 static void walk(twin *t) {
     const camber_polylines *lines = t->polylines;
-    const size_t slots = lines->first_slots[lines->polyline_count]; /* the padding behind them is no mesh's */
+    const size_t slots =
+        lines->first_slots[lines->polyline_count]; /* the padding behind them is not part of the mesh */
     visited_point p = {0};
     for (p.slot = 1; p.slot <= slots && !t->failed; p.slot++) {
         float half_shorter = 0.0f;
@@ -234,8 +258,8 @@ static void walk(twin *t) {
     }
 }
 
-/* Of kite and fan the walk notes the record that a point's vertices belong to: which of its corners are vertices is
- * known when all triangles are there. */
+/* Replaces records by vertices in the stages of kite and fan. The walk could only note a point's record: which of its
+ * corners become vertices is known when all triangles are there. */
 static camber_status number_vertices(camber_context *context, camber_mesh_data *data, camber_stages *stages) {
     uint32_t *first_vertices;
     const camber_status status = camber_mesh_data_find_first_vertices(context, data, &first_vertices);
@@ -246,7 +270,7 @@ static camber_status number_vertices(camber_context *context, camber_mesh_data *
     return status;
 }
 
-/* Tessellates into data, and into stages where they are wanted; both are empty on failure. */
+/* Tessellates into data, and into stages unless that is NULL. Both are empty on failure. */
 static camber_status tessellate(camber_context *context, const camber_polylines *polylines,
                                 const camber_tessellation_desc *desc, camber_mesh_data *data, camber_stages *stages) {
     camber_row *rows = NULL;

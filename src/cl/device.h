@@ -16,9 +16,9 @@ struct camber_device {
     bool rounds_correctly; /* divides and takes roots exactly as the host: kernels equal the twin bit for bit */
     bool host_memory;      /* the device works in the host's memory: it can read the host's arrays in place */
     bool gl_context;       /* cl was made for a GL context, so that GL buffers can be shared */
-    size_t block;          /* points per work-group: CAMBER_BLOCK as its kernels are built */
-    size_t item;           /* points per work-item: CAMBER_ITEM */
-    unsigned lanes;        /* pixels per work-item of the rasterizer: CAMBER_LANES */
+    size_t block;          /* points a work-group: CAMBER_BLOCK as its kernels are built */
+    size_t item;           /* points a work-item: CAMBER_ITEM */
+    unsigned lanes;        /* pixels a work-item of the rasterizer: CAMBER_LANES */
     /* Programs, each NULL until it is first used. */
     struct camber_program *programs[2][2][3];      /* [has arc lengths][has round limits][camber_method] */
     struct camber_program *network_programs[2][2]; /* [has arc lengths][the camera has a pitch] */

@@ -1,5 +1,4 @@
-/* OpenCL buffers. Those in the host's memory count against the run's memory budget; output buffers may be read by GL.
- */
+/* OpenCL buffers. Those in the host's memory count against the run's memory budget. GL may read output buffers. */
 #ifndef CAMBER_CL_BUFFER_H
 #define CAMBER_CL_BUFFER_H
 

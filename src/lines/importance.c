@@ -90,8 +90,7 @@ typedef struct repeat {
     uint32_t node, point; /* the first point of a node, and a later one at the same position */
 } repeat;
 
-/* A hash table from coordinates to the first point that has them, with open addressing; and the repeats found so far.
- */
+/* A hash table from coordinates to the first point that has them, with open addressing; and the repeats so far. */
 typedef struct node_table {
     uint32_t *slots; /* point + 1, or 0 for a free slot. Their number is a power of two, and at most half are in use */
     size_t slot_count;

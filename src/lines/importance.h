@@ -1,5 +1,4 @@
-/* How much each point of a set of polylines matters. With it, simplifying to any tolerance is one comparison a point.
- */
+/* How much each point of a set of polylines matters. Simplifying to any tolerance is then one comparison a point. */
 #ifndef CAMBER_IMPORTANCE_H
 #define CAMBER_IMPORTANCE_H
 

@@ -102,8 +102,7 @@ static size_t simplify_stretch(const float *from, size_t count, double tolerance
     return kept;
 }
 
-/* Simplifies one polyline. Invalid points split it into stretches. They stay, so that cleaning finds and counts them.
- */
+/* Simplifies one polyline. Invalid points split it into stretches, and stay, so that cleaning counts them. */
 static uint32_t simplify_line(const float *from, size_t count, double tolerance_px, double *points, unsigned char *keep,
                               float *to) {
     size_t kept = 0, first = 0;

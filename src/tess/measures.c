@@ -12,8 +12,7 @@
 /* ---- Device ---- */
 
 /* Replaces each chunk's two sums by the lengths that its first line has before the chunk, and its last line behind it.
- * A closed sum means that a line begins, or seen from behind ends, in the chunk: what lies farther is another line's.
- */
+ * A closed sum means that a line begins, or seen from behind ends, in the chunk: past it is another line. */
 static void carry(camber_u64 *sums, size_t chunk_count) {
     camber_u64 before = 0, behind = 0;
     for (size_t i = 0; i < chunk_count; i++) {

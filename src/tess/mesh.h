@@ -101,8 +101,8 @@ camber_status camber_mesh_create_on(camber_device *device, const camber_buffer_o
                                     camber_mesh **mesh);
 /* Makes a part again unless its buffers hold its output. part points into mesh->parts. Other parts may be evicted. */
 camber_status camber_part_ensure_made(camber_mesh *mesh, camber_mesh_part *part);
-/* Finds the first slot of a polyline in its part. The part must be made, as the device may have to be asked. A polyline
- * just behind the part's last gives the end of its slots. */
+/* Finds the first slot of a polyline in its part, whose slots must be in its buffers: the device may have to be asked.
+ * A polyline just behind the part's last gives the end of its slots. */
 camber_status camber_part_slot(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline, size_t *slot);
 /* The same among the given slots, before the offset stages. */
 size_t camber_part_given_slot(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline);
@@ -166,8 +166,7 @@ camber_status camber_part_reserve_with_spare(camber_mesh *mesh, camber_mesh_part
 uint64_t camber_part_needed_bytes(const camber_mesh *mesh, const camber_mesh_part *part);
 /* How many bytes its output buffers are too small for its output. */
 uint64_t camber_part_missing_output_bytes(const camber_mesh *mesh, const camber_mesh_part *part);
-/* Whether so many slots are within the part's share of memory. Always true for a single polyline, which cannot be cut.
- */
+/* Whether so many slots are in the part's share of memory; always true for a single polyline, as it cannot be cut. */
 bool camber_part_may_hold(const camber_mesh *mesh, const camber_mesh_part *part, uint64_t slots);
 /* Sets *fits: whether the device makes a part's buffers for so many slots, and its share of memory takes them. A part
  * of a single polyline, which cannot be cut, fails with CAMBER_ERROR_LIMIT instead. */
@@ -226,8 +225,7 @@ uint64_t camber_input_bytes(const camber_device *device, bool measured, size_t s
 /* How many bytes the source lines of a part take for so many slots. */
 uint64_t camber_course_bytes(bool measured, size_t slots);
 /* Evicts parts and sections until more_bytes can be held in addition, and returns whether they now can. Never evicts
- * keep (NULL: none) and its section, and with spare_made no part of this mesh that is made. The order is in memory.c.
- */
+ * keep (NULL: none) and its section, and with spare_made no part of this mesh that is made. memory.c has the order. */
 bool camber_mesh_evict_for(camber_mesh *mesh, const camber_mesh_part *keep, uint64_t more_bytes, bool spare_made);
 /* Evicts, made parts of this mesh too. Fails with CAMBER_ERROR_LIMIT where that is not enough. */
 camber_status camber_mesh_make_room(camber_mesh *mesh, const camber_mesh_part *keep, uint64_t more_bytes);
@@ -256,13 +254,12 @@ camber_status camber_fail_records(camber_context *context, camber_method method)
 
 /* expand.c: makes the vertices and indices of a mesh from its records and corners. */
 camber_status camber_mesh_expand(camber_context *context, const camber_row *rows, camber_mesh_data *data);
-/* For kite and fan: gives the number of each record's first vertex, record_count + 1 entries, freed with camber_free.
- */
+/* For kite and fan: gives each record's first vertex by number, record_count + 1 of them, freed with camber_free. */
 camber_status camber_mesh_data_find_first_vertices(camber_context *context, camber_mesh_data *data,
                                                    uint32_t **first_vertices);
 
-/* Adds the joins of a part, which must be made, to counts, and its segments to *segments. camber_mesh_set_counts stores
- * the sums over all parts. */
+/* Adds the joins of a part, whose join words must be in its buffers, to counts, and its segments to *segments.
+ * camber_mesh_set_counts stores the sums over all parts. */
 camber_status camber_part_count_joins(const camber_mesh *mesh, const camber_mesh_part *part, camber_mesh_info *counts,
                                       size_t *segments);
 void camber_mesh_set_counts(camber_mesh *mesh, camber_mesh_info counts, size_t segments);

@@ -117,8 +117,7 @@ static void store_point(camber_network *n, const double *point, double shift_x, 
     run->y1 = y > run->y1 ? y : run->y1;
 }
 
-/* Stores the valid points [first, end) of the desc as a stretch. Its ends have infinite importance: they always stay.
- */
+/* Stores the valid points [first, end) as a stretch. Its ends have infinite importance: they always stay. */
 static void store_stretch(camber_network *n, const camber_network_desc *desc, camber_network_entry entry, size_t first,
                           size_t end, bool may_close) {
     const double *from = desc->points + 2 * first, *last = desc->points + 2 * (end - 1);

@@ -1,5 +1,4 @@
-/* Networks as the kernels read them (network.c), aiming at them (projection.c), and what lies on a device (sections.c).
- */
+/* Networks as kernels read them (network.c), aiming at them (projection.c), and what lies on a device (sections.c). */
 #ifndef CAMBER_TESS_NETWORK_H
 #define CAMBER_TESS_NETWORK_H
 

@@ -127,6 +127,7 @@ static camber_status survey(camber_mesh *mesh, camber_mesh_part *part, const cam
 }
 
 /* Steps, each of which may fail:
+ *
  *     1  upload the part's section, unless it is on the device
  *     2  count the slots of each chunk (cull_count); done where the camera sees none
  *     3  check that so many slots fit; if not, *fits is false and the caller cuts the part in two

@@ -1,5 +1,4 @@
-/* The style table that kernels and twin read, made from strokes; and the count of joins that both tessellations share.
- */
+/* The style table that kernels and twin read, made from strokes; and the count of joins that both share. */
 #include "tess/mesh.h"
 
 #include "kernels/join.h"

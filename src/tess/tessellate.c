@@ -204,9 +204,12 @@ static camber_status upload_rows(camber_mesh *mesh, const camber_row *rows, size
     return camber_write_buffer(device, mesh->rows, 0, count * sizeof *rows, rows);
 }
 
-/* Makes a part's slots, then finds how much output it has. *fits is false, and nothing is there, where the slots are
- * too many. The steps, each only where the mesh has such a thing: 1  slots: project them from the network, or upload
- * them 2  arc lengths of polylines; a network's slots come with theirs 3  offset lines in place of their source lines
+/* Makes a part's slots, then finds how much output it has. *fits is false, and there are no slots, where they are too
+ * many. The steps, each only where the mesh has such a thing:
+ *
+ *     1  slots: project them from the network, or upload them
+ *     2  arc lengths of polylines; a network's slots come with theirs
+ *     3  offset lines in place of their source lines
  *     4  classify and scan */
 static camber_status make_slots_and_scan(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program,
                                          bool *fits) {
@@ -249,9 +252,11 @@ static camber_status number_part(camber_mesh *mesh, camber_mesh_part *part) {
 }
 
 /* Goes through the parts. i stays where a part is cut, so that the first of the new parts is next.
+ *
  *     slots do not fit    -> cut the part in two at the middle of its polylines
  *     output does not fit -> cut it where the scan says that the output fits
  *     else                -> number it; emit it unless memory is full
+ *
  * Once memory is full, parts are only counted. The first ones stay, as they are drawn first. Joins are counted while
  * each part is there, if parts may be evicted later. */
 static camber_status tessellate_parts(camber_mesh *mesh, const camber_program *program) {

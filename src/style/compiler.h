@@ -2,7 +2,7 @@
 #ifndef CAMBER_COMPILER_H
 #define CAMBER_COMPILER_H
 
-#include "style/expression.h"
+#include "style/evaluation.h"
 #include "style/json.h"
 
 /* Deepest nesting of an expression: compilation recurses that far. */
@@ -109,7 +109,7 @@ bool camber_compile_filter(camber_compiler *c, json_t *json, camber_expression *
 /* Whether the filter picks polygons by their geometry type. Call it on filters that compile. */
 bool camber_filter_asks_polygons(const json_t *json);
 
-/* ---- For operators*.c, filter.c, function.c and property.c ---- */
+/* ---- For operators_*.c, filter.c, function.c and property.c ---- */
 
 /* An empty expression to compile into; afterwards camber_expression_end hands it over or frees it. */
 bool camber_expression_begin(camber_compiler *c, json_t *json);
@@ -134,13 +134,13 @@ bool camber_push_operand(camber_compiler *c, uint32_t node);
 /* Makes a node of the operands past the first_operand-th, and pops them. */
 bool camber_make_node(camber_compiler *c, const camber_node *prototype, size_t first_operand, uint32_t *node);
 /* A node of one operand, node itself. */
-bool camber_wrap_node(camber_compiler *c, camber_op op, camber_typing type, uint32_t *node);
+bool camber_wrap_node(camber_compiler *c, camber_evaluate_fn *evaluate, camber_typing type, uint32_t *node);
 bool camber_make_constant(camber_compiler *c, const camber_value *value, camber_typing type, uint32_t *node);
 bool camber_make_json_constant(camber_compiler *c, const json_t *json, uint32_t *node);
-/* A node of a property of the feature, which the style then collects. op: get or has. */
-bool camber_make_property(camber_compiler *c, camber_op op, const char *name, uint32_t *node);
+/* A node of a property of the feature, which the style then collects. evaluate: that of get or has. */
+bool camber_make_property(camber_compiler *c, camber_evaluate_fn *evaluate, const char *name, uint32_t *node);
 /* A node without operands that reads what reads says. */
-bool camber_make_reader(camber_compiler *c, camber_op op, camber_type type, uint32_t *node);
+bool camber_make_reader(camber_compiler *c, camber_evaluate_fn *evaluate, camber_type type, uint32_t *node);
 bool camber_push_stop(camber_compiler *c, double stop);
 bool camber_push_label(camber_compiler *c, const camber_label *label);
 /* Sorts the labels from the first-th on; fails where one occurs twice and each must be one. */

@@ -33,7 +33,7 @@ static bool is_expression(const json_t *json) {
 }
 
 /* The key of an older filter: a property's name, $type or $id. */
-static bool compile_key(camber_compiler *c, const json_t *array, camber_op op, uint32_t *node) {
+static bool compile_key(camber_compiler *c, const json_t *array, camber_evaluate_fn *evaluate, uint32_t *node) {
     const char *key = json_string_value(json_array_get(array, 1));
     const camber_value yes = {.type = CAMBER_VALUE_BOOL, .boolean = true};
     if (!key) {
@@ -41,12 +41,13 @@ static bool compile_key(camber_compiler *c, const json_t *array, camber_op op, u
         return camber_compiler_fail(c, "expected a property's name; write e.g. [\"==\", \"highway\", \"primary\"]");
     }
     if (strcmp(key, "$id") == 0)
-        return op == CAMBER_OP_HAS ? camber_make_reader(c, CAMBER_OP_HAS_ID, CAMBER_TYPE_BOOL, node)
-                                   : camber_make_reader(c, CAMBER_OP_ID, CAMBER_TYPE_VALUE, node);
+        return evaluate == camber_evaluate_has ? camber_make_reader(c, camber_evaluate_has_id, CAMBER_TYPE_BOOL, node)
+                                               : camber_make_reader(c, camber_evaluate_id, CAMBER_TYPE_VALUE, node);
     if (strcmp(key, "$type") != 0)
-        return camber_make_property(c, op, key, node);
-    return op == CAMBER_OP_HAS ? camber_make_constant(c, &yes, boolean, node)
-                               : camber_make_reader(c, CAMBER_OP_GEOMETRY_TYPE, CAMBER_TYPE_STRING, node);
+        return camber_make_property(c, evaluate, key, node);
+    return evaluate == camber_evaluate_has
+               ? camber_make_constant(c, &yes, boolean, node)
+               : camber_make_reader(c, camber_evaluate_geometry_type, CAMBER_TYPE_STRING, node);
 }
 
 static bool compile_value(camber_compiler *c, const json_t *array, size_t index, uint32_t *node) {
@@ -67,30 +68,33 @@ static bool require_key(camber_compiler *c, const json_t *array, uint32_t *node)
     uint32_t has = 0;
     if (is(json_string_value(json_array_get(array, 1)), "$id"))
         return true;
-    return compile_key(c, array, CAMBER_OP_HAS, &has) && camber_push_operand(c, has) && camber_push_operand(c, *node) &&
-           camber_make_node(c, &(camber_node){.op = CAMBER_OP_ALL, .type = boolean}, first_operand, node);
+    return compile_key(c, array, camber_evaluate_has, &has) && camber_push_operand(c, has) &&
+           camber_push_operand(c, *node) &&
+           camber_make_node(c, &(camber_node){.evaluate = camber_evaluate_all, .type = boolean}, first_operand, node);
 }
 
 /* [op, key, value]; values of different types do not compare, and then it is false. */
 static bool compile_comparison(camber_compiler *c, const json_t *array, const char *op, uint32_t *node) {
     static const struct {
         const char *name;
-        camber_op op;
-    } ops[] = {{"==", CAMBER_OP_EQUAL},      {"!=", CAMBER_OP_EQUAL},  {"<", CAMBER_OP_LESS},
-               {"<=", CAMBER_OP_LESS_EQUAL}, {">", CAMBER_OP_GREATER}, {">=", CAMBER_OP_GREATER_EQUAL}};
+        uint32_t outcomes;
+    } ops[] = {{"==", CAMBER_OUTCOME_EQUAL},  {"!=", CAMBER_OUTCOME_EQUAL},
+               {"<", CAMBER_OUTCOME_LESS},    {"<=", CAMBER_OUTCOME_LESS | CAMBER_OUTCOME_EQUAL},
+               {">", CAMBER_OUTCOME_GREATER}, {">=", CAMBER_OUTCOME_GREATER | CAMBER_OUTCOME_EQUAL}};
     const size_t first_operand = c->operand_count;
-    if (!compile_key(c, array, CAMBER_OP_GET, node) || !camber_push_operand(c, *node) ||
+    if (!compile_key(c, array, camber_evaluate_get, node) || !camber_push_operand(c, *node) ||
         !compile_value(c, array, 2, node) || !camber_push_operand(c, *node))
         return false;
-    camber_node prototype = {.type = boolean};
+    camber_node prototype = {.evaluate = camber_evaluate_comparison, .type = boolean};
     for (size_t i = 0; i < sizeof ops / sizeof *ops; i++)
         if (strcmp(ops[i].name, op) == 0)
-            prototype.op = ops[i].op;
-    if (!camber_make_node(c, &prototype, first_operand, node) || !camber_wrap_node(c, CAMBER_OP_QUIET, boolean, node))
+            prototype.index = ops[i].outcomes;
+    if (!camber_make_node(c, &prototype, first_operand, node) ||
+        !camber_wrap_node(c, camber_evaluate_quiet, boolean, node))
         return false;
     if (json_is_null(json_array_get(array, 2)) && !require_key(c, array, node))
         return false;
-    return !is(op, "!=") || camber_wrap_node(c, CAMBER_OP_NOT, boolean, node);
+    return !is(op, "!=") || camber_wrap_node(c, camber_evaluate_not, boolean, node);
 }
 
 /* Whether all values are strings, or all are integers: labels, then. */
@@ -109,7 +113,7 @@ static bool compile_in(camber_compiler *c, const json_t *array, bool negated, ui
     const size_t first_operand = c->operand_count, first = c->expression->label_count;
     const bool labels = are_labels(array);
     uint32_t value = 0;
-    if (!compile_key(c, array, CAMBER_OP_GET, node) || !camber_push_operand(c, *node))
+    if (!compile_key(c, array, camber_evaluate_get, node) || !camber_push_operand(c, *node))
         return false;
     for (size_t i = 2; i < json_array_size(array); i++) {
         const json_t *json = json_array_get(array, i);
@@ -118,20 +122,21 @@ static bool compile_in(camber_compiler *c, const json_t *array, bool negated, ui
                    : !compile_value(c, array, i, &value) || !camber_push_operand(c, value))
             return false;
     }
-    const camber_node among = {.op = CAMBER_OP_AMONG,
+    const camber_node among = {.evaluate = camber_evaluate_among,
                                .type = boolean,
                                .index = (uint32_t)first,
                                .index_count = (uint32_t)(c->expression->label_count - first)};
-    const camber_node list = {.op = CAMBER_OP_LIST, .type = camber_typing_of(CAMBER_TYPE_ARRAY)};
-    const camber_node in = {.op = CAMBER_OP_IN, .type = boolean};
+    const camber_node list = {.evaluate = camber_evaluate_list, .type = camber_typing_of(CAMBER_TYPE_ARRAY)};
+    const camber_node in = {.evaluate = camber_evaluate_in, .type = boolean};
     const bool made = labels ? camber_sort_labels(c, first, false) && camber_make_node(c, &among, first_operand, node)
                              : camber_make_node(c, &list, first_operand + 1, node) && camber_push_operand(c, *node) &&
                                    camber_make_node(c, &in, first_operand, node);
     bool nulls = false;
     for (size_t i = 2; i < json_array_size(array); i++)
         nulls = nulls || json_is_null(json_array_get(array, i));
-    return made && camber_wrap_node(c, CAMBER_OP_QUIET, boolean, node) && (!nulls || require_key(c, array, node)) &&
-           (!negated || camber_wrap_node(c, CAMBER_OP_NOT, boolean, node));
+    return made && camber_wrap_node(c, camber_evaluate_quiet, boolean, node) &&
+           (!nulls || require_key(c, array, node)) &&
+           (!negated || camber_wrap_node(c, camber_evaluate_not, boolean, node));
 }
 
 /* all, any and none. */
@@ -143,9 +148,10 @@ static bool compile_junction(camber_compiler *c, const json_t *array, const char
             return false;
         camber_compiler_leave(c);
     }
-    const camber_node junction = {.op = is(op, "all") ? CAMBER_OP_ALL : CAMBER_OP_ANY, .type = boolean};
+    const camber_node junction = {.evaluate = is(op, "all") ? camber_evaluate_all : camber_evaluate_any,
+                                  .type = boolean};
     return camber_make_node(c, &junction, first_operand, node) &&
-           (!is(op, "none") || camber_wrap_node(c, CAMBER_OP_NOT, boolean, node));
+           (!is(op, "none") || camber_wrap_node(c, camber_evaluate_not, boolean, node));
 }
 
 static bool compile_filter(camber_compiler *c, json_t *json, size_t depth, uint32_t *node) {
@@ -168,9 +174,10 @@ static bool compile_filter(camber_compiler *c, json_t *json, size_t depth, uint3
         return camber_compiler_fail(
             c, "\"%s\" without a property's name; write e.g. [\"==\", \"highway\", \"primary\"]", op);
     if (is(op, "has"))
-        return compile_key(c, json, CAMBER_OP_HAS, node);
+        return compile_key(c, json, camber_evaluate_has, node);
     if (is(op, "!has"))
-        return compile_key(c, json, CAMBER_OP_HAS, node) && camber_wrap_node(c, CAMBER_OP_NOT, boolean, node);
+        return compile_key(c, json, camber_evaluate_has, node) &&
+               camber_wrap_node(c, camber_evaluate_not, boolean, node);
     if (is(op, "in") || is(op, "!in"))
         return compile_in(c, json, op[0] == '!', node);
     return compile_comparison(c, json, op, node);

@@ -15,8 +15,8 @@ size_t camber_letter_read(const char *text, uint32_t *code);
 size_t camber_letter_write(uint32_t code, char bytes[4]);
 
 /* The other case's code points, two at most. Returns how many. */
-size_t camber_letter_upper(uint32_t code, uint32_t upper[2]);
-size_t camber_letter_lower(uint32_t code, uint32_t lower[2]);
+typedef size_t camber_letter_case_fn(uint32_t code, uint32_t other[2]);
+camber_letter_case_fn camber_letter_upper, camber_letter_lower;
 
 /* The order of two texts by letters, then by diacritics and by case where these count: below 0, 0 or above. */
 int camber_letters_compare(const char *a, const char *b, bool by_case, bool by_diacritics);

@@ -2,7 +2,7 @@
  * that straight pieces between the stops are as good as the expression. */
 #include "style/ramp.h"
 
-#include "style/expression.h"
+#include "style/evaluation.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -110,15 +110,17 @@ static int compare_numbers(const void *left, const void *right) {
 }
 
 static bool is_curve(const camber_node *node) {
-    return (node->op == CAMBER_OP_STEP || node->op == CAMBER_OP_INTERPOLATE) && node->reads_line_progress;
+    return (node->evaluate == camber_evaluate_step || node->evaluate == camber_evaluate_interpolate) &&
+           node->reads_line_progress;
 }
 
 /* Whether the progress is read by curves alone, so that nothing happens between their stops. */
 static bool is_plain(const camber_expression *e) {
     for (size_t i = 0; i < e->node_count; i++) {
         const camber_node *node = e->nodes + i;
-        const bool follows = is_curve(node) && e->nodes[e->links[node->first]].op == CAMBER_OP_LINE_PROGRESS;
-        if (node->reads_line_progress && node->op != CAMBER_OP_LINE_PROGRESS && !follows)
+        const bool follows =
+            is_curve(node) && e->nodes[e->links[node->first]].evaluate == camber_evaluate_line_progress;
+        if (node->reads_line_progress && node->evaluate != camber_evaluate_line_progress && !follows)
             return false;
     }
     return true;

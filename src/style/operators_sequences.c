@@ -1,8 +1,18 @@
-/* Strings and arrays, when expressions are evaluated. Letters are counted, not bytes. */
+/* Strings and arrays: in, index-of, at, slice, length, split, join, concat and their like.
+ *
+ * Strings are UTF-8, and their letters are counted, not their bytes. Each operator's row stands in the table at the
+ * end.
+ */
 #include "style/evaluation.h"
 #include "style/letters.h"
+#include "style/operators.h"
+#include "style/text.h"
 
 #include <math.h>
+#include <string.h>
+
+static const camber_typing any_type = {.type = CAMBER_TYPE_VALUE}, number_type = {.type = CAMBER_TYPE_NUMBER},
+                           string_type = {.type = CAMBER_TYPE_STRING}, bool_type = {.type = CAMBER_TYPE_BOOL};
 
 static bool fail(camber_evaluation *e, const char *cause) {
     return camber_evaluate_fail(e, cause);
@@ -24,7 +34,68 @@ static const char *skip_letters(const char *text, size_t count) {
     return text;
 }
 
-/* ---- Search ---- */
+/* ---- Search, when compiled ---- */
+
+static bool is_needle_type(camber_type type) {
+    return type == CAMBER_TYPE_VALUE || type == CAMBER_TYPE_NULL || type == CAMBER_TYPE_BOOL ||
+           type == CAMBER_TYPE_NUMBER || type == CAMBER_TYPE_STRING;
+}
+
+enum { SORTED_FROM = 8 };
+
+/* Whether the node is a constant array of strings, or of numbers, that is worth sorting. */
+static bool is_list(const camber_node *node) {
+    const camber_value *list = &node->value;
+    if (!camber_is_constant(node) || list->type != CAMBER_VALUE_ARRAY || list->count < SORTED_FROM)
+        return false;
+    for (uint32_t i = 0; i < list->count; i++)
+        if (list->items[i].type != list->items[0].type)
+            return false;
+    return list->items[0].type == CAMBER_VALUE_STRING || list->items[0].type == CAMBER_VALUE_NUMBER;
+}
+
+/* A look into a long list of constants becomes a search among labels. */
+static bool make_among(camber_compiler *c, size_t first_operand, uint32_t *node) {
+    const camber_value list = camber_node_at(c, c->operands[c->operand_count - 1])->value;
+    const size_t first = c->expression->label_count;
+    for (uint32_t i = 0; i < list.count; i++) {
+        const camber_value *item = &list.items[i];
+        const bool text = item->type == CAMBER_VALUE_STRING;
+        const camber_label label = {.string = text ? item->string : NULL, .number = text ? 0.0 : item->number};
+        if (!camber_push_label(c, &label))
+            return false;
+    }
+    c->operand_count--;
+    const camber_node prototype = {
+        .evaluate = camber_evaluate_among, .type = bool_type, .index = (uint32_t)first, .index_count = list.count};
+    return camber_sort_labels(c, first, false) && camber_make_node(c, &prototype, first_operand, node);
+}
+
+/* in, !in and index-of. */
+static bool compile_in(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
+                       uint32_t *node) {
+    (void)expected;
+    char found[CAMBER_TYPING_TEXT_SIZE];
+    const size_t first_operand = c->operand_count;
+    if (!camber_compile_operand(c, array, 1, any_type) || !camber_compile_element(c, array, 2, any_type, node) ||
+        !camber_push_operand(c, *node))
+        return false;
+    const camber_typing needle = camber_node_at(c, c->operands[first_operand])->type;
+    if (!is_needle_type(needle.type))
+        return camber_compiler_fail(c,
+                                    "\"%s\" looks for a string, a number, a boolean or null, found %s; write e.g. "
+                                    "[\"in\", [\"get\", \"kind\"], [\"literal\", [\"a\", \"b\"]]]",
+                                    row->name, camber_typing_name(needle, found));
+    if (json_array_size(array) == 4 && !camber_compile_operand(c, array, 3, number_type))
+        return false;
+    const bool list = row->evaluate == camber_evaluate_in && is_list(camber_node_at(c, *node));
+    const camber_node prototype = {.evaluate = row->evaluate, .type = camber_typing_of(row->result)};
+    if (!(list ? make_among(c, first_operand, node) : camber_make_node(c, &prototype, first_operand, node)))
+        return false;
+    return row->name[0] != '!' || camber_wrap_node(c, camber_evaluate_not, bool_type, node);
+}
+
+/* ---- Search, when evaluated ---- */
 
 static bool is_needle(const camber_value *value) {
     return value->type <= CAMBER_VALUE_STRING;
@@ -70,7 +141,7 @@ static bool find(camber_evaluation *e, const camber_value *needle, const camber_
     return true;
 }
 
-static bool evaluate_in(camber_evaluation *e, const camber_node *node, camber_value *value) {
+bool camber_evaluate_in(camber_evaluation *e, const camber_node *node, camber_value *value) {
     camber_value needle, haystack;
     double found = -1.0;
     if (!camber_evaluate_operand(e, node, 0, &needle) || !camber_evaluate_operand(e, node, 1, &haystack))
@@ -106,7 +177,7 @@ static bool evaluate_index_of(camber_evaluation *e, const camber_node *node, cam
     return true;
 }
 
-/* ---- Parts ---- */
+/* ---- Items and slices ---- */
 
 static bool evaluate_at(camber_evaluation *e, const camber_node *node, camber_value *value) {
     double index;
@@ -121,6 +192,17 @@ static bool evaluate_at(camber_evaluation *e, const camber_node *node, camber_va
         return fail(e, "the index of an array's item is a whole number");
     *value = array.items[(uint32_t)index];
     return true;
+}
+
+static bool compile_at(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
+                       uint32_t *node) {
+    const size_t first_operand = c->operand_count;
+    if (!camber_compile_operand(c, array, 1, number_type) ||
+        !camber_compile_element(c, array, 2, camber_typing_array(expected, CAMBER_ANY_LENGTH), node) ||
+        !camber_push_operand(c, *node))
+        return false;
+    const camber_typing type = camber_typing_item(camber_node_at(c, *node)->type);
+    return camber_make_node(c, &(camber_node){.evaluate = row->evaluate, .type = type}, first_operand, node);
 }
 
 /* An index of slice, counted from the end where it is negative, moved into 0 to count. */
@@ -174,7 +256,41 @@ static bool evaluate_length(camber_evaluation *e, const camber_node *node, cambe
     return true;
 }
 
-/* ---- Making ---- */
+static bool fail_sequence(camber_compiler *c, const camber_operator *row, camber_typing found) {
+    char name[CAMBER_TYPING_TEXT_SIZE];
+    return camber_compiler_fail(c, "\"%s\" takes a string or an array, found %s; convert it", row->name,
+                                camber_typing_name(found, name));
+}
+
+static bool is_sequence(camber_type type) {
+    return type == CAMBER_TYPE_VALUE || type == CAMBER_TYPE_STRING || type == CAMBER_TYPE_ARRAY;
+}
+
+static bool compile_slice(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
+                          uint32_t *node) {
+    (void)expected;
+    const size_t first_operand = c->operand_count;
+    if (!camber_compile_element(c, array, 1, any_type, node) || !camber_push_operand(c, *node))
+        return false;
+    camber_typing type = camber_node_at(c, *node)->type;
+    for (size_t i = 2; i < json_array_size(array); i++)
+        if (!camber_compile_operand(c, array, i, number_type))
+            return false;
+    return is_sequence(type.type)
+               ? camber_make_node(c, &(camber_node){.evaluate = row->evaluate, .type = type}, first_operand, node)
+               : fail_sequence(c, row, type);
+}
+
+static bool compile_length(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
+                           uint32_t *node) {
+    (void)expected;
+    if (!camber_compile_element(c, array, 1, any_type, node))
+        return false;
+    const camber_typing type = camber_node_at(c, *node)->type;
+    return is_sequence(type.type) ? camber_wrap_node(c, row->evaluate, number_type, node) : fail_sequence(c, row, type);
+}
+
+/* ---- New arrays and strings ---- */
 
 static bool make_array(camber_evaluation *e, size_t count, camber_value **items, camber_value *value) {
     *items = count < UINT32_MAX ? camber_arena_alloc(e->arena, count * sizeof **items) : NULL;
@@ -184,7 +300,8 @@ static bool make_array(camber_evaluation *e, size_t count, camber_value **items,
     return camber_evaluate_work(e, count);
 }
 
-static bool evaluate_list(camber_evaluation *e, const camber_node *node, camber_value *value) {
+/* An array of the operands. */
+bool camber_evaluate_list(camber_evaluation *e, const camber_node *node, camber_value *value) {
     camber_value *items;
     if (!make_array(e, node->count, &items, value))
         return false;
@@ -195,7 +312,7 @@ static bool evaluate_list(camber_evaluation *e, const camber_node *node, camber_
 }
 
 /* The end of the piece that begins at text: its separator, or its letter where there is none. */
-static const char *piece_end(const char *text, const char *separator) {
+static const char *part_end(const char *text, const char *separator) {
     const char *end = separator[0] ? strstr(text, separator) : skip_letters(text, 1);
     return end ? end : text + strlen(text);
 }
@@ -207,20 +324,30 @@ static bool evaluate_split(camber_evaluation *e, const camber_node *node, camber
         return false;
     const size_t skipped = strlen(separator);
     size_t count = skipped || *text ? 1 : 0;
-    for (const char *end = piece_end(text, separator); *end; end = piece_end(end + skipped, separator))
+    for (const char *end = part_end(text, separator); *end; end = part_end(end + skipped, separator))
         count++;
     camber_value *items;
     if (!make_array(e, count, &items, value))
         return false;
     for (size_t i = 0; i < count; i++) {
-        const char *end = piece_end(text, separator);
-        const char *piece = camber_arena_text(e->arena, text, (size_t)(end - text));
-        if (!piece)
+        const char *end = part_end(text, separator);
+        const char *part = camber_arena_text(e->arena, text, (size_t)(end - text));
+        if (!part)
             return camber_evaluate_no_memory(e);
-        items[i] = camber_value_string(piece);
+        items[i] = camber_value_string(part);
         text = end + (*end ? skipped : 0);
     }
     return true;
+}
+
+static bool compile_split(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
+                          uint32_t *node) {
+    (void)expected;
+    const size_t first_operand = c->operand_count;
+    const camber_node prototype = {.evaluate = row->evaluate,
+                                   .type = camber_typing_array(string_type, CAMBER_ANY_LENGTH)};
+    return camber_compile_operand(c, array, 1, string_type) && camber_compile_operand(c, array, 2, string_type) &&
+           camber_make_node(c, &prototype, first_operand, node);
 }
 
 static bool evaluate_join(camber_evaluation *e, const camber_node *node, camber_value *value) {
@@ -238,7 +365,16 @@ static bool evaluate_join(camber_evaluation *e, const camber_node *node, camber_
     return camber_text_end(&text, value);
 }
 
-static bool evaluate_concat(camber_evaluation *e, const camber_node *node, camber_value *value) {
+static bool compile_join(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
+                         uint32_t *node) {
+    (void)expected;
+    const size_t first_operand = c->operand_count;
+    return camber_compile_operand(c, array, 1, camber_typing_array(string_type, CAMBER_ANY_LENGTH)) &&
+           camber_compile_operand(c, array, 2, string_type) &&
+           camber_make_node(c, &(camber_node){.evaluate = row->evaluate, .type = string_type}, first_operand, node);
+}
+
+bool camber_evaluate_concat(camber_evaluation *e, const camber_node *node, camber_value *value) {
     camber_text text = {.e = e};
     for (uint32_t i = 0; i < node->count; i++)
         if (!camber_evaluate_operand(e, node, i, value) || !camber_text_add_value(&text, value))
@@ -246,7 +382,8 @@ static bool evaluate_concat(camber_evaluation *e, const camber_node *node, cambe
     return camber_text_end(&text, value);
 }
 
-static bool evaluate_case(camber_evaluation *e, const camber_node *node, camber_value *value) {
+static bool change_case(camber_evaluation *e, const camber_node *node, camber_letter_case_fn *change,
+                        camber_value *value) {
     const char *string;
     camber_text text = {.e = e};
     if (!camber_evaluate_string(e, node, 0, &string))
@@ -255,8 +392,7 @@ static bool evaluate_case(camber_evaluation *e, const camber_node *node, camber_
         uint32_t code, other[2];
         char bytes[4];
         string += camber_letter_read(string, &code);
-        const size_t count =
-            node->op == CAMBER_OP_UPCASE ? camber_letter_upper(code, other) : camber_letter_lower(code, other);
+        const size_t count = change(code, other);
         for (size_t i = 0; i < count; i++)
             if (!camber_text_add(&text, bytes, camber_letter_write(other[i], bytes)))
                 return false;
@@ -264,17 +400,26 @@ static bool evaluate_case(camber_evaluation *e, const camber_node *node, camber_
     return camber_text_end(&text, value);
 }
 
-bool camber_evaluate_text(camber_evaluation *e, const camber_node *node, camber_value *value) {
-    switch (node->op) {
-    case CAMBER_OP_IN: return evaluate_in(e, node, value);
-    case CAMBER_OP_INDEX_OF: return evaluate_index_of(e, node, value);
-    case CAMBER_OP_AT: return evaluate_at(e, node, value);
-    case CAMBER_OP_SLICE: return evaluate_slice(e, node, value);
-    case CAMBER_OP_LENGTH: return evaluate_length(e, node, value);
-    case CAMBER_OP_LIST: return evaluate_list(e, node, value);
-    case CAMBER_OP_SPLIT: return evaluate_split(e, node, value);
-    case CAMBER_OP_JOIN: return evaluate_join(e, node, value);
-    case CAMBER_OP_CONCAT: return evaluate_concat(e, node, value);
-    default: return evaluate_case(e, node, value);
-    }
+static bool evaluate_upcase(camber_evaluation *e, const camber_node *node, camber_value *value) {
+    return change_case(e, node, camber_letter_upper, value);
 }
+
+static bool evaluate_downcase(camber_evaluation *e, const camber_node *node, camber_value *value) {
+    return change_case(e, node, camber_letter_lower, value);
+}
+
+static const camber_operator rows[] = {
+    {"at", compile_at, evaluate_at, VALUE, VALUE, 2, 2},
+    {"in", compile_in, camber_evaluate_in, VALUE, BOOL, 2, 2},
+    {"!in", compile_in, camber_evaluate_in, VALUE, BOOL, 2, 2},
+    {"index-of", compile_in, evaluate_index_of, VALUE, NUMBER, 2, 3},
+    {"slice", compile_slice, evaluate_slice, VALUE, VALUE, 2, 3},
+    {"length", compile_length, evaluate_length, VALUE, NUMBER, 1, 1},
+    {"split", compile_split, evaluate_split, STRING, ARRAY, 2, 2},
+    {"join", compile_join, evaluate_join, ARRAY, STRING, 2, 2},
+    {"concat", camber_compile_uniform, camber_evaluate_concat, VALUE, STRING, 0, ANY_COUNT},
+    {"upcase", camber_compile_uniform, evaluate_upcase, STRING, STRING, 1, 1},
+    {"downcase", camber_compile_uniform, evaluate_downcase, STRING, STRING, 1, 1},
+};
+
+const camber_operator_table camber_sequence_operators = {rows, sizeof rows / sizeof *rows};

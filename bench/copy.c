@@ -5,7 +5,7 @@
 #include "bench.h"
 
 #include "base/base.h"
-#include "tess/tess.h"
+#include "tess/mesh.h"
 
 #include <math.h>
 #include <pthread.h>

@@ -7,7 +7,8 @@
 #ifndef CAMBER_MAP_H
 #define CAMBER_MAP_H
 
-#include "camber_proof.h"
+#include "camber_files.h"
+#include "camber_network.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -262,6 +263,25 @@ CAMBER_API const camber_stroke *camber_scene_strokes(const camber_scene *scene, 
 /* The frame with all passes drawing mesh, which holds the scene as camber_scene_tessellate left it, or else its
  * polylines tessellated. Valid until the next call on this scene. */
 CAMBER_API camber_frame camber_scene_frame(camber_scene *scene, camber_mesh *mesh);
+
+/* ---- GLB ------------------------------------------------------------------------------------------- */
+
+typedef struct camber_mesh_data camber_mesh_data; /* camber_proof.h */
+
+typedef struct camber_glb_desc {
+    const camber_stroke *strokes; /* go to extras, with the paints */
+    const camber_paint *paints;   /* NULL: none; else stroke_count */
+    size_t stroke_count;
+    const char *copyright; /* asset.copyright. NULL: none */
+} camber_glb_desc;
+
+/* Writes a binary glTF 2.0 that any reader loads: triangles, or strips whose restarts are degenerate
+ * triangles; x right, y up, z 0, one unit a pixel. POSITION is the stroke's true outline at the strokes'
+ * widths; _CENTER, _SEGMENT, _EXTRUDE, _TURN, _FLAGS and _ROW are what camber's shaders draw from (docs in glb.c).
+ * Returns CAMBER_ERROR_ARGUMENT (a paint that is not finite, a copyright that is not UTF-8), CAMBER_ERROR_IO when the
+ * sink refuses, CAMBER_ERROR_LIMIT (4 GB or more), CAMBER_ERROR_MEMORY. */
+CAMBER_API camber_status camber_glb_write(camber_context *context, const camber_mesh_data *mesh,
+                                          const camber_glb_desc *desc, camber_sink sink);
 
 #ifdef __cplusplus
 }

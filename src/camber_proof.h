@@ -65,7 +65,8 @@ typedef enum camber_end {
 #define CAMBER_RESTART_INDEX 0xffffffffu
 
 /* A mesh in host memory; free with camber_mesh_data_free. */
-typedef struct camber_mesh_data {
+typedef struct camber_mesh_data camber_mesh_data;
+struct camber_mesh_data {
     camber_mesh_info info;
     /* What the device has: info.record_count, and of kite and fan info.index_count, record << 7 | corner
      * (CAMBER_CORNER_* in kernels/layout.h); NULL of strips. */
@@ -78,7 +79,7 @@ typedef struct camber_mesh_data {
      * culled. */
     camber_vertex *vertices;
     uint32_t *indices;
-} camber_mesh_data;
+};
 
 /* Whether the three indices from one on are a triangle that is drawn. Of strips every index begins three, and the
  * triangles at odd ones have their first two corners in the other order. */
@@ -187,23 +188,6 @@ typedef struct camber_overdraw {
 /* Counts with the stencil and additive blending, two draw calls a range. Returns what camber_render returns. */
 CAMBER_API camber_status camber_overdraw_count(camber_renderer *renderer, const camber_overdraw_desc *desc,
                                                camber_overdraw *overdraw);
-
-/* ---- GLB ------------------------------------------------------------------------------------------- */
-
-typedef struct camber_glb_desc {
-    const camber_stroke *strokes; /* go to extras, with the paints */
-    const camber_paint *paints;   /* NULL: none; else stroke_count */
-    size_t stroke_count;
-    const char *copyright; /* asset.copyright. NULL: none */
-} camber_glb_desc;
-
-/* Writes a binary glTF 2.0 that any reader loads: triangles, or strips whose restarts are degenerate
- * triangles; x right, y up, z 0, one unit a pixel. POSITION is the stroke's true outline at the strokes'
- * widths; _CENTER, _SEGMENT, _EXTRUDE, _TURN, _FLAGS and _ROW are what camber's shaders draw from (docs in glb.c).
- * Returns CAMBER_ERROR_ARGUMENT (a paint that is not finite, a copyright that is not UTF-8), CAMBER_ERROR_IO when the
- * sink refuses, CAMBER_ERROR_LIMIT (4 GB or more), CAMBER_ERROR_MEMORY. */
-CAMBER_API camber_status camber_glb_write(camber_context *context, const camber_mesh_data *mesh,
-                                          const camber_glb_desc *desc, camber_sink sink);
 
 #ifdef __cplusplus
 }

@@ -55,6 +55,15 @@ void camber_context_destroy(camber_context *context) {
     desc.reallocate(desc.allocator_user, context, 0);
 }
 
+const char *camber_method_name(camber_method method) {
+    switch (method) {
+    case CAMBER_METHOD_STRIP: return "strip";
+    case CAMBER_METHOD_KITE: return "kite";
+    case CAMBER_METHOD_FAN: return "fan";
+    }
+    return "unknown";
+}
+
 const char *camber_status_name(camber_status status) {
     switch (status) {
     case CAMBER_OK: return "ok";

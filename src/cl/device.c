@@ -1,5 +1,7 @@
 /* Finding and opening OpenCL devices. */
-#include "tess/tess.h"
+#include "cl/program.h"
+
+#include "kernels/layout.h"
 
 #include <CL/cl_gl.h>
 #include <ctype.h>

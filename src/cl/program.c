@@ -1,8 +1,9 @@
 /* Building the kernels, and keeping what was built: what has been compiled once on a machine is loaded from then on. Of
  * several processes that need a program which nobody has built yet, one compiles it and the others load it. */
-#include "tess/tess.h"
+#include "cl/program.h"
 
 #include "base/embedded.h"
+#include "kernels/layout.h"
 
 #include <stdio.h>
 #include <stdlib.h>

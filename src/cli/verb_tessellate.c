@@ -1,4 +1,5 @@
 #include "cli/input.h"
+#include "camber_proof.h"
 #include "cli/verbs.h"
 
 #include <stdlib.h>

@@ -3,6 +3,7 @@
 #define CAMBER_RENDERER_H
 
 #include "gl/share.h"
+#include "tess/mesh.h"
 
 /* Variants of the stroke shader, as bits. */
 enum {

@@ -1,6 +1,8 @@
 /* Choosing a back end, and what all back ends share. */
 #include "gl/surface.h"
 
+#include "camber_proof.h"
+
 #include <string.h>
 
 static bool has_extension(const camber_gl *gl, const char *name) {

@@ -2,8 +2,8 @@
 #ifndef CAMBER_SURFACE_H
 #define CAMBER_SURFACE_H
 
+#include "cl/buffer.h"
 #include "gl/gl.h"
-#include "tess/tess.h"
 
 typedef struct camber_surface_ops {
     camber_backend backend;

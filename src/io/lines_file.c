@@ -63,12 +63,6 @@ camber_status camber_lines_parse(camber_context *context, const void *bytes, siz
     return CAMBER_OK;
 }
 
-void camber_lines_free(camber_context *context, camber_lines *lines) {
-    camber_free(context, lines->offsets);
-    camber_free(context, lines->points);
-    *lines = (camber_lines){0};
-}
-
 /* Words through a block, little-endian whatever the host is. */
 static bool write_words(camber_sink sink, const void *words, size_t count) {
     unsigned char block[4096];

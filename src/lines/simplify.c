@@ -144,3 +144,9 @@ done:
     camber_free(context, points);
     return status;
 }
+
+void camber_lines_free(camber_context *context, camber_lines *lines) {
+    camber_free(context, lines->offsets);
+    camber_free(context, lines->points);
+    *lines = (camber_lines){0};
+}

@@ -1,5 +1,7 @@
 #include "map/geometry.h"
 
+#include "camber_proof.h"
+
 #include <math.h>
 
 /* A miter limit without reason must not undo the culling. */

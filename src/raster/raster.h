@@ -13,7 +13,7 @@
 #ifndef CAMBER_COVER_H
 #define CAMBER_COVER_H
 
-#include "tess/tess.h"
+#include "tess/mesh.h"
 
 #include "camber_proof.h"
 #include "kernels/cover_pitch_bands.h"

@@ -1,7 +1,7 @@
 /* What the vertex shader makes of records, on the host: each vertex by itself, and indices that number them.
  * stroke.vert says the same in GLSL. What a device leaves is not trusted: records and corners that contradict each
  * other make a wrong mesh, which a proof finds, and read nothing that is not there. */
-#include "tess/tess.h"
+#include "tess/mesh.h"
 
 #include "kernels/join.h"
 

@@ -2,7 +2,7 @@
 #ifndef CAMBER_MEASURES_H
 #define CAMBER_MEASURES_H
 
-#include "tess/tess.h"
+#include "tess/mesh.h"
 
 /* Makes the measures of a part's slots, which polylines have. */
 camber_status camber_part_measure(camber_mesh *mesh, camber_mesh_part *part);

@@ -1,31 +1,9 @@
-/* What the meshes of a device hold, and which of their parts give way where that is bounded.
- *
- * A bound is shared out in eighths: one for strokes and counts, one for the network's section that is read, four for a
- * part of a single polyline, two for what is left over in buffers that a part takes from another. Parts of several
- * polylines take one, so that what is there need not all go for the next. */
+/* What the meshes of a device hold, and which of their parts give way where that is bounded (cl/memory.h). */
 #include "kernels/measure.h"
 #include "tess/network.h"
 #include "tess/offset.h"
 
-/* What a renderer that draws in OpenCL takes at least, beside what meshes may hold where a quarter of that is less. */
-static const uint64_t DRAWING_LEAST_BYTES = 4 * 1024 * 1024;
-
-uint64_t camber_device_share(const camber_device *device, unsigned eighths) {
-    return device->memory_bytes ? device->memory_bytes / 8 * eighths : UINT64_MAX;
-}
-
-bool camber_device_is_roomy(const camber_device *device, uint64_t size_bytes) {
-    return !device->memory_bytes || device->held_bytes + size_bytes <= camber_device_share(device, 4);
-}
-
 /* ---- Counting ---- */
-
-static void count(camber_device *device, uint64_t *held_bytes, uint64_t now_bytes) {
-    device->held_bytes += now_bytes - *held_bytes;
-    *held_bytes = now_bytes;
-    if (device->held_bytes + device->drawing_bytes > device->most_held_bytes)
-        device->most_held_bytes = device->held_bytes + device->drawing_bytes;
-}
 
 uint64_t camber_input_bytes(const camber_device *device, bool measured, size_t slots) {
     const uint64_t blocks = slots / device->block, words = slots ? (uint64_t)slots + 2 : 0;
@@ -46,13 +24,13 @@ void camber_part_count(const camber_mesh *mesh, camber_mesh_part *part) {
     bytes += part->base_capacity * sizeof *part->host_bases + part->chunk_capacity * sizeof *part->chunk_bases;
     for (int i = 0; i < 2; i++)
         bytes += mesh->buffer_copies * (uint64_t)part->buffers[i].capacity_bytes;
-    count(mesh->device, &part->held_bytes, bytes);
+    camber_device_count(mesh->device, &part->held_bytes, bytes);
 }
 
 void camber_section_count(const camber_mesh *mesh, camber_section *section) {
     const bool copied = !mesh->device->host_memory;
-    count(mesh->device, &section->held_bytes,
-          section->x ? camber_section_bytes(mesh->held->network, section, copied) : 0);
+    camber_device_count(mesh->device, &section->held_bytes,
+                        section->x ? camber_section_bytes(mesh->held->network, section, copied) : 0);
 }
 
 void camber_mesh_count(camber_mesh *mesh) {
@@ -60,35 +38,7 @@ void camber_mesh_count(camber_mesh *mesh) {
     bytes += mesh->shift_capacity * sizeof(camber_shift);
     if (mesh->held)
         bytes += 8 * (uint64_t)mesh->held->chunk_capacity;
-    count(mesh->device, &mesh->held_bytes, bytes);
-}
-
-camber_device_memory camber_device_get_memory(const camber_device *device) {
-    return (camber_device_memory){device->memory_bytes + device->drawing_allowed_bytes,
-                                  device->held_bytes + device->drawing_bytes, device->most_held_bytes};
-}
-
-void camber_drawing_open(camber_device *device, camber_drawing_memory *memory) {
-    const uint64_t quarter = device->memory_bytes / 4;
-    if (!device->memory_bytes)
-        return;
-    *memory = (camber_drawing_memory){.allowed_bytes = quarter, .taken_bytes = quarter};
-    if (quarter < DRAWING_LEAST_BYTES)
-        *memory = (camber_drawing_memory){.allowed_bytes = DRAWING_LEAST_BYTES};
-    device->memory_bytes -= memory->taken_bytes;
-    device->drawing_allowed_bytes += memory->allowed_bytes;
-}
-
-void camber_drawing_count(camber_device *device, camber_drawing_memory *memory, uint64_t now_bytes) {
-    device->drawing_bytes += now_bytes - memory->held_bytes;
-    memory->held_bytes = now_bytes;
-    count(device, &device->held_bytes, device->held_bytes);
-}
-
-void camber_drawing_close(camber_device *device, camber_drawing_memory *memory) {
-    camber_drawing_count(device, memory, 0);
-    device->memory_bytes += memory->taken_bytes;
-    device->drawing_allowed_bytes -= memory->allowed_bytes;
+    camber_device_count(mesh->device, &mesh->held_bytes, bytes);
 }
 
 camber_mesh_memory camber_mesh_get_memory(const camber_mesh *mesh) {

@@ -1,40 +1,7 @@
 /* Meshes: making them, what is told about them, reading them back. */
-#include "tess/tess.h"
+#include "tess/mesh.h"
 
 #include "kernels/join.h"
-
-/* ---- Output buffers in OpenCL memory, for a mesh that no renderer draws ---- */
-
-static camber_status plain_reserve(void *user, camber_buffer *buffer, size_t size_bytes) {
-    const camber_device *device = user;
-    if (size_bytes <= buffer->capacity_bytes)
-        return CAMBER_OK;
-    camber_release_buffer(device, &buffer->mem);
-    buffer->capacity_bytes = 0;
-    const camber_status status = camber_make_buffer(device, CL_MEM_READ_WRITE, size_bytes, NULL, &buffer->mem);
-    if (status == CAMBER_OK)
-        buffer->capacity_bytes = size_bytes;
-    return status;
-}
-
-static camber_status plain_begin(void *user, camber_buffer *buffers, size_t count) {
-    (void)user;
-    (void)buffers;
-    (void)count;
-    return CAMBER_OK;
-}
-
-static camber_status plain_finish(void *user, camber_buffer *buffers, size_t count, bool written) {
-    (void)written;
-    return plain_begin(user, buffers, count);
-}
-
-static void plain_release(void *user, camber_buffer *buffer) {
-    camber_release_buffer(user, &buffer->mem);
-    *buffer = (camber_buffer){0};
-}
-
-static const camber_buffer_ops plain_ops = {plain_reserve, plain_begin, plain_finish, plain_release};
 
 /* ---- Mesh ---- */
 
@@ -44,7 +11,7 @@ camber_status camber_mesh_create_on(camber_device *device, const camber_buffer_o
     if (!made)
         return CAMBER_ERROR_MEMORY;
     made->device = device;
-    made->ops = ops ? ops : &plain_ops;
+    made->ops = ops ? ops : &camber_buffer_plain;
     made->ops_user = ops ? ops_user : device;
     made->buffer_copies = 1;
     made->empty = true;

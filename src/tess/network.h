@@ -3,7 +3,7 @@
 #define CAMBER_TESS_NETWORK_H
 
 #include "kernels/network.h"
-#include "tess/tess.h"
+#include "tess/mesh.h"
 
 struct camber_network {
     camber_context *context;

@@ -2,7 +2,7 @@
 #ifndef CAMBER_OFFSET_H
 #define CAMBER_OFFSET_H
 
-#include "tess/tess.h"
+#include "tess/mesh.h"
 
 #include "kernels/offset_pieces.h"
 

@@ -1,6 +1,6 @@
 /* Where a slot's vertices and indices begin within its block: what scan left for the run of slots that a work-item
  * took, and from there on the counts again. */
-#include "tess/tess.h"
+#include "tess/mesh.h"
 
 #include "kernels/join.h"
 

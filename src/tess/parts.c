@@ -5,56 +5,6 @@
 
 #include <string.h>
 
-/* ---- OpenCL buffers ---- */
-
-/* A driver that makes memory when a kernel first wants it has no way left to say that there is none: PoCL ends the
- * process. So it is asked for at once, where it is the host's. */
-camber_status camber_make_buffer(const camber_device *device, cl_mem_flags flags, size_t size_bytes,
-                                 const void *host_bytes, cl_mem *mem) {
-    camber_context *context = device->context;
-    const bool counts = device->host_memory && !(flags & CL_MEM_USE_HOST_PTR);
-    const cl_mem_flags at_once = counts ? CL_MEM_ALLOC_HOST_PTR : 0;
-    cl_int code;
-    if (counts && !camber_budget_take(context, size_bytes))
-        return camber_budget_fail(context, size_bytes);
-    /* CL_MEM_USE_HOST_PTR wants a pointer to what may be written; what is named so is only read. */
-    cl_mem made = clCreateBuffer(device->cl, flags | at_once, size_bytes, (void *)(uintptr_t)host_bytes, &code);
-    if (code == CL_SUCCESS) {
-        *mem = made;
-        return CAMBER_OK;
-    }
-    if (counts)
-        camber_budget_give(context, size_bytes);
-    return camber_fail_cl(context, "clCreateBuffer", code);
-}
-
-/* What the budget has it for. */
-static size_t counted_bytes(const camber_device *device, cl_mem mem) {
-    cl_mem_flags flags = 0;
-    size_t size_bytes = 0;
-    if (!device->host_memory || clGetMemObjectInfo(mem, CL_MEM_FLAGS, sizeof flags, &flags, NULL) != CL_SUCCESS ||
-        (flags & CL_MEM_USE_HOST_PTR) ||
-        clGetMemObjectInfo(mem, CL_MEM_SIZE, sizeof size_bytes, &size_bytes, NULL) != CL_SUCCESS)
-        return 0;
-    return size_bytes;
-}
-
-void camber_release_buffer(const camber_device *device, cl_mem *mem) {
-    cl_mem held = *mem;
-    if (!held)
-        return;
-    *mem = NULL;
-    camber_budget_give(device->context, counted_bytes(device, held));
-    clReleaseMemObject(held);
-}
-
-camber_status camber_write_buffer(const camber_device *device, cl_mem mem, size_t offset_bytes, size_t size_bytes,
-                                  const void *bytes) {
-    const cl_int code =
-        clEnqueueWriteBuffer(device->queue, mem, CL_TRUE, offset_bytes, size_bytes, bytes, 0, NULL, NULL);
-    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(device->context, "clEnqueueWriteBuffer", code);
-}
-
 enum { INPUTS = 9 };
 
 static void list_input(camber_mesh_part *part, cl_mem *mems[INPUTS]) {

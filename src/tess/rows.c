@@ -1,5 +1,5 @@
 /* The style table of the kernels, and what both tessellations count. */
-#include "tess/tess.h"
+#include "tess/mesh.h"
 
 #include "kernels/join.h"
 
@@ -71,15 +71,6 @@ camber_status camber_rows_create(camber_context *context, uint32_t row_count, co
         made[i] = make_row(desc->strokes + i, tolerance);
     *rows = made;
     return CAMBER_OK;
-}
-
-const char *camber_method_name(camber_method method) {
-    switch (method) {
-    case CAMBER_METHOD_STRIP: return "strip";
-    case CAMBER_METHOD_KITE: return "kite";
-    case CAMBER_METHOD_FAN: return "fan";
-    }
-    return "unknown";
 }
 
 void camber_mesh_info_count(camber_mesh_info *info, uint32_t join, uint32_t point) {

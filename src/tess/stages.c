@@ -1,5 +1,5 @@
 /* What classify and scan left on the device, a point at a time, for proofs. */
-#include "tess/tess.h"
+#include "tess/mesh.h"
 
 /* A part's arrays as the host sees them. */
 typedef struct arrays {

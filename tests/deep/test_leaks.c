@@ -6,7 +6,7 @@
 
 #include "picture.h"
 
-#include "tess/tess.h"
+#include "tess/mesh.h"
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>

@@ -1,7 +1,7 @@
 /* Devices, and the kernels in the cache folder. */
 #include "core.h"
 
-#include "tess/tess.h"
+#include "tess/mesh.h"
 
 #include <dirent.h>
 #include <sys/stat.h>

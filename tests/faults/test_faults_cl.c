@@ -3,7 +3,7 @@
 #include "picture.h"
 
 #include "cl_fault.h"
-#include "tess/tess.h"
+#include "tess/mesh.h"
 
 static const struct {
     cl_int code;

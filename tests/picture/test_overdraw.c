@@ -2,7 +2,7 @@
 #include "picture.h"
 
 #include "validate/oracle.h"
-#include "tess/tess.h"
+#include "tess/mesh.h"
 
 /* ---- Counting ---- */
 

@@ -1,6 +1,7 @@
 /* test_glb [FOLDER]: also writes its files there, for validate_glb.mjs. */
 #include "base/base.h"
 #include "camber_map.h"
+#include "camber_proof.h"
 
 #include <jansson.h>
 #include <math.h>

@@ -2,7 +2,7 @@
  * test_tessellate shows that the device gives the same bytes. */
 #include "scene.h"
 
-#include "tess/tess.h"
+#include "tess/mesh.h"
 
 typedef struct place {
     double x, y;

@@ -2,7 +2,7 @@
 #include "property.h"
 
 #include "kernels/join.h"
-#include "tess/tess.h"
+#include "tess/mesh.h"
 
 /* ---- Meshes of cases ---- */
 

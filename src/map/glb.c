@@ -24,6 +24,7 @@
  * mesh.extras.rows is the style table: {width, join, cap, miterLimit, paint: {width, color: straight sRGB RGBA}}.
  * A mesh without vertices gives a file with an empty scene: glTF allows no empty accessors. */
 #include "base/base.h"
+#include "camber_map.h"
 #include "camber_proof.h"
 
 #include <assert.h>

@@ -1,106 +1,13 @@
-/* Tessellation: OpenCL devices and programs, the three stages, meshes, and the CPU twin. */
-#ifndef CAMBER_TESS_H
-#define CAMBER_TESS_H
+/* Meshes: their parts, how these are made, and what tessellation's files share. */
+#ifndef CAMBER_TESS_MESH_H
+#define CAMBER_TESS_MESH_H
 
-#include "base/base.h"
-#include "camber_proof.h"
+#include "cl/buffer.h"
+#include "cl/memory.h"
+#include "cl/program.h"
 #include "lines/lines.h"
 
-#include <CL/cl.h>
-
-/* ---- Devices ---- */
-
-struct camber_device {
-    camber_context *context;
-    cl_platform_id platform;
-    cl_device_id id;
-    cl_context cl;
-    cl_command_queue queue;
-    camber_device_info info;
-    bool rounds_correctly; /* divides and takes roots as the twin does */
-    bool host_memory;      /* the device works in the host's memory */
-    bool gl_context;       /* cl was made for a GL context: GL buffers can be shared */
-    size_t block;          /* points a work-group: CAMBER_BLOCK as its kernels see it */
-    size_t item;           /* points a work-item: CAMBER_ITEM */
-    unsigned lanes;        /* pixels a work-item of what draws: CAMBER_LANES */
-    /* Built when first used; the second of two for what is measured. */
-    struct camber_program *programs[2][2][3];      /* without and with round limits, by camber_method */
-    struct camber_program *network_programs[2][2]; /* the second ones of a camera with a pitch */
-    struct camber_program *measures;
-    struct camber_program *offset_programs[2];
-    struct camber_program *cover[4]; /* what draws, by its variant */
-    /* What its meshes may hold (0: what they want), hold, and held at most. */
-    uint64_t memory_bytes, held_bytes, most_held_bytes;
-    uint64_t drawing_allowed_bytes, drawing_bytes; /* the same of its renderers' buffers */
-    camber_mesh *meshes;                           /* each knows the next */
-};
-
-/* What a surface tells OpenCL about its GL context, for cl_khr_gl_sharing. Zero: it cannot be told. */
-typedef struct camber_gl_handles {
-    cl_context_properties context, display, display_kind; /* kind: CL_EGL_DISPLAY_KHR */
-} camber_gl_handles;
-camber_gl_handles camber_surface_handles(const camber_surface *surface); /* src/gl/surface.c */
-/* As much as its shaders can read. */
-uint64_t camber_surface_largest_buffer_bytes(const camber_surface *surface);
-
-/* Logs "CALL: OpenCL error NAME (code); cure" and gives the status it stands for. */
-camber_status camber_fail_cl(camber_context *context, const char *call, cl_int code);
-
-/* ---- Programs ---- */
-
-typedef struct camber_program {
-    cl_program cl;
-    cl_kernel classify, scan, emit; /* of a method */
-    cl_kernel survey, project;      /* of networks */
-    cl_kernel tally, measure;
-    cl_kernel span, tell, shift; /* of offsets */
-    cl_kernel shape, count, total, fill, cover;
-    uint64_t key; /* of the cache */
-    bool built;   /* from source: no cache had it */
-    bool kept;    /* a cache has it now */
-} camber_program;
-
-/* What the kernels of a mesh are built for. */
-typedef struct camber_program_desc {
-    camber_method method;
-    bool measured;
-    bool round_limits; /* a row has one; without them classify is a fifth faster on PoCL */
-} camber_program_desc;
-
-/* What kernels that draw are built for, as bits: the compiler has each that is set as a macro that is 1. All but the
- * plain ones are built for 16 lanes on every device. */
-#define CAMBER_COVER_RICH 1
-#define CAMBER_COVER_PITCHED 2 /* with RICH */
-
-/* The kernels, built or loaded at first use. */
-camber_status camber_device_program(camber_device *device, camber_program_desc desc, camber_program **program);
-camber_status camber_device_network_program(camber_device *device, bool measured, bool pitched,
-                                            camber_program **program);
-camber_status camber_device_measures(camber_device *device, camber_program **program);
-camber_status camber_device_offsets(camber_device *device, bool measured, camber_program **program);
-camber_status camber_device_cover_program(camber_device *device, unsigned variant, camber_program **program);
-void camber_program_destroy(camber_context *context, camber_program *program);
-
-/* ---- Output buffers, which GL may share: src/gl/share_*.c ---- */
-
-typedef struct camber_buffer {
-    cl_mem mem;
-    size_t capacity_bytes;
-    unsigned gl_name; /* 0: OpenCL memory only */
-    void *map;        /* zero copy: the persistent map */
-    size_t used_bytes;
-    uint64_t drawn_frame; /* the last frame that reads it, by its number */
-} camber_buffer;
-
-typedef struct camber_buffer_ops {
-    /* Makes room for at least size_bytes; what the buffer held is lost. */
-    camber_status (*reserve)(void *user, camber_buffer *buffer, size_t size_bytes);
-    /* Around OpenCL commands on the buffers. At finish the queue has been finished; written: what the buffers hold
-     * has changed. */
-    camber_status (*begin)(void *user, camber_buffer *buffers, size_t count);
-    camber_status (*finish)(void *user, camber_buffer *buffers, size_t count, bool written);
-    void (*release)(void *user, camber_buffer *buffer);
-} camber_buffer_ops;
+#include "camber_proof.h"
 
 /* ---- Meshes ---- */
 
@@ -280,21 +187,6 @@ camber_status camber_stage_run(const camber_device *device, camber_stage stage, 
 void camber_add_ms(cl_event event, double *ms);
 camber_status camber_fail_stage(const camber_device *device, const char *call, const char *name, cl_int code);
 
-/* memory.c. So many eighths of what the device's meshes may hold. */
-uint64_t camber_device_share(const camber_device *device, unsigned eighths);
-
-/* What a renderer's buffers may hold and do. */
-typedef struct camber_drawing_memory {
-    uint64_t allowed_bytes; /* 0: no bound */
-    uint64_t taken_bytes;   /* of what meshes were allowed */
-    uint64_t held_bytes;
-} camber_drawing_memory;
-
-void camber_drawing_open(camber_device *device, camber_drawing_memory *memory);
-void camber_drawing_count(camber_device *device, camber_drawing_memory *memory, uint64_t now_bytes);
-void camber_drawing_close(camber_device *device, camber_drawing_memory *memory);
-/* Whether there is room for that much many times over. */
-bool camber_device_is_roomy(const camber_device *device, uint64_t size_bytes);
 /* Counts what is held anew, after buffers have been made or let go. */
 void camber_part_count(const camber_mesh *mesh, camber_mesh_part *part);
 void camber_mesh_count(camber_mesh *mesh);
@@ -312,14 +204,6 @@ void camber_part_adopt(camber_mesh *mesh, camber_mesh_part *part, uint64_t wante
 
 /* Ends what ops->begin began on a part's output. Gives status where that is a failure, whose story is told. */
 camber_status camber_part_finish(const camber_mesh *mesh, camber_mesh_part *part, bool written, camber_status status);
-
-/* OpenCL calls that log. camber_make_buffer leaves *mem alone on failure. */
-camber_status camber_make_buffer(const camber_device *device, cl_mem_flags flags, size_t size_bytes,
-                                 const void *host_bytes, cl_mem *mem);
-/* Leaves NULL. */
-void camber_release_buffer(const camber_device *device, cl_mem *mem);
-camber_status camber_write_buffer(const camber_device *device, cl_mem mem, size_t offset_bytes, size_t size_bytes,
-                                  const void *bytes);
 
 /* ---- Rows ---- */
 

@@ -30,7 +30,7 @@ struct camber_context {
     camber_budget own_budget;
     camber_spent spent;
     uint64_t next_serial; /* identifies polylines to meshes that keep them uploaded */
-    const void *gdal;     /* source/load.c: what it found, NULL before */
+    const void *gdal;     /* load/gdal.c: what it found, NULL before */
     bool saves_shared;    /* cache.c: files are saved for all users of the machine */
 };
 

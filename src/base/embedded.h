@@ -26,7 +26,7 @@ extern const char camber_style_openmaptiles_light[], camber_style_openmaptiles_d
 extern const unsigned long camber_style_openmaptiles_light_size, camber_style_openmaptiles_dark_size;
 extern const char camber_style_transit_light[], camber_style_transit_dark[];
 extern const unsigned long camber_style_transit_light_size, camber_style_transit_dark_size;
-extern const char camber_osmconf[]; /* src/source/osmconf.ini */
+extern const char camber_osmconf[]; /* src/gdal/osmconf.ini */
 extern const unsigned long camber_osmconf_size;
 
 #endif

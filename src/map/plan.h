@@ -6,7 +6,7 @@
 #ifndef CAMBER_PLAN_H
 #define CAMBER_PLAN_H
 
-#include "map/patterns.h"
+#include "map/plan_patterns.h"
 #include "source/features.h"
 
 #define CAMBER_NO_ROW UINT32_MAX

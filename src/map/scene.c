@@ -1,4 +1,4 @@
-#include "map/geometry.h"
+#include "map/plan_network.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -22,13 +22,13 @@ struct camber_scene {
 
     camber_view view;
     camber_plan plan;
-    camber_geometry geometry;
+    camber_plan_network geometry;
     camber_stroke *pair_strokes;
     pass_list pair_passes;
 
     /* On the host; nothing until asked for. */
     bool is_seen;
-    camber_seen seen;
+    camber_visible_lines seen;
     size_t layer_count; /* that draw something */
     camber_polylines *polylines;
     pass_list passes;
@@ -244,7 +244,7 @@ static camber_tessellation_desc desc_of(const camber_scene *scene, camber_method
 static void forget(camber_scene *scene) {
     free_passes(scene->context, &scene->passes);
     camber_polylines_destroy(scene->polylines);
-    camber_seen_destroy(&scene->seen);
+    camber_visible_lines_destroy(&scene->seen);
     scene->passes = (pass_list){0};
     scene->polylines = NULL;
     scene->is_seen = false;
@@ -268,7 +268,7 @@ static camber_status see(camber_scene *scene) {
     const camber_camera camera = camera_of(scene);
     const camber_tessellation_desc strokes = desc_of(scene, CAMBER_METHOD_STRIP);
     camber_status status =
-        camber_geometry_see(scene->features, &scene->geometry, &scene->plan, &camera, &strokes, &scene->seen);
+        camber_plan_network_project(scene->features, &scene->geometry, &scene->plan, &camera, &strokes, &scene->seen);
     const camber_lines *lines = &scene->seen.lines;
     const camber_polylines_desc desc = {.points = lines->points,
                                         .point_count = lines->point_count,
@@ -293,7 +293,7 @@ static bool is_seen(const camber_scene *scene) {
 
 /* ---- The scene ---- */
 
-static camber_status look(camber_scene *scene, const camber_view_desc *desc, camber_geometry *geometry) {
+static camber_status look(camber_scene *scene, const camber_view_desc *desc, camber_plan_network *geometry) {
     camber_status status = camber_view_create(scene->context, desc, &scene->view);
     if (status != CAMBER_OK)
         return status;
@@ -301,11 +301,11 @@ static camber_status look(camber_scene *scene, const camber_view_desc *desc, cam
                                            : camber_plan_create(scene->features, &scene->view, &scene->plan);
     if (status != CAMBER_OK)
         return status;
-    if (camber_geometry_serves(geometry, &scene->view, &scene->plan)) {
+    if (camber_plan_network_serves(geometry, &scene->view, &scene->plan)) {
         scene->geometry = *geometry;
-        *geometry = (camber_geometry){0};
+        *geometry = (camber_plan_network){0};
     } else {
-        status = camber_geometry_create(scene->features, &scene->view, &scene->plan, &scene->geometry);
+        status = camber_plan_network_create(scene->features, &scene->view, &scene->plan, &scene->geometry);
     }
     if (status == CAMBER_OK)
         status = make_strokes(scene);
@@ -316,7 +316,7 @@ static void empty(camber_scene *scene) {
     forget(scene);
     free_passes(scene->context, &scene->pair_passes);
     camber_free(scene->context, scene->pair_strokes);
-    camber_geometry_destroy(&scene->geometry);
+    camber_plan_network_destroy(&scene->geometry);
     camber_plan_destroy(&scene->plan);
 }
 
@@ -375,7 +375,7 @@ camber_status camber_scene_create(const camber_features *features, const camber_
     camber_scene *made = camber_alloc_zero(context, 1, sizeof *made);
     if (!made)
         return CAMBER_ERROR_MEMORY;
-    camber_geometry none = {0};
+    camber_plan_network none = {0};
     *made = bare_scene(features, desc->simplify_px);
     camber_status status = look(made, &desc->view, &none);
     if (status == CAMBER_OK && !desc->on_device)
@@ -395,11 +395,11 @@ camber_status camber_scene_create(const camber_features *features, const camber_
 camber_status camber_scene_move(camber_scene *scene, const camber_view_desc *view) {
     camber_scene moved = bare_scene(scene->features, scene->simplify_px);
     /* The geometry is the one or the other's, never both's. */
-    camber_geometry geometry = scene->geometry;
+    camber_plan_network geometry = scene->geometry;
     const camber_status status = look(&moved, view, &geometry);
     if (status != CAMBER_OK) {
         if (!geometry.context)
-            moved.geometry = (camber_geometry){0};
+            moved.geometry = (camber_plan_network){0};
         empty(&moved);
         return status;
     }

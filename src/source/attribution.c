@@ -1,6 +1,6 @@
 /* Whom a set of features is signed by: what its files say of themselves, each once, as plain text. Nothing is guessed
  * from what the data looks like: a road of anyone's may have a key of OpenStreetMap's. */
-#include "source/fill.h"
+#include "source/features.h"
 
 #include <ctype.h>
 
@@ -71,7 +71,7 @@ static camber_status append(camber_features *features, const char *text, size_t 
     return CAMBER_OK;
 }
 
-camber_status camber_features_sign(camber_features *features, const char *text) {
+camber_status camber_features_add_attribution(camber_features *features, const char *text) {
     if (!text)
         return CAMBER_OK;
     char *plain = camber_alloc(features->context, strlen(text) + 1, 1);
@@ -86,7 +86,7 @@ camber_status camber_features_sign(camber_features *features, const char *text) 
     return status;
 }
 
-void camber_features_unsign(camber_features *features, size_t size) {
+void camber_features_cut_attribution(camber_features *features, size_t size) {
     features->attribution_size = size;
     if (features->attribution)
         features->attribution[size] = 0;

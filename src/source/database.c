@@ -25,7 +25,7 @@ static bool keeps_log(const char *path) {
     return got == sizeof head && memcmp(head, "SQLite format 3", 16) == 0 && head[18] == 2;
 }
 
-camber_database_kind camber_database_look(const char *path) {
+camber_database_kind camber_database_get_kind(const char *path) {
     if (!keeps_log(path))
         return CAMBER_DATABASE_PLAIN;
     if (!has_beside(path, "-wal"))

@@ -12,7 +12,7 @@ typedef enum camber_database_kind {
     CAMBER_DATABASE_INTERRUPTED, /* a log without an index: who wrote is gone */
 } camber_database_kind;
 
-camber_database_kind camber_database_look(const char *path);
+camber_database_kind camber_database_get_kind(const char *path);
 /* Whether tables of it are made by modules that may open other files; those of indices (R-trees, full text) are not.
  * Only of one that is plain or at rest. */
 bool camber_database_is_virtual(const char *path);

@@ -1,5 +1,5 @@
+#include "source/features.h"
 #include "lines/importance.h"
-#include "source/fill.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -436,7 +436,7 @@ camber_status camber_features_add_polyline(camber_features *features, const doub
     return CAMBER_OK;
 }
 
-camber_status camber_features_weigh(camber_features *features, size_t first_polyline) {
+camber_status camber_features_set_importance(camber_features *features, size_t first_polyline) {
     if (first_polyline == features->polyline_count)
         return CAMBER_OK;
     if (!camber_grow(features->context, &features->importance, &features->importance_capacity, features->point_count,

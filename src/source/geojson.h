@@ -2,7 +2,7 @@
 #ifndef CAMBER_GEOJSON_H
 #define CAMBER_GEOJSON_H
 
-#include "source/fill.h"
+#include "source/features.h"
 
 typedef struct camber_geojson_desc {
     const char *what;                  /* the source, in messages */

@@ -154,7 +154,7 @@ static camber_status find_zooms(camber_tile_set *set) {
 
 /* ---- Tiles ---- */
 
-static camber_status get_tile(camber_tile_set *set, int zoom, camber_tile_place place, camber_bytes *bytes,
+static camber_status get_tile(camber_tile_set *set, int zoom, camber_tile_index place, camber_bytes *bytes,
                               const char **why) {
     (void)why;
     const database *self = set->self;
@@ -179,14 +179,14 @@ static camber_status get_tile(camber_tile_set *set, int zoom, camber_tile_place 
 }
 
 static int compare_places(const void *left, const void *right) {
-    const camber_tile_place *a = left, *b = right;
+    const camber_tile_index *a = left, *b = right;
     if (a->column != b->column)
         return a->column < b->column ? -1 : 1;
     return a->row > b->row ? -1 : a->row < b->row;
 }
 
 /* In the order of the table's own rows, from the south, each once: lines are drawn as they are read. */
-static size_t sort_places(camber_tile_place *places, size_t count) {
+static size_t sort_places(camber_tile_index *places, size_t count) {
     size_t kept = 0;
     if (count)
         qsort(places, count, sizeof *places, compare_places);
@@ -196,7 +196,7 @@ static size_t sort_places(camber_tile_place *places, size_t count) {
     return kept;
 }
 
-static camber_status take_place(camber_tile_set *set, sqlite3_stmt *at, int zoom, camber_tile_place **places,
+static camber_status take_place(camber_tile_set *set, sqlite3_stmt *at, int zoom, camber_tile_index **places,
                                 size_t *count, size_t *capacity) {
     const int64_t side = INT64_C(1) << zoom;
     const int64_t column = sqlite3_column_int64(at, 0), row = side - 1 - sqlite3_column_int64(at, 1);
@@ -205,13 +205,13 @@ static camber_status take_place(camber_tile_set *set, sqlite3_stmt *at, int zoom
         return status;
     if (!camber_grow(set->context, places, capacity, *count + 1, sizeof **places))
         return CAMBER_ERROR_MEMORY;
-    (*places)[(*count)++] = (camber_tile_place){(uint32_t)column, (uint32_t)row};
+    (*places)[(*count)++] = (camber_tile_index){(uint32_t)column, (uint32_t)row};
     return CAMBER_OK;
 }
 
-static camber_status list_tiles(camber_tile_set *set, int zoom, camber_tile_place **places, size_t *count) {
+static camber_status list_tiles(camber_tile_set *set, int zoom, camber_tile_index **places, size_t *count) {
     sqlite3_stmt *rows = NULL;
-    camber_tile_place *made = NULL;
+    camber_tile_index *made = NULL;
     size_t found = 0, capacity = 0;
     camber_status status = prepare(set, "SELECT tile_column, tile_row FROM tiles WHERE zoom_level = ?", &rows);
     if (status != CAMBER_OK)
@@ -245,7 +245,7 @@ static const camber_tile_set_calls database_calls = {get_tile, list_tiles, close
 static camber_status open_handle(camber_tile_set *set, const char *path) {
     database *self = set->self;
     const int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_NOMUTEX;
-    const camber_database_kind kind = camber_database_look(path);
+    const camber_database_kind kind = camber_database_get_kind(path);
     if (kind == CAMBER_DATABASE_INTERRUPTED)
         return fail_interrupted(set);
     if (kind != CAMBER_DATABASE_AT_REST)

@@ -6,7 +6,7 @@
  * leave a light seam, as each covers a part of the same pixels. Where they bend they end as the style has it.
  */
 #include "source/chains.h"
-#include "source/fill.h"
+#include "source/features.h"
 
 #include <math.h>
 #include <string.h>

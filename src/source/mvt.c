@@ -35,7 +35,7 @@ struct camber_mvt {
     size_t layer_count, layer_capacity;
 
     /* The layer being read. */
-    camber_mvt_place place;
+    camber_tile_address place;
     const tile_layer *layer;
     char name[256];
     uint32_t layer_index;
@@ -295,8 +295,8 @@ static camber_status keep(camber_mvt *mvt, const tile_feature *feature, camber_g
         status = camber_features_find_class_of(mvt->desc.features, &wanted, mvt->values, &piece.class_index);
     if (status != CAMBER_OK)
         return status;
-    const camber_tile_parts parts = {mvt->geometry.points, mvt->geometry.ends, mvt->geometry.part_count};
-    return camber_tiles_add(mvt->desc.tiles, &piece, &parts);
+    const camber_tile_lines parts = {mvt->geometry.points, mvt->geometry.ends, mvt->geometry.part_count};
+    return camber_tile_stitcher_add(mvt->desc.tiles, &piece, &parts);
 }
 
 static camber_status read_geometry(camber_mvt *mvt, const tile_feature *feature, camber_geometry_kind kind) {
@@ -397,7 +397,7 @@ static camber_status read_layer(camber_mvt *mvt, ProtobufCBinaryData bytes) {
     return status;
 }
 
-camber_status camber_mvt_read(camber_mvt *mvt, const camber_mvt_place *place, const void *bytes, size_t size_bytes) {
+camber_status camber_mvt_read(camber_mvt *mvt, const camber_tile_address *place, const void *bytes, size_t size_bytes) {
     const camber_pool_mark start = {0};
     camber_pool_reset(&mvt->pool, start);
     mvt->place = *place;
@@ -415,7 +415,7 @@ camber_status camber_mvt_read(camber_mvt *mvt, const camber_mvt_place *place, co
     return status;
 }
 
-void camber_mvt_spoil(camber_mvt *mvt, const camber_mvt_place *place, const char *cause) {
+void camber_mvt_spoil(camber_mvt *mvt, const camber_tile_address *place, const char *cause) {
     mvt->place = *place;
     mvt->name[0] = 0;
     note_damage(mvt, cause);

@@ -2,20 +2,20 @@
 #ifndef CAMBER_MVT_H
 #define CAMBER_MVT_H
 
-#include "source/fill.h"
+#include "source/features.h"
 #include "source/pool.h"
-#include "source/tiles.h"
+#include "source/tile_stitcher.h"
 
 /* Where a tile lies. */
-typedef struct camber_mvt_place {
+typedef struct camber_tile_address {
     int zoom;
     uint32_t column, row; /* column: may lie in the next world */
     unsigned open_sides;  /* CAMBER_SIDE_* */
-} camber_mvt_place;
+} camber_tile_address;
 
 typedef struct camber_mvt_desc {
     camber_features *features;
-    camber_tiles *tiles;
+    camber_tile_stitcher *tiles;
     const char *const *layers; /* the wanted ones. NULL: none, what the tiles hold is looked at only */
     size_t layer_count;
     bool wants_polygons;
@@ -48,8 +48,8 @@ const camber_mvt_stats *camber_mvt_get_stats(const camber_mvt *mvt);
 /* In the order they were met, where no layers are wanted. */
 const camber_mvt_layer *camber_mvt_layers(const camber_mvt *mvt, size_t *count);
 /* bytes: decompressed. What is damaged is counted. Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT. */
-camber_status camber_mvt_read(camber_mvt *mvt, const camber_mvt_place *place, const void *bytes, size_t size_bytes);
+camber_status camber_mvt_read(camber_mvt *mvt, const camber_tile_address *place, const void *bytes, size_t size_bytes);
 /* Counts a tile that cannot be had. */
-void camber_mvt_spoil(camber_mvt *mvt, const camber_mvt_place *place, const char *cause);
+void camber_mvt_spoil(camber_mvt *mvt, const camber_tile_address *place, const char *cause);
 
 #endif

@@ -3,7 +3,7 @@
 #define CAMBER_MVT_GEOMETRY_H
 
 #include "source/features.h"
-#include "source/tiles.h"
+#include "source/tile_stitcher.h"
 
 typedef struct camber_mvt_geometry {
     camber_context *context;

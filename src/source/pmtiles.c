@@ -57,7 +57,7 @@ uint64_t camber_pmtiles_number(int zoom, uint32_t column, uint32_t row) {
     return before + along;
 }
 
-void camber_pmtiles_place(uint64_t along, int zoom, uint32_t *column, uint32_t *row) {
+void camber_pmtiles_locate(uint64_t along, int zoom, uint32_t *column, uint32_t *row) {
     uint32_t x = 0, y = 0;
     for (int z = 0; z < zoom; z++, along >>= 2) {
         const uint32_t half = UINT32_C(1) << z, right = (uint32_t)(along >> 1) & 1,
@@ -229,7 +229,7 @@ static const camber_pmtiles_entry *find_entry(const directory *in, uint64_t numb
 
 /* ---- Tiles ---- */
 
-static camber_status get_tile(camber_tile_set *set, int zoom, camber_tile_place place, camber_bytes *bytes,
+static camber_status get_tile(camber_tile_set *set, int zoom, camber_tile_index place, camber_bytes *bytes,
                               const char **why) {
     archive *self = set->self;
     const uint64_t number = camber_pmtiles_number(zoom, place.column, place.row);
@@ -260,7 +260,7 @@ typedef struct listing {
     camber_tile_set *set;
     int zoom;
     uint64_t first, end; /* numbers of the zoom */
-    camber_tile_place *places;
+    camber_tile_index *places;
     size_t count, capacity;
 } listing;
 
@@ -276,8 +276,8 @@ static camber_status list_run(listing *list, const camber_pmtiles_entry *entry) 
     for (uint64_t number = from; number < end; number++) {
         if (!camber_grow(list->set->context, &list->places, &list->capacity, list->count + 1, sizeof *list->places))
             return CAMBER_ERROR_MEMORY;
-        camber_tile_place *place = &list->places[list->count++];
-        camber_pmtiles_place(number - list->first, list->zoom, &place->column, &place->row);
+        camber_tile_index *place = &list->places[list->count++];
+        camber_pmtiles_locate(number - list->first, list->zoom, &place->column, &place->row);
     }
     return CAMBER_OK;
 }
@@ -310,7 +310,7 @@ static camber_status list_directory(listing *list, const directory *in, int dept
     return status;
 }
 
-static camber_status list_tiles(camber_tile_set *set, int zoom, camber_tile_place **places, size_t *count) {
+static camber_status list_tiles(camber_tile_set *set, int zoom, camber_tile_index **places, size_t *count) {
     const archive *self = set->self;
     listing list = {.set = set, .zoom = zoom, .first = camber_pmtiles_number(zoom, 0, 0)};
     list.end = list.first + (UINT64_C(1) << 2 * zoom);

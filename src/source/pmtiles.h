@@ -13,7 +13,7 @@ typedef struct camber_pmtiles_entry {
 /* The number of a tile: those of lower zooms come first, then its place along the Hilbert curve. zoom: 0 to 31. */
 uint64_t camber_pmtiles_number(int zoom, uint32_t column, uint32_t row);
 /* along: from the first of its zoom. */
-void camber_pmtiles_place(uint64_t along, int zoom, uint32_t *column, uint32_t *row);
+void camber_pmtiles_locate(uint64_t along, int zoom, uint32_t *column, uint32_t *row);
 
 typedef struct camber_pmtiles_directory {
     camber_pmtiles_entry *entries; /* in ascending order; freed with camber_free */

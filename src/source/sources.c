@@ -128,7 +128,8 @@ static camber_status read_geojson(camber_sources *sources, source *one) {
     sources->features->stats.invalid_points += stats.invalid_points;
     warn(sources, one->what, stats.damaged_features, stats.damage, stats.skipped_features);
     warn_invalid(sources, one->what, stats.invalid_points);
-    return camber_features_sign(sources->features, json_string_value(json_object_get(one->style->json, "attribution")));
+    return camber_features_add_attribution(sources->features,
+                                           json_string_value(json_object_get(one->style->json, "attribution")));
 }
 
 /* ---- Vector tiles: opening ---- */
@@ -235,7 +236,7 @@ static camber_status finish(camber_features *features, size_t first_polyline) {
         status = camber_features_merge(features, first_polyline, CAMBER_MERGE_STRAIGHT);
     const double merged_ms = camber_now_ms();
     if (status == CAMBER_OK)
-        status = camber_features_weigh(features, first_polyline);
+        status = camber_features_set_importance(features, first_polyline);
     features->times.merge_ms += merged_ms - start_ms;
     features->times.weigh_ms += camber_now_ms() - merged_ms;
     features->stats.features = features->feature_count;
@@ -342,13 +343,13 @@ static camber_status read_places(camber_sources *sources, const source *one, con
     camber_tile_result result;
     const size_t first_polyline = features->polyline_count;
     features->source = one->index;
-    camber_status status = camber_tiles_read(features, reading, &result);
+    camber_status status = camber_features_read_tiles(features, reading, &result);
     if (status == CAMBER_OK && result.found > 0 && result.lost == result.found)
         status = fail_damaged(sources, one->what, result.stats.damage);
     if (status == CAMBER_OK)
         status = finish(features, first_polyline);
     if (status == CAMBER_OK)
-        status = camber_features_sign(features, one->set->attribution);
+        status = camber_features_add_attribution(features, one->set->attribution);
     if (status != CAMBER_OK)
         return status;
     features->stats.skipped_features += result.stats.skipped_features;
@@ -362,18 +363,18 @@ static camber_status read_places(camber_sources *sources, const source *one, con
     return CAMBER_OK;
 }
 
-static camber_status read_tiles(camber_sources *sources, const source *one, const camber_cover *cover) {
+static camber_status read_tiles(camber_sources *sources, const source *one, const camber_tile_cover *cover) {
     const camber_style *style = sources->features->style;
     const int zoom = (int)fmin(floor(fmax(cover->zoom, 0)), one->set->max_zoom);
     if (zoom < one->set->min_zoom)
         return CAMBER_OK;
-    camber_mvt_place *places = NULL;
+    camber_tile_address *places = NULL;
     camber_tile_reading reading = {.set = one->set, .zoom = zoom};
     camber_status status = CAMBER_ERROR_MEMORY;
     const char **names = camber_alloc(sources->context, style->layer_count, sizeof *names);
     if (names)
-        status = camber_cover_tiles(sources->context, cover, zoom, one->is_bounded ? one->bounds : NULL, &places,
-                                    &reading.place_count);
+        status = camber_tile_cover_list(sources->context, cover, zoom, one->is_bounded ? one->bounds : NULL, &places,
+                                        &reading.place_count);
     if (status == CAMBER_OK)
         status = camber_budget_take_tiles(sources->context, one->what, reading.place_count);
     if (status == CAMBER_OK) {
@@ -391,7 +392,7 @@ static camber_status read_tiles(camber_sources *sources, const source *one, cons
     return status;
 }
 
-camber_status camber_sources_read(camber_sources *sources, const camber_cover *cover) {
+camber_status camber_sources_read(camber_sources *sources, const camber_tile_cover *cover) {
     const double start_ms = camber_now_ms(),
                  others_ms = sources->features->times.weigh_ms + sources->features->times.merge_ms;
     camber_status status = CAMBER_OK;

@@ -16,7 +16,7 @@ camber_status camber_sources_open(camber_features *features, const camber_source
 /* Bounds of all that is known: x0, y0, x1, y1 in world coordinates. false: nothing is. */
 bool camber_sources_bounds(const camber_sources *sources, double bounds[4]);
 /* Reads the tiles that the cover sees. */
-camber_status camber_sources_read(camber_sources *sources, const camber_cover *cover);
+camber_status camber_sources_read(camber_sources *sources, const camber_tile_cover *cover);
 void camber_sources_close(camber_sources *sources);
 
 #endif

@@ -8,7 +8,7 @@ static const double MOST_TILES = 65536;
 static const double SLACK = 1e-6;
 
 typedef struct grid {
-    const camber_cover *cover;
+    const camber_tile_cover *cover;
     double side;                       /* tiles that the world is wide */
     double west, north, columns, rows; /* the tiles looked at; west may be negative */
     double wanted[4];                  /* bounds in tiles */
@@ -67,8 +67,8 @@ static void look(grid *g) {
     g->rows = fmax(fmin(ceil(high[1] - SLACK), g->side) - g->north, 0);
 }
 
-camber_status camber_cover_tiles(camber_context *context, const camber_cover *cover, int zoom, const double *bounds,
-                                 camber_mvt_place **places, size_t *count) {
+camber_status camber_tile_cover_list(camber_context *context, const camber_tile_cover *cover, int zoom,
+                                     const double *bounds, camber_tile_address **places, size_t *count) {
     grid g = {.cover = cover, .side = ldexp(1.0, zoom), .wanted = {-INFINITY, -INFINITY, INFINITY, INFINITY}};
     for (int i = 0; bounds && i < 4; i++)
         g.wanted[i] = bounds[i] * g.side;
@@ -76,7 +76,7 @@ camber_status camber_cover_tiles(camber_context *context, const camber_cover *co
     if (g.columns * g.rows > MOST_TILES)
         return camber_fail(context, CAMBER_ERROR_LIMIT,
                            "the view sees more than %.0f tiles of zoom %d; choose a smaller picture", MOST_TILES, zoom);
-    camber_mvt_place *made = camber_alloc(context, (size_t)(g.columns * g.rows) + 1, sizeof *made);
+    camber_tile_address *made = camber_alloc(context, (size_t)(g.columns * g.rows) + 1, sizeof *made);
     if (!made)
         return CAMBER_ERROR_MEMORY;
     /* Columns west of the first world are those of a world further east. */
@@ -85,10 +85,10 @@ camber_status camber_cover_tiles(camber_context *context, const camber_cover *co
     for (double row = g.north; row < g.north + g.rows; row++)
         for (double column = g.west; column < g.west + g.columns; column++)
             if (is_seen(&g, column, row))
-                made[(*count)++] = (camber_mvt_place){.zoom = zoom,
-                                                      .column = (uint32_t)(column + worlds),
-                                                      .row = (uint32_t)row,
-                                                      .open_sides = open_sides(&g, column, row)};
+                made[(*count)++] = (camber_tile_address){.zoom = zoom,
+                                                         .column = (uint32_t)(column + worlds),
+                                                         .row = (uint32_t)row,
+                                                         .open_sides = open_sides(&g, column, row)};
     *places = made;
     return CAMBER_OK;
 }

@@ -5,7 +5,7 @@
 
 static const double PROGRESS_MS = 50;
 
-camber_features_mark camber_features_here(const camber_features *features) {
+camber_features_mark camber_features_get_mark(const camber_features *features) {
     return (camber_features_mark){features->point_count,      features->polyline_count, features->feature_count,
                                   features->attribution_size, features->stats,          features->source};
 }
@@ -14,7 +14,7 @@ void camber_features_reset(camber_features *features, const camber_features_mark
     features->point_count = mark->point_count;
     features->polyline_count = mark->polyline_count;
     features->feature_count = mark->feature_count;
-    camber_features_unsign(features, mark->attribution_size);
+    camber_features_cut_attribution(features, mark->attribution_size);
     features->stats = mark->stats;
     features->source = mark->source;
 }
@@ -38,8 +38,8 @@ static void show_progress(reader *self, size_t done) {
     camber_progress(self->context, "reading", (double)done / (double)self->reading->place_count);
 }
 
-static camber_status read_place(reader *self, const camber_mvt_place *place) {
-    const camber_tile_place kept = {place->column & ((UINT32_C(1) << place->zoom) - 1), place->row};
+static camber_status read_place(reader *self, const camber_tile_address *place) {
+    const camber_tile_index kept = {place->column & ((UINT32_C(1) << place->zoom) - 1), place->row};
     const char *why;
     const camber_status status = camber_tile_set_get(self->reading->set, place->zoom, kept, &self->bytes, &why);
     if (status != CAMBER_OK)
@@ -75,23 +75,23 @@ static camber_status read_once(camber_features *features, const camber_tile_read
     reader self = {.context = context, .reading = reading, .bytes.context = context};
     camber_mvt_desc desc = reading->mvt;
     camber_budget_read_again(context);
-    camber_status status = camber_tiles_create(context, reading->zoom, &desc.tiles);
+    camber_status status = camber_tile_stitcher_create(context, reading->zoom, &desc.tiles);
     if (status == CAMBER_OK)
         status = camber_mvt_create(context, &desc, &self.mvt);
     if (status == CAMBER_OK)
         status = read_places(&self, restart);
     if (status == CAMBER_OK && !*restart)
-        status = camber_tiles_finish(desc.tiles, features);
+        status = camber_tile_stitcher_finish(desc.tiles, features);
     if (status == CAMBER_OK)
         *result = (camber_tile_result){*camber_mvt_get_stats(self.mvt), self.found, self.lost};
     camber_bytes_free(&self.bytes);
     camber_mvt_destroy(self.mvt);
-    camber_tiles_destroy(desc.tiles);
+    camber_tile_stitcher_destroy(desc.tiles);
     return status;
 }
 
-camber_status camber_tiles_read(camber_features *features, const camber_tile_reading *reading,
-                                camber_tile_result *result) {
+camber_status camber_features_read_tiles(camber_features *features, const camber_tile_reading *reading,
+                                         camber_tile_result *result) {
     camber_tile_reading again = *reading;
     bool restart = false;
     camber_status status = read_once(features, reading, result, &restart);
@@ -109,7 +109,7 @@ typedef struct input {
     const camber_source_desc *desc;
     camber_tile_set *set;
     int zoom;
-    camber_mvt_place *places;
+    camber_tile_address *places;
     size_t place_count;
     const char **layers; /* to read */
     size_t layer_count;
@@ -118,7 +118,7 @@ typedef struct input {
 
 /* Every tile of the highest zoom. */
 static camber_status list_places(input *self) {
-    camber_tile_place *places = NULL;
+    camber_tile_index *places = NULL;
     camber_status status = CAMBER_OK;
     self->zoom = self->set->max_zoom;
     for (; self->zoom >= 0 && status == CAMBER_OK; self->zoom--) {
@@ -133,7 +133,7 @@ static camber_status list_places(input *self) {
     if (!(self->places = camber_alloc(self->context, self->place_count, sizeof *self->places)))
         status = CAMBER_ERROR_MEMORY;
     for (size_t i = 0; status == CAMBER_OK && places && i < self->place_count; i++)
-        self->places[i] = (camber_mvt_place){.zoom = self->zoom, .column = places[i].column, .row = places[i].row};
+        self->places[i] = (camber_tile_address){.zoom = self->zoom, .column = places[i].column, .row = places[i].row};
     camber_free(self->context, places);
     return status;
 }
@@ -295,7 +295,7 @@ static camber_status read_input(input *self, camber_tile_result *result) {
                                                  .layer_count = self->layer_count,
                                                  .wants_polygons = style->wants_polygons,
                                                  .plain = wants_plain(style)}};
-    return camber_tiles_read(self->features, &reading, result);
+    return camber_features_read_tiles(self->features, &reading, result);
 }
 
 /* What it gave, looked at as a whole. */
@@ -341,22 +341,22 @@ static camber_status finish(const input *self, size_t first_polyline) {
                                        features->style->directed ? CAMBER_MERGE_DIRECTED : CAMBER_MERGE_ANY);
     const double merged_ms = camber_now_ms();
     if (status == CAMBER_OK)
-        status = camber_features_weigh(features, first_polyline);
+        status = camber_features_set_importance(features, first_polyline);
     features->times.merge_ms += merged_ms - start_ms;
     features->times.weigh_ms += camber_now_ms() - merged_ms;
     return status;
 }
 
-camber_status camber_tiles_read_file(camber_features *features, const camber_source_desc *desc) {
+camber_status camber_features_read_tile_file(camber_features *features, const camber_source_desc *desc) {
     input self = {.context = features->context, .features = features, .desc = desc};
-    const camber_features_mark before = camber_features_here(features);
+    const camber_features_mark before = camber_features_get_mark(features);
     const double start_ms = camber_now_ms();
     camber_tile_result result = {.found = 0};
     camber_status status = read_input(&self, &result);
     if (status == CAMBER_OK)
         status = judge(&self, &result.stats, &before);
     if (status == CAMBER_OK)
-        status = camber_features_sign(features, self.set->attribution);
+        status = camber_features_add_attribution(features, self.set->attribution);
     camber_tile_set_close(self.set);
     camber_free(self.context, self.layers);
     camber_free(self.context, self.layer);

@@ -8,7 +8,7 @@
 typedef struct camber_tile_reading {
     camber_tile_set *set;
     int zoom;
-    const camber_mvt_place *places;
+    const camber_tile_address *places;
     size_t place_count;
     camber_mvt_desc mvt; /* tiles are filled in here */
 } camber_tile_reading;
@@ -20,10 +20,10 @@ typedef struct camber_tile_result {
 } camber_tile_result;
 
 /* Adds features and their polylines, of features->source. Where it fails the caller takes them out again. */
-camber_status camber_tiles_read(camber_features *features, const camber_tile_reading *reading,
-                                camber_tile_result *result);
+camber_status camber_features_read_tiles(camber_features *features, const camber_tile_reading *reading,
+                                         camber_tile_result *result);
 /* camber_features_read of a file that camber_tile_set_knows. */
-camber_status camber_tiles_read_file(camber_features *features, const camber_source_desc *desc);
+camber_status camber_features_read_tile_file(camber_features *features, const camber_source_desc *desc);
 
 /* ---- A set as it was, for what fails half way ---- */
 
@@ -34,7 +34,7 @@ typedef struct camber_features_mark {
     uint32_t source;
 } camber_features_mark;
 
-camber_features_mark camber_features_here(const camber_features *features);
+camber_features_mark camber_features_get_mark(const camber_features *features);
 /* Spare classes stay. */
 void camber_features_reset(camber_features *features, const camber_features_mark *mark);
 

@@ -160,14 +160,14 @@ typedef struct file_set {
     bool south_first, high_resolution;
 } file_set;
 
-static void put_quadkey(char *out, int zoom, camber_tile_place place) {
+static void put_quadkey(char *out, int zoom, camber_tile_index place) {
     for (int z = zoom; z > 0; z--)
         *out++ = (char)('0' + (place.column >> (z - 1) & 1) + 2 * (place.row >> (z - 1) & 1));
     *out = 0;
 }
 
 /* What {...} stands for. false: it is left as it is. */
-static bool expand(const file_set *files, const char *token, size_t length, int zoom, camber_tile_place place,
+static bool expand(const file_set *files, const char *token, size_t length, int zoom, camber_tile_index place,
                    char out[40]) {
     const uint32_t turned = (UINT32_C(1) << zoom) - 1 - place.row;
     static const char *const tokens[] = {"{z}", "{x}", "{y}", "{-y}", "{ratio}", "{quadkey}", "{prefix}"};
@@ -187,7 +187,7 @@ static bool expand(const file_set *files, const char *token, size_t length, int 
     }
 }
 
-static char *path_of(camber_tile_set *set, int zoom, camber_tile_place place) {
+static char *path_of(camber_tile_set *set, int zoom, camber_tile_index place) {
     const file_set *files = set->self;
     camber_bytes path = {.context = set->context};
     for (const char *at = files->path; *at;) {
@@ -229,7 +229,7 @@ static camber_status read_tile(int file, camber_bytes *bytes, const char *name) 
 }
 
 /* A tile that is not there is empty. */
-static camber_status get_file(camber_tile_set *set, int zoom, camber_tile_place place, camber_bytes *bytes,
+static camber_status get_file(camber_tile_set *set, int zoom, camber_tile_index place, camber_bytes *bytes,
                               const char **why) {
     (void)why;
     char *path = path_of(set, zoom, place);
@@ -324,7 +324,7 @@ camber_status camber_tile_set_open(camber_context *context, const char *path, ca
     return CAMBER_OK;
 }
 
-camber_status camber_tile_set_get(camber_tile_set *set, int zoom, camber_tile_place place, camber_bytes *bytes,
+camber_status camber_tile_set_get(camber_tile_set *set, int zoom, camber_tile_index place, camber_bytes *bytes,
                                   const char **why) {
     *why = NULL;
     bytes->size_bytes = 0;
@@ -343,7 +343,7 @@ camber_status camber_tile_set_get(camber_tile_set *set, int zoom, camber_tile_pl
     return camber_budget_unfold(set->context, set->name, bytes->size_bytes);
 }
 
-camber_status camber_tile_set_list(camber_tile_set *set, int zoom, camber_tile_place **places, size_t *count) {
+camber_status camber_tile_set_list(camber_tile_set *set, int zoom, camber_tile_index **places, size_t *count) {
     return set->calls->list(set, zoom, places, count);
 }
 

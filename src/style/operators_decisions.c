@@ -5,8 +5,8 @@
  * table at the end.
  */
 #include "style/evaluation.h"
-#include "style/letters.h"
 #include "style/operators.h"
+#include "style/unicode.h"
 
 #include <math.h>
 #include <string.h>
@@ -145,7 +145,7 @@ static int compare_strings(const char *a, const char *b, const camber_value *col
     if (!collator)
         return strcmp(a, b);
     const int by = (int)collator->number;
-    return camber_letters_compare(a, b, by & COLLATE_CASE, by & COLLATE_DIACRITICS);
+    return camber_unicode_compare(a, b, by & COLLATE_CASE, by & COLLATE_DIACRITICS);
 }
 
 /* Whether the outcome is one of those for which the comparison holds. */

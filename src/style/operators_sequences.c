@@ -4,9 +4,9 @@
  * end.
  */
 #include "style/evaluation.h"
-#include "style/letters.h"
 #include "style/operators.h"
 #include "style/text.h"
+#include "style/unicode.h"
 
 #include <math.h>
 #include <string.h>
@@ -22,7 +22,7 @@ static size_t count_letters(const char *text, const char *end) {
     size_t count = 0;
     uint32_t code;
     for (; *text && text < end; count++)
-        text += camber_letter_read(text, &code);
+        text += camber_unicode_read(text, &code);
     return count;
 }
 
@@ -30,7 +30,7 @@ static size_t count_letters(const char *text, const char *end) {
 static const char *skip_letters(const char *text, size_t count) {
     uint32_t code;
     for (size_t i = 0; i < count && *text; i++)
-        text += camber_letter_read(text, &code);
+        text += camber_unicode_read(text, &code);
     return text;
 }
 
@@ -134,7 +134,7 @@ static bool find(camber_evaluation *e, const camber_value *needle, const camber_
     if (!needle_text(e, needle, &string) || !camber_evaluate_work(e, strlen(haystack->string)))
         return false;
     for (double units = 0.0; *start && units < from; units += code >= 0x10000 && code < CAMBER_STRAY_BYTE ? 2.0 : 1.0)
-        start += camber_letter_read(start, &code);
+        start += camber_unicode_read(start, &code);
     const char *at = strstr(start, string);
     if (at)
         *found = (double)count_letters(haystack->string, at);
@@ -382,7 +382,7 @@ bool camber_evaluate_concat(camber_evaluation *e, const camber_node *node, cambe
     return camber_text_end(&text, value);
 }
 
-static bool change_case(camber_evaluation *e, const camber_node *node, camber_letter_case_fn *change,
+static bool change_case(camber_evaluation *e, const camber_node *node, camber_unicode_case_fn *change,
                         camber_value *value) {
     const char *string;
     camber_text text = {.e = e};
@@ -391,21 +391,21 @@ static bool change_case(camber_evaluation *e, const camber_node *node, camber_le
     while (*string) {
         uint32_t code, other[2];
         char bytes[4];
-        string += camber_letter_read(string, &code);
+        string += camber_unicode_read(string, &code);
         const size_t count = change(code, other);
         for (size_t i = 0; i < count; i++)
-            if (!camber_text_add(&text, bytes, camber_letter_write(other[i], bytes)))
+            if (!camber_text_add(&text, bytes, camber_unicode_write(other[i], bytes)))
                 return false;
     }
     return camber_text_end(&text, value);
 }
 
 static bool evaluate_upcase(camber_evaluation *e, const camber_node *node, camber_value *value) {
-    return change_case(e, node, camber_letter_upper, value);
+    return change_case(e, node, camber_unicode_upper, value);
 }
 
 static bool evaluate_downcase(camber_evaluation *e, const camber_node *node, camber_value *value) {
-    return change_case(e, node, camber_letter_lower, value);
+    return change_case(e, node, camber_unicode_lower, value);
 }
 
 static const camber_operator rows[] = {

@@ -1,6 +1,6 @@
 /* Reading files: real ones against counts made by other programs, small ones written here, and bad ones. */
 #include "source/mercator.h"
-#include "source/source.h"
+#include "gdal/vector_file.h"
 
 #include <gdal_utils.h>
 

@@ -1,5 +1,5 @@
 /* Attribute filters: the words of one that may be keys, and which key is why nothing passes it. */
-#include "source/source.h"
+#include "gdal/vector_file.h"
 
 #include <cpl_string.h>
 #include <ctype.h>

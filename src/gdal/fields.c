@@ -1,5 +1,5 @@
 /* Attributes of features: which fields of a layer are read, and as what. */
-#include "source/source.h"
+#include "gdal/vector_file.h"
 
 #include <cpl_string.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 /* The images that a plan draws with, and the backgrounds that stand above lines or are of images. */
-#ifndef CAMBER_MAP_PATTERNS_H
-#define CAMBER_MAP_PATTERNS_H
+#ifndef CAMBER_PLAN_PATTERNS_H
+#define CAMBER_PLAN_PATTERNS_H
 
 #include "map/view.h"
 #include "source/sprite.h"

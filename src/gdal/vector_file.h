@@ -1,9 +1,9 @@
 /* What the files that need GDAL share: geometry of one feature, an open file, fields. */
-#ifndef CAMBER_SOURCE_H
-#define CAMBER_SOURCE_H
+#ifndef CAMBER_VECTOR_FILE_H
+#define CAMBER_VECTOR_FILE_H
 
-#include "source/fill.h"
-#include "source/tiles.h"
+#include "source/features.h"
+#include "source/tile_stitcher.h"
 
 #include <gdal.h>
 #include <ogr_api.h>
@@ -17,7 +17,7 @@ typedef enum camber_projection_kind {
     CAMBER_PROJECTION_TRANSFORM,   /* anything else, through PROJ to degrees */
 } camber_projection_kind;
 
-typedef struct camber_parts {
+typedef struct camber_feature_lines {
     camber_context *context;
     camber_projection_kind projection;
     bool latitude_first;                    /* degrees come as latitude, longitude */
@@ -41,13 +41,14 @@ typedef struct camber_parts {
 
     double *raw; /* x of all points of a line, then y */
     size_t raw_capacity;
-} camber_parts;
+} camber_feature_lines;
 
 /* Sets the projection for a layer; srs may be NULL: degrees. name stands in messages. */
-camber_status camber_parts_set_srs(camber_parts *parts, OGRSpatialReferenceH srs, const char *name);
+camber_status camber_feature_lines_set_srs(camber_feature_lines *parts, OGRSpatialReferenceH srs, const char *name);
 /* Collects the lines of a geometry, or the rings of its polygons. */
-camber_status camber_parts_collect(camber_parts *parts, OGRGeometryH geometry, camber_geometry_kind kind);
-void camber_parts_free(camber_parts *parts);
+camber_status camber_feature_lines_collect(camber_feature_lines *parts, OGRGeometryH geometry,
+                                           camber_geometry_kind kind);
+void camber_feature_lines_free(camber_feature_lines *parts);
 
 /* ---- dataset.c: an open file ---- */
 

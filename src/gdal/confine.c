@@ -1,6 +1,6 @@
 /* What GDAL may reach while it reads a file: by itself it follows what files say to servers and to other files. Drivers
  * are those whose files have their data in themselves and in the parts of their format; fetching is refused. */
-#include "source/source.h"
+#include "gdal/vector_file.h"
 
 #include <cpl_conv.h>
 #include <cpl_http.h>

@@ -6,7 +6,7 @@
  */
 #include "source/chains.h"
 #include "source/order.h"
-#include "source/tiles.h"
+#include "source/tile_stitcher.h"
 
 #include <math.h>
 #include <string.h>
@@ -30,7 +30,7 @@ enum { MAX_CANDIDATES = 64 };
 #define NONE CAMBER_NO_END
 
 typedef struct joiner {
-    camber_tiles *tiles;
+    camber_tile_stitcher *tiles;
     uint32_t *partner;
     uint32_t *heads; /* of the lists of ends in a cell; head_count is a power of two */
     size_t head_count;
@@ -43,12 +43,12 @@ typedef struct join_pass {
     bool directed;
 } join_pass;
 
-static const double *end_point(const camber_tiles *tiles, uint32_t end) {
-    const camber_tile_piece *piece = &tiles->pieces[end / 2];
+static const double *end_point(const camber_tile_stitcher *tiles, uint32_t end) {
+    const camber_cut_line *piece = &tiles->pieces[end / 2];
     return tiles->points + 2 * (piece->first + (end & 1 ? piece->count - 1 : 0));
 }
 
-static uint32_t group_of(const camber_tiles *tiles, uint32_t end, bool by_id) {
+static uint32_t group_of(const camber_tile_stitcher *tiles, uint32_t end, bool by_id) {
     const uint32_t feature = tiles->pieces[end / 2].feature;
     return by_id ? feature : tiles->features[feature].class_index;
 }
@@ -63,14 +63,14 @@ static size_t head_of(const joiner *join, uint32_t group, int64_t column, int64_
 }
 
 static bool is_candidate(const joiner *join, uint32_t end, const join_pass *pass) {
-    const camber_tile_piece *piece = &join->tiles->pieces[end / 2];
+    const camber_cut_line *piece = &join->tiles->pieces[end / 2];
     return piece->count > 1 && piece->border[end & 1] && join->partner[end] == NONE &&
            (!pass->by_id || join->tiles->features[piece->feature].has_id);
 }
 
 static bool may_join(const joiner *join, uint32_t a, uint32_t b, const join_pass *pass) {
-    const camber_tiles *tiles = join->tiles;
-    const camber_tile_piece *p = &tiles->pieces[a / 2], *q = &tiles->pieces[b / 2];
+    const camber_tile_stitcher *tiles = join->tiles;
+    const camber_cut_line *p = &tiles->pieces[a / 2], *q = &tiles->pieces[b / 2];
     const bool by_id = pass->by_id;
     if (p == q || join->partner[b] != NONE || group_of(tiles, a, by_id) != group_of(tiles, b, by_id))
         return false;
@@ -131,10 +131,10 @@ static void find_partners(joiner *join, const join_pass *pass) {
 
 /* Both neighbours have what runs along their border: keeps one of each. Uses the lists, by piece. */
 static void drop_repeated_runs(joiner *join) {
-    camber_tiles *tiles = join->tiles;
+    camber_tile_stitcher *tiles = join->tiles;
     memset(join->heads, 0xff, join->head_count * sizeof *join->heads);
     for (uint32_t i = 0; i < tiles->piece_count; i++) {
-        camber_tile_piece *piece = &tiles->pieces[i];
+        camber_cut_line *piece = &tiles->pieces[i];
         if (!piece->run || piece->count == 0)
             continue;
         const bool by_id = tiles->features[piece->feature].has_id;
@@ -146,8 +146,8 @@ static void drop_repeated_runs(joiner *join) {
         bool repeated = false;
         for (int k = 0; other != NONE && k < MAX_CANDIDATES && !repeated; k++, other = join->next[other]) {
             const double *r = end_point(tiles, 2 * other), *s = end_point(tiles, 2 * other + 1);
-            const bool same = camber_tiles_same(p, r) && camber_tiles_same(q, s);
-            const bool turned = camber_tiles_same(p, s) && camber_tiles_same(q, r);
+            const bool same = camber_tile_stitcher_same(p, r) && camber_tile_stitcher_same(q, s);
+            const bool turned = camber_tile_stitcher_same(p, s) && camber_tile_stitcher_same(q, r);
             repeated = group_of(tiles, 2 * other, by_id) == group && (same || turned);
         }
         if (repeated) {
@@ -162,9 +162,9 @@ static void drop_repeated_runs(joiner *join) {
 /* Where a line passes the corner of four tiles, one of them may hold nothing but a crumb between two cuts, and both
  * ends of it lie within reach of the neighbours. Without it these find each other. */
 static void drop_crumbs(const joiner *join, double reach) {
-    camber_tiles *tiles = join->tiles;
+    camber_tile_stitcher *tiles = join->tiles;
     for (uint32_t i = 0; i < tiles->piece_count; i++) {
-        camber_tile_piece *piece = &tiles->pieces[i];
+        camber_cut_line *piece = &tiles->pieces[i];
         const double *p = end_point(tiles, 2 * i);
         if (piece->count == 2 && piece->cut[0] && piece->cut[1] && hypot(p[2] - p[0], p[3] - p[1]) < reach / 2)
             piece->count = 0;
@@ -176,18 +176,18 @@ static void drop_crumbs(const joiner *join, double reach) {
 /* Whether the point that a piece is entered by is left out: at a joint one point is left, or none where both were made
  * by cutting. */
 static bool skips_entry(const joiner *join, uint32_t enter) {
-    const camber_tile_piece *pieces = join->tiles->pieces;
+    const camber_cut_line *pieces = join->tiles->pieces;
     const uint32_t leave = join->partner[enter];
     return leave != NONE && (!pieces[leave / 2].cut[leave & 1] || pieces[enter / 2].cut[enter & 1]);
 }
 
 /* The chain's points, in world coordinates, to scratch; last: the end that it is left by. */
 static bool gather(const joiner *join, uint32_t start, size_t *count, uint32_t *last) {
-    camber_tiles *tiles = join->tiles;
+    camber_tile_stitcher *tiles = join->tiles;
     size_t points = 0;
     uint32_t end = start;
     do {
-        const camber_tile_piece *piece = &tiles->pieces[end / 2];
+        const camber_cut_line *piece = &tiles->pieces[end / 2];
         const uint32_t leave = end ^ 1, enter = join->partner[leave];
         const bool skip_entry = skips_entry(join, end), skip_leave = enter != NONE && piece->cut[leave & 1];
         if (!camber_grow(tiles->context, &tiles->scratch, &tiles->scratch_capacity, points + piece->count + 1,
@@ -233,8 +233,8 @@ static void key_pieces(const joiner *join, const chain_list *list, uint32_t *key
     }
 }
 
-static bool same_list(const camber_tiles *tiles, const camber_features *features, size_t a, size_t b) {
-    const camber_tile_piece *p = &tiles->pieces[a], *q = &tiles->pieces[b];
+static bool same_list(const camber_tile_stitcher *tiles, const camber_features *features, size_t a, size_t b) {
+    const camber_cut_line *p = &tiles->pieces[a], *q = &tiles->pieces[b];
     const uint32_t classes[2] = {tiles->features[p->feature].class_index, tiles->features[q->feature].class_index};
     return p->column == q->column && p->row == q->row &&
            features->classes[classes[0]].layer == features->classes[classes[1]].layer;
@@ -243,7 +243,7 @@ static bool same_list(const camber_tiles *tiles, const camber_features *features
 /* What lies on top in one tile does so in all: a tile's order of features is its author's, roads of more weight last,
  * and a road that begins in the first tile must not lie below all of the second. */
 static camber_status find_order(const joiner *join, const camber_features *features, uint32_t *keys, chain_list *list) {
-    const camber_tiles *tiles = join->tiles;
+    const camber_tile_stitcher *tiles = join->tiles;
     camber_context *context = tiles->context;
     camber_status status = CAMBER_ERROR_MEMORY;
     uint32_t *lists = camber_alloc(context, 2 * tiles->piece_count, sizeof *lists);
@@ -268,7 +268,7 @@ static camber_status find_order(const joiner *join, const camber_features *featu
 /* ---- Features ---- */
 
 static camber_status add_chain(const joiner *join, const camber_chain *chain, camber_features *features) {
-    const camber_tile_piece *pieces = join->tiles->pieces;
+    const camber_cut_line *pieces = join->tiles->pieces;
     size_t points = 0;
     uint32_t last = chain->start;
     if (!gather(join, chain->start, &points, &last))
@@ -303,7 +303,7 @@ static camber_status add_chains(const joiner *join, const chain_list *list, camb
 }
 
 static camber_status emit(const joiner *join, camber_features *features) {
-    camber_tiles *tiles = join->tiles;
+    camber_tile_stitcher *tiles = join->tiles;
     camber_context *context = tiles->context;
     camber_chains_desc desc = {
         .partner = join->partner, .piece_count = tiles->piece_count, .key_count = tiles->feature_count};
@@ -334,7 +334,7 @@ done:
     return status;
 }
 
-camber_status camber_tiles_finish(camber_tiles *tiles, camber_features *features) {
+camber_status camber_tile_stitcher_finish(camber_tile_stitcher *tiles, camber_features *features) {
     camber_context *context = tiles->context;
     joiner join = {.tiles = tiles, .head_count = 1024};
     camber_status status = CAMBER_ERROR_MEMORY;

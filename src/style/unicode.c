@@ -1,8 +1,8 @@
-#include "style/letters.h"
+#include "style/unicode.h"
 
 #include <string.h>
 
-size_t camber_letter_read(const char *text, uint32_t *code) {
+size_t camber_unicode_read(const char *text, uint32_t *code) {
     const unsigned char *c = (const unsigned char *)text;
     const size_t size = c[0] < 0x80 ? 1 : c[0] >= 0xc2 && c[0] < 0xe0 ? 2 : c[0] < 0xe0 ? 0 : c[0] < 0xf0 ? 3 : 4;
     *code = CAMBER_STRAY_BYTE + c[0];
@@ -18,7 +18,7 @@ size_t camber_letter_read(const char *text, uint32_t *code) {
     return size;
 }
 
-size_t camber_letter_write(uint32_t code, char bytes[4]) {
+size_t camber_unicode_write(uint32_t code, char bytes[4]) {
     if (code >= CAMBER_STRAY_BYTE || code < 0x80) {
         bytes[0] = (char)(code & 0xff);
         return 1;
@@ -50,7 +50,7 @@ static const range ranges[] = {
 
 enum { SHARP_S = 0xdf, CAPITAL_SHARP_S = 0x1e9e, DOTLESS_I = 0x131, DOTTED_CAPITAL_I = 0x130, DOT_ABOVE = 0x307 };
 
-size_t camber_letter_upper(uint32_t code, uint32_t upper[2]) {
+size_t camber_unicode_upper(uint32_t code, uint32_t upper[2]) {
     /* Small letters whose capitals have another small letter. */
     static const uint16_t odd[][2] = {{0xb5, 0x39c}, {DOTLESS_I, 'I'}, {0x17f, 'S'}, {0x3c2, 0x3a3}};
     upper[0] = code;
@@ -67,7 +67,7 @@ size_t camber_letter_upper(uint32_t code, uint32_t upper[2]) {
     return 1;
 }
 
-size_t camber_letter_lower(uint32_t code, uint32_t lower[2]) {
+size_t camber_unicode_lower(uint32_t code, uint32_t lower[2]) {
     lower[0] = code == CAPITAL_SHARP_S ? SHARP_S : code;
     if (code == DOTTED_CAPITAL_I) {
         lower[0] = 'i';
@@ -111,7 +111,7 @@ static uint32_t base_of(uint32_t small) {
         base = (unsigned char)latin_a[(small - 0x100) / 2];
     for (size_t i = 0; i < sizeof bases / sizeof *bases; i++)
         if (small >= bases[i].first && small <= bases[i].last)
-            camber_letter_read(bases[i].base, &base);
+            camber_unicode_read(bases[i].base, &base);
     return base;
 }
 
@@ -140,14 +140,14 @@ static const char *next_weight(const char *text, weight *made) {
     *made = (weight){0};
     if (*text == 0)
         return text;
-    text += camber_letter_read(text, &code);
-    camber_letter_lower(code, small);
+    text += camber_unicode_read(text, &code);
+    camber_unicode_lower(code, small);
     const uint32_t base = base_of(small[0]);
     made->base = rank(base);
     made->mark = base == small[0] ? 0 : small[0];
     made->capital = small[0] != code;
     while (*text) {
-        const size_t size = camber_letter_read(text, &code);
+        const size_t size = camber_unicode_read(text, &code);
         if (!is_mark(code))
             break;
         made->mark = made->mark * 31 + code;
@@ -156,7 +156,7 @@ static const char *next_weight(const char *text, weight *made) {
     return text;
 }
 
-int camber_letters_compare(const char *a, const char *b, bool by_case, bool by_diacritics) {
+int camber_unicode_compare(const char *a, const char *b, bool by_case, bool by_diacritics) {
     int marks = 0, cases = 0;
     for (;;) {
         weight left, right;

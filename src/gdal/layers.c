@@ -1,5 +1,5 @@
 /* Which layers of a file are read. */
-#include "source/source.h"
+#include "gdal/vector_file.h"
 
 #include <cpl_string.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* A style's own sources, as a view sees them. */
-#include "source/sources.h"
 #include "map/view.h"
+#include "source/sources.h"
 #include "source/tile_reader.h"
 
 /* As camber_plan_fit has it. */
@@ -19,15 +19,15 @@ static void fit(const camber_sources *sources, camber_view *view) {
     camber_view_frame(view, bounds, FILL, LARGEST_FIT_ZOOM);
 }
 
-static camber_cover cover_of(const camber_view *view) {
-    camber_cover cover = {.zoom = view->zoom};
+static camber_tile_cover cover_of(const camber_view *view) {
+    camber_tile_cover cover = {.zoom = view->zoom};
     camber_view_corners(view, cover.corners);
     return cover;
 }
 
 camber_status camber_features_read_sources(camber_features *features, const camber_view_desc *view,
                                            const char *base_path) {
-    const camber_features_mark before = camber_features_here(features);
+    const camber_features_mark before = camber_features_get_mark(features);
     camber_view seen;
     camber_sources *sources = NULL;
     camber_status status = camber_view_create(features->context, view, &seen);
@@ -38,7 +38,7 @@ camber_status camber_features_read_sources(camber_features *features, const camb
     if (status == CAMBER_OK) {
         if (view->kind == CAMBER_VIEW_FIT)
             fit(sources, &seen);
-        const camber_cover cover = cover_of(&seen);
+        const camber_tile_cover cover = cover_of(&seen);
         status = camber_sources_read(sources, &cover);
     }
     camber_sources_close(sources);

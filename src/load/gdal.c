@@ -3,7 +3,7 @@
  * that need GDAL in a module, and loads it with the first file that is read. The static library has them in itself. */
 #define _GNU_SOURCE /* dladdr */
 
-#include "source/load.h"
+#include "source/gdal_calls.h"
 #include "source/tile_reader.h"
 
 #include <string.h>
@@ -75,7 +75,7 @@ bool camber_source_needs_gdal(const camber_source_desc *desc) {
 
 camber_status camber_features_read(camber_features *features, const camber_source_desc *desc) {
     if (!camber_source_needs_gdal(desc))
-        return camber_tiles_read_file(features, desc);
+        return camber_features_read_tile_file(features, desc);
     const camber_status status = camber_gdal_load(features->context);
     const camber_gdal_calls *calls = features->context->gdal;
     return status == CAMBER_OK ? calls->read(features, desc) : status;

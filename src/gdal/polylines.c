@@ -1,5 +1,5 @@
+#include "gdal/vector_file.h"
 #include "source/mercator.h"
-#include "source/source.h"
 
 #include <cpl_conv.h>
 #include <math.h>
@@ -52,7 +52,7 @@ static bool names_path(OGRSpatialReferenceH srs) {
     return found;
 }
 
-static camber_status transform_to_degrees(camber_parts *parts, OGRSpatialReferenceH srs, const char *name) {
+static camber_status transform_to_degrees(camber_feature_lines *parts, OGRSpatialReferenceH srs, const char *name) {
     OGRSpatialReferenceH degrees = OSRNewSpatialReference(NULL);
     OSRImportFromEPSG(degrees, 4326);
     OSRSetAxisMappingStrategy(degrees, OAMS_TRADITIONAL_GIS_ORDER);
@@ -67,7 +67,7 @@ static camber_status transform_to_degrees(camber_parts *parts, OGRSpatialReferen
     return CAMBER_OK;
 }
 
-camber_status camber_parts_set_srs(camber_parts *parts, OGRSpatialReferenceH srs, const char *name) {
+camber_status camber_feature_lines_set_srs(camber_feature_lines *parts, OGRSpatialReferenceH srs, const char *name) {
     OCTDestroyCoordinateTransformation(parts->transform);
     parts->transform = NULL;
     parts->projection = CAMBER_PROJECTION_DEGREES;
@@ -92,7 +92,7 @@ camber_status camber_parts_set_srs(camber_parts *parts, OGRSpatialReferenceH srs
     return transform_to_degrees(parts, srs, name);
 }
 
-void camber_parts_free(camber_parts *parts) {
+void camber_feature_lines_free(camber_feature_lines *parts) {
     OCTDestroyCoordinateTransformation(parts->transform);
     camber_free(parts->context, parts->raw);
     camber_free(parts->context, parts->ends);
@@ -114,7 +114,7 @@ typedef struct line_state {
 } line_state;
 
 /* Capacity for all that a line can add is there already: see add_line. */
-static void push(camber_parts *parts, line_state *line, double x, double y) {
+static void push(camber_feature_lines *parts, line_state *line, double x, double y) {
     if (!line->open) {
         line->first = parts->point_count;
         line->open = true;
@@ -124,7 +124,7 @@ static void push(camber_parts *parts, line_state *line, double x, double y) {
     parts->point_count++;
 }
 
-static void end_part(camber_parts *parts, line_state *line, bool cut) {
+static void end_part(camber_feature_lines *parts, line_state *line, bool cut) {
     if (!line->open)
         return;
     if (parts->point_count - line->first == 1 && (cut || line->begun_by_cut))
@@ -137,7 +137,7 @@ static void end_part(camber_parts *parts, line_state *line, bool cut) {
 
 /* The short way from the last point to (x, y) crosses x = 0 or 1: ends the part there and begins one on the other
  * side. Linear in world coordinates, as the segment is drawn. */
-static void cross_antimeridian(camber_parts *parts, line_state *line, double x, double y) {
+static void cross_antimeridian(camber_feature_lines *parts, line_state *line, double x, double y) {
     const double out = x < line->x ? 1.0 : 0.0; /* the edge it leaves by */
     const double beyond = x < line->x ? x + 1.0 : x - 1.0;
     const double length = beyond - line->x;
@@ -151,7 +151,7 @@ static void cross_antimeridian(camber_parts *parts, line_state *line, double x, 
 }
 
 /* Ordinates as the file has them to the world. false: not a number. */
-static bool to_world(camber_parts *parts, double east, double north, double *x, double *y) {
+static bool to_world(camber_feature_lines *parts, double east, double north, double *x, double *y) {
     if (!isfinite(east) || !isfinite(north))
         return false;
     if (parts->projection == CAMBER_PROJECTION_METRES) {
@@ -180,7 +180,7 @@ static bool to_world(camber_parts *parts, double east, double north, double *x, 
 }
 
 /* The line's ordinates to raw: count of x, then of y. */
-static bool fetch(camber_parts *parts, OGRGeometryH geometry, size_t count) {
+static bool fetch(camber_feature_lines *parts, OGRGeometryH geometry, size_t count) {
     /* A line adds its points, two more for each crossing of the antimeridian, and no more parts than points. */
     if (count > SIZE_MAX / 64 - parts->point_count ||
         !camber_grow(parts->context, &parts->raw, &parts->raw_capacity, 2 * count, sizeof *parts->raw) ||
@@ -198,7 +198,7 @@ static bool fetch(camber_parts *parts, OGRGeometryH geometry, size_t count) {
 }
 
 /* Whether the line fetched, which is closed, goes clockwise as seen. North is up in what was fetched. */
-static bool goes_clockwise(const camber_parts *parts, size_t count) {
+static bool goes_clockwise(const camber_feature_lines *parts, size_t count) {
     const double *x = parts->raw, *y = parts->raw + count;
     double area = 0.0;
     for (size_t i = 0; i + 1 < count; i++) {
@@ -217,7 +217,7 @@ static void turn_back(double *numbers, size_t count) {
 }
 
 /* clockwise: which way a ring is to go as seen; below 0: as it does. */
-static camber_status add_line(camber_parts *parts, OGRGeometryH geometry, int clockwise) {
+static camber_status add_line(camber_feature_lines *parts, OGRGeometryH geometry, int clockwise) {
     const int points = OGR_G_GetPointCount(geometry);
     if (points <= 0) {
         parts->left_out = true;
@@ -251,9 +251,10 @@ static camber_status add_line(camber_parts *parts, OGRGeometryH geometry, int cl
 
 /* ---- Any geometry ---- */
 
-static camber_status collect(camber_parts *parts, OGRGeometryH geometry, camber_geometry_kind kind, int depth);
+static camber_status collect(camber_feature_lines *parts, OGRGeometryH geometry, camber_geometry_kind kind, int depth);
 
-static camber_status collect_members(camber_parts *parts, OGRGeometryH geometry, camber_geometry_kind kind, int depth) {
+static camber_status collect_members(camber_feature_lines *parts, OGRGeometryH geometry, camber_geometry_kind kind,
+                                     int depth) {
     const int count = OGR_G_GetGeometryCount(geometry);
     for (int i = 0; i < count; i++) {
         const camber_status status = collect(parts, OGR_G_GetGeometryRef(geometry, i), kind, depth + 1);
@@ -264,7 +265,7 @@ static camber_status collect_members(camber_parts *parts, OGRGeometryH geometry,
     return CAMBER_OK;
 }
 
-static camber_status collect_rings(camber_parts *parts, OGRGeometryH polygon) {
+static camber_status collect_rings(camber_feature_lines *parts, OGRGeometryH polygon) {
     const int count = OGR_G_GetGeometryCount(polygon);
     for (int i = 0; i < count; i++) {
         const camber_status status = add_line(parts, OGR_G_GetGeometryRef(polygon, i), parts->directed ? i == 0 : -1);
@@ -276,7 +277,8 @@ static camber_status collect_rings(camber_parts *parts, OGRGeometryH polygon) {
 }
 
 /* Arcs become chords, by OGR's default of 4 degrees. */
-static camber_status collect_curve(camber_parts *parts, OGRGeometryH geometry, camber_geometry_kind kind, int depth) {
+static camber_status collect_curve(camber_feature_lines *parts, OGRGeometryH geometry, camber_geometry_kind kind,
+                                   int depth) {
     OGRGeometryH linear = OGR_G_GetLinearGeometry(geometry, 0, NULL);
     camber_status status = CAMBER_OK;
     if (!linear || OGR_GT_IsNonLinear(OGR_G_GetGeometryType(linear)))
@@ -287,7 +289,7 @@ static camber_status collect_curve(camber_parts *parts, OGRGeometryH geometry, c
     return status;
 }
 
-static camber_status collect(camber_parts *parts, OGRGeometryH geometry, camber_geometry_kind kind, int depth) {
+static camber_status collect(camber_feature_lines *parts, OGRGeometryH geometry, camber_geometry_kind kind, int depth) {
     if (!geometry || depth > MAX_DEPTH) {
         parts->damaged = true;
         return CAMBER_OK;
@@ -312,7 +314,8 @@ static camber_status collect(camber_parts *parts, OGRGeometryH geometry, camber_
     }
 }
 
-camber_status camber_parts_collect(camber_parts *parts, OGRGeometryH geometry, camber_geometry_kind kind) {
+camber_status camber_feature_lines_collect(camber_feature_lines *parts, OGRGeometryH geometry,
+                                           camber_geometry_kind kind) {
     parts->point_count = parts->part_count = 0;
     return collect(parts, geometry, kind, 0);
 }

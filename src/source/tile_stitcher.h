@@ -1,10 +1,10 @@
 /* Features in pieces, cut by vector tiles: tiles.c cuts them at the tiles' borders, join.c joins them again. */
-#ifndef CAMBER_TILES_H
-#define CAMBER_TILES_H
+#ifndef CAMBER_TILE_STITCHER_H
+#define CAMBER_TILE_STITCHER_H
 
-#include "source/fill.h"
+#include "source/features.h"
 
-typedef struct camber_tiles camber_tiles;
+typedef struct camber_tile_stitcher camber_tile_stitcher;
 
 /* Sides of a tile: x0, x1 (east), y0, y1 (south). */
 enum { CAMBER_SIDE_WEST = 1, CAMBER_SIDE_EAST = 2, CAMBER_SIDE_NORTH = 4, CAMBER_SIDE_SOUTH = 8 };
@@ -21,19 +21,20 @@ typedef struct camber_tile_feature {
 } camber_tile_feature;
 
 /* Polylines as world coordinates: part i ends before point ends[i]. */
-typedef struct camber_tile_parts {
+typedef struct camber_tile_lines {
     const double *points;
     const size_t *ends;
     size_t part_count;
-} camber_tile_parts;
+} camber_tile_lines;
 
 /* zoom: 0 to 30. */
-camber_status camber_tiles_create(camber_context *context, int zoom, camber_tiles **tiles);
-void camber_tiles_destroy(camber_tiles *tiles);
+camber_status camber_tile_stitcher_create(camber_context *context, int zoom, camber_tile_stitcher **tiles);
+void camber_tile_stitcher_destroy(camber_tile_stitcher *tiles);
 /* Cuts the parts at the tile's border and keeps what lies inside. */
-camber_status camber_tiles_add(camber_tiles *tiles, const camber_tile_feature *feature, const camber_tile_parts *parts);
+camber_status camber_tile_stitcher_add(camber_tile_stitcher *tiles, const camber_tile_feature *feature,
+                                       const camber_tile_lines *parts);
 /* Joins the pieces and adds them to the set. Where the style is directed, an end is joined to a start only. */
-camber_status camber_tiles_finish(camber_tiles *tiles, camber_features *features);
+camber_status camber_tile_stitcher_finish(camber_tile_stitcher *tiles, camber_features *features);
 
 /* ---- Between the two ---- */
 
@@ -41,7 +42,7 @@ camber_status camber_tiles_finish(camber_tiles *tiles, camber_features *features
  * this or to half or double as much, and a double holds them exactly at all zooms. */
 #define CAMBER_TILE_UNITS 4096.0
 
-typedef struct camber_tile_piece {
+typedef struct camber_cut_line {
     size_t first, count; /* points; count 0: not there any more */
     uint32_t feature;    /* index into features */
     uint32_t column, row;
@@ -49,25 +50,25 @@ typedef struct camber_tile_piece {
     bool border[2]; /* they lie on the tile's border */
     bool run;       /* runs along the border: the neighbour has it too */
     float progress[2];
-} camber_tile_piece;
+} camber_cut_line;
 
-typedef struct camber_tile_record {
+typedef struct camber_cut_feature {
     uint64_t id;
     uint32_t class_index;
     bool has_id;
     uint32_t next; /* with the same hash, + 1 */
-} camber_tile_record;
+} camber_cut_feature;
 
-struct camber_tiles {
+struct camber_tile_stitcher {
     camber_context *context;
     double units;      /* that the world is wide */
     double grid;       /* of the coarsest tile, in units */
     bool has_progress; /* of some piece */
     double *points;
     size_t point_count, point_capacity;
-    camber_tile_piece *pieces; /* fewer than 2^31 */
+    camber_cut_line *pieces; /* fewer than 2^31 */
     size_t piece_count, piece_capacity;
-    camber_tile_record *features; /* one for all the pieces with one id and class */
+    camber_cut_feature *features; /* one for all the pieces with one id and class */
     size_t feature_count, feature_capacity;
     uint32_t *slots; /* of features with an id, + 1; slot_count is a power of two */
     size_t slot_count;
@@ -75,7 +76,7 @@ struct camber_tiles {
     size_t scratch_capacity;
 };
 
-static inline bool camber_tiles_same(const double *p, const double *q) {
+static inline bool camber_tile_stitcher_same(const double *p, const double *q) {
     return p[0] == q[0] && p[1] == q[1];
 }
 

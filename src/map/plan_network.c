@@ -1,4 +1,4 @@
-#include "map/geometry.h"
+#include "map/plan_network.h"
 
 #include "camber_proof.h"
 
@@ -79,7 +79,7 @@ static uint64_t key_of(const camber_view *view, const camber_plan *plan) {
     return camber_hash(plan->key, &worlds, sizeof worlds);
 }
 
-bool camber_geometry_serves(const camber_geometry *geometry, const camber_view *view, const camber_plan *plan) {
+bool camber_plan_network_serves(const camber_plan_network *geometry, const camber_view *view, const camber_plan *plan) {
     return geometry->network && geometry->key == key_of(view, plan) && (geometry->measured || !plan->measured);
 }
 
@@ -108,7 +108,8 @@ static camber_status list_set(const camber_features *features, const camber_plan
     return CAMBER_OK;
 }
 
-static camber_status make_network(const camber_features *features, const entry_list *list, camber_geometry *geometry) {
+static camber_status make_network(const camber_features *features, const entry_list *list,
+                                  camber_plan_network *geometry) {
     static const size_t none[1] = {0};
     static const camber_network_entry nothing;
     const camber_network_entry *entries = list->entries ? list->entries : &nothing;
@@ -131,12 +132,12 @@ static camber_status make_network(const camber_features *features, const entry_l
     return camber_network_create(geometry->context, &desc, &geometry->network);
 }
 
-camber_status camber_geometry_create(const camber_features *features, const camber_view *view, const camber_plan *plan,
-                                     camber_geometry *geometry) {
-    *geometry = (camber_geometry){.context = features->context,
-                                  .set_count = plan->set_count,
-                                  .measured = plan->measured,
-                                  .key = key_of(view, plan)};
+camber_status camber_plan_network_create(const camber_features *features, const camber_view *view,
+                                         const camber_plan *plan, camber_plan_network *geometry) {
+    *geometry = (camber_plan_network){.context = features->context,
+                                      .set_count = plan->set_count,
+                                      .measured = plan->measured,
+                                      .key = key_of(view, plan)};
     const copies worlds = copies_in(view, plan);
     entry_list list = {0};
     camber_status status = CAMBER_OK;
@@ -154,21 +155,21 @@ camber_status camber_geometry_create(const camber_features *features, const camb
     return status;
 }
 
-void camber_geometry_destroy(camber_geometry *geometry) {
+void camber_plan_network_destroy(camber_plan_network *geometry) {
     if (!geometry->context)
         return;
     camber_network_destroy(geometry->network);
     camber_free(geometry->context, geometry->first_entries);
     camber_free(geometry->context, geometry->pairs);
     camber_free(geometry->context, geometry->polylines);
-    *geometry = (camber_geometry){0};
+    *geometry = (camber_plan_network){0};
 }
 
 /* ---- What is seen of it ---- */
 
 /* Counts polylines once a set, however often the world repeats and in however many pieces. */
-static void count_set(const camber_features *features, const camber_geometry *geometry, size_t first, size_t end,
-                      camber_seen *seen) {
+static void count_set(const camber_features *features, const camber_plan_network *geometry, size_t first, size_t end,
+                      camber_visible_lines *seen) {
     uint32_t before = UINT32_MAX, counted = UINT32_MAX;
     for (size_t i = first; i < end; i++) {
         const uint32_t polyline = geometry->polylines[seen->entries[i]];
@@ -184,7 +185,8 @@ static void count_set(const camber_features *features, const camber_geometry *ge
 }
 
 /* The row of each polyline, and where each set begins. */
-static camber_status fill_rows(const camber_geometry *geometry, const camber_plan *plan, camber_seen *seen) {
+static camber_status fill_rows(const camber_plan_network *geometry, const camber_plan *plan,
+                               camber_visible_lines *seen) {
     const size_t count = seen->lines.polyline_count;
     if (!(seen->rows = camber_alloc(geometry->context, count, sizeof *seen->rows)) ||
         !(seen->first_polylines =
@@ -201,10 +203,10 @@ static camber_status fill_rows(const camber_geometry *geometry, const camber_pla
     return CAMBER_OK;
 }
 
-camber_status camber_geometry_see(const camber_features *features, const camber_geometry *geometry,
-                                  const camber_plan *plan, const camber_camera *camera,
-                                  const camber_tessellation_desc *desc, camber_seen *seen) {
-    *seen = (camber_seen){.context = geometry->context};
+camber_status camber_plan_network_project(const camber_features *features, const camber_plan_network *geometry,
+                                          const camber_plan *plan, const camber_camera *camera,
+                                          const camber_tessellation_desc *desc, camber_visible_lines *seen) {
+    *seen = (camber_visible_lines){.context = geometry->context};
     camber_status status = camber_network_lines(geometry->network, camera, desc, &seen->lines, &seen->entries);
     if (status == CAMBER_OK)
         status = fill_rows(geometry, plan, seen);
@@ -213,12 +215,12 @@ camber_status camber_geometry_see(const camber_features *features, const camber_
     return status;
 }
 
-void camber_seen_destroy(camber_seen *seen) {
+void camber_visible_lines_destroy(camber_visible_lines *seen) {
     if (!seen->context)
         return;
     camber_free(seen->context, seen->first_polylines);
     camber_free(seen->context, seen->rows);
     camber_entries_free(seen->context, seen->entries);
     camber_lines_free(seen->context, &seen->lines);
-    *seen = (camber_seen){0};
+    *seen = (camber_visible_lines){0};
 }

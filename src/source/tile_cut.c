@@ -7,7 +7,7 @@
  *     a ------------c - - -            A's piece, with its buffer
  *             - - - c ------------ b   B's piece
  */
-#include "source/tiles.h"
+#include "source/tile_stitcher.h"
 
 #include <math.h>
 #include <string.h>
@@ -15,8 +15,8 @@
 /* Coordinates come through metres; what lies this close to a multiple of 1/16 unit was one. */
 static const double SNAP = 0.01 / 16;
 
-camber_status camber_tiles_create(camber_context *context, int zoom, camber_tiles **tiles) {
-    camber_tiles *made = camber_alloc_zero(context, 1, sizeof *made);
+camber_status camber_tile_stitcher_create(camber_context *context, int zoom, camber_tile_stitcher **tiles) {
+    camber_tile_stitcher *made = camber_alloc_zero(context, 1, sizeof *made);
     if (!made)
         return CAMBER_ERROR_MEMORY;
     made->context = context;
@@ -26,7 +26,7 @@ camber_status camber_tiles_create(camber_context *context, int zoom, camber_tile
     return CAMBER_OK;
 }
 
-void camber_tiles_destroy(camber_tiles *tiles) {
+void camber_tile_stitcher_destroy(camber_tile_stitcher *tiles) {
     if (!tiles)
         return;
     camber_context *context = tiles->context;
@@ -40,11 +40,11 @@ void camber_tiles_destroy(camber_tiles *tiles) {
 
 /* ---- Features: one record for all the pieces with one id ---- */
 
-static size_t id_slot(const camber_tiles *tiles, uint64_t id, uint32_t class_index) {
+static size_t id_slot(const camber_tile_stitcher *tiles, uint64_t id, uint32_t class_index) {
     return (size_t)camber_mix(camber_mix(0, id), class_index) & (tiles->slot_count - 1);
 }
 
-static bool grow_slots(camber_tiles *tiles) {
+static bool grow_slots(camber_tile_stitcher *tiles) {
     const size_t count = tiles->slot_count ? 2 * tiles->slot_count : 1024;
     uint32_t *slots = camber_alloc_zero(tiles->context, count, sizeof *slots);
     if (!slots)
@@ -53,7 +53,7 @@ static bool grow_slots(camber_tiles *tiles) {
     tiles->slots = slots;
     tiles->slot_count = count;
     for (size_t i = 0; i < tiles->feature_count; i++) {
-        camber_tile_record *record = &tiles->features[i];
+        camber_cut_feature *record = &tiles->features[i];
         if (!record->has_id)
             continue;
         const size_t slot = id_slot(tiles, record->id, record->class_index);
@@ -63,12 +63,12 @@ static bool grow_slots(camber_tiles *tiles) {
     return true;
 }
 
-static camber_status find_feature(camber_tiles *tiles, const camber_tile_feature *feature, uint32_t *index) {
+static camber_status find_feature(camber_tile_stitcher *tiles, const camber_tile_feature *feature, uint32_t *index) {
     if (tiles->feature_count >= tiles->slot_count && !grow_slots(tiles))
         return CAMBER_ERROR_MEMORY;
     const size_t slot = id_slot(tiles, feature->id, feature->class_index);
     for (uint32_t i = feature->has_id ? tiles->slots[slot] : 0; i; i = tiles->features[i - 1].next) {
-        const camber_tile_record *record = &tiles->features[i - 1];
+        const camber_cut_feature *record = &tiles->features[i - 1];
         if (record->id == feature->id && record->class_index == feature->class_index) {
             *index = i - 1;
             return CAMBER_OK;
@@ -80,7 +80,7 @@ static camber_status find_feature(camber_tiles *tiles, const camber_tile_feature
     if (!camber_grow(tiles->context, &tiles->features, &tiles->feature_capacity, tiles->feature_count + 1,
                      sizeof *tiles->features))
         return CAMBER_ERROR_MEMORY;
-    camber_tile_record record = {.id = feature->id, .class_index = feature->class_index, .has_id = feature->has_id};
+    camber_cut_feature record = {.id = feature->id, .class_index = feature->class_index, .has_id = feature->has_id};
     if (record.has_id) {
         record.next = tiles->slots[slot];
         tiles->slots[slot] = (uint32_t)tiles->feature_count + 1;
@@ -97,9 +97,9 @@ typedef struct tile_box {
 } tile_box;
 
 typedef struct tile_cut {
-    camber_tiles *tiles;
+    camber_tile_stitcher *tiles;
     tile_box box;
-    camber_tile_piece piece; /* the open one where open; its place and feature hold for all */
+    camber_cut_line piece; /* the open one where open; its place and feature hold for all */
     bool open;
     const double *progress; /* NULL: none */
     double length, done;    /* of the part, and of it before the segment */
@@ -162,7 +162,7 @@ static bool clip_segment(const tile_box *box, const double *p, const double *q, 
     return ends[0] != ends[2] || ends[1] != ends[3];
 }
 
-static bool add_point(camber_tiles *tiles, const double *point) {
+static bool add_point(camber_tile_stitcher *tiles, const double *point) {
     if (!camber_grow(tiles->context, &tiles->points, &tiles->point_capacity, tiles->point_count + 1,
                      2 * sizeof *tiles->points))
         return false;
@@ -171,11 +171,11 @@ static bool add_point(camber_tiles *tiles, const double *point) {
 }
 
 static camber_status close_piece(tile_cut *cut, bool is_cut) {
-    camber_tiles *tiles = cut->tiles;
+    camber_tile_stitcher *tiles = cut->tiles;
     if (!cut->open)
         return CAMBER_OK;
     cut->open = false;
-    camber_tile_piece *piece = &cut->piece;
+    camber_cut_line *piece = &cut->piece;
     piece->count = tiles->point_count - piece->first;
     piece->cut[1] = is_cut;
     piece->border[0] = on_border(&cut->box, tiles->points + 2 * piece->first);
@@ -204,7 +204,7 @@ static float progress_at(const tile_cut *cut, const double *p, const double *at)
 }
 
 static camber_status cut_segment(tile_cut *cut, const double *p, const double *q, bool outline) {
-    if (camber_tiles_same(p, q))
+    if (camber_tile_stitcher_same(p, q))
         return cut->open && !add_point(cut->tiles, q) ? CAMBER_ERROR_MEMORY : CAMBER_OK;
     double ends[4];
     bool is_cut[2];
@@ -231,13 +231,13 @@ static camber_status cut_segment(tile_cut *cut, const double *p, const double *q
 }
 
 /* A ring that the border cuts comes in two pieces at the point where it happens to begin: makes them one. */
-static camber_status close_ring(camber_tiles *tiles, size_t first_piece, const double *start) {
+static camber_status close_ring(camber_tile_stitcher *tiles, size_t first_piece, const double *start) {
     if (tiles->piece_count < first_piece + 2)
         return CAMBER_OK;
-    camber_tile_piece *head = &tiles->pieces[first_piece], *tail = &tiles->pieces[tiles->piece_count - 1];
+    camber_cut_line *head = &tiles->pieces[first_piece], *tail = &tiles->pieces[tiles->piece_count - 1];
     if (head->run || tail->run || head->cut[0] || tail->cut[1] ||
-        !camber_tiles_same(tiles->points + 2 * head->first, start) ||
-        !camber_tiles_same(tiles->points + 2 * (tail->first + tail->count - 1), start))
+        !camber_tile_stitcher_same(tiles->points + 2 * head->first, start) ||
+        !camber_tile_stitcher_same(tiles->points + 2 * (tail->first + tail->count - 1), start))
         return CAMBER_OK;
     for (size_t i = 1; i < head->count; i++) {
         double point[2];
@@ -258,7 +258,7 @@ static double segment_length(const double *point) {
 }
 
 static camber_status cut_part(tile_cut *cut, const double *points, size_t count, bool outline) {
-    camber_tiles *tiles = cut->tiles;
+    camber_tile_stitcher *tiles = cut->tiles;
     const size_t first_piece = tiles->piece_count;
     const double *last = points + 2 * (count - 1);
     camber_status status = CAMBER_OK;
@@ -267,7 +267,7 @@ static camber_status cut_part(tile_cut *cut, const double *points, size_t count,
     for (size_t i = 1; i < count && cut->progress; i++)
         cut->length += segment_length(points + 2 * (i - 1));
     for (size_t i = 1; i < count && status == CAMBER_OK; i++) {
-        moves = moves || !camber_tiles_same(points, points + 2 * i);
+        moves = moves || !camber_tile_stitcher_same(points, points + 2 * i);
         status = cut_segment(cut, points + 2 * (i - 1), points + 2 * i, outline);
         cut->done += cut->progress ? segment_length(points + 2 * (i - 1)) : 0;
     }
@@ -279,7 +279,7 @@ static camber_status cut_part(tile_cut *cut, const double *points, size_t count,
     }
     if (status == CAMBER_OK)
         status = close_piece(cut, false);
-    if (status == CAMBER_OK && moves && !cut->progress && camber_tiles_same(points, last))
+    if (status == CAMBER_OK && moves && !cut->progress && camber_tile_stitcher_same(points, last))
         status = close_ring(tiles, first_piece, points);
     return status;
 }
@@ -294,8 +294,8 @@ static tile_box box_of(const camber_tile_feature *feature) {
                        (row + (open & CAMBER_SIDE_SOUTH ? 2 : 1)) * CAMBER_TILE_UNITS}};
 }
 
-camber_status camber_tiles_add(camber_tiles *tiles, const camber_tile_feature *feature,
-                               const camber_tile_parts *parts) {
+camber_status camber_tile_stitcher_add(camber_tile_stitcher *tiles, const camber_tile_feature *feature,
+                                       const camber_tile_lines *parts) {
     uint32_t index = 0;
     camber_status status = find_feature(tiles, feature, &index);
     if (status != CAMBER_OK)

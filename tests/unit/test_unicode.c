@@ -1,5 +1,5 @@
 /* Letters: UTF-8 whole and broken, case in several scripts, the order that collators have. */
-#include "style/letters.h"
+#include "style/unicode.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -14,9 +14,9 @@ static void test_round_trip(void **state) {
     for (size_t i = 0; i < sizeof codes / sizeof *codes; i++) {
         char bytes[5] = "";
         uint32_t code;
-        const size_t size = camber_letter_write(codes[i], bytes);
+        const size_t size = camber_unicode_write(codes[i], bytes);
         assert_int_equal(size, 1 + (codes[i] >= 0x80) + (codes[i] >= 0x800) + (codes[i] >= 0x10000));
-        assert_int_equal(camber_letter_read(bytes, &code), size);
+        assert_int_equal(camber_unicode_read(bytes, &code), size);
         assert_int_equal(code, codes[i]);
     }
 }
@@ -31,8 +31,8 @@ static void test_broken(void **state) {
         size_t used = 0;
         for (const char *at = texts[i]; *at;) {
             uint32_t code;
-            at += camber_letter_read(at, &code);
-            used += camber_letter_write(code, copy + used);
+            at += camber_unicode_read(at, &code);
+            used += camber_unicode_write(code, copy + used);
         }
         assert_string_equal(copy, texts[i]);
     }
@@ -41,10 +41,10 @@ static void test_broken(void **state) {
 static void change(const char *text, size_t (*letter)(uint32_t, uint32_t[2]), char *changed) {
     while (*text) {
         uint32_t code, other[2];
-        text += camber_letter_read(text, &code);
+        text += camber_unicode_read(text, &code);
         const size_t count = letter(code, other);
         for (size_t i = 0; i < count; i++)
-            changed += camber_letter_write(other[i], changed);
+            changed += camber_unicode_write(other[i], changed);
     }
     *changed = 0;
 }
@@ -63,15 +63,15 @@ static void test_case(void **state) {
         {"\xc3\x9f", "SS"},
     };
     char changed[64];
-    change("azAZ09-", camber_letter_upper, changed);
+    change("azAZ09-", camber_unicode_upper, changed);
     assert_string_equal(changed, "AZAZ09-");
     for (size_t i = 1; i < sizeof pairs / sizeof *pairs; i++) {
-        change(pairs[i][0], camber_letter_upper, changed);
+        change(pairs[i][0], camber_unicode_upper, changed);
         assert_string_equal(changed, pairs[i][1]);
     }
-    change("\xc3\x84\xc5\xb8\xd0\x81\xd4\xb1\xe1\xba\x9e", camber_letter_lower, changed);
+    change("\xc3\x84\xc5\xb8\xd0\x81\xd4\xb1\xe1\xba\x9e", camber_unicode_lower, changed);
     assert_string_equal(changed, "\xc3\xa4\xc3\xbf\xd1\x91\xd5\xa1\xc3\x9f");
-    change("\xc4\xb0", camber_letter_lower, changed);
+    change("\xc4\xb0", camber_unicode_lower, changed);
     assert_string_equal(changed, "i\xcc\x87");
 }
 
@@ -96,11 +96,11 @@ static void test_order(void **state) {
     };
     for (size_t i = 0; i < sizeof samples / sizeof *samples; i++) {
         const char *a = samples[i].a, *b = samples[i].b;
-        assert_int_equal(camber_letters_compare(a, b, false, false), samples[i].base);
-        assert_int_equal(camber_letters_compare(a, b, true, false), samples[i].by_case);
-        assert_int_equal(camber_letters_compare(a, b, false, true), samples[i].by_diacritics);
-        assert_int_equal(camber_letters_compare(a, b, true, true), samples[i].by_both);
-        assert_int_equal(camber_letters_compare(b, a, true, true), -samples[i].by_both);
+        assert_int_equal(camber_unicode_compare(a, b, false, false), samples[i].base);
+        assert_int_equal(camber_unicode_compare(a, b, true, false), samples[i].by_case);
+        assert_int_equal(camber_unicode_compare(a, b, false, true), samples[i].by_diacritics);
+        assert_int_equal(camber_unicode_compare(a, b, true, true), samples[i].by_both);
+        assert_int_equal(camber_unicode_compare(b, a, true, true), -samples[i].by_both);
     }
 }
 

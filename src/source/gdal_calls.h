@@ -1,6 +1,6 @@
 /* What is called of the files that need GDAL. */
-#ifndef CAMBER_LOAD_H
-#define CAMBER_LOAD_H
+#ifndef CAMBER_GDAL_CALLS_H
+#define CAMBER_GDAL_CALLS_H
 
 #include "camber_map.h"
 

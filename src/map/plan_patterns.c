@@ -1,4 +1,4 @@
-#include "map/patterns.h"
+#include "map/plan_patterns.h"
 
 #include <math.h>
 

@@ -2,8 +2,8 @@
 #define _LARGEFILE64_SOURCE
 
 #include "base/embedded.h"
+#include "gdal/vector_file.h"
 #include "source/database.h"
-#include "source/source.h"
 
 #include <cpl_conv.h>
 #include <cpl_string.h>
@@ -185,7 +185,7 @@ static const char *find_file(const char *path) {
 
 /* GDAL merges a log into the file, and opens what virtual tables name. */
 static camber_status check_database(camber_context *context, const char *path) {
-    const camber_database_kind kind = camber_database_look(path);
+    const camber_database_kind kind = camber_database_get_kind(path);
     if (kind == CAMBER_DATABASE_INTERRUPTED || kind == CAMBER_DATABASE_LOGGED)
         return camber_fail(context, CAMBER_ERROR_INPUT,
                            "%s: it has a log beside it: somebody writes, or was interrupted; close the one, or open it "
@@ -338,7 +338,7 @@ camber_status camber_dataset_open(camber_context *context, const camber_source_d
     options = CSLSetNameValue(options, "CLIP", "NO");
     /* Nothing is left beside the file. */
     options = CSLSetNameValue(options, "WRITE_GFS", "NO");
-    if (camber_database_look(desc->path) == CAMBER_DATABASE_AT_REST)
+    if (camber_database_get_kind(desc->path) == CAMBER_DATABASE_AT_REST)
         options = CSLSetNameValue(options, "IMMUTABLE", "YES");
     drivers = camber_gdal_drivers(context, path);
     CPLPushErrorHandlerEx(camber_gdal_collect, &dataset->errors);

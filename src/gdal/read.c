@@ -1,6 +1,6 @@
 /* Streams the features of a file into a set. */
-#include "source/load.h"
-#include "source/source.h"
+#include "gdal/vector_file.h"
+#include "source/gdal_calls.h"
 
 #include <cpl_conv.h>
 #include <cpl_string.h>
@@ -18,8 +18,8 @@ typedef struct reader {
     camber_features *features;
     const camber_source_desc *desc;
     camber_dataset dataset;
-    camber_parts parts;
-    camber_tiles *tiles; /* NULL: no vector tiles */
+    camber_feature_lines parts;
+    camber_tile_stitcher *tiles; /* NULL: no vector tiles */
 
     /* The layer being read. */
     OGRLayerH layer;
@@ -41,7 +41,7 @@ static camber_status begin_layer(reader *self, int index) {
     OGRFeatureDefnH schema = OGR_L_GetLayerDefn(self->layer);
     camber_status status = camber_features_find_layer(self->features, OGR_L_GetName(self->layer), &self->layer_index);
     if (status == CAMBER_OK)
-        status = camber_parts_set_srs(&self->parts, OGR_L_GetSpatialRef(self->layer), self->desc->path);
+        status = camber_feature_lines_set_srs(&self->parts, OGR_L_GetSpatialRef(self->layer), self->desc->path);
     if (status == CAMBER_OK)
         status = camber_columns_find(&self->columns, self->features, schema, self->tiles, self->dataset.osm);
     if (status != CAMBER_OK)
@@ -90,8 +90,8 @@ static camber_status keep(reader *self, OGRFeatureH feature, camber_geometry_kin
         camber_tile_feature tile = {.class_index = index, .outline = kind == CAMBER_GEOMETRY_POLYGON};
         find_tile(self, feature, &tile);
         tile.has_id = camber_columns_id(&self->columns, feature, &tile.id);
-        const camber_tile_parts parts = {self->parts.points, self->parts.ends, self->parts.part_count};
-        return camber_tiles_add(self->tiles, &tile, &parts);
+        const camber_tile_lines parts = {self->parts.points, self->parts.ends, self->parts.part_count};
+        return camber_tile_stitcher_add(self->tiles, &tile, &parts);
     }
     status = camber_features_add_feature(self->features, index);
     size_t first = 0;
@@ -105,7 +105,7 @@ static camber_status keep(reader *self, OGRFeatureH feature, camber_geometry_kin
 
 /* failed: OGR reported a failure with this feature. */
 static camber_status read_feature(reader *self, OGRFeatureH feature, bool failed) {
-    camber_parts *parts = &self->parts;
+    camber_feature_lines *parts = &self->parts;
     OGRGeometryH geometry = OGR_F_GetGeometryRef(feature);
     parts->left_out = !geometry && !failed;
     parts->damaged = failed;
@@ -117,7 +117,7 @@ static camber_status read_feature(reader *self, OGRFeatureH feature, bool failed
             continue;
         /* An area's ring is a line to OGR. */
         const camber_geometry_kind collected = area ? CAMBER_GEOMETRY_LINE : (camber_geometry_kind)kind;
-        status = camber_parts_collect(parts, geometry, collected);
+        status = camber_feature_lines_collect(parts, geometry, collected);
         if (status == CAMBER_OK && parts->part_count)
             status = keep(self, feature, (camber_geometry_kind)kind);
     }
@@ -297,7 +297,7 @@ static void warn(const reader *self) {
 
 /* What the file gave, looked at as a whole. */
 static camber_status judge(reader *self, size_t features_before) {
-    const camber_parts *parts = &self->parts;
+    const camber_feature_lines *parts = &self->parts;
     if (parts->strange_points > parts->raw_points / 2)
         return camber_fail(self->context, CAMBER_ERROR_INPUT,
                            "%s: its coordinates are not degrees, and it names no other coordinate system; add one (a "
@@ -322,7 +322,7 @@ static camber_status read_dataset(reader *self, bool *unsorted) {
     size_t count = 0;
     camber_status status = camber_dataset_layers(&self->dataset, style->wants_polygons, &layers, &count);
     if (status == CAMBER_OK && self->dataset.zoom >= 0)
-        status = camber_tiles_create(context, self->dataset.zoom, &self->tiles);
+        status = camber_tile_stitcher_create(context, self->dataset.zoom, &self->tiles);
     if (status != CAMBER_OK)
         goto done;
     if (self->dataset.osm) {
@@ -332,25 +332,25 @@ static camber_status read_dataset(reader *self, bool *unsorted) {
             self->dataset.handle,
             GDALDatasetExecuteSQL(self->dataset.handle, CPLSPrintf("SET interest_layers = %s", name), NULL, NULL));
     }
-    self->parts = (camber_parts){
+    self->parts = (camber_feature_lines){
         .context = context, .whole = self->tiles, .wants_polygons = style->wants_polygons, .directed = style->directed};
     status = read_layers(self, layers, count, unsorted);
     if (status == CAMBER_OK && self->tiles)
-        status = camber_tiles_finish(self->tiles, self->features);
+        status = camber_tile_stitcher_finish(self->tiles, self->features);
     if (status == CAMBER_OK)
         status = judge(self, features_before);
     if (status == CAMBER_OK && self->desc->where && self->passed == 0)
         warn_where(self);
     if (status == CAMBER_OK)
-        status = camber_features_sign(self->features, camber_dataset_attribution(&self->dataset));
+        status = camber_features_add_attribution(self->features, camber_dataset_attribution(&self->dataset));
 done:
     camber_free(context, layers);
     return status;
 }
 
 static void close_reader(reader *self) {
-    camber_parts_free(&self->parts);
-    camber_tiles_destroy(self->tiles);
+    camber_feature_lines_free(&self->parts);
+    camber_tile_stitcher_destroy(self->tiles);
     camber_columns_free(&self->columns, self->context);
     camber_dataset_close(&self->dataset);
 }
@@ -376,7 +376,7 @@ static camber_status finish(camber_features *features, const camber_source_desc 
                                        features->style->directed ? CAMBER_MERGE_DIRECTED : CAMBER_MERGE_ANY);
     const double merged_ms = camber_now_ms();
     if (status == CAMBER_OK)
-        status = camber_features_weigh(features, first_polyline);
+        status = camber_features_set_importance(features, first_polyline);
     features->times.merge_ms += merged_ms - start_ms;
     features->times.weigh_ms += camber_now_ms() - merged_ms;
     return status;
@@ -412,7 +412,7 @@ static camber_status read_once(camber_features *features, const camber_source_de
         features->point_count = points;
         features->polyline_count = polylines;
         features->feature_count = count;
-        camber_features_unsign(features, signed_size);
+        camber_features_cut_attribution(features, signed_size);
         features->stats = stats;
     }
     return status;

@@ -52,54 +52,54 @@ static bool names_path(OGRSpatialReferenceH srs) {
     return found;
 }
 
-static camber_status transform_to_degrees(camber_feature_lines *parts, OGRSpatialReferenceH srs, const char *name) {
+static camber_status transform_to_degrees(camber_feature_lines *lines, OGRSpatialReferenceH srs, const char *name) {
     OGRSpatialReferenceH degrees = OSRNewSpatialReference(NULL);
     OSRImportFromEPSG(degrees, 4326);
     OSRSetAxisMappingStrategy(degrees, OAMS_TRADITIONAL_GIS_ORDER);
-    parts->transform = OCTNewCoordinateTransformation(srs, degrees);
+    lines->transform = OCTNewCoordinateTransformation(srs, degrees);
     OSRDestroySpatialReference(degrees);
-    if (!parts->transform)
-        return camber_fail(parts->context, CAMBER_ERROR_INPUT,
+    if (!lines->transform)
+        return camber_fail(lines->context, CAMBER_ERROR_INPUT,
                            "%s: its coordinate system \"%s\" cannot be turned into longitude and latitude; convert "
                            "the file to EPSG:4326",
                            name, OSRGetName(srs) ? OSRGetName(srs) : "unnamed");
-    parts->projection = CAMBER_PROJECTION_TRANSFORM;
+    lines->projection = CAMBER_PROJECTION_TRANSFORM;
     return CAMBER_OK;
 }
 
-camber_status camber_feature_lines_set_srs(camber_feature_lines *parts, OGRSpatialReferenceH srs, const char *name) {
-    OCTDestroyCoordinateTransformation(parts->transform);
-    parts->transform = NULL;
-    parts->projection = CAMBER_PROJECTION_DEGREES;
-    parts->latitude_first = false;
+camber_status camber_feature_lines_set_srs(camber_feature_lines *lines, OGRSpatialReferenceH srs, const char *name) {
+    OCTDestroyCoordinateTransformation(lines->transform);
+    lines->transform = NULL;
+    lines->projection = CAMBER_PROJECTION_DEGREES;
+    lines->latitude_first = false;
     if (!srs)
         return CAMBER_OK;
     if (names_path(srs))
-        return camber_dataset_fail_elsewhere(parts->context, name);
+        return camber_dataset_fail_elsewhere(lines->context, name);
     int count = 0;
     const int *mapping = OSRGetDataAxisToSRSAxisMapping(srs, &count);
     if (OSRIsProjected(srs) && is_code(srs, "3857") && mapping && count >= 2 && mapping[0] == 1 && mapping[1] == 2) {
-        parts->projection = CAMBER_PROJECTION_METRES;
+        lines->projection = CAMBER_PROJECTION_METRES;
         return CAMBER_OK;
     }
     if (is_wgs84(srs)) {
         bool known;
-        parts->latitude_first = !longitude_first(srs, &known);
+        lines->latitude_first = !longitude_first(srs, &known);
         if (known)
             return CAMBER_OK;
-        parts->latitude_first = false;
+        lines->latitude_first = false;
     }
-    return transform_to_degrees(parts, srs, name);
+    return transform_to_degrees(lines, srs, name);
 }
 
-void camber_feature_lines_free(camber_feature_lines *parts) {
-    OCTDestroyCoordinateTransformation(parts->transform);
-    camber_free(parts->context, parts->raw);
-    camber_free(parts->context, parts->ends);
-    camber_free(parts->context, parts->points);
-    parts->transform = NULL;
-    parts->raw = parts->points = NULL;
-    parts->ends = NULL;
+void camber_feature_lines_free(camber_feature_lines *lines) {
+    OCTDestroyCoordinateTransformation(lines->transform);
+    camber_free(lines->context, lines->raw);
+    camber_free(lines->context, lines->ends);
+    camber_free(lines->context, lines->points);
+    lines->transform = NULL;
+    lines->raw = lines->points = NULL;
+    lines->ends = NULL;
 }
 
 /* ---- One line ---- */
@@ -114,61 +114,61 @@ typedef struct line_state {
 } line_state;
 
 /* Capacity for all that a line can add is there already: see add_line. */
-static void push(camber_feature_lines *parts, line_state *line, double x, double y) {
+static void push(camber_feature_lines *lines, line_state *line, double x, double y) {
     if (!line->open) {
-        line->first = parts->point_count;
+        line->first = lines->point_count;
         line->open = true;
     }
-    parts->points[2 * parts->point_count] = x;
-    parts->points[2 * parts->point_count + 1] = y;
-    parts->point_count++;
+    lines->points[2 * lines->point_count] = x;
+    lines->points[2 * lines->point_count + 1] = y;
+    lines->point_count++;
 }
 
-static void end_part(camber_feature_lines *parts, line_state *line, bool cut) {
+static void end_line(camber_feature_lines *lines, line_state *line, bool cut) {
     if (!line->open)
         return;
-    if (parts->point_count - line->first == 1 && (cut || line->begun_by_cut))
-        parts->point_count = line->first;
+    if (lines->point_count - line->first == 1 && (cut || line->begun_by_cut))
+        lines->point_count = line->first;
     else
-        parts->ends[parts->part_count++] = parts->point_count;
+        lines->ends[lines->line_count++] = lines->point_count;
     line->open = false;
     line->begun_by_cut = cut;
 }
 
 /* The short way from the last point to (x, y) crosses x = 0 or 1: ends the part there and begins one on the other
  * side. Linear in world coordinates, as the segment is drawn. */
-static void cross_antimeridian(camber_feature_lines *parts, line_state *line, double x, double y) {
+static void cross_antimeridian(camber_feature_lines *lines, line_state *line, double x, double y) {
     const double out = x < line->x ? 1.0 : 0.0; /* the edge it leaves by */
     const double beyond = x < line->x ? x + 1.0 : x - 1.0;
     const double length = beyond - line->x;
     const double crossing = length != 0 ? line->y + (y - line->y) * ((out - line->x) / length) : y;
     if (line->x != out)
-        push(parts, line, out, crossing);
-    end_part(parts, line, true);
+        push(lines, line, out, crossing);
+    end_line(lines, line, true);
     if (x != 1.0 - out)
-        push(parts, line, 1.0 - out, crossing);
-    parts->antimeridian_splits++;
+        push(lines, line, 1.0 - out, crossing);
+    lines->antimeridian_splits++;
 }
 
 /* Ordinates as the file has them to the world. false: not a number. */
-static bool to_world(camber_feature_lines *parts, double east, double north, double *x, double *y) {
+static bool to_world(camber_feature_lines *lines, double east, double north, double *x, double *y) {
     if (!isfinite(east) || !isfinite(north))
         return false;
-    if (parts->projection == CAMBER_PROJECTION_METRES) {
+    if (lines->projection == CAMBER_PROJECTION_METRES) {
         camber_mercator_from_metres(east, north, x, y);
-        if (parts->whole)
+        if (lines->whole)
             return true;
         if (*y < 0 || *y > 1) {
-            parts->clamped_points++;
+            lines->clamped_points++;
             *y = *y < 0 ? 0 : 1;
         }
     } else {
-        double latitude = parts->latitude_first ? east : north;
-        const double longitude = parts->latitude_first ? north : east;
+        double latitude = lines->latitude_first ? east : north;
+        const double longitude = lines->latitude_first ? north : east;
         if (fabs(latitude) > 90 || fabs(longitude) > 360)
-            parts->strange_points++;
+            lines->strange_points++;
         if (fabs(latitude) > CAMBER_MERCATOR_LATITUDE) {
-            parts->clamped_points++;
+            lines->clamped_points++;
             latitude = copysign(CAMBER_MERCATOR_LATITUDE, latitude);
         }
         camber_mercator_project(longitude, latitude, x, y);
@@ -180,32 +180,32 @@ static bool to_world(camber_feature_lines *parts, double east, double north, dou
 }
 
 /* The line's ordinates to raw: count of x, then of y. */
-static bool fetch(camber_feature_lines *parts, OGRGeometryH geometry, size_t count) {
+static bool fetch(camber_feature_lines *lines, OGRGeometryH geometry, size_t count) {
     /* A line adds its points, two more for each crossing of the antimeridian, and no more parts than points. */
-    if (count > SIZE_MAX / 64 - parts->point_count ||
-        !camber_grow(parts->context, &parts->raw, &parts->raw_capacity, 2 * count, sizeof *parts->raw) ||
-        !camber_grow(parts->context, &parts->points, &parts->point_capacity, parts->point_count + 3 * count,
-                     2 * sizeof *parts->points) ||
-        !camber_grow(parts->context, &parts->ends, &parts->part_capacity, parts->part_count + count + 1,
-                     sizeof *parts->ends))
+    if (count > SIZE_MAX / 64 - lines->point_count ||
+        !camber_grow(lines->context, &lines->raw, &lines->raw_capacity, 2 * count, sizeof *lines->raw) ||
+        !camber_grow(lines->context, &lines->points, &lines->point_capacity, lines->point_count + 3 * count,
+                     2 * sizeof *lines->points) ||
+        !camber_grow(lines->context, &lines->ends, &lines->line_capacity, lines->line_count + count + 1,
+                     sizeof *lines->ends))
         return false;
-    double *x = parts->raw, *y = parts->raw + count;
+    double *x = lines->raw, *y = lines->raw + count;
     OGR_G_GetPoints(geometry, x, sizeof *x, y, sizeof *y, NULL, 0);
     /* A point that PROJ cannot place comes back as infinite. */
-    if (parts->projection == CAMBER_PROJECTION_TRANSFORM)
-        OCTTransform(parts->transform, (int)count, x, y, NULL);
+    if (lines->projection == CAMBER_PROJECTION_TRANSFORM)
+        OCTTransform(lines->transform, (int)count, x, y, NULL);
     return true;
 }
 
 /* Whether the line fetched, which is closed, goes clockwise as seen. North is up in what was fetched. */
-static bool goes_clockwise(const camber_feature_lines *parts, size_t count) {
-    const double *x = parts->raw, *y = parts->raw + count;
+static bool goes_clockwise(const camber_feature_lines *lines, size_t count) {
+    const double *x = lines->raw, *y = lines->raw + count;
     double area = 0.0;
     for (size_t i = 0; i + 1 < count; i++) {
         const double part = (x[i] - x[0]) * (y[i + 1] - y[0]) - (x[i + 1] - x[0]) * (y[i] - y[0]);
         area += isfinite(part) ? part : 0.0;
     }
-    return (area < 0.0) != parts->latitude_first;
+    return (area < 0.0) != lines->latitude_first;
 }
 
 static void turn_back(double *numbers, size_t count) {
@@ -217,105 +217,105 @@ static void turn_back(double *numbers, size_t count) {
 }
 
 /* clockwise: which way a ring is to go as seen; below 0: as it does. */
-static camber_status add_line(camber_feature_lines *parts, OGRGeometryH geometry, int clockwise) {
+static camber_status add_line(camber_feature_lines *lines, OGRGeometryH geometry, int clockwise) {
     const int points = OGR_G_GetPointCount(geometry);
     if (points <= 0) {
-        parts->left_out = true;
+        lines->left_out = true;
         return CAMBER_OK;
     }
     const size_t count = (size_t)points;
-    if (!fetch(parts, geometry, count))
+    if (!fetch(lines, geometry, count))
         return CAMBER_ERROR_MEMORY;
-    if (clockwise >= 0 && goes_clockwise(parts, count) != (clockwise > 0)) {
-        turn_back(parts->raw, count);
-        turn_back(parts->raw + count, count);
+    if (clockwise >= 0 && goes_clockwise(lines, count) != (clockwise > 0)) {
+        turn_back(lines->raw, count);
+        turn_back(lines->raw + count, count);
     }
-    parts->raw_points += count;
+    lines->raw_points += count;
     line_state line = {0};
     for (size_t i = 0; i < count; i++) {
         double x, y;
-        if (!to_world(parts, parts->raw[i], parts->raw[count + i], &x, &y)) {
-            parts->invalid_points++;
-            end_part(parts, &line, false);
+        if (!to_world(lines, lines->raw[i], lines->raw[count + i], &x, &y)) {
+            lines->invalid_points++;
+            end_line(lines, &line, false);
             continue;
         }
-        if (line.open && !parts->whole && fabs(x - line.x) > 0.5)
-            cross_antimeridian(parts, &line, x, y);
-        push(parts, &line, x, y);
+        if (line.open && !lines->whole && fabs(x - line.x) > 0.5)
+            cross_antimeridian(lines, &line, x, y);
+        push(lines, &line, x, y);
         line.x = x;
         line.y = y;
     }
-    end_part(parts, &line, false);
+    end_line(lines, &line, false);
     return CAMBER_OK;
 }
 
 /* ---- Any geometry ---- */
 
-static camber_status collect(camber_feature_lines *parts, OGRGeometryH geometry, camber_geometry_kind kind, int depth);
+static camber_status collect(camber_feature_lines *lines, OGRGeometryH geometry, camber_geometry_kind kind, int depth);
 
-static camber_status collect_members(camber_feature_lines *parts, OGRGeometryH geometry, camber_geometry_kind kind,
+static camber_status collect_members(camber_feature_lines *lines, OGRGeometryH geometry, camber_geometry_kind kind,
                                      int depth) {
     const int count = OGR_G_GetGeometryCount(geometry);
     for (int i = 0; i < count; i++) {
-        const camber_status status = collect(parts, OGR_G_GetGeometryRef(geometry, i), kind, depth + 1);
+        const camber_status status = collect(lines, OGR_G_GetGeometryRef(geometry, i), kind, depth + 1);
         if (status != CAMBER_OK)
             return status;
     }
-    parts->left_out |= count == 0;
+    lines->left_out |= count == 0;
     return CAMBER_OK;
 }
 
-static camber_status collect_rings(camber_feature_lines *parts, OGRGeometryH polygon) {
+static camber_status collect_rings(camber_feature_lines *lines, OGRGeometryH polygon) {
     const int count = OGR_G_GetGeometryCount(polygon);
     for (int i = 0; i < count; i++) {
-        const camber_status status = add_line(parts, OGR_G_GetGeometryRef(polygon, i), parts->directed ? i == 0 : -1);
+        const camber_status status = add_line(lines, OGR_G_GetGeometryRef(polygon, i), lines->directed ? i == 0 : -1);
         if (status != CAMBER_OK)
             return status;
     }
-    parts->left_out |= count == 0;
+    lines->left_out |= count == 0;
     return CAMBER_OK;
 }
 
 /* Arcs become chords, by OGR's default of 4 degrees. */
-static camber_status collect_curve(camber_feature_lines *parts, OGRGeometryH geometry, camber_geometry_kind kind,
+static camber_status collect_curve(camber_feature_lines *lines, OGRGeometryH geometry, camber_geometry_kind kind,
                                    int depth) {
     OGRGeometryH linear = OGR_G_GetLinearGeometry(geometry, 0, NULL);
     camber_status status = CAMBER_OK;
     if (!linear || OGR_GT_IsNonLinear(OGR_G_GetGeometryType(linear)))
-        parts->damaged = true;
+        lines->damaged = true;
     else
-        status = collect(parts, linear, kind, depth + 1);
+        status = collect(lines, linear, kind, depth + 1);
     OGR_G_DestroyGeometry(linear);
     return status;
 }
 
-static camber_status collect(camber_feature_lines *parts, OGRGeometryH geometry, camber_geometry_kind kind, int depth) {
+static camber_status collect(camber_feature_lines *lines, OGRGeometryH geometry, camber_geometry_kind kind, int depth) {
     if (!geometry || depth > MAX_DEPTH) {
-        parts->damaged = true;
+        lines->damaged = true;
         return CAMBER_OK;
     }
     const OGRwkbGeometryType type = wkbFlatten(OGR_G_GetGeometryType(geometry));
     if (OGR_GT_IsNonLinear(type))
-        return collect_curve(parts, geometry, kind, depth);
+        return collect_curve(lines, geometry, kind, depth);
     switch (type) {
-    case wkbLineString: return kind == CAMBER_GEOMETRY_LINE ? add_line(parts, geometry, -1) : CAMBER_OK;
+    case wkbLineString: return kind == CAMBER_GEOMETRY_LINE ? add_line(lines, geometry, -1) : CAMBER_OK;
     case wkbPolygon:
     case wkbTriangle:
         if (kind == CAMBER_GEOMETRY_POLYGON)
-            return collect_rings(parts, geometry);
-        parts->left_out |= !parts->wants_polygons;
+            return collect_rings(lines, geometry);
+        lines->left_out |= !lines->wants_polygons;
         return CAMBER_OK;
     case wkbMultiLineString:
     case wkbMultiPolygon:
     case wkbPolyhedralSurface:
     case wkbTIN:
-    case wkbGeometryCollection: return collect_members(parts, geometry, kind, depth);
-    default: parts->left_out = true; return CAMBER_OK;
+    case wkbGeometryCollection: return collect_members(lines, geometry, kind, depth);
+    default: lines->left_out = true; return CAMBER_OK;
     }
 }
 
-camber_status camber_feature_lines_collect(camber_feature_lines *parts, OGRGeometryH geometry,
+camber_status camber_feature_lines_collect(camber_feature_lines *lines, OGRGeometryH geometry,
                                            camber_geometry_kind kind) {
-    parts->point_count = parts->part_count = 0;
-    return collect(parts, geometry, kind, 0);
+    lines->point_count = lines->line_count = 0;
+    return collect(lines, geometry, kind, 0);
 }

@@ -18,8 +18,8 @@ typedef struct reader {
     camber_features *features;
     const camber_source_desc *desc;
     camber_dataset dataset;
-    camber_feature_lines parts;
-    camber_tile_stitcher *tiles; /* NULL: no vector tiles */
+    camber_feature_lines lines;
+    camber_tile_stitcher *stitcher; /* NULL: no vector tiles */
 
     /* The layer being read. */
     OGRLayerH layer;
@@ -41,9 +41,9 @@ static camber_status begin_layer(reader *self, int index) {
     OGRFeatureDefnH schema = OGR_L_GetLayerDefn(self->layer);
     camber_status status = camber_features_find_layer(self->features, OGR_L_GetName(self->layer), &self->layer_index);
     if (status == CAMBER_OK)
-        status = camber_feature_lines_set_srs(&self->parts, OGR_L_GetSpatialRef(self->layer), self->desc->path);
+        status = camber_feature_lines_set_srs(&self->lines, OGR_L_GetSpatialRef(self->layer), self->desc->path);
     if (status == CAMBER_OK)
-        status = camber_columns_find(&self->columns, self->features, schema, self->tiles, self->dataset.osm);
+        status = camber_columns_find(&self->columns, self->features, schema, self->stitcher, self->dataset.osm);
     if (status != CAMBER_OK)
         return status;
     /* A filter may look at any field. */
@@ -64,10 +64,10 @@ static void find_tile(const reader *self, OGRFeatureH feature, camber_tile_featu
     const int zoom = self->dataset.zoom;
     const double side = ldexp(1.0, zoom);
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-    for (size_t i = 0; i < self->parts.point_count; i++) {
+    for (size_t i = 0; i < self->lines.point_count; i++) {
         for (int axis = 0; axis < 2; axis++) {
-            low[axis] = fmin(low[axis], self->parts.points[2 * i + (size_t)axis] * side);
-            high[axis] = fmax(high[axis], self->parts.points[2 * i + (size_t)axis] * side);
+            low[axis] = fmin(low[axis], self->lines.points[2 * i + (size_t)axis] * side);
+            high[axis] = fmax(high[axis], self->lines.points[2 * i + (size_t)axis] * side);
         }
     }
     const GIntBig number = OGR_F_GetFID(feature), mask = ((GIntBig)1 << zoom) - 1;
@@ -86,44 +86,44 @@ static camber_status keep(reader *self, OGRFeatureH feature, camber_geometry_kin
     camber_status status = camber_columns_class(&self->columns, feature, self->layer_index, kind, &index);
     if (status != CAMBER_OK)
         return status;
-    if (self->tiles) {
+    if (self->stitcher) {
         camber_tile_feature tile = {.class_index = index, .outline = kind == CAMBER_GEOMETRY_POLYGON};
         find_tile(self, feature, &tile);
         tile.has_id = camber_columns_id(&self->columns, feature, &tile.id);
-        const camber_tile_lines parts = {self->parts.points, self->parts.ends, self->parts.part_count};
-        return camber_tile_stitcher_add(self->tiles, &tile, &parts);
+        const camber_tile_lines lines = {self->lines.points, self->lines.ends, self->lines.line_count};
+        return camber_tile_stitcher_add(self->stitcher, &tile, &lines);
     }
     status = camber_features_add_feature(self->features, index);
     size_t first = 0;
-    for (size_t i = 0; i < self->parts.part_count && status == CAMBER_OK; i++) {
+    for (size_t i = 0; i < self->lines.line_count && status == CAMBER_OK; i++) {
         status =
-            camber_features_add_polyline(self->features, self->parts.points + 2 * first, self->parts.ends[i] - first);
-        first = self->parts.ends[i];
+            camber_features_add_polyline(self->features, self->lines.points + 2 * first, self->lines.ends[i] - first);
+        first = self->lines.ends[i];
     }
     return status;
 }
 
 /* failed: OGR reported a failure with this feature. */
 static camber_status read_feature(reader *self, OGRFeatureH feature, bool failed) {
-    camber_feature_lines *parts = &self->parts;
+    camber_feature_lines *lines = &self->lines;
     OGRGeometryH geometry = OGR_F_GetGeometryRef(feature);
-    parts->left_out = !geometry && !failed;
-    parts->damaged = failed;
+    lines->left_out = !geometry && !failed;
+    lines->damaged = failed;
     const bool area = geometry && camber_columns_is_area(&self->columns, feature, geometry);
     camber_status status = CAMBER_OK;
     for (int kind = 0; geometry && kind < 2 && status == CAMBER_OK; kind++) {
-        const bool wanted = kind == CAMBER_GEOMETRY_LINE ? !area : parts->wants_polygons;
+        const bool wanted = kind == CAMBER_GEOMETRY_LINE ? !area : lines->wants_polygons;
         if (!wanted)
             continue;
         /* An area's ring is a line to OGR. */
         const camber_geometry_kind collected = area ? CAMBER_GEOMETRY_LINE : (camber_geometry_kind)kind;
-        status = camber_feature_lines_collect(parts, geometry, collected);
-        if (status == CAMBER_OK && parts->part_count)
+        status = camber_feature_lines_collect(lines, geometry, collected);
+        if (status == CAMBER_OK && lines->line_count)
             status = keep(self, feature, (camber_geometry_kind)kind);
     }
-    self->stats.skipped_features += parts->left_out || (area && !parts->wants_polygons);
-    self->stats.damaged_features += parts->damaged;
-    if (parts->damaged && self->damage[0] == 0)
+    self->stats.skipped_features += lines->left_out || (area && !lines->wants_polygons);
+    self->stats.damaged_features += lines->damaged;
+    if (lines->damaged && self->damage[0] == 0)
         snprintf(self->damage, sizeof self->damage, "%s",
                  failed ? self->dataset.errors.message : "a geometry that does not parse");
     return status;
@@ -297,13 +297,13 @@ static void warn(const reader *self) {
 
 /* What the file gave, looked at as a whole. */
 static camber_status judge(reader *self, size_t features_before) {
-    const camber_feature_lines *parts = &self->parts;
-    if (parts->strange_points > parts->raw_points / 2)
+    const camber_feature_lines *lines = &self->lines;
+    if (lines->strange_points > lines->raw_points / 2)
         return camber_fail(self->context, CAMBER_ERROR_INPUT,
                            "%s: its coordinates are not degrees, and it names no other coordinate system; add one (a "
                            ".prj beside a shapefile) or convert the file with ogr2ogr -s_srs EPSG:... -t_srs EPSG:4326",
                            self->desc->path);
-    if (self->features->feature_count == features_before && !self->tiles && self->stats.damaged_features)
+    if (self->features->feature_count == features_before && !self->stitcher && self->stats.damaged_features)
         return camber_fail(self->context, CAMBER_ERROR_INPUT, "%s: no feature can be read: %s; get the file again",
                            self->desc->path, self->damage);
     if (self->features->feature_count == features_before && self->stats.skipped_features)
@@ -322,7 +322,7 @@ static camber_status read_dataset(reader *self, bool *unsorted) {
     size_t count = 0;
     camber_status status = camber_dataset_layers(&self->dataset, style->wants_polygons, &layers, &count);
     if (status == CAMBER_OK && self->dataset.zoom >= 0)
-        status = camber_tile_stitcher_create(context, self->dataset.zoom, &self->tiles);
+        status = camber_tile_stitcher_create(context, self->dataset.zoom, &self->stitcher);
     if (status != CAMBER_OK)
         goto done;
     if (self->dataset.osm) {
@@ -332,11 +332,13 @@ static camber_status read_dataset(reader *self, bool *unsorted) {
             self->dataset.handle,
             GDALDatasetExecuteSQL(self->dataset.handle, CPLSPrintf("SET interest_layers = %s", name), NULL, NULL));
     }
-    self->parts = (camber_feature_lines){
-        .context = context, .whole = self->tiles, .wants_polygons = style->wants_polygons, .directed = style->directed};
+    self->lines = (camber_feature_lines){.context = context,
+                                         .whole = self->stitcher,
+                                         .wants_polygons = style->wants_polygons,
+                                         .directed = style->directed};
     status = read_layers(self, layers, count, unsorted);
-    if (status == CAMBER_OK && self->tiles)
-        status = camber_tile_stitcher_finish(self->tiles, self->features);
+    if (status == CAMBER_OK && self->stitcher)
+        status = camber_tile_stitcher_finish(self->stitcher, self->features);
     if (status == CAMBER_OK)
         status = judge(self, features_before);
     if (status == CAMBER_OK && self->desc->where && self->passed == 0)
@@ -349,8 +351,8 @@ done:
 }
 
 static void close_reader(reader *self) {
-    camber_feature_lines_free(&self->parts);
-    camber_tile_stitcher_destroy(self->tiles);
+    camber_feature_lines_free(&self->lines);
+    camber_tile_stitcher_destroy(self->stitcher);
     camber_columns_free(&self->columns, self->context);
     camber_dataset_close(&self->dataset);
 }
@@ -385,7 +387,7 @@ static camber_status finish(camber_features *features, const camber_source_desc 
 /* One attempt; on failure the set is as before but for spare classes. */
 static camber_status read_once(camber_features *features, const camber_source_desc *desc, bool *unsorted) {
     reader self = {
-        .context = features->context, .features = features, .desc = desc, .parts.context = features->context};
+        .context = features->context, .features = features, .desc = desc, .lines.context = features->context};
     const size_t points = features->point_count, polylines = features->polyline_count, count = features->feature_count;
     const size_t signed_size = features->attribution_size;
     const camber_features_stats stats = features->stats;
@@ -396,9 +398,9 @@ static camber_status read_once(camber_features *features, const camber_source_de
     CPLPushErrorHandlerEx(camber_gdal_collect, &self.dataset.errors);
     status = read_dataset(&self, unsorted);
     CPLPopErrorHandler();
-    self.stats.invalid_points = self.parts.invalid_points;
-    self.stats.clamped_points = self.parts.clamped_points;
-    self.stats.antimeridian_splits = self.parts.antimeridian_splits;
+    self.stats.invalid_points = self.lines.invalid_points;
+    self.stats.clamped_points = self.lines.clamped_points;
+    self.stats.antimeridian_splits = self.lines.antimeridian_splits;
     /* What GDAL holds goes before the lines are copied. */
     close_reader(&self);
     features->times.file_ms += camber_now_ms() - start_ms;

@@ -31,7 +31,7 @@ typedef struct camber_feature_lines {
     double *points;
     size_t point_count, point_capacity;
     size_t *ends;
-    size_t part_count, part_capacity;
+    size_t line_count, line_capacity;
     bool left_out; /* some of its geometry is not drawn */
     bool damaged;
 
@@ -44,11 +44,11 @@ typedef struct camber_feature_lines {
 } camber_feature_lines;
 
 /* Sets the projection for a layer; srs may be NULL: degrees. name stands in messages. */
-camber_status camber_feature_lines_set_srs(camber_feature_lines *parts, OGRSpatialReferenceH srs, const char *name);
+camber_status camber_feature_lines_set_srs(camber_feature_lines *lines, OGRSpatialReferenceH srs, const char *name);
 /* Collects the lines of a geometry, or the rings of its polygons. */
-camber_status camber_feature_lines_collect(camber_feature_lines *parts, OGRGeometryH geometry,
+camber_status camber_feature_lines_collect(camber_feature_lines *lines, OGRGeometryH geometry,
                                            camber_geometry_kind kind);
-void camber_feature_lines_free(camber_feature_lines *parts);
+void camber_feature_lines_free(camber_feature_lines *lines);
 
 /* ---- dataset.c: an open file ---- */
 

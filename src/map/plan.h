@@ -73,21 +73,6 @@ typedef struct camber_plan {
 camber_status camber_plan_create(const camber_features *features, const camber_view *view, camber_plan *plan);
 void camber_plan_destroy(camber_plan *plan);
 
-/* ---- Between plan.c and plan_entries.c ---- */
-
-#define CAMBER_PLAN_ROWS_MAX ((size_t)1 << 24)
-
-/* By set and class: the row, CAMBER_NO_ROW where the set does not draw the class, and the place in a sorted set. */
-typedef struct camber_plan_classes {
-    uint32_t *rows;
-    double *keys;
-} camber_plan_classes;
-
-/* Numbers the pairs and lists the entries. Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT (2^24 pairs, 2^32
- * polylines). */
-camber_status camber_plan_list_entries(const camber_features *features, camber_plan *plan,
-                                       const camber_plan_classes *by_class);
-
 /* ---- What uses a plan ---- */
 
 /* The paint of a row of the set in its slot-th layer. */

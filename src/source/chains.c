@@ -18,7 +18,7 @@ static camber_chain follow(const camber_chains_desc *desc, uint32_t start) {
 static size_t find(const camber_chains_desc *desc, camber_chain *chains) {
     size_t count = 0;
     for (int round = 0; round < 3; round++) {
-        for (uint32_t i = 0; i < desc->piece_count; i++) {
+        for (uint32_t i = 0; i < desc->line_count; i++) {
             const uint32_t start = round == 1 ? 2 * i + 1 : 2 * i;
             if (!desc->visited[i] && (round == 2 || desc->partner[start] == CAMBER_NO_END))
                 chains[count++] = follow(desc, start);
@@ -29,8 +29,8 @@ static size_t find(const camber_chains_desc *desc, camber_chain *chains) {
 
 camber_status camber_chains_find(camber_context *context, const camber_chains_desc *desc, camber_chain **chains,
                                  size_t *count) {
-    camber_chain *found = camber_alloc(context, desc->piece_count, sizeof *found);
-    camber_chain *sorted = found ? camber_alloc(context, desc->piece_count, sizeof *sorted) : NULL;
+    camber_chain *found = camber_alloc(context, desc->line_count, sizeof *found);
+    camber_chain *sorted = found ? camber_alloc(context, desc->line_count, sizeof *sorted) : NULL;
     uint32_t *starts = sorted ? camber_alloc_zero(context, desc->key_count + 1, sizeof *starts) : NULL;
     if (!starts) {
         camber_free(context, sorted);

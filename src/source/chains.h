@@ -14,7 +14,7 @@ typedef struct camber_chain {
 
 typedef struct camber_chains_desc {
     const uint32_t *partner; /* 2 * piece_count: where end e goes on, and the other way round; CAMBER_NO_END */
-    size_t piece_count;
+    size_t line_count;
     const uint32_t *keys; /* piece_count, below key_count. NULL: the pieces' numbers */
     size_t key_count;
     bool *visited; /* piece_count, scratch: pieces to leave out are set */

@@ -186,7 +186,7 @@ static camber_status build_object(camber_features *features, const json_t *json,
     json_t *member;
     json_object_foreach((json_t *)(uintptr_t)json, key, member) {
         camber_member *one = &members[value->count];
-        one->place = value->count++;
+        one->position = value->count++;
         status = camber_features_intern(features, key, &one->key);
         if (status == CAMBER_OK)
             status = build(features, member, &one->value);

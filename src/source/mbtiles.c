@@ -154,14 +154,14 @@ static camber_status find_zooms(camber_tile_set *set) {
 
 /* ---- Tiles ---- */
 
-static camber_status get_tile(camber_tile_set *set, int zoom, camber_tile_index place, camber_bytes *bytes,
+static camber_status get_tile(camber_tile_set *set, int zoom, camber_tile_index tile, camber_bytes *bytes,
                               const char **why) {
     (void)why;
     const database *self = set->self;
     bytes->size_bytes = 0;
     sqlite3_bind_int(self->get, 1, zoom);
-    sqlite3_bind_int64(self->get, 2, place.column);
-    sqlite3_bind_int64(self->get, 3, ((sqlite3_int64)1 << zoom) - 1 - place.row);
+    sqlite3_bind_int64(self->get, 2, tile.column);
+    sqlite3_bind_int64(self->get, 3, ((sqlite3_int64)1 << zoom) - 1 - tile.row);
     const int step = sqlite3_step(self->get);
     camber_status status = step == SQLITE_ROW || step == SQLITE_DONE ? CAMBER_OK : fail(set);
     if (step == SQLITE_ROW) {
@@ -178,7 +178,7 @@ static camber_status get_tile(camber_tile_set *set, int zoom, camber_tile_index 
     return status;
 }
 
-static int compare_places(const void *left, const void *right) {
+static int compare_tiles(const void *left, const void *right) {
     const camber_tile_index *a = left, *b = right;
     if (a->column != b->column)
         return a->column < b->column ? -1 : 1;
@@ -186,30 +186,30 @@ static int compare_places(const void *left, const void *right) {
 }
 
 /* In the order of the table's own rows, from the south, each once: lines are drawn as they are read. */
-static size_t sort_places(camber_tile_index *places, size_t count) {
+static size_t sort_tiles(camber_tile_index *tiles, size_t count) {
     size_t kept = 0;
     if (count)
-        qsort(places, count, sizeof *places, compare_places);
+        qsort(tiles, count, sizeof *tiles, compare_tiles);
     for (size_t i = 0; i < count; i++)
-        if (kept == 0 || compare_places(places + kept - 1, places + i) != 0)
-            places[kept++] = places[i];
+        if (kept == 0 || compare_tiles(tiles + kept - 1, tiles + i) != 0)
+            tiles[kept++] = tiles[i];
     return kept;
 }
 
-static camber_status take_place(camber_tile_set *set, sqlite3_stmt *at, int zoom, camber_tile_index **places,
-                                size_t *count, size_t *capacity) {
+static camber_status take_tile(camber_tile_set *set, sqlite3_stmt *at, int zoom, camber_tile_index **tiles,
+                               size_t *count, size_t *capacity) {
     const int64_t side = INT64_C(1) << zoom;
     const int64_t column = sqlite3_column_int64(at, 0), row = side - 1 - sqlite3_column_int64(at, 1);
     const camber_status status = camber_budget_take_tiles(set->context, set->name, 1);
     if (status != CAMBER_OK || column < 0 || column >= side || row < 0 || row >= side)
         return status;
-    if (!camber_grow(set->context, places, capacity, *count + 1, sizeof **places))
+    if (!camber_grow(set->context, tiles, capacity, *count + 1, sizeof **tiles))
         return CAMBER_ERROR_MEMORY;
-    (*places)[(*count)++] = (camber_tile_index){(uint32_t)column, (uint32_t)row};
+    (*tiles)[(*count)++] = (camber_tile_index){(uint32_t)column, (uint32_t)row};
     return CAMBER_OK;
 }
 
-static camber_status list_tiles(camber_tile_set *set, int zoom, camber_tile_index **places, size_t *count) {
+static camber_status list_tiles(camber_tile_set *set, int zoom, camber_tile_index **tiles, size_t *count) {
     sqlite3_stmt *rows = NULL;
     camber_tile_index *made = NULL;
     size_t found = 0, capacity = 0;
@@ -219,14 +219,14 @@ static camber_status list_tiles(camber_tile_set *set, int zoom, camber_tile_inde
     sqlite3_bind_int(rows, 1, zoom);
     int step;
     while (status == CAMBER_OK && (step = sqlite3_step(rows)) != SQLITE_DONE)
-        status = step == SQLITE_ROW ? take_place(set, rows, zoom, &made, &found, &capacity) : fail(set);
+        status = step == SQLITE_ROW ? take_tile(set, rows, zoom, &made, &found, &capacity) : fail(set);
     sqlite3_finalize(rows);
     if (status != CAMBER_OK) {
         camber_free(set->context, made);
         return status;
     }
-    *count = sort_places(made, found);
-    *places = made;
+    *count = sort_tiles(made, found);
+    *tiles = made;
     return CAMBER_OK;
 }
 

@@ -35,7 +35,7 @@ struct camber_mvt {
     size_t layer_count, layer_capacity;
 
     /* The layer being read. */
-    camber_tile_address place;
+    camber_tile_address address;
     const tile_layer *layer;
     char name[256];
     uint32_t layer_index;
@@ -50,8 +50,8 @@ struct camber_mvt {
 
 static void note_damage(camber_mvt *mvt, const char *cause) {
     if (mvt->stats.damaged_features++ == 0)
-        snprintf(mvt->stats.damage, sizeof mvt->stats.damage, "tile %d/%u/%u%s%.64s: %.80s", mvt->place.zoom,
-                 mvt->place.column, mvt->place.row, mvt->name[0] ? ", layer " : "", mvt->name, cause);
+        snprintf(mvt->stats.damage, sizeof mvt->stats.damage, "tile %d/%u/%u%s%.64s: %.80s", mvt->address.zoom,
+                 mvt->address.column, mvt->address.row, mvt->name[0] ? ", layer " : "", mvt->name, cause);
 }
 
 /* After a message that did not unpack. */
@@ -277,11 +277,11 @@ static camber_status read_tags(camber_mvt *mvt, const tile_feature *feature, cam
 static camber_status keep(camber_mvt *mvt, const tile_feature *feature, camber_geometry_kind kind,
                           const char **damage) {
     const camber_style *style = mvt->desc.features->style;
-    camber_tile_feature piece = {.column = mvt->place.column,
-                                 .row = mvt->place.row,
+    camber_tile_feature piece = {.column = mvt->address.column,
+                                 .row = mvt->address.row,
                                  .outline = kind == CAMBER_GEOMETRY_POLYGON,
                                  .progress = {0, 1},
-                                 .open_sides = mvt->place.open_sides};
+                                 .open_sides = mvt->address.open_sides};
     camber_feature_class wanted = {.layer = mvt->layer_index, .geometry = kind};
     camber_value promoted = {0};
     camber_status status = read_tags(mvt, feature, &promoted, &piece, damage);
@@ -295,18 +295,18 @@ static camber_status keep(camber_mvt *mvt, const tile_feature *feature, camber_g
         status = camber_features_find_class_of(mvt->desc.features, &wanted, mvt->values, &piece.class_index);
     if (status != CAMBER_OK)
         return status;
-    const camber_tile_lines parts = {mvt->geometry.points, mvt->geometry.ends, mvt->geometry.part_count};
-    return camber_tile_stitcher_add(mvt->desc.tiles, &piece, &parts);
+    const camber_tile_lines lines = {mvt->geometry.points, mvt->geometry.ends, mvt->geometry.line_count};
+    return camber_tile_stitcher_add(mvt->desc.stitcher, &piece, &lines);
 }
 
 static camber_status read_geometry(camber_mvt *mvt, const tile_feature *feature, camber_geometry_kind kind) {
     const camber_mvt_commands commands = {.words = feature->geometry,
                                           .count = feature->n_geometry,
                                           .kind = kind,
-                                          .column = mvt->place.column,
-                                          .row = mvt->place.row,
+                                          .column = mvt->address.column,
+                                          .row = mvt->address.row,
                                           .extent = mvt->layer->extent,
-                                          .side = ldexp(1.0, mvt->place.zoom)};
+                                          .side = ldexp(1.0, mvt->address.zoom)};
     return camber_mvt_geometry_read(&mvt->geometry, &commands);
 }
 
@@ -323,8 +323,8 @@ static camber_status read_feature(camber_mvt *mvt, ProtobufCBinaryData bytes) {
     const camber_geometry_kind kind = polygon ? CAMBER_GEOMETRY_POLYGON : CAMBER_GEOMETRY_LINE;
     camber_status status = read_geometry(mvt, feature, kind);
     const char *damage = mvt->geometry.damage;
-    mvt->stats.kept_features += mvt->geometry.part_count > 0;
-    if (status == CAMBER_OK && mvt->geometry.part_count)
+    mvt->stats.kept_features += mvt->geometry.line_count > 0;
+    if (status == CAMBER_OK && mvt->geometry.line_count)
         status = keep(mvt, feature, kind, &damage);
     if (damage)
         note_damage(mvt, damage);
@@ -381,7 +381,7 @@ static camber_status read_layer(camber_mvt *mvt, ProtobufCBinaryData bytes) {
         note_damage(mvt, layer->extent ? "of a version that is neither 1 nor 2" : "its extent is 0");
         return CAMBER_OK;
     }
-    mvt->desc.tiles->grid = fmax(mvt->desc.tiles->grid, CAMBER_TILE_UNITS / layer->extent);
+    mvt->desc.stitcher->grid = fmax(mvt->desc.stitcher->grid, CAMBER_TILE_UNITS / layer->extent);
     camber_status status = camber_features_find_layer(mvt->desc.features, mvt->name, &mvt->layer_index);
     if (status == CAMBER_OK && !find_keys(mvt))
         status = judge_failure(mvt, "a layer's keys");
@@ -397,10 +397,11 @@ static camber_status read_layer(camber_mvt *mvt, ProtobufCBinaryData bytes) {
     return status;
 }
 
-camber_status camber_mvt_read(camber_mvt *mvt, const camber_tile_address *place, const void *bytes, size_t size_bytes) {
+camber_status camber_mvt_read(camber_mvt *mvt, const camber_tile_address *address, const void *bytes,
+                              size_t size_bytes) {
     const camber_pool_mark start = {0};
     camber_pool_reset(&mvt->pool, start);
-    mvt->place = *place;
+    mvt->address = *address;
     mvt->name[0] = 0;
     const Camber__Tile__Tile *tile = camber__tile__tile__unpack(&mvt->pool.allocator, size_bytes, bytes);
     if (!tile)
@@ -415,8 +416,8 @@ camber_status camber_mvt_read(camber_mvt *mvt, const camber_tile_address *place,
     return status;
 }
 
-void camber_mvt_spoil(camber_mvt *mvt, const camber_tile_address *place, const char *cause) {
-    mvt->place = *place;
+void camber_mvt_spoil(camber_mvt *mvt, const camber_tile_address *address, const char *cause) {
+    mvt->address = *address;
     mvt->name[0] = 0;
     note_damage(mvt, cause);
 }

@@ -15,7 +15,7 @@ typedef struct camber_tile_address {
 
 typedef struct camber_mvt_desc {
     camber_features *features;
-    camber_tile_stitcher *tiles;
+    camber_tile_stitcher *stitcher;
     const char *const *layers; /* the wanted ones. NULL: none, what the tiles hold is looked at only */
     size_t layer_count;
     bool wants_polygons;
@@ -48,8 +48,9 @@ const camber_mvt_stats *camber_mvt_get_stats(const camber_mvt *mvt);
 /* In the order they were met, where no layers are wanted. */
 const camber_mvt_layer *camber_mvt_layers(const camber_mvt *mvt, size_t *count);
 /* bytes: decompressed. What is damaged is counted. Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT. */
-camber_status camber_mvt_read(camber_mvt *mvt, const camber_tile_address *place, const void *bytes, size_t size_bytes);
+camber_status camber_mvt_read(camber_mvt *mvt, const camber_tile_address *address, const void *bytes,
+                              size_t size_bytes);
 /* Counts a tile that cannot be had. */
-void camber_mvt_spoil(camber_mvt *mvt, const camber_tile_address *place, const char *cause);
+void camber_mvt_spoil(camber_mvt *mvt, const camber_tile_address *address, const char *cause);
 
 #endif

@@ -32,7 +32,7 @@ static void spoil(camber_mvt_geometry *geometry, const char *damage) {
         geometry->damage = damage;
 }
 
-static bool end_part(pen *p) {
+static bool end_line(pen *p) {
     camber_mvt_geometry *geometry = p->geometry;
     const bool ring = p->commands->kind == CAMBER_GEOMETRY_POLYGON;
     const size_t count = geometry->point_count - p->first;
@@ -45,10 +45,10 @@ static bool end_part(pen *p) {
         geometry->point_count = p->first;
         return true;
     }
-    if (!camber_grow(geometry->context, &geometry->ends, &geometry->part_capacity, geometry->part_count + 1,
+    if (!camber_grow(geometry->context, &geometry->ends, &geometry->line_capacity, geometry->line_count + 1,
                      sizeof *geometry->ends))
         return false;
-    geometry->ends[geometry->part_count++] = p->first = geometry->point_count;
+    geometry->ends[geometry->line_count++] = p->first = geometry->point_count;
     return true;
 }
 
@@ -64,14 +64,14 @@ static bool close_ring(pen *p) {
     }
     p->closed = true;
     const double x = geometry->points[2 * p->first], y = geometry->points[2 * p->first + 1];
-    return add_world_point(geometry, x, y) && end_part(p);
+    return add_world_point(geometry, x, y) && end_line(p);
 }
 
 /* So many points from words on. */
 static bool draw(pen *p, uint32_t command, const uint32_t *words, size_t count) {
     for (size_t i = 0; i < count; i++) {
         if (command == MOVE_TO) {
-            if (!end_part(p))
+            if (!end_line(p))
                 return false;
             p->first = p->geometry->point_count;
             p->closed = false;
@@ -88,7 +88,7 @@ static bool draw(pen *p, uint32_t command, const uint32_t *words, size_t count) 
 }
 
 camber_status camber_mvt_geometry_read(camber_mvt_geometry *geometry, const camber_mvt_commands *commands) {
-    geometry->point_count = geometry->part_count = 0;
+    geometry->point_count = geometry->line_count = 0;
     geometry->damage = NULL;
     pen p = {.geometry = geometry, .commands = commands};
     bool fits = true;
@@ -114,7 +114,7 @@ camber_status camber_mvt_geometry_read(camber_mvt_geometry *geometry, const camb
         fits = draw(&p, command, commands->words + i, count);
         i += 2 * count;
     }
-    return fits && end_part(&p) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    return fits && end_line(&p) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
 }
 
 void camber_mvt_geometry_free(camber_mvt_geometry *geometry) {

@@ -9,7 +9,7 @@ typedef struct camber_mvt_geometry {
     camber_context *context;
     double *points; /* world coordinates */
     size_t *ends;
-    size_t point_count, point_capacity, part_count, part_capacity;
+    size_t point_count, point_capacity, line_count, line_capacity;
     const char *damage; /* NULL: none. The parts are what reads */
 } camber_mvt_geometry;
 

@@ -5,8 +5,8 @@
 #include "base/base.h"
 
 typedef struct camber_pmtiles_entry {
-    uint64_t number; /* of the first tile */
-    uint64_t run;    /* tiles with these bytes, in a row; 0: a leaf directory */
+    uint64_t number;     /* of the first tile */
+    uint64_t run_length; /* tiles with these bytes, in a row; 0: a leaf directory */
     uint64_t offset, size;
 } camber_pmtiles_entry;
 

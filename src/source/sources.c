@@ -16,7 +16,7 @@ typedef struct source {
     const camber_style_source *style;
     uint32_t index;
     char what[160];       /* source "name" */
-    char place[1024];     /* STYLE: /sources/name, for what is wrong there */
+    char pointer[1024];   /* STYLE: /sources/name, for what is wrong there */
     camber_tile_set *set; /* of a vector source */
     bool is_bounded;      /* the document has bounds: no tiles lie outside */
     double bounds[4];     /* world coordinates; x0 > x1: not known */
@@ -70,7 +70,7 @@ static camber_status check_there(const camber_sources *sources, const source *on
     if (!camber_file_is_reached(sources->context, path) || stat(path, &about) == 0 ||
         (errno != ENOENT && errno != ENOTDIR))
         return CAMBER_OK;
-    return camber_fail(sources->context, CAMBER_ERROR_NOT_FOUND, "%s: %s: no such file; %s", one->place, path,
+    return camber_fail(sources->context, CAMBER_ERROR_NOT_FOUND, "%s: %s: no such file; %s", one->pointer, path,
                        one->style->missing ? one->style->missing : "check the path in the style");
 }
 
@@ -103,7 +103,7 @@ static camber_status read_geojson(camber_sources *sources, source *one) {
     camber_status status = CAMBER_OK;
     if (json_is_string(data)) {
         camber_url url = {0};
-        status = camber_url_resolve(context, one->place, json_string_value(data), sources->desc.base_path, &url);
+        status = camber_url_resolve(context, one->pointer, json_string_value(data), sources->desc.base_path, &url);
         if (status == CAMBER_OK)
             status = check_there(sources, one, url.path);
         if (status == CAMBER_OK)
@@ -111,7 +111,7 @@ static camber_status read_geojson(camber_sources *sources, source *one) {
         camber_free(context, url.path);
     } else if (!json_is_object(data)) {
         status = camber_fail(context, CAMBER_ERROR_INPUT, "%s: no \"data\"; write GeoJSON, or the path of a file",
-                             one->place);
+                             one->pointer);
     }
     camber_geojson_stats stats = {0};
     const camber_geojson_desc desc = {.what = one->what, .root = loaded ? loaded : data, .source = one->style};
@@ -147,15 +147,15 @@ static camber_status open_archive(camber_sources *sources, source *one, const ca
 /* about: of the style, or of the TileJSON file at base_path. */
 static camber_status open_template(camber_sources *sources, source *one, const json_t *about, const char *base_path) {
     const bool is_style = base_path == sources->desc.base_path;
-    const char *place = is_style ? one->place : base_path;
+    const char *pointer = is_style ? one->pointer : base_path;
     const char *text = json_string_value(json_array_get(json_object_get(about, "tiles"), 0));
     const char *scheme = json_string_value(json_object_get(about, "scheme"));
     camber_url url = {0};
     if (!text)
         return camber_fail(sources->context, CAMBER_ERROR_INPUT,
-                           "%s: no %s\"tiles\" that names any; write \"tiles\": [\"tiles/{z}/{x}/{y}.mvt\"]", place,
+                           "%s: no %s\"tiles\" that names any; write \"tiles\": [\"tiles/{z}/{x}/{y}.mvt\"]", pointer,
                            is_style ? "\"url\" and no " : "");
-    camber_status status = camber_url_resolve(sources->context, place, text, base_path, &url);
+    camber_status status = camber_url_resolve(sources->context, pointer, text, base_path, &url);
     if (status == CAMBER_OK && url.kind != CAMBER_URL_FILE) {
         status = open_archive(sources, one, &url);
     } else if (status == CAMBER_OK) {
@@ -202,7 +202,7 @@ static camber_status open_vector(camber_sources *sources, source *one) {
     camber_url url = {0};
     camber_status status = about ? CAMBER_OK : camber_fail(context, CAMBER_ERROR_MEMORY, "out of memory for a source");
     if (status == CAMBER_OK && text)
-        status = camber_url_resolve(context, one->place, text, sources->desc.base_path, &url);
+        status = camber_url_resolve(context, one->pointer, text, sources->desc.base_path, &url);
     if (status != CAMBER_OK)
         goto done;
     if (!text)
@@ -262,17 +262,17 @@ static camber_status open_source(camber_sources *sources, source *one) {
 }
 
 /* A style that is no file has its own name. */
-static void write_place(source *one, const camber_style *style, const char *base_path) {
+static void write_pointer(source *one, const camber_style *style, const char *base_path) {
     const char *name = style->name && *style->name ? style->name : "style";
-    snprintf(one->place, sizeof one->place, "%.800s: /sources/", base_path ? base_path : name);
-    size_t used = strlen(one->place);
-    for (const char *c = one->style->name; *c && used + 3 < sizeof one->place; c++) {
+    snprintf(one->pointer, sizeof one->pointer, "%.800s: /sources/", base_path ? base_path : name);
+    size_t used = strlen(one->pointer);
+    for (const char *c = one->style->name; *c && used + 3 < sizeof one->pointer; c++) {
         const bool is_escaped = *c == '~' || *c == '/';
-        one->place[used++] = is_escaped ? '~' : *c;
+        one->pointer[used++] = is_escaped ? '~' : *c;
         if (is_escaped)
-            one->place[used++] = *c == '~' ? '0' : '1';
+            one->pointer[used++] = *c == '~' ? '0' : '1';
     }
-    one->place[used] = 0;
+    one->pointer[used] = 0;
 }
 
 camber_status camber_sources_open(camber_features *features, const camber_sources_desc *desc,
@@ -293,7 +293,7 @@ camber_status camber_sources_open(camber_features *features, const camber_source
         source *one = &made->items[made->count++];
         *one = (source){.style = &style->sources[i], .index = i, .bounds = {1, 1, 0, 0}};
         snprintf(one->what, sizeof one->what, "source \"%s\"", style->sources[i].name);
-        write_place(one, style, desc->base_path);
+        write_pointer(one, style, desc->base_path);
         status = open_source(made, one);
     }
     features->times.file_ms += camber_now_ms() - start_ms;
@@ -338,7 +338,7 @@ static size_t list_layers(const camber_style *style, uint32_t index, const char 
     return count;
 }
 
-static camber_status read_places(camber_sources *sources, const source *one, const camber_tile_reading *reading) {
+static camber_status read_addresses(camber_sources *sources, const source *one, const camber_tile_reading *reading) {
     camber_features *features = sources->features;
     camber_tile_result result;
     const size_t first_polyline = features->polyline_count;
@@ -355,11 +355,11 @@ static camber_status read_places(camber_sources *sources, const source *one, con
     features->stats.skipped_features += result.stats.skipped_features;
     features->stats.damaged_features += result.stats.damaged_features;
     warn(sources, one->what, result.stats.damaged_features, result.stats.damage, result.stats.skipped_features);
-    if (reading->place_count && result.found == 0)
+    if (reading->address_count && result.found == 0)
         camber_log(sources->context, CAMBER_LOG_WARNING,
                    "%s: %s has none of the %zu tiles of zoom %d that the view sees; check the view, the path and the "
                    "zooms",
-                   one->what, one->set->name, reading->place_count, reading->zoom);
+                   one->what, one->set->name, reading->address_count, reading->zoom);
     return CAMBER_OK;
 }
 
@@ -368,26 +368,26 @@ static camber_status read_tiles(camber_sources *sources, const source *one, cons
     const int zoom = (int)fmin(floor(fmax(cover->zoom, 0)), one->set->max_zoom);
     if (zoom < one->set->min_zoom)
         return CAMBER_OK;
-    camber_tile_address *places = NULL;
+    camber_tile_address *addresses = NULL;
     camber_tile_reading reading = {.set = one->set, .zoom = zoom};
     camber_status status = CAMBER_ERROR_MEMORY;
     const char **names = camber_alloc(sources->context, style->layer_count, sizeof *names);
     if (names)
-        status = camber_tile_cover_list(sources->context, cover, zoom, one->is_bounded ? one->bounds : NULL, &places,
-                                        &reading.place_count);
+        status = camber_tile_cover_list(sources->context, cover, zoom, one->is_bounded ? one->bounds : NULL, &addresses,
+                                        &reading.address_count);
     if (status == CAMBER_OK)
-        status = camber_budget_take_tiles(sources->context, one->what, reading.place_count);
+        status = camber_budget_take_tiles(sources->context, one->what, reading.address_count);
     if (status == CAMBER_OK) {
-        reading.places = places;
+        reading.addresses = addresses;
         reading.mvt = (camber_mvt_desc){.features = sources->features,
                                         .layers = names,
                                         .layer_count = list_layers(style, one->index, names),
                                         .wants_polygons = true,
                                         .wants_progress = style->directed,
                                         .promote_id = json_object_get(one->style->json, "promoteId")};
-        status = read_places(sources, one, &reading);
+        status = read_addresses(sources, one, &reading);
     }
-    camber_free(sources->context, places);
+    camber_free(sources->context, addresses);
     camber_free(sources->context, names);
     return status;
 }

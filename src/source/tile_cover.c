@@ -68,7 +68,7 @@ static void look(grid *g) {
 }
 
 camber_status camber_tile_cover_list(camber_context *context, const camber_tile_cover *cover, int zoom,
-                                     const double *bounds, camber_tile_address **places, size_t *count) {
+                                     const double *bounds, camber_tile_address **addresses, size_t *count) {
     grid g = {.cover = cover, .side = ldexp(1.0, zoom), .wanted = {-INFINITY, -INFINITY, INFINITY, INFINITY}};
     for (int i = 0; bounds && i < 4; i++)
         g.wanted[i] = bounds[i] * g.side;
@@ -89,6 +89,6 @@ camber_status camber_tile_cover_list(camber_context *context, const camber_tile_
                                                          .column = (uint32_t)(column + worlds),
                                                          .row = (uint32_t)row,
                                                          .open_sides = open_sides(&g, column, row)};
-    *places = made;
+    *addresses = made;
     return CAMBER_OK;
 }

@@ -14,6 +14,6 @@ typedef struct camber_tile_cover {
  * north-west by rows. Each has its sides without a neighbour among them opened. *places is freed with camber_free.
  * Returns CAMBER_ERROR_LIMIT (more than 65536), CAMBER_ERROR_MEMORY. */
 camber_status camber_tile_cover_list(camber_context *context, const camber_tile_cover *cover, int zoom,
-                                     const double *bounds, camber_tile_address **places, size_t *count);
+                                     const double *bounds, camber_tile_address **addresses, size_t *count);
 
 #endif

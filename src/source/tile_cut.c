@@ -15,78 +15,78 @@
 /* Coordinates come through metres; what lies this close to a multiple of 1/16 unit was one. */
 static const double SNAP = 0.01 / 16;
 
-camber_status camber_tile_stitcher_create(camber_context *context, int zoom, camber_tile_stitcher **tiles) {
+camber_status camber_tile_stitcher_create(camber_context *context, int zoom, camber_tile_stitcher **stitcher) {
     camber_tile_stitcher *made = camber_alloc_zero(context, 1, sizeof *made);
     if (!made)
         return CAMBER_ERROR_MEMORY;
     made->context = context;
     made->units = ldexp(CAMBER_TILE_UNITS, zoom);
     made->grid = 1;
-    *tiles = made;
+    *stitcher = made;
     return CAMBER_OK;
 }
 
-void camber_tile_stitcher_destroy(camber_tile_stitcher *tiles) {
-    if (!tiles)
+void camber_tile_stitcher_destroy(camber_tile_stitcher *stitcher) {
+    if (!stitcher)
         return;
-    camber_context *context = tiles->context;
-    camber_free(context, tiles->scratch);
-    camber_free(context, tiles->slots);
-    camber_free(context, tiles->features);
-    camber_free(context, tiles->pieces);
-    camber_free(context, tiles->points);
-    camber_free(context, tiles);
+    camber_context *context = stitcher->context;
+    camber_free(context, stitcher->scratch);
+    camber_free(context, stitcher->slots);
+    camber_free(context, stitcher->features);
+    camber_free(context, stitcher->lines);
+    camber_free(context, stitcher->points);
+    camber_free(context, stitcher);
 }
 
 /* ---- Features: one record for all the pieces with one id ---- */
 
-static size_t id_slot(const camber_tile_stitcher *tiles, uint64_t id, uint32_t class_index) {
-    return (size_t)camber_mix(camber_mix(0, id), class_index) & (tiles->slot_count - 1);
+static size_t id_slot(const camber_tile_stitcher *stitcher, uint64_t id, uint32_t class_index) {
+    return (size_t)camber_mix(camber_mix(0, id), class_index) & (stitcher->slot_count - 1);
 }
 
-static bool grow_slots(camber_tile_stitcher *tiles) {
-    const size_t count = tiles->slot_count ? 2 * tiles->slot_count : 1024;
-    uint32_t *slots = camber_alloc_zero(tiles->context, count, sizeof *slots);
+static bool grow_slots(camber_tile_stitcher *stitcher) {
+    const size_t count = stitcher->slot_count ? 2 * stitcher->slot_count : 1024;
+    uint32_t *slots = camber_alloc_zero(stitcher->context, count, sizeof *slots);
     if (!slots)
         return false;
-    camber_free(tiles->context, tiles->slots);
-    tiles->slots = slots;
-    tiles->slot_count = count;
-    for (size_t i = 0; i < tiles->feature_count; i++) {
-        camber_cut_feature *record = &tiles->features[i];
+    camber_free(stitcher->context, stitcher->slots);
+    stitcher->slots = slots;
+    stitcher->slot_count = count;
+    for (size_t i = 0; i < stitcher->feature_count; i++) {
+        camber_cut_feature *record = &stitcher->features[i];
         if (!record->has_id)
             continue;
-        const size_t slot = id_slot(tiles, record->id, record->class_index);
+        const size_t slot = id_slot(stitcher, record->id, record->class_index);
         record->next = slots[slot];
         slots[slot] = (uint32_t)i + 1;
     }
     return true;
 }
 
-static camber_status find_feature(camber_tile_stitcher *tiles, const camber_tile_feature *feature, uint32_t *index) {
-    if (tiles->feature_count >= tiles->slot_count && !grow_slots(tiles))
+static camber_status find_feature(camber_tile_stitcher *stitcher, const camber_tile_feature *feature, uint32_t *index) {
+    if (stitcher->feature_count >= stitcher->slot_count && !grow_slots(stitcher))
         return CAMBER_ERROR_MEMORY;
-    const size_t slot = id_slot(tiles, feature->id, feature->class_index);
-    for (uint32_t i = feature->has_id ? tiles->slots[slot] : 0; i; i = tiles->features[i - 1].next) {
-        const camber_cut_feature *record = &tiles->features[i - 1];
+    const size_t slot = id_slot(stitcher, feature->id, feature->class_index);
+    for (uint32_t i = feature->has_id ? stitcher->slots[slot] : 0; i; i = stitcher->features[i - 1].next) {
+        const camber_cut_feature *record = &stitcher->features[i - 1];
         if (record->id == feature->id && record->class_index == feature->class_index) {
             *index = i - 1;
             return CAMBER_OK;
         }
     }
-    if (tiles->feature_count >= UINT32_MAX - 1)
-        return camber_fail(tiles->context, CAMBER_ERROR_LIMIT,
+    if (stitcher->feature_count >= UINT32_MAX - 1)
+        return camber_fail(stitcher->context, CAMBER_ERROR_LIMIT,
                            "more than 4294967294 features in tiles; select fewer with an attribute filter");
-    if (!camber_grow(tiles->context, &tiles->features, &tiles->feature_capacity, tiles->feature_count + 1,
-                     sizeof *tiles->features))
+    if (!camber_grow(stitcher->context, &stitcher->features, &stitcher->feature_capacity, stitcher->feature_count + 1,
+                     sizeof *stitcher->features))
         return CAMBER_ERROR_MEMORY;
     camber_cut_feature record = {.id = feature->id, .class_index = feature->class_index, .has_id = feature->has_id};
     if (record.has_id) {
-        record.next = tiles->slots[slot];
-        tiles->slots[slot] = (uint32_t)tiles->feature_count + 1;
+        record.next = stitcher->slots[slot];
+        stitcher->slots[slot] = (uint32_t)stitcher->feature_count + 1;
     }
-    tiles->features[tiles->feature_count] = record;
-    *index = (uint32_t)tiles->feature_count++;
+    stitcher->features[stitcher->feature_count] = record;
+    *index = (uint32_t)stitcher->feature_count++;
     return CAMBER_OK;
 }
 
@@ -97,9 +97,9 @@ typedef struct tile_box {
 } tile_box;
 
 typedef struct tile_cut {
-    camber_tile_stitcher *tiles;
+    camber_tile_stitcher *stitcher;
     tile_box box;
-    camber_cut_line piece; /* the open one where open; its place and feature hold for all */
+    camber_cut_line line; /* the open one where open; its place and feature hold for all */
     bool open;
     const double *progress; /* NULL: none */
     double length, done;    /* of the part, and of it before the segment */
@@ -162,40 +162,40 @@ static bool clip_segment(const tile_box *box, const double *p, const double *q, 
     return ends[0] != ends[2] || ends[1] != ends[3];
 }
 
-static bool add_point(camber_tile_stitcher *tiles, const double *point) {
-    if (!camber_grow(tiles->context, &tiles->points, &tiles->point_capacity, tiles->point_count + 1,
-                     2 * sizeof *tiles->points))
+static bool add_point(camber_tile_stitcher *stitcher, const double *point) {
+    if (!camber_grow(stitcher->context, &stitcher->points, &stitcher->point_capacity, stitcher->point_count + 1,
+                     2 * sizeof *stitcher->points))
         return false;
-    memcpy(tiles->points + 2 * tiles->point_count++, point, 2 * sizeof *point);
+    memcpy(stitcher->points + 2 * stitcher->point_count++, point, 2 * sizeof *point);
     return true;
 }
 
-static camber_status close_piece(tile_cut *cut, bool is_cut) {
-    camber_tile_stitcher *tiles = cut->tiles;
+static camber_status close_line(tile_cut *cut, bool is_cut) {
+    camber_tile_stitcher *stitcher = cut->stitcher;
     if (!cut->open)
         return CAMBER_OK;
     cut->open = false;
-    camber_cut_line *piece = &cut->piece;
-    piece->count = tiles->point_count - piece->first;
-    piece->cut[1] = is_cut;
-    piece->border[0] = on_border(&cut->box, tiles->points + 2 * piece->first);
-    piece->border[1] = on_border(&cut->box, tiles->points + 2 * (tiles->point_count - 1));
-    if (tiles->piece_count >= UINT32_MAX / 2 - 1)
-        return camber_fail(tiles->context, CAMBER_ERROR_LIMIT,
+    camber_cut_line *line = &cut->line;
+    line->count = stitcher->point_count - line->first;
+    line->cut[1] = is_cut;
+    line->border[0] = on_border(&cut->box, stitcher->points + 2 * line->first);
+    line->border[1] = on_border(&cut->box, stitcher->points + 2 * (stitcher->point_count - 1));
+    if (stitcher->line_count >= UINT32_MAX / 2 - 1)
+        return camber_fail(stitcher->context, CAMBER_ERROR_LIMIT,
                            "more than 2147483646 pieces in tiles; select fewer with an attribute filter");
-    if (!camber_grow(tiles->context, &tiles->pieces, &tiles->piece_capacity, tiles->piece_count + 1,
-                     sizeof *tiles->pieces))
+    if (!camber_grow(stitcher->context, &stitcher->lines, &stitcher->line_capacity, stitcher->line_count + 1,
+                     sizeof *stitcher->lines))
         return CAMBER_ERROR_MEMORY;
-    tiles->pieces[tiles->piece_count++] = *piece;
+    stitcher->lines[stitcher->line_count++] = *line;
     return CAMBER_OK;
 }
 
-static camber_status open_piece(tile_cut *cut, const double *point, bool is_cut, bool run) {
+static camber_status open_line(tile_cut *cut, const double *point, bool is_cut, bool along) {
     cut->open = true;
-    cut->piece.first = cut->tiles->point_count;
-    cut->piece.cut[0] = is_cut;
-    cut->piece.run = run;
-    return add_point(cut->tiles, point) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    cut->line.first = cut->stitcher->point_count;
+    cut->line.cut[0] = is_cut;
+    cut->line.along_border = along;
+    return add_point(cut->stitcher, point) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
 }
 
 static float progress_at(const tile_cut *cut, const double *p, const double *at) {
@@ -205,44 +205,44 @@ static float progress_at(const tile_cut *cut, const double *p, const double *at)
 
 static camber_status cut_segment(tile_cut *cut, const double *p, const double *q, bool outline) {
     if (camber_tile_stitcher_same(p, q))
-        return cut->open && !add_point(cut->tiles, q) ? CAMBER_ERROR_MEMORY : CAMBER_OK;
+        return cut->open && !add_point(cut->stitcher, q) ? CAMBER_ERROR_MEMORY : CAMBER_OK;
     double ends[4];
     bool is_cut[2];
     if (!clip_segment(&cut->box, p, q, ends, is_cut))
-        return close_piece(cut, false);
-    const bool run = along_border(&cut->box, ends, ends + 2);
+        return close_line(cut, false);
+    const bool along = along_border(&cut->box, ends, ends + 2);
     camber_status status = CAMBER_OK;
-    if (is_cut[0] || (cut->open && run != cut->piece.run) || (run && outline))
-        status = close_piece(cut, false);
-    if (status != CAMBER_OK || (run && outline))
+    if (is_cut[0] || (cut->open && along != cut->line.along_border) || (along && outline))
+        status = close_line(cut, false);
+    if (status != CAMBER_OK || (along && outline))
         return status;
     if (!cut->open) {
-        status = open_piece(cut, ends, is_cut[0], run);
+        status = open_line(cut, ends, is_cut[0], along);
         if (cut->progress)
-            cut->piece.progress[0] = progress_at(cut, p, ends);
+            cut->line.progress[0] = progress_at(cut, p, ends);
     }
     if (cut->progress)
-        cut->piece.progress[1] = progress_at(cut, p, ends + 2);
-    if (status == CAMBER_OK && !add_point(cut->tiles, ends + 2))
+        cut->line.progress[1] = progress_at(cut, p, ends + 2);
+    if (status == CAMBER_OK && !add_point(cut->stitcher, ends + 2))
         status = CAMBER_ERROR_MEMORY;
     if (status == CAMBER_OK && is_cut[1])
-        status = close_piece(cut, true);
+        status = close_line(cut, true);
     return status;
 }
 
 /* A ring that the border cuts comes in two pieces at the point where it happens to begin: makes them one. */
-static camber_status close_ring(camber_tile_stitcher *tiles, size_t first_piece, const double *start) {
-    if (tiles->piece_count < first_piece + 2)
+static camber_status close_ring(camber_tile_stitcher *stitcher, size_t first_line, const double *start) {
+    if (stitcher->line_count < first_line + 2)
         return CAMBER_OK;
-    camber_cut_line *head = &tiles->pieces[first_piece], *tail = &tiles->pieces[tiles->piece_count - 1];
-    if (head->run || tail->run || head->cut[0] || tail->cut[1] ||
-        !camber_tile_stitcher_same(tiles->points + 2 * head->first, start) ||
-        !camber_tile_stitcher_same(tiles->points + 2 * (tail->first + tail->count - 1), start))
+    camber_cut_line *head = &stitcher->lines[first_line], *tail = &stitcher->lines[stitcher->line_count - 1];
+    if (head->along_border || tail->along_border || head->cut[0] || tail->cut[1] ||
+        !camber_tile_stitcher_same(stitcher->points + 2 * head->first, start) ||
+        !camber_tile_stitcher_same(stitcher->points + 2 * (tail->first + tail->count - 1), start))
         return CAMBER_OK;
     for (size_t i = 1; i < head->count; i++) {
         double point[2];
-        memcpy(point, tiles->points + 2 * (head->first + i), sizeof point);
-        if (!add_point(tiles, point))
+        memcpy(point, stitcher->points + 2 * (head->first + i), sizeof point);
+        if (!add_point(stitcher, point))
             return CAMBER_ERROR_MEMORY;
     }
     tail->count += head->count - 1;
@@ -257,9 +257,9 @@ static double segment_length(const double *point) {
     return hypot(point[2] - point[0], point[3] - point[1]);
 }
 
-static camber_status cut_part(tile_cut *cut, const double *points, size_t count, bool outline) {
-    camber_tile_stitcher *tiles = cut->tiles;
-    const size_t first_piece = tiles->piece_count;
+static camber_status cut_line(tile_cut *cut, const double *points, size_t count, bool outline) {
+    camber_tile_stitcher *stitcher = cut->stitcher;
+    const size_t first_line = stitcher->line_count;
     const double *last = points + 2 * (count - 1);
     camber_status status = CAMBER_OK;
     bool moves = false;
@@ -273,14 +273,14 @@ static camber_status cut_part(tile_cut *cut, const double *points, size_t count,
     }
     if (!moves && inside(&cut->box, points)) {
         /* A dot: all points are one. */
-        status = open_piece(cut, points, false, false);
+        status = open_line(cut, points, false, false);
         for (size_t i = 1; i < count && status == CAMBER_OK; i++)
-            status = add_point(tiles, points) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+            status = add_point(stitcher, points) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
     }
     if (status == CAMBER_OK)
-        status = close_piece(cut, false);
+        status = close_line(cut, false);
     if (status == CAMBER_OK && moves && !cut->progress && camber_tile_stitcher_same(points, last))
-        status = close_ring(tiles, first_piece, points);
+        status = close_ring(stitcher, first_line, points);
     return status;
 }
 
@@ -294,29 +294,30 @@ static tile_box box_of(const camber_tile_feature *feature) {
                        (row + (open & CAMBER_SIDE_SOUTH ? 2 : 1)) * CAMBER_TILE_UNITS}};
 }
 
-camber_status camber_tile_stitcher_add(camber_tile_stitcher *tiles, const camber_tile_feature *feature,
-                                       const camber_tile_lines *parts) {
+camber_status camber_tile_stitcher_add(camber_tile_stitcher *stitcher, const camber_tile_feature *feature,
+                                       const camber_tile_lines *lines) {
     uint32_t index = 0;
-    camber_status status = find_feature(tiles, feature, &index);
+    camber_status status = find_feature(stitcher, feature, &index);
     if (status != CAMBER_OK)
         return status;
-    tile_cut cut = {.tiles = tiles,
+    tile_cut cut = {.stitcher = stitcher,
                     .box = box_of(feature),
                     .progress = feature->has_progress ? feature->progress : NULL,
-                    .piece = {.feature = index, .column = feature->column, .row = feature->row, .progress = {0, 1}}};
-    tiles->has_progress |= feature->has_progress;
+                    .line = {.feature = index, .column = feature->column, .row = feature->row, .progress = {0, 1}}};
+    stitcher->has_progress |= feature->has_progress;
     size_t first = 0;
-    for (size_t i = 0; i < parts->part_count && status == CAMBER_OK; i++) {
-        const size_t count = parts->ends[i] - first;
-        if (!camber_grow(tiles->context, &tiles->scratch, &tiles->scratch_capacity, count, 2 * sizeof *tiles->scratch))
+    for (size_t i = 0; i < lines->line_count && status == CAMBER_OK; i++) {
+        const size_t count = lines->ends[i] - first;
+        if (!camber_grow(stitcher->context, &stitcher->scratch, &stitcher->scratch_capacity, count,
+                         2 * sizeof *stitcher->scratch))
             return CAMBER_ERROR_MEMORY;
         for (size_t k = 0; k < 2 * count; k++) {
-            const double unit = parts->points[2 * first + k] * tiles->units, near = floor(unit * 16 + 0.5) / 16;
-            tiles->scratch[k] = fabs(unit - near) <= SNAP ? near : unit;
+            const double unit = lines->points[2 * first + k] * stitcher->units, near = floor(unit * 16 + 0.5) / 16;
+            stitcher->scratch[k] = fabs(unit - near) <= SNAP ? near : unit;
         }
         if (count)
-            status = cut_part(&cut, tiles->scratch, count, feature->outline);
-        first = parts->ends[i];
+            status = cut_line(&cut, stitcher->scratch, count, feature->outline);
+        first = lines->ends[i];
     }
     return status;
 }

@@ -30,7 +30,7 @@ enum { MAX_CANDIDATES = 64 };
 #define NONE CAMBER_NO_END
 
 typedef struct joiner {
-    camber_tile_stitcher *tiles;
+    camber_tile_stitcher *stitcher;
     uint32_t *partner;
     uint32_t *heads; /* of the lists of ends in a cell; head_count is a power of two */
     size_t head_count;
@@ -43,14 +43,14 @@ typedef struct join_pass {
     bool directed;
 } join_pass;
 
-static const double *end_point(const camber_tile_stitcher *tiles, uint32_t end) {
-    const camber_cut_line *piece = &tiles->pieces[end / 2];
-    return tiles->points + 2 * (piece->first + (end & 1 ? piece->count - 1 : 0));
+static const double *end_point(const camber_tile_stitcher *stitcher, uint32_t end) {
+    const camber_cut_line *line = &stitcher->lines[end / 2];
+    return stitcher->points + 2 * (line->first + (end & 1 ? line->count - 1 : 0));
 }
 
-static uint32_t group_of(const camber_tile_stitcher *tiles, uint32_t end, bool by_id) {
-    const uint32_t feature = tiles->pieces[end / 2].feature;
-    return by_id ? feature : tiles->features[feature].class_index;
+static uint32_t group_of(const camber_tile_stitcher *stitcher, uint32_t end, bool by_id) {
+    const uint32_t feature = stitcher->lines[end / 2].feature;
+    return by_id ? feature : stitcher->features[feature].class_index;
 }
 
 static int64_t cell_of(double unit, double cell) {
@@ -63,29 +63,29 @@ static size_t head_of(const joiner *join, uint32_t group, int64_t column, int64_
 }
 
 static bool is_candidate(const joiner *join, uint32_t end, const join_pass *pass) {
-    const camber_cut_line *piece = &join->tiles->pieces[end / 2];
-    return piece->count > 1 && piece->border[end & 1] && join->partner[end] == NONE &&
-           (!pass->by_id || join->tiles->features[piece->feature].has_id);
+    const camber_cut_line *line = &join->stitcher->lines[end / 2];
+    return line->count > 1 && line->border[end & 1] && join->partner[end] == NONE &&
+           (!pass->by_id || join->stitcher->features[line->feature].has_id);
 }
 
 static bool may_join(const joiner *join, uint32_t a, uint32_t b, const join_pass *pass) {
-    const camber_tile_stitcher *tiles = join->tiles;
-    const camber_cut_line *p = &tiles->pieces[a / 2], *q = &tiles->pieces[b / 2];
+    const camber_tile_stitcher *stitcher = join->stitcher;
+    const camber_cut_line *p = &stitcher->lines[a / 2], *q = &stitcher->lines[b / 2];
     const bool by_id = pass->by_id;
-    if (p == q || join->partner[b] != NONE || group_of(tiles, a, by_id) != group_of(tiles, b, by_id))
+    if (p == q || join->partner[b] != NONE || group_of(stitcher, a, by_id) != group_of(stitcher, b, by_id))
         return false;
     if (pass->directed && ((a ^ b) & 1) == 0)
         return false;
     /* Two features with ids of their own that end at one point of a border only meet there. */
-    if (!by_id && tiles->features[p->feature].has_id && tiles->features[q->feature].has_id &&
+    if (!by_id && stitcher->features[p->feature].has_id && stitcher->features[q->feature].has_id &&
         !(p->cut[a & 1] && q->cut[b & 1]))
         return false;
-    return p->column != q->column || p->row != q->row || p->run || q->run;
+    return p->column != q->column || p->row != q->row || p->along_border || q->along_border;
 }
 
 static uint32_t nearest(const joiner *join, uint32_t end, const join_pass *pass) {
-    const double *at = end_point(join->tiles, end);
-    const uint32_t group = group_of(join->tiles, end, pass->by_id);
+    const double *at = end_point(join->stitcher, end);
+    const uint32_t group = group_of(join->stitcher, end, pass->by_id);
     const double cell = 2 * pass->reach;
     double best = pass->reach * pass->reach;
     uint32_t found = NONE;
@@ -95,7 +95,7 @@ static uint32_t nearest(const joiner *join, uint32_t end, const join_pass *pass)
         for (int64_t row = top; row <= bottom; row++) {
             uint32_t other = join->heads[head_of(join, group, column, row)];
             for (int i = 0; other != NONE && i < MAX_CANDIDATES; i++, other = join->next[other]) {
-                const double *there = end_point(join->tiles, other);
+                const double *there = end_point(join->stitcher, other);
                 const double dx = there[0] - at[0], dy = there[1] - at[1], distance = dx * dx + dy * dy;
                 if (distance <= best && (found == NONE || distance < best) && may_join(join, end, other, pass)) {
                     best = distance;
@@ -108,14 +108,14 @@ static uint32_t nearest(const joiner *join, uint32_t end, const join_pass *pass)
 }
 
 static void find_partners(joiner *join, const join_pass *pass) {
-    const uint32_t ends = (uint32_t)(2 * join->tiles->piece_count);
+    const uint32_t ends = (uint32_t)(2 * join->stitcher->line_count);
     const double cell = 2 * pass->reach;
     memset(join->heads, 0xff, join->head_count * sizeof *join->heads);
     for (uint32_t end = 0; end < ends; end++) {
         if (!is_candidate(join, end, pass))
             continue;
-        const double *at = end_point(join->tiles, end);
-        const uint32_t group = group_of(join->tiles, end, pass->by_id);
+        const double *at = end_point(join->stitcher, end);
+        const uint32_t group = group_of(join->stitcher, end, pass->by_id);
         const size_t head = head_of(join, group, cell_of(at[0], cell), cell_of(at[1], cell));
         join->next[end] = join->heads[head];
         join->heads[head] = end;
@@ -130,28 +130,28 @@ static void find_partners(joiner *join, const join_pass *pass) {
 }
 
 /* Both neighbours have what runs along their border: keeps one of each. Uses the lists, by piece. */
-static void drop_repeated_runs(joiner *join) {
-    camber_tile_stitcher *tiles = join->tiles;
+static void drop_repeated_border_lines(joiner *join) {
+    camber_tile_stitcher *stitcher = join->stitcher;
     memset(join->heads, 0xff, join->head_count * sizeof *join->heads);
-    for (uint32_t i = 0; i < tiles->piece_count; i++) {
-        camber_cut_line *piece = &tiles->pieces[i];
-        if (!piece->run || piece->count == 0)
+    for (uint32_t i = 0; i < stitcher->line_count; i++) {
+        camber_cut_line *line = &stitcher->lines[i];
+        if (!line->along_border || line->count == 0)
             continue;
-        const bool by_id = tiles->features[piece->feature].has_id;
-        const uint32_t group = group_of(tiles, 2 * i, by_id);
-        const double *p = end_point(tiles, 2 * i), *q = end_point(tiles, 2 * i + 1);
+        const bool by_id = stitcher->features[line->feature].has_id;
+        const uint32_t group = group_of(stitcher, 2 * i, by_id);
+        const double *p = end_point(stitcher, 2 * i), *q = end_point(stitcher, 2 * i + 1);
         /* The sums are the same from both ends; in sixteenths they are whole. */
         const size_t head = head_of(join, group, (int64_t)((p[0] + q[0]) * 16), (int64_t)((p[1] + q[1]) * 16));
         uint32_t other = join->heads[head];
         bool repeated = false;
         for (int k = 0; other != NONE && k < MAX_CANDIDATES && !repeated; k++, other = join->next[other]) {
-            const double *r = end_point(tiles, 2 * other), *s = end_point(tiles, 2 * other + 1);
+            const double *r = end_point(stitcher, 2 * other), *s = end_point(stitcher, 2 * other + 1);
             const bool same = camber_tile_stitcher_same(p, r) && camber_tile_stitcher_same(q, s);
             const bool turned = camber_tile_stitcher_same(p, s) && camber_tile_stitcher_same(q, r);
-            repeated = group_of(tiles, 2 * other, by_id) == group && (same || turned);
+            repeated = group_of(stitcher, 2 * other, by_id) == group && (same || turned);
         }
         if (repeated) {
-            piece->count = 0;
+            line->count = 0;
             continue;
         }
         join->next[i] = join->heads[head];
@@ -162,12 +162,12 @@ static void drop_repeated_runs(joiner *join) {
 /* Where a line passes the corner of four tiles, one of them may hold nothing but a crumb between two cuts, and both
  * ends of it lie within reach of the neighbours. Without it these find each other. */
 static void drop_crumbs(const joiner *join, double reach) {
-    camber_tile_stitcher *tiles = join->tiles;
-    for (uint32_t i = 0; i < tiles->piece_count; i++) {
-        camber_cut_line *piece = &tiles->pieces[i];
-        const double *p = end_point(tiles, 2 * i);
-        if (piece->count == 2 && piece->cut[0] && piece->cut[1] && hypot(p[2] - p[0], p[3] - p[1]) < reach / 2)
-            piece->count = 0;
+    camber_tile_stitcher *stitcher = join->stitcher;
+    for (uint32_t i = 0; i < stitcher->line_count; i++) {
+        camber_cut_line *line = &stitcher->lines[i];
+        const double *p = end_point(stitcher, 2 * i);
+        if (line->count == 2 && line->cut[0] && line->cut[1] && hypot(p[2] - p[0], p[3] - p[1]) < reach / 2)
+            line->count = 0;
     }
 }
 
@@ -176,36 +176,36 @@ static void drop_crumbs(const joiner *join, double reach) {
 /* Whether the point that a piece is entered by is left out: at a joint one point is left, or none where both were made
  * by cutting. */
 static bool skips_entry(const joiner *join, uint32_t enter) {
-    const camber_cut_line *pieces = join->tiles->pieces;
+    const camber_cut_line *lines = join->stitcher->lines;
     const uint32_t leave = join->partner[enter];
-    return leave != NONE && (!pieces[leave / 2].cut[leave & 1] || pieces[enter / 2].cut[enter & 1]);
+    return leave != NONE && (!lines[leave / 2].cut[leave & 1] || lines[enter / 2].cut[enter & 1]);
 }
 
 /* The chain's points, in world coordinates, to scratch; last: the end that it is left by. */
 static bool gather(const joiner *join, uint32_t start, size_t *count, uint32_t *last) {
-    camber_tile_stitcher *tiles = join->tiles;
+    camber_tile_stitcher *stitcher = join->stitcher;
     size_t points = 0;
     uint32_t end = start;
     do {
-        const camber_cut_line *piece = &tiles->pieces[end / 2];
+        const camber_cut_line *line = &stitcher->lines[end / 2];
         const uint32_t leave = end ^ 1, enter = join->partner[leave];
-        const bool skip_entry = skips_entry(join, end), skip_leave = enter != NONE && piece->cut[leave & 1];
-        if (!camber_grow(tiles->context, &tiles->scratch, &tiles->scratch_capacity, points + piece->count + 1,
-                         2 * sizeof *tiles->scratch))
+        const bool skip_entry = skips_entry(join, end), skip_leave = enter != NONE && line->cut[leave & 1];
+        if (!camber_grow(stitcher->context, &stitcher->scratch, &stitcher->scratch_capacity, points + line->count + 1,
+                         2 * sizeof *stitcher->scratch))
             return false;
-        for (size_t i = 0; i < piece->count; i++) {
-            if ((i == 0 && skip_entry) || (i + 1 == piece->count && skip_leave))
+        for (size_t i = 0; i < line->count; i++) {
+            if ((i == 0 && skip_entry) || (i + 1 == line->count && skip_leave))
                 continue;
-            const double *from = tiles->points + 2 * (piece->first + (end & 1 ? piece->count - 1 - i : i));
-            tiles->scratch[2 * points] = from[0] / tiles->units;
-            tiles->scratch[2 * points + 1] = from[1] / tiles->units;
+            const double *from = stitcher->points + 2 * (line->first + (end & 1 ? line->count - 1 - i : i));
+            stitcher->scratch[2 * points] = from[0] / stitcher->units;
+            stitcher->scratch[2 * points + 1] = from[1] / stitcher->units;
             points++;
         }
         *last = leave;
         end = enter;
     } while (end != NONE && end != start);
     if (end == start && points) {
-        memcpy(tiles->scratch + 2 * points, tiles->scratch, 2 * sizeof *tiles->scratch);
+        memcpy(stitcher->scratch + 2 * points, stitcher->scratch, 2 * sizeof *stitcher->scratch);
         points++;
     }
     *count = points;
@@ -223,7 +223,7 @@ typedef struct chain_list {
 } chain_list;
 
 /* A chain takes the place of each of its pieces. */
-static void key_pieces(const joiner *join, const chain_list *list, uint32_t *keys) {
+static void key_lines(const joiner *join, const chain_list *list, uint32_t *keys) {
     for (size_t i = 0; i < list->count; i++) {
         uint32_t end = list->chains[i].start;
         do {
@@ -233,9 +233,10 @@ static void key_pieces(const joiner *join, const chain_list *list, uint32_t *key
     }
 }
 
-static bool same_list(const camber_tile_stitcher *tiles, const camber_features *features, size_t a, size_t b) {
-    const camber_cut_line *p = &tiles->pieces[a], *q = &tiles->pieces[b];
-    const uint32_t classes[2] = {tiles->features[p->feature].class_index, tiles->features[q->feature].class_index};
+static bool same_list(const camber_tile_stitcher *stitcher, const camber_features *features, size_t a, size_t b) {
+    const camber_cut_line *p = &stitcher->lines[a], *q = &stitcher->lines[b];
+    const uint32_t classes[2] = {stitcher->features[p->feature].class_index,
+                                 stitcher->features[q->feature].class_index};
     return p->column == q->column && p->row == q->row &&
            features->classes[classes[0]].layer == features->classes[classes[1]].layer;
 }
@@ -243,18 +244,18 @@ static bool same_list(const camber_tile_stitcher *tiles, const camber_features *
 /* What lies on top in one tile does so in all: a tile's order of features is its author's, roads of more weight last,
  * and a road that begins in the first tile must not lie below all of the second. */
 static camber_status find_order(const joiner *join, const camber_features *features, uint32_t *keys, chain_list *list) {
-    const camber_tile_stitcher *tiles = join->tiles;
-    camber_context *context = tiles->context;
+    const camber_tile_stitcher *stitcher = join->stitcher;
+    camber_context *context = stitcher->context;
     camber_status status = CAMBER_ERROR_MEMORY;
-    uint32_t *lists = camber_alloc(context, 2 * tiles->piece_count, sizeof *lists);
+    uint32_t *lists = camber_alloc(context, 2 * stitcher->line_count, sizeof *lists);
     if (lists && (list->order = camber_alloc(context, list->key_count, sizeof *list->order))) {
         camber_order_desc desc = {.count = list->key_count, .lists = lists};
         size_t last = 0;
-        key_pieces(join, list, keys);
-        for (size_t i = 0; i < tiles->piece_count; i++) {
-            if (tiles->pieces[i].count == 0)
+        key_lines(join, list, keys);
+        for (size_t i = 0; i < stitcher->line_count; i++) {
+            if (stitcher->lines[i].count == 0)
                 continue;
-            if (desc.item_count && !same_list(tiles, features, last, i))
+            if (desc.item_count && !same_list(stitcher, features, last, i))
                 lists[desc.item_count++] = CAMBER_LIST_END;
             lists[desc.item_count++] = keys[i];
             last = i;
@@ -268,20 +269,20 @@ static camber_status find_order(const joiner *join, const camber_features *featu
 /* ---- Features ---- */
 
 static camber_status add_chain(const joiner *join, const camber_chain *chain, camber_features *features) {
-    const camber_cut_line *pieces = join->tiles->pieces;
+    const camber_cut_line *lines = join->stitcher->lines;
     size_t points = 0;
     uint32_t last = chain->start;
     if (!gather(join, chain->start, &points, &last))
         return CAMBER_ERROR_MEMORY;
-    camber_status status = camber_features_add_polyline(features, join->tiles->scratch, points);
-    if (status == CAMBER_OK && join->tiles->has_progress)
-        status = camber_features_set_progress(features, (double)pieces[chain->start / 2].progress[chain->start & 1],
-                                              (double)pieces[last / 2].progress[last & 1]);
+    camber_status status = camber_features_add_polyline(features, join->stitcher->scratch, points);
+    if (status == CAMBER_OK && join->stitcher->has_progress)
+        status = camber_features_set_progress(features, (double)lines[chain->start / 2].progress[chain->start & 1],
+                                              (double)lines[last / 2].progress[last & 1]);
     return status;
 }
 
 static camber_status add_chains(const joiner *join, const chain_list *list, camber_features *features) {
-    camber_context *context = join->tiles->context;
+    camber_context *context = join->stitcher->context;
     camber_status status = CAMBER_OK;
     size_t *firsts = camber_alloc_zero(context, list->key_count + 1, sizeof *firsts);
     if (!firsts)
@@ -294,7 +295,7 @@ static camber_status add_chains(const joiner *join, const chain_list *list, camb
         const uint32_t key = list->order[k];
         if (firsts[key] == firsts[key + 1])
             continue;
-        status = camber_features_add_feature(features, join->tiles->features[key].class_index);
+        status = camber_features_add_feature(features, join->stitcher->features[key].class_index);
         for (size_t i = firsts[key]; i < firsts[key + 1] && status == CAMBER_OK; i++)
             status = add_chain(join, &list->chains[i], features);
     }
@@ -303,20 +304,20 @@ static camber_status add_chains(const joiner *join, const chain_list *list, camb
 }
 
 static camber_status emit(const joiner *join, camber_features *features) {
-    camber_tile_stitcher *tiles = join->tiles;
-    camber_context *context = tiles->context;
+    camber_tile_stitcher *stitcher = join->stitcher;
+    camber_context *context = stitcher->context;
     camber_chains_desc desc = {
-        .partner = join->partner, .piece_count = tiles->piece_count, .key_count = tiles->feature_count};
-    chain_list list = {.key_count = tiles->feature_count};
+        .partner = join->partner, .line_count = stitcher->line_count, .key_count = stitcher->feature_count};
+    chain_list list = {.key_count = stitcher->feature_count};
     size_t left = 0;
     camber_status status = CAMBER_ERROR_MEMORY;
-    uint32_t *keys = camber_alloc(context, tiles->piece_count, sizeof *keys);
+    uint32_t *keys = camber_alloc(context, stitcher->line_count, sizeof *keys);
     desc.keys = keys;
-    if (!keys || !(desc.visited = camber_alloc_zero(context, tiles->piece_count, sizeof *desc.visited)))
+    if (!keys || !(desc.visited = camber_alloc_zero(context, stitcher->line_count, sizeof *desc.visited)))
         goto done;
-    for (size_t i = 0; i < tiles->piece_count; i++) {
-        keys[i] = tiles->pieces[i].feature;
-        desc.visited[i] = tiles->pieces[i].count == 0;
+    for (size_t i = 0; i < stitcher->line_count; i++) {
+        keys[i] = stitcher->lines[i].feature;
+        desc.visited[i] = stitcher->lines[i].count == 0;
         left += !desc.visited[i];
     }
     status = camber_chains_find(context, &desc, &list.chains, &list.count);
@@ -334,22 +335,22 @@ done:
     return status;
 }
 
-camber_status camber_tile_stitcher_finish(camber_tile_stitcher *tiles, camber_features *features) {
-    camber_context *context = tiles->context;
-    joiner join = {.tiles = tiles, .head_count = 1024};
+camber_status camber_tile_stitcher_finish(camber_tile_stitcher *stitcher, camber_features *features) {
+    camber_context *context = stitcher->context;
+    joiner join = {.stitcher = stitcher, .head_count = 1024};
     camber_status status = CAMBER_ERROR_MEMORY;
-    while (join.head_count < 2 * tiles->piece_count)
+    while (join.head_count < 2 * stitcher->line_count)
         join.head_count *= 2;
     if (!(join.heads = camber_alloc(context, join.head_count, sizeof *join.heads)) ||
-        !(join.next = camber_alloc(context, 2 * tiles->piece_count, sizeof *join.next)) ||
-        !(join.partner = camber_alloc(context, 2 * tiles->piece_count, sizeof *join.partner)))
+        !(join.next = camber_alloc(context, 2 * stitcher->line_count, sizeof *join.next)) ||
+        !(join.partner = camber_alloc(context, 2 * stitcher->line_count, sizeof *join.partner)))
         goto done;
-    for (size_t i = 0; i < 2 * tiles->piece_count; i++)
+    for (size_t i = 0; i < 2 * stitcher->line_count; i++)
         join.partner[i] = NONE;
-    drop_repeated_runs(&join);
+    drop_repeated_border_lines(&join);
     const bool directed = features->style->directed;
     /* Tiles of a coarser grid than 2048 round as much more. */
-    const double reach = REACH * fmin(fmax(1, tiles->grid / 2), MOST_REACH), id_reach = fmax(ID_REACH, reach);
+    const double reach = REACH * fmin(fmax(1, stitcher->grid / 2), MOST_REACH), id_reach = fmax(ID_REACH, reach);
     const join_pass passes[] = {{true, EXACT, directed},
                                 {true, reach, directed},
                                 {true, id_reach, directed},

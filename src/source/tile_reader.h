@@ -8,8 +8,8 @@
 typedef struct camber_tile_reading {
     camber_tile_set *set;
     int zoom;
-    const camber_tile_address *places;
-    size_t place_count;
+    const camber_tile_address *addresses;
+    size_t address_count;
     camber_mvt_desc mvt; /* tiles are filled in here */
 } camber_tile_reading;
 

@@ -160,16 +160,16 @@ typedef struct file_set {
     bool south_first, high_resolution;
 } file_set;
 
-static void put_quadkey(char *out, int zoom, camber_tile_index place) {
+static void put_quadkey(char *out, int zoom, camber_tile_index tile) {
     for (int z = zoom; z > 0; z--)
-        *out++ = (char)('0' + (place.column >> (z - 1) & 1) + 2 * (place.row >> (z - 1) & 1));
+        *out++ = (char)('0' + (tile.column >> (z - 1) & 1) + 2 * (tile.row >> (z - 1) & 1));
     *out = 0;
 }
 
 /* What {...} stands for. false: it is left as it is. */
-static bool expand(const file_set *files, const char *token, size_t length, int zoom, camber_tile_index place,
+static bool expand(const file_set *files, const char *token, size_t length, int zoom, camber_tile_index tile,
                    char out[40]) {
-    const uint32_t turned = (UINT32_C(1) << zoom) - 1 - place.row;
+    const uint32_t turned = (UINT32_C(1) << zoom) - 1 - tile.row;
     static const char *const tokens[] = {"{z}", "{x}", "{y}", "{-y}", "{ratio}", "{quadkey}", "{prefix}"};
     size_t i = 0;
     while (i < sizeof tokens / sizeof *tokens &&
@@ -177,24 +177,24 @@ static bool expand(const file_set *files, const char *token, size_t length, int 
         i++;
     switch (i) {
     case 0: snprintf(out, 40, "%d", zoom); return true;
-    case 1: snprintf(out, 40, "%u", place.column); return true;
-    case 2: snprintf(out, 40, "%u", files->south_first ? turned : place.row); return true;
+    case 1: snprintf(out, 40, "%u", tile.column); return true;
+    case 2: snprintf(out, 40, "%u", files->south_first ? turned : tile.row); return true;
     case 3: snprintf(out, 40, "%u", turned); return true;
     case 4: snprintf(out, 40, "%s", files->high_resolution ? "@2x" : ""); return true;
-    case 5: put_quadkey(out, zoom, place); return true;
-    case 6: snprintf(out, 40, "%x%x", place.column % 16, place.row % 16); return true;
+    case 5: put_quadkey(out, zoom, tile); return true;
+    case 6: snprintf(out, 40, "%x%x", tile.column % 16, tile.row % 16); return true;
     default: return false;
     }
 }
 
-static char *path_of(camber_tile_set *set, int zoom, camber_tile_index place) {
+static char *path_of(camber_tile_set *set, int zoom, camber_tile_index tile) {
     const file_set *files = set->self;
     camber_bytes path = {.context = set->context};
     for (const char *at = files->path; *at;) {
         char text[40];
         const char *end = *at == '{' ? strchr(at, '}') : NULL, *put = at;
         size_t taken = 1, size = 1;
-        if (end && expand(files, at, (size_t)(end + 1 - at), zoom, place, text)) {
+        if (end && expand(files, at, (size_t)(end + 1 - at), zoom, tile, text)) {
             taken = (size_t)(end + 1 - at);
             size = strlen(text);
             put = text;
@@ -229,10 +229,10 @@ static camber_status read_tile(int file, camber_bytes *bytes, const char *name) 
 }
 
 /* A tile that is not there is empty. */
-static camber_status get_file(camber_tile_set *set, int zoom, camber_tile_index place, camber_bytes *bytes,
+static camber_status get_file(camber_tile_set *set, int zoom, camber_tile_index tile, camber_bytes *bytes,
                               const char **why) {
     (void)why;
-    char *path = path_of(set, zoom, place);
+    char *path = path_of(set, zoom, tile);
     int file;
     uint64_t size_bytes;
     if (!path)
@@ -324,11 +324,11 @@ camber_status camber_tile_set_open(camber_context *context, const char *path, ca
     return CAMBER_OK;
 }
 
-camber_status camber_tile_set_get(camber_tile_set *set, int zoom, camber_tile_index place, camber_bytes *bytes,
+camber_status camber_tile_set_get(camber_tile_set *set, int zoom, camber_tile_index tile, camber_bytes *bytes,
                                   const char **why) {
     *why = NULL;
     bytes->size_bytes = 0;
-    const camber_status status = set->calls->get(set, zoom, place, &set->raw, why);
+    const camber_status status = set->calls->get(set, zoom, tile, &set->raw, why);
     if (status != CAMBER_OK || *why)
         return status;
     if (is_compressed(&set->raw))
@@ -343,8 +343,8 @@ camber_status camber_tile_set_get(camber_tile_set *set, int zoom, camber_tile_in
     return camber_budget_unfold(set->context, set->name, bytes->size_bytes);
 }
 
-camber_status camber_tile_set_list(camber_tile_set *set, int zoom, camber_tile_index **places, size_t *count) {
-    return set->calls->list(set, zoom, places, count);
+camber_status camber_tile_set_list(camber_tile_set *set, int zoom, camber_tile_index **tiles, size_t *count) {
+    return set->calls->list(set, zoom, tiles, count);
 }
 
 void camber_tile_set_close(camber_tile_set *set) {

@@ -28,10 +28,9 @@ typedef struct camber_tile_set camber_tile_set;
 /* What one kind of set does. */
 typedef struct camber_tile_set_calls {
     /* The tile as it is kept, maybe compressed; size 0 where there is none. why: as camber_tile_set_get. */
-    camber_status (*get)(camber_tile_set *set, int zoom, camber_tile_index place, camber_bytes *bytes,
-                         const char **why);
+    camber_status (*get)(camber_tile_set *set, int zoom, camber_tile_index tile, camber_bytes *bytes, const char **why);
     /* NULL: the kind cannot tell. *places is freed with camber_free. */
-    camber_status (*list)(camber_tile_set *set, int zoom, camber_tile_index **places, size_t *count);
+    camber_status (*list)(camber_tile_set *set, int zoom, camber_tile_index **tiles, size_t *count);
     void (*close)(camber_tile_set *set);
 } camber_tile_set_calls;
 
@@ -73,10 +72,10 @@ camber_status camber_tile_set_describe(camber_tile_set *set, const json_t *about
 /* The tile's bytes, decompressed; size 0 where there is none. *why: NULL, or what is wrong with this one tile. Returns
  * CAMBER_ERROR_INPUT where the set itself is damaged, CAMBER_ERROR_IO, CAMBER_ERROR_LIMIT (the budget),
  * CAMBER_ERROR_MEMORY. */
-camber_status camber_tile_set_get(camber_tile_set *set, int zoom, camber_tile_index place, camber_bytes *bytes,
+camber_status camber_tile_set_get(camber_tile_set *set, int zoom, camber_tile_index tile, camber_bytes *bytes,
                                   const char **why);
 /* Of the budget's tiles, these are taken. */
-camber_status camber_tile_set_list(camber_tile_set *set, int zoom, camber_tile_index **places, size_t *count);
+camber_status camber_tile_set_list(camber_tile_set *set, int zoom, camber_tile_index **tiles, size_t *count);
 void camber_tile_set_close(camber_tile_set *set);
 
 /* ---- For the kinds ---- */

@@ -24,17 +24,17 @@ typedef struct camber_tile_feature {
 typedef struct camber_tile_lines {
     const double *points;
     const size_t *ends;
-    size_t part_count;
+    size_t line_count;
 } camber_tile_lines;
 
 /* zoom: 0 to 30. */
-camber_status camber_tile_stitcher_create(camber_context *context, int zoom, camber_tile_stitcher **tiles);
-void camber_tile_stitcher_destroy(camber_tile_stitcher *tiles);
+camber_status camber_tile_stitcher_create(camber_context *context, int zoom, camber_tile_stitcher **stitcher);
+void camber_tile_stitcher_destroy(camber_tile_stitcher *stitcher);
 /* Cuts the parts at the tile's border and keeps what lies inside. */
-camber_status camber_tile_stitcher_add(camber_tile_stitcher *tiles, const camber_tile_feature *feature,
-                                       const camber_tile_lines *parts);
+camber_status camber_tile_stitcher_add(camber_tile_stitcher *stitcher, const camber_tile_feature *feature,
+                                       const camber_tile_lines *lines);
 /* Joins the pieces and adds them to the set. Where the style is directed, an end is joined to a start only. */
-camber_status camber_tile_stitcher_finish(camber_tile_stitcher *tiles, camber_features *features);
+camber_status camber_tile_stitcher_finish(camber_tile_stitcher *stitcher, camber_features *features);
 
 /* ---- Between the two ---- */
 
@@ -46,9 +46,9 @@ typedef struct camber_cut_line {
     size_t first, count; /* points; count 0: not there any more */
     uint32_t feature;    /* index into features */
     uint32_t column, row;
-    bool cut[2];    /* the first and last point were cut, and are no points of the feature */
-    bool border[2]; /* they lie on the tile's border */
-    bool run;       /* runs along the border: the neighbour has it too */
+    bool cut[2];       /* the first and last point were cut, and are no points of the feature */
+    bool border[2];    /* they lie on the tile's border */
+    bool along_border; /* runs along the border: the neighbour has it too */
     float progress[2];
 } camber_cut_line;
 
@@ -66,8 +66,8 @@ struct camber_tile_stitcher {
     bool has_progress; /* of some piece */
     double *points;
     size_t point_count, point_capacity;
-    camber_cut_line *pieces; /* fewer than 2^31 */
-    size_t piece_count, piece_capacity;
+    camber_cut_line *lines; /* fewer than 2^31 */
+    size_t line_count, line_capacity;
     camber_cut_feature *features; /* one for all the pieces with one id and class */
     size_t feature_count, feature_capacity;
     uint32_t *slots; /* of features with an id, + 1; slot_count is a power of two */

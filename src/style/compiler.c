@@ -124,7 +124,7 @@ bool camber_sort_labels(camber_compiler *c, size_t first, bool unique) {
         const camber_label *one = &labels[i - 1], *other = &labels[i];
         if (compare_labels(one, other) != 0)
             continue;
-        camber_compiler_enter_index(c, one->place > other->place ? one->place : other->place);
+        camber_compiler_enter_index(c, one->position > other->position ? one->position : other->position);
         return one->string ? camber_compiler_fail(c, "the label \"%.64s\" occurs twice; take one out", one->string)
                            : camber_compiler_fail(c, "the label %.17g occurs twice; take one out", one->number);
     }

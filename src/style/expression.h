@@ -49,8 +49,8 @@ struct camber_node {
 typedef struct camber_label {
     const char *string; /* NULL: a number */
     double number;
-    uint32_t output; /* operand of the match */
-    uint32_t place;  /* in the document: its branch or stop */
+    uint32_t output;   /* operand of the match */
+    uint32_t position; /* in the document: its branch or stop */
 } camber_label;
 
 struct camber_expression {

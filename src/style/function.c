@@ -326,7 +326,7 @@ static bool compile_categories(function *f, span stops, uint32_t *node) {
         camber_compiler_enter_index(c, i);
         if (!read_stop(f, i, &input, &zoom))
             return false;
-        const camber_label label = {.output = (uint32_t)(c->operand_count - first_operand), .place = (uint32_t)i};
+        const camber_label label = {.output = (uint32_t)(c->operand_count - first_operand), .position = (uint32_t)i};
         if (!same_input(before, input) &&
             (!push_category(f, input, label, &type) || !push_value(f, json_array_get(json_array_get(f->stops, i), 1))))
             return false;

@@ -157,7 +157,7 @@ static bool read_object(camber_arena *arena, const json_t *json, unsigned depth,
     const char *key;
     json_t *item;
     json_object_foreach((json_t *)(uintptr_t)json, key, item) {
-        members[place] = (camber_member){.key = key, .place = place};
+        members[place] = (camber_member){.key = key, .position = place};
         if (!read_value(arena, item, depth, &members[place].value))
             return false;
         place++;

@@ -318,7 +318,7 @@ bool camber_compile_label(camber_compiler *c, const json_t *json, camber_label l
 
 /* One label or an array of them. */
 static bool compile_branch(camber_compiler *c, const json_t *json, uint32_t index, camber_type *type) {
-    const camber_label label = {.output = index / 2, .place = index};
+    const camber_label label = {.output = index / 2, .position = index};
     if (!json_is_array(json))
         return camber_compile_label(c, json, label, type);
     if (json_array_size(json) == 0)

@@ -75,9 +75,9 @@ static bool add_quoted(camber_text *text, const char *string) {
     return add(text, "\"");
 }
 
-static int compare_places(const void *left, const void *right) {
+static int compare_positions(const void *left, const void *right) {
     const camber_member *a = *(const camber_member *const *)left, *b = *(const camber_member *const *)right;
-    return a->place < b->place ? -1 : a->place > b->place;
+    return a->position < b->position ? -1 : a->position > b->position;
 }
 
 static bool add_object(camber_text *text, const camber_value *object) {
@@ -86,7 +86,7 @@ static bool add_object(camber_text *text, const camber_value *object) {
         return camber_evaluate_no_memory(text->e);
     for (uint32_t i = 0; i < object->count; i++)
         members[i] = &object->members[i];
-    qsort(members, object->count, sizeof *members, compare_places);
+    qsort(members, object->count, sizeof *members, compare_positions);
     if (!add(text, "{"))
         return false;
     for (uint32_t i = 0; i < object->count; i++)

@@ -33,7 +33,7 @@ struct camber_value {
 
 struct camber_member {
     const char *key;
-    uint32_t place; /* in the document, which text of the object follows */
+    uint32_t position; /* in the document, which text of the object follows */
     camber_value value;
 };
 

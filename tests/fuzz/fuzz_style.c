@@ -69,8 +69,8 @@ static bool add_features(fuzz_run *run, camber_features *features) {
 static const camber_value numbers[] = {{.type = CAMBER_VALUE_NUMBER, .number = 1.5},
                                        {.type = CAMBER_VALUE_STRING, .string = "a"}};
 static const camber_member members[] = {
-    {.key = "a", .place = 1, .value = {.type = CAMBER_VALUE_ARRAY, .count = 2, .items = numbers}},
-    {.key = "k", .place = 0, .value = {.type = CAMBER_VALUE_NUMBER, .number = -2.0}}};
+    {.key = "a", .position = 1, .value = {.type = CAMBER_VALUE_ARRAY, .count = 2, .items = numbers}},
+    {.key = "k", .position = 0, .value = {.type = CAMBER_VALUE_NUMBER, .number = -2.0}}};
 static const camber_value all_properties = {.type = CAMBER_VALUE_OBJECT, .count = 2, .members = members};
 
 static void check_layers(const camber_style *style, const camber_features *features) {

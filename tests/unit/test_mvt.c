@@ -26,7 +26,7 @@ static void begin(fixture *it) {
     assert_int_equal(camber_features_create(it->context, &it->style, &it->features), CAMBER_OK);
     assert_int_equal(camber_tile_stitcher_create(it->context, ZOOM, &it->tiles), CAMBER_OK);
     const camber_mvt_desc desc = {
-        .features = it->features, .tiles = it->tiles, .layers = layers, .layer_count = 1, .wants_polygons = true};
+        .features = it->features, .stitcher = it->tiles, .layers = layers, .layer_count = 1, .wants_polygons = true};
     assert_int_equal(camber_mvt_create(it->context, &desc, &it->mvt), CAMBER_OK);
 }
 
@@ -176,7 +176,7 @@ static void test_clips(void **state) {
     fixture *it = *state;
     static const char *const layers[] = {"road"};
     const camber_mvt_desc desc = {
-        .features = it->features, .tiles = it->tiles, .layers = layers, .layer_count = 1, .wants_progress = true};
+        .features = it->features, .stitcher = it->tiles, .layers = layers, .layer_count = 1, .wants_progress = true};
     camber_mvt_destroy(it->mvt);
     assert_int_equal(camber_mvt_create(it->context, &desc, &it->mvt), CAMBER_OK);
     blob tile = {0}, layer = begin_layer("road", 4096);

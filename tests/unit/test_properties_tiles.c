@@ -87,7 +87,7 @@ static content content_of(const line *l, uint32_t column, uint32_t row) {
 
 static camber_status add_tile(camber_tile_stitcher *tiles, const line *l, uint32_t tile) {
     content t = content_of(l, tile % TILES, tile / TILES);
-    const camber_tile_lines parts = {.points = t.points, .ends = t.ends, .part_count = t.parts};
+    const camber_tile_lines parts = {.points = t.points, .ends = t.ends, .line_count = t.parts};
     const camber_tile_feature feature = {.column = tile % TILES, .row = tile / TILES, .has_id = true, .id = 7};
     return camber_tile_stitcher_add(tiles, &feature, &parts);
 }

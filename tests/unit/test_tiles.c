@@ -57,7 +57,7 @@ static void add(fixture *it, uint32_t column, uint32_t row, uint64_t id, bool ou
     for (size_t i = 0; i < 2 * count; i++)
         points[i] = units[i] / WORLD;
     size_t end = count;
-    const camber_tile_lines parts = {.points = points, .ends = &end, .part_count = 1};
+    const camber_tile_lines parts = {.points = points, .ends = &end, .line_count = 1};
     const camber_tile_feature feature = {
         .column = column, .row = row, .class_index = it->classes[0], .outline = outline, .has_id = id != 0, .id = id};
     assert_int_equal(camber_tile_stitcher_add(it->tiles, &feature, &parts), CAMBER_OK);
@@ -249,7 +249,7 @@ static void test_progress(void **state) {
             const double first = column ? 3996 : 0, last = column ? 8192 : 4196;
             const double points[] = {first / WORLD, 100 / WORLD, 4050 / WORLD, 100 / WORLD, last / WORLD, 100 / WORLD};
             const size_t end = 3;
-            const camber_tile_lines parts = {.points = points, .ends = &end, .part_count = 1};
+            const camber_tile_lines parts = {.points = points, .ends = &end, .line_count = 1};
             const camber_tile_feature feature = {.column = column,
                                                  .class_index = it->classes[0],
                                                  .has_id = true,

@@ -81,7 +81,7 @@ static void find_tile(const reader *self, OGRFeatureH feature, camber_tile_featu
     tile->row = (uint32_t)fmin(fmax(floor((low[1] + high[1]) / 2), 0), side - 1);
 }
 
-static camber_status keep(reader *self, OGRFeatureH feature, camber_geometry_kind kind) {
+static camber_status add_to_features(reader *self, OGRFeatureH feature, camber_geometry_kind kind) {
     uint32_t index;
     camber_status status = camber_columns_class(&self->columns, feature, self->layer_index, kind, &index);
     if (status != CAMBER_OK)
@@ -119,7 +119,7 @@ static camber_status read_feature(reader *self, OGRFeatureH feature, bool failed
         const camber_geometry_kind collected = area ? CAMBER_GEOMETRY_LINE : (camber_geometry_kind)kind;
         status = camber_feature_lines_collect(lines, geometry, collected);
         if (status == CAMBER_OK && lines->line_count)
-            status = keep(self, feature, (camber_geometry_kind)kind);
+            status = add_to_features(self, feature, (camber_geometry_kind)kind);
     }
     self->stats.skipped_features += lines->left_out || (area && !lines->wants_polygons);
     self->stats.damaged_features += lines->damaged;
@@ -160,7 +160,7 @@ static void show_progress(reader *self, double fraction) {
 }
 
 /* While OpenStreetMap's nodes are read, which are no features. */
-static int CPL_STDCALL beat(double fraction, const char *message, void *user) {
+static int CPL_STDCALL show_node_progress(double fraction, const char *message, void *user) {
     reader *self = user;
     (void)message;
     const double now = camber_now_ms();
@@ -179,7 +179,7 @@ static OGRFeatureH next_feature(reader *self, double *fraction) {
     if (!self->dataset.osm)
         return OGR_L_GetNextFeature(self->layer);
     OGRLayerH layer = NULL;
-    return GDALDatasetGetNextFeature(self->dataset.handle, &layer, fraction, beat, self);
+    return GDALDatasetGetNextFeature(self->dataset.handle, &layer, fraction, show_node_progress, self);
 }
 
 /* expected: features that the layer announces, below 0 where it does not know. *unsorted: start again with nodes in
@@ -275,7 +275,7 @@ static camber_status read_layers(reader *self, const int *layers, size_t count, 
 /* ---- A file ---- */
 
 /* Points and areas are no news: nobody asked for them. */
-static void warn(const reader *self) {
+static void warn_of_losses(const reader *self) {
     const camber_features_stats *stats = &self->stats;
     const char *path = self->desc->path;
     if (stats->damaged_features)
@@ -296,7 +296,7 @@ static void warn(const reader *self) {
 }
 
 /* What the file gave, looked at as a whole. */
-static camber_status judge(reader *self, size_t features_before) {
+static camber_status check_result(reader *self, size_t features_before) {
     const camber_feature_lines *lines = &self->lines;
     if (lines->strange_points > lines->raw_points / 2)
         return camber_fail(self->context, CAMBER_ERROR_INPUT,
@@ -340,7 +340,7 @@ static camber_status read_dataset(reader *self, bool *unsorted) {
     if (status == CAMBER_OK && self->stitcher)
         status = camber_tile_stitcher_finish(self->stitcher, self->features);
     if (status == CAMBER_OK)
-        status = judge(self, features_before);
+        status = check_result(self, features_before);
     if (status == CAMBER_OK && self->desc->where && self->passed == 0)
         warn_where(self);
     if (status == CAMBER_OK)
@@ -370,7 +370,7 @@ static void add_stats(camber_features *features, const reader *self) {
 }
 
 /* The file's lines, from first_polyline on. */
-static camber_status finish(camber_features *features, const camber_source_desc *desc, size_t first_polyline) {
+static camber_status merge_and_weigh(camber_features *features, const camber_source_desc *desc, size_t first_polyline) {
     const double start_ms = camber_now_ms();
     camber_status status = CAMBER_OK;
     if (!desc->keep_apart)
@@ -405,10 +405,10 @@ static camber_status read_once(camber_features *features, const camber_source_de
     close_reader(&self);
     features->times.file_ms += camber_now_ms() - start_ms;
     if (status == CAMBER_OK)
-        status = finish(features, desc, polylines);
+        status = merge_and_weigh(features, desc, polylines);
     if (status == CAMBER_OK) {
         add_stats(features, &self);
-        warn(&self);
+        warn_of_losses(&self);
         camber_progress(features->context, "reading", 1);
     } else {
         features->point_count = points;

@@ -53,7 +53,7 @@ static two_bounds bounds_of(const camber_features *features, const camber_view *
     return bounds;
 }
 
-static void frame(camber_view *view, const two_bounds *bounds) {
+static void frame_bounds(camber_view *view, const two_bounds *bounds) {
     camber_view moved = *view;
     camber_view_frame(view, bounds->plain, FILL, LARGEST_FIT_ZOOM);
     camber_view_frame(&moved, bounds->moved, FILL, LARGEST_FIT_ZOOM);
@@ -75,7 +75,7 @@ camber_status camber_plan_fit(const camber_features *features, camber_view *view
     if (is_empty(bounds.plain))
         bounds = bounds_of(features, view, NULL);
     if (!is_empty(bounds.plain))
-        frame(view, &bounds);
+        frame_bounds(view, &bounds);
     camber_plan_destroy(plan);
     status = camber_plan_create(features, view, plan);
     if (status != CAMBER_OK)
@@ -83,7 +83,7 @@ camber_status camber_plan_fit(const camber_features *features, camber_view *view
     const two_bounds drawn = bounds_of(features, view, plan);
     if (is_empty(drawn.plain) || same_bounds(drawn.plain, bounds.plain))
         return CAMBER_OK;
-    frame(view, &drawn);
+    frame_bounds(view, &drawn);
     camber_plan_destroy(plan);
     return camber_plan_create(features, view, plan);
 }

@@ -10,7 +10,7 @@ static uint32_t find_image(void *user, const char *name) {
     return image ? (uint32_t)(image - patterns->sprites->images) + 1 : 0;
 }
 
-static void miss_image(void *user, const char *name) {
+static void note_missing_image(void *user, const char *name) {
     camber_plan_patterns *patterns = user;
     patterns->unread |= !patterns->sprites;
     if (patterns->sprites && !camber_sprites_miss(patterns->sprites, name))
@@ -49,7 +49,7 @@ static uint32_t intern(camber_plan_patterns *patterns, size_t number) {
 
 bool camber_plan_patterns_find(camber_plan_patterns *patterns, const camber_style_layer *layer, double zoom,
                                const camber_feature_view *feature, uint32_t *image, float *aspect) {
-    const camber_style_images names = {find_image, miss_image, patterns};
+    const camber_style_images names = {find_image, note_missing_image, patterns};
     uint32_t found;
     *image = 0;
     *aspect = 1.0f;
@@ -62,7 +62,7 @@ bool camber_plan_patterns_find(camber_plan_patterns *patterns, const camber_styl
 
 /* ---- Backgrounds ---- */
 
-static camber_color over(camber_color top, camber_color below) {
+static camber_color blend_over(camber_color top, camber_color below) {
     const float rest = below.a * (1.0f - top.a), a = top.a + rest;
     if (a <= 0.0f)
         return (camber_color){0};
@@ -72,8 +72,8 @@ static camber_color over(camber_color top, camber_color below) {
 
 /* Images lie on the map, from the world's north-western corner on, in their own size at the whole zoom below; from
  * there to the next they grow with the map. */
-static void lay_images(const camber_plan_patterns *patterns, const camber_view *view, uint32_t image,
-                       camber_fill *fill) {
+static void place_images(const camber_plan_patterns *patterns, const camber_view *view, uint32_t image,
+                         camber_fill *fill) {
     const camber_sprite_image *from = patterns->sprites->images + patterns->numbers[image - 1];
     const double css_px = view->scale_px / (512.0 * exp2(floor(camber_view_style_zoom(view)))) / from->pixel_ratio;
     const double width = fmax(from->width * css_px, 1e-3), height = fmax(from->height * css_px, 1e-3);
@@ -98,12 +98,12 @@ void camber_plan_patterns_add_background(camber_plan_patterns *patterns, const c
     if (patterned) {
         fill.color.a = image ? (float)paint.opacity : 0.0f;
         if (image)
-            lay_images(patterns, view, image, &fill);
+            place_images(patterns, view, image, &fill);
     }
     if (!(fill.color.a > 0.0f))
         return;
     if (!patterned && layers_so_far == 0 && patterns->fill_count == 0) {
-        *below = over(fill.color, *below);
+        *below = blend_over(fill.color, *below);
         return;
     }
     if (!camber_grow(patterns->context, &patterns->fills, &patterns->fill_capacity, patterns->fill_count + 1,

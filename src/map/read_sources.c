@@ -7,7 +7,7 @@
 static const double FILL = 0.96, LARGEST_FIT_ZOOM = 22.0;
 
 /* Without a camera: all that the sources say they have. */
-static void fit(const camber_sources *sources, camber_view *view) {
+static void fit_bounds(const camber_sources *sources, camber_view *view) {
     double world[4];
     if (!camber_sources_bounds(sources, world))
         return;
@@ -37,7 +37,7 @@ camber_status camber_features_read_sources(camber_features *features, const camb
     status = camber_sources_open(features, &desc, &sources);
     if (status == CAMBER_OK) {
         if (view->kind == CAMBER_VIEW_FIT)
-            fit(sources, &seen);
+            fit_bounds(sources, &seen);
         const camber_tile_cover cover = cover_of(&seen);
         status = camber_sources_read(sources, &cover);
     }

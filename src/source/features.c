@@ -158,9 +158,9 @@ camber_status camber_features_intern(camber_features *features, const char *text
 
 /* ---- Arrays and objects ---- */
 
-static camber_status build(camber_features *features, const json_t *json, camber_value *value);
+static camber_status copy_json(camber_features *features, const json_t *json, camber_value *value);
 
-static camber_status build_array(camber_features *features, const json_t *json, camber_value *value) {
+static camber_status copy_array(camber_features *features, const json_t *json, camber_value *value) {
     const size_t count = json_array_size(json);
     camber_value *items = camber_alloc_zero(features->context, count, sizeof *items);
     if (!items)
@@ -168,7 +168,7 @@ static camber_status build_array(camber_features *features, const json_t *json, 
     *value = (camber_value){.type = CAMBER_VALUE_ARRAY, .items = items};
     camber_status status = CAMBER_OK;
     for (size_t i = 0; i < count && status == CAMBER_OK; i++, value->count++)
-        status = build(features, json_array_get(json, i), &items[i]);
+        status = copy_json(features, json_array_get(json, i), &items[i]);
     return status;
 }
 
@@ -176,7 +176,7 @@ static int compare_members(const void *a, const void *b) {
     return strcmp(((const camber_member *)a)->key, ((const camber_member *)b)->key);
 }
 
-static camber_status build_object(camber_features *features, const json_t *json, camber_value *value) {
+static camber_status copy_object(camber_features *features, const json_t *json, camber_value *value) {
     camber_member *members = camber_alloc_zero(features->context, json_object_size(json), sizeof *members);
     if (!members)
         return CAMBER_ERROR_MEMORY;
@@ -189,7 +189,7 @@ static camber_status build_object(camber_features *features, const json_t *json,
         one->position = value->count++;
         status = camber_features_intern(features, key, &one->key);
         if (status == CAMBER_OK)
-            status = build(features, member, &one->value);
+            status = copy_json(features, member, &one->value);
         if (status != CAMBER_OK)
             return status;
     }
@@ -198,11 +198,11 @@ static camber_status build_object(camber_features *features, const json_t *json,
     return CAMBER_OK;
 }
 
-static camber_status build(camber_features *features, const json_t *json, camber_value *value) {
+static camber_status copy_json(camber_features *features, const json_t *json, camber_value *value) {
     *value = (camber_value){0};
     switch (json_typeof(json)) {
-    case JSON_OBJECT: return build_object(features, json, value);
-    case JSON_ARRAY: return build_array(features, json, value);
+    case JSON_OBJECT: return copy_object(features, json, value);
+    case JSON_ARRAY: return copy_array(features, json, value);
     case JSON_STRING:
         value->type = CAMBER_VALUE_STRING;
         return camber_features_intern(features, json_string_value(json), &value->string);
@@ -225,7 +225,7 @@ camber_status camber_features_intern_json(camber_features *features, const json_
     if (status != CAMBER_OK)
         return status;
     if (found->value.type == CAMBER_VALUE_NULL)
-        status = build(features, json, &found->value);
+        status = copy_json(features, json, &found->value);
     if (status != CAMBER_OK)
         free_value(features->context, &found->value);
     else
@@ -254,7 +254,7 @@ camber_status camber_features_find_layer(camber_features *features, const char *
 /* ---- Classes ---- */
 
 /* What an interned value is told by is a pointer. */
-static bool points(const camber_value *value) {
+static bool is_pointer(const camber_value *value) {
     return value->type == CAMBER_VALUE_STRING || value->type == CAMBER_VALUE_ARRAY ||
            value->type == CAMBER_VALUE_OBJECT;
 }
@@ -269,7 +269,7 @@ static bool equal_values(const camber_value *a, const camber_value *b, size_t co
             return false;
         if (a[i].type == CAMBER_VALUE_NUMBER && memcmp(&a[i].number, &b[i].number, sizeof a[i].number) != 0)
             return false;
-        if (points(&a[i]) && a[i].string != b[i].string)
+        if (is_pointer(&a[i]) && a[i].string != b[i].string)
             return false;
     }
     return true;
@@ -281,7 +281,7 @@ static uint64_t hash_value(uint64_t hash, const camber_value *value) {
         word = value->boolean;
     else if (value->type == CAMBER_VALUE_NUMBER)
         memcpy(&word, &value->number, sizeof word);
-    else if (points(value))
+    else if (is_pointer(value))
         word = (uintptr_t)value->string;
     return camber_mix(hash, word ^ (uint64_t)value->type << 56);
 }

@@ -31,7 +31,7 @@ typedef struct reader {
     uint32_t class_index;
 } reader;
 
-static void spoil(reader *self, const char *cause) {
+static void note_damage(reader *self, const char *cause) {
     if (!self->damage)
         self->damage = cause;
 }
@@ -171,7 +171,7 @@ static camber_status add_parts(reader *self, size_t count) {
 }
 
 /* An outline goes clockwise as seen, so that what lies to its right is inside, and that of a hole the other way. */
-static void wind(double *points, size_t count, bool hole) {
+static void orient_ring(double *points, size_t count, bool hole) {
     double area = 0.0;
     for (size_t i = 0; i + 1 < count; i++) {
         const double part = (points[2 * i] - points[0]) * (points[2 * i + 3] - points[1]) -
@@ -197,26 +197,26 @@ static camber_status read_line(reader *self, const json_t *json, bool ring, bool
         if (read_position(json_array_get(json, i), self->points + 2 * count))
             count++;
         else
-            spoil(self, "a position that is no longitude and latitude");
+            note_damage(self, "a position that is no longitude and latitude");
     }
     if (count < 2) {
-        spoil(self, "a line of fewer than two positions");
+        note_damage(self, "a line of fewer than two positions");
         return CAMBER_OK;
     }
     const double *last = self->points + 2 * (count - 1);
     if (ring && (fabs(last[0] - self->points[0]) > 0 || fabs(last[1] - self->points[1]) > 0)) { /* both are valid */
-        spoil(self, "a ring that is not closed");
+        note_damage(self, "a ring that is not closed");
         memcpy(self->points + 2 * count++, self->points, 2 * sizeof *self->points);
     }
     if (ring && self->features->style->directed)
-        wind(self->points, count, hole);
+        orient_ring(self->points, count, hole);
     return add_parts(self, count);
 }
 
 /* depth: of lines in the coordinates. hole: of a polygon the lines are not the first. */
 static camber_status read_lines(reader *self, const json_t *json, int depth, bool ring, bool hole) {
     if (!json_is_array(json)) {
-        spoil(self, "coordinates that are no array");
+        note_damage(self, "coordinates that are no array");
         return CAMBER_OK;
     }
     if (depth == 0)
@@ -247,7 +247,7 @@ static camber_status read_geometry(reader *self, const json_t *geometry, camber_
     while (i < sizeof types / sizeof *types && (!type || strcmp(types[i].name, type) != 0))
         i++;
     if (i == sizeof types / sizeof *types) {
-        spoil(self, "a geometry of an unknown type");
+        note_damage(self, "a geometry of an unknown type");
         return CAMBER_OK;
     }
     self->left_out |= types[i].depth < 0;

@@ -93,7 +93,7 @@ static bool is_wanted(const char *name) {
     return false;
 }
 
-static void take_row(json_t *about, sqlite3_stmt *row) {
+static void take_metadata_row(json_t *about, sqlite3_stmt *row) {
     const char *name = (const char *)sqlite3_column_text(row, 0);
     if (!name || !is_wanted(name))
         return;
@@ -119,7 +119,7 @@ static camber_status read_metadata(camber_tile_set *set) {
     json_t *about = json_object();
     int step;
     while ((step = sqlite3_step(rows)) == SQLITE_ROW)
-        take_row(about, rows);
+        take_metadata_row(about, rows);
     camber_status status = step == SQLITE_DONE ? CAMBER_OK : fail(set);
     sqlite3_finalize(rows);
     if (status == CAMBER_OK)

@@ -73,7 +73,7 @@ static uint32_t find_node(merger *m, uint32_t end) {
     return end;
 }
 
-static void part(merger *m, uint32_t end) {
+static void separate(merger *m, uint32_t end) {
     if (m->partner[end] == CAMBER_NO_END)
         return;
     m->partner[m->partner[end]] = CAMBER_NO_END;
@@ -91,7 +91,7 @@ static void find_partners(merger *m, bool directed) {
                 m->partner[first] = end;
                 m->partner[end] = first;
             } else {
-                part(m, first);
+                separate(m, first);
             }
         }
     }
@@ -99,14 +99,14 @@ static void find_partners(merger *m, bool directed) {
         const uint32_t other = m->partner[end];
         const bool closes = other == (end ^ 1), turns = ((end ^ other) & 1) == 0;
         if (other != CAMBER_NO_END && (closes || (directed && turns)))
-            part(m, end);
+            separate(m, end);
     }
 }
 
 /* ---- Lines that go on straight ---- */
 
 /* The direction in which a line leaves its end. */
-static void leave(const merger *m, uint32_t end, double direction[2]) {
+static void find_direction(const merger *m, uint32_t end, double direction[2]) {
     size_t count;
     const double *points = line_points(m, end / 2, &count), *at = points + (end & 1 ? 2 * (count - 1) : 0);
     direction[0] = direction[1] = 0.0;
@@ -128,7 +128,7 @@ static void pair_straight(merger *m, uint32_t first) {
     for (uint32_t end = first; end != CAMBER_NO_END && count < NODE_ENDS_MAX; end = m->next[end])
         ends[count++] = end;
     for (size_t i = 0; i < count; i++)
-        leave(m, ends[i], directions[i]);
+        find_direction(m, ends[i], directions[i]);
     for (;;) {
         size_t a = 0, b = 0;
         double best = STRAIGHT_COSINE;
@@ -196,7 +196,7 @@ static void append_chain(const merger *m, const camber_chain *chain, merged *mad
     made->offsets[made->polyline_count++] = made->point_count;
 }
 
-static void replace(const merger *m, const merged *made) {
+static void replace_lines(const merger *m, const merged *made) {
     camber_features *features = m->features;
     const size_t first = m->first_polyline, first_point = features->offsets[first];
     memcpy(features->points + 2 * first_point, made->points, 2 * made->point_count * sizeof *made->points);
@@ -222,7 +222,7 @@ static camber_status write_chains(const merger *m) {
         goto done;
     for (size_t i = 0; i < m->chain_count; i++)
         append_chain(m, &m->chains[i], &made);
-    replace(m, &made);
+    replace_lines(m, &made);
     status = CAMBER_OK;
 done:
     camber_free(context, made.feature_counts);

@@ -203,7 +203,7 @@ static json_t *to_json(const camber_value *value) {
     }
 }
 
-static camber_status read_all(camber_mvt *mvt, const tile_feature *feature, const camber_value **all) {
+static camber_status read_all_properties(camber_mvt *mvt, const tile_feature *feature, const camber_value **all) {
     json_t *object = json_object();
     camber_status status = CAMBER_OK;
     for (size_t i = 0; i + 1 < feature->n_tags && status == CAMBER_OK; i += 2) {
@@ -274,8 +274,8 @@ static camber_status read_tags(camber_mvt *mvt, const tile_feature *feature, cam
     return CAMBER_OK;
 }
 
-static camber_status keep(camber_mvt *mvt, const tile_feature *feature, camber_geometry_kind kind,
-                          const char **damage) {
+static camber_status add_to_stitcher(camber_mvt *mvt, const tile_feature *feature, camber_geometry_kind kind,
+                                     const char **damage) {
     const camber_style *style = mvt->desc.features->style;
     camber_tile_feature piece = {.column = mvt->address.column,
                                  .row = mvt->address.row,
@@ -290,7 +290,7 @@ static camber_status keep(camber_mvt *mvt, const tile_feature *feature, camber_g
     else if (style->wants_id && feature->has_id)
         wanted.id = number_value((double)feature->id);
     if (status == CAMBER_OK && style->wants_all_properties)
-        status = read_all(mvt, feature, &wanted.all);
+        status = read_all_properties(mvt, feature, &wanted.all);
     if (status == CAMBER_OK)
         status = camber_features_find_class_of(mvt->desc.features, &wanted, mvt->values, &piece.class_index);
     if (status != CAMBER_OK)
@@ -325,7 +325,7 @@ static camber_status read_feature(camber_mvt *mvt, ProtobufCBinaryData bytes) {
     const char *damage = mvt->geometry.damage;
     mvt->stats.kept_features += mvt->geometry.line_count > 0;
     if (status == CAMBER_OK && mvt->geometry.line_count)
-        status = keep(mvt, feature, kind, &damage);
+        status = add_to_stitcher(mvt, feature, kind, &damage);
     if (damage)
         note_damage(mvt, damage);
     return status;
@@ -341,7 +341,7 @@ static bool is_wanted(const camber_mvt *mvt) {
 }
 
 /* Where no layer is wanted: what there is. */
-static camber_status look_at(camber_mvt *mvt) {
+static camber_status list_layer(camber_mvt *mvt) {
     size_t i = 0;
     while (i < mvt->layer_count && strcmp(mvt->layers[i].name, mvt->name) != 0)
         i++;
@@ -374,7 +374,7 @@ static camber_status read_layer(camber_mvt *mvt, ProtobufCBinaryData bytes) {
     snprintf(mvt->name, sizeof mvt->name, "%s", name);
     mvt->layer = layer;
     if (!mvt->desc.layers)
-        return look_at(mvt);
+        return list_layer(mvt);
     if (!is_wanted(mvt))
         return CAMBER_OK;
     if (layer->extent == 0 || (layer->has_version && (layer->version < 1 || layer->version > 2))) {

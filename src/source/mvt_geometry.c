@@ -27,7 +27,7 @@ static bool add_point(const pen *p) {
                            (c->row + (double)p->y / c->extent) / c->side);
 }
 
-static void spoil(camber_mvt_geometry *geometry, const char *damage) {
+static void note_damage(camber_mvt_geometry *geometry, const char *damage) {
     if (!geometry->damage)
         geometry->damage = damage;
 }
@@ -39,9 +39,9 @@ static bool end_line(pen *p) {
     if (count == 0)
         return true;
     if (ring && !p->closed)
-        spoil(geometry, "a ring that is not closed");
+        note_damage(geometry, "a ring that is not closed");
     if (count < (ring ? 3u : 2u)) {
-        spoil(geometry, ring ? "a ring of one point" : "a line of one point");
+        note_damage(geometry, ring ? "a ring of one point" : "a line of one point");
         geometry->point_count = p->first;
         return true;
     }
@@ -59,7 +59,7 @@ static int64_t unzigzag(uint32_t word) {
 static bool close_ring(pen *p) {
     camber_mvt_geometry *geometry = p->geometry;
     if (p->commands->kind != CAMBER_GEOMETRY_POLYGON || geometry->point_count == p->first) {
-        spoil(geometry, "it closes what is no ring");
+        note_damage(geometry, "it closes what is no ring");
         return true;
     }
     p->closed = true;
@@ -68,7 +68,7 @@ static bool close_ring(pen *p) {
 }
 
 /* So many points from words on. */
-static bool draw(pen *p, uint32_t command, const uint32_t *words, size_t count) {
+static bool run_command(pen *p, uint32_t command, const uint32_t *words, size_t count) {
     for (size_t i = 0; i < count; i++) {
         if (command == MOVE_TO) {
             if (!end_line(p))
@@ -76,7 +76,7 @@ static bool draw(pen *p, uint32_t command, const uint32_t *words, size_t count) 
             p->first = p->geometry->point_count;
             p->closed = false;
         } else if (p->geometry->point_count == p->first) {
-            spoil(p->geometry, "a line that starts nowhere");
+            note_damage(p->geometry, "a line that starts nowhere");
             return true;
         }
         p->x += unzigzag(words[2 * i]);
@@ -100,18 +100,18 @@ camber_status camber_mvt_geometry_read(camber_mvt_geometry *geometry, const camb
             continue;
         }
         if (command != MOVE_TO && command != LINE_TO) {
-            spoil(geometry, "an unknown command");
+            note_damage(geometry, "an unknown command");
             break;
         }
         if (count == 0)
-            spoil(geometry, "a command without points");
+            note_damage(geometry, "a command without points");
         if (count > (commands->count - i) / 2) {
-            spoil(geometry, "fewer points than it announces");
+            note_damage(geometry, "fewer points than it announces");
             count = (commands->count - i) / 2;
-            fits = draw(&p, command, commands->words + i, count);
+            fits = run_command(&p, command, commands->words + i, count);
             break;
         }
-        fits = draw(&p, command, commands->words + i, count);
+        fits = run_command(&p, command, commands->words + i, count);
         i += 2 * count;
     }
     return fits && end_line(&p) ? CAMBER_OK : CAMBER_ERROR_MEMORY;

@@ -82,7 +82,8 @@ static void warn_invalid(const camber_sources *sources, const char *what, size_t
                    "%s: %zu points are not numbers and are left out; their lines are split there", what, points);
 }
 
-static void warn(const camber_sources *sources, const char *what, size_t damaged, const char *damage, size_t skipped) {
+static void warn_of_losses(const camber_sources *sources, const char *what, size_t damaged, const char *damage,
+                           size_t skipped) {
     if (damaged)
         camber_log(sources->context, CAMBER_LOG_WARNING,
                    "%s: %zu damaged features (the first: %s); what of them reads is kept", what, damaged, damage);
@@ -126,7 +127,7 @@ static camber_status read_geojson(camber_sources *sources, source *one) {
     sources->features->stats.skipped_features += stats.skipped_features;
     sources->features->stats.damaged_features += stats.damaged_features;
     sources->features->stats.invalid_points += stats.invalid_points;
-    warn(sources, one->what, stats.damaged_features, stats.damage, stats.skipped_features);
+    warn_of_losses(sources, one->what, stats.damaged_features, stats.damage, stats.skipped_features);
     warn_invalid(sources, one->what, stats.invalid_points);
     return camber_features_add_attribution(sources->features,
                                            json_string_value(json_object_get(one->style->json, "attribution")));
@@ -229,7 +230,7 @@ done:
 
 /* The lines added since, of one source. Dashes and what follows a line's progress begin with each feature, and ends
  * that darken each other are for the style to have. */
-static camber_status finish(camber_features *features, size_t first_polyline) {
+static camber_status merge_and_weigh(camber_features *features, size_t first_polyline) {
     const double start_ms = camber_now_ms();
     camber_status status = CAMBER_OK;
     if (!features->style->directed && !features->style->accumulates && !features->progress)
@@ -254,7 +255,7 @@ static camber_status open_source(camber_sources *sources, source *one) {
         return open_vector(sources, one);
     if (strcmp(type, "geojson") == 0) {
         const camber_status status = read_geojson(sources, one);
-        return status == CAMBER_OK ? finish(features, first_polyline) : status;
+        return status == CAMBER_OK ? merge_and_weigh(features, first_polyline) : status;
     }
     camber_log(sources->context, CAMBER_LOG_WARNING,
                "%s: of type %s, which has no lines; its layers are left out: use vector or geojson", one->what, type);
@@ -347,14 +348,15 @@ static camber_status read_addresses(camber_sources *sources, const source *one, 
     if (status == CAMBER_OK && result.found > 0 && result.lost == result.found)
         status = fail_damaged(sources, one->what, result.stats.damage);
     if (status == CAMBER_OK)
-        status = finish(features, first_polyline);
+        status = merge_and_weigh(features, first_polyline);
     if (status == CAMBER_OK)
         status = camber_features_add_attribution(features, one->set->attribution);
     if (status != CAMBER_OK)
         return status;
     features->stats.skipped_features += result.stats.skipped_features;
     features->stats.damaged_features += result.stats.damaged_features;
-    warn(sources, one->what, result.stats.damaged_features, result.stats.damage, result.stats.skipped_features);
+    warn_of_losses(sources, one->what, result.stats.damaged_features, result.stats.damage,
+                   result.stats.skipped_features);
     if (reading->address_count && result.found == 0)
         camber_log(sources->context, CAMBER_LOG_WARNING,
                    "%s: %s has none of the %zu tiles of zoom %d that the view sees; check the view, the path and the "

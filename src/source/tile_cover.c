@@ -50,7 +50,7 @@ static unsigned open_sides(const grid *g, double column, double row) {
            (row + 1 < g->side && !is_seen(g, column, row + 1) ? CAMBER_SIDE_SOUTH : 0);
 }
 
-static void look(grid *g) {
+static void find_grid(grid *g) {
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
     for (int i = 0; i < 8; i++) {
         low[i & 1] = fmin(low[i & 1], g->cover->corners[i] * g->side);
@@ -72,7 +72,7 @@ camber_status camber_tile_cover_list(camber_context *context, const camber_tile_
     grid g = {.cover = cover, .side = ldexp(1.0, zoom), .wanted = {-INFINITY, -INFINITY, INFINITY, INFINITY}};
     for (int i = 0; bounds && i < 4; i++)
         g.wanted[i] = bounds[i] * g.side;
-    look(&g);
+    find_grid(&g);
     if (g.columns * g.rows > MOST_TILES)
         return camber_fail(context, CAMBER_ERROR_LIMIT,
                            "the view sees more than %.0f tiles of zoom %d; choose a smaller picture", MOST_TILES, zoom);

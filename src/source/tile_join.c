@@ -182,7 +182,7 @@ static bool skips_entry(const joiner *join, uint32_t enter) {
 }
 
 /* The chain's points, in world coordinates, to scratch; last: the end that it is left by. */
-static bool gather(const joiner *join, uint32_t start, size_t *count, uint32_t *last) {
+static bool gather_points(const joiner *join, uint32_t start, size_t *count, uint32_t *last) {
     camber_tile_stitcher *stitcher = join->stitcher;
     size_t points = 0;
     uint32_t end = start;
@@ -272,7 +272,7 @@ static camber_status add_chain(const joiner *join, const camber_chain *chain, ca
     const camber_cut_line *lines = join->stitcher->lines;
     size_t points = 0;
     uint32_t last = chain->start;
-    if (!gather(join, chain->start, &points, &last))
+    if (!gather_points(join, chain->start, &points, &last))
         return CAMBER_ERROR_MEMORY;
     camber_status status = camber_features_add_polyline(features, join->stitcher->scratch, points);
     if (status == CAMBER_OK && join->stitcher->has_progress)
@@ -303,7 +303,7 @@ static camber_status add_chains(const joiner *join, const chain_list *list, camb
     return status;
 }
 
-static camber_status emit(const joiner *join, camber_features *features) {
+static camber_status add_polylines(const joiner *join, camber_features *features) {
     camber_tile_stitcher *stitcher = join->stitcher;
     camber_context *context = stitcher->context;
     camber_chains_desc desc = {
@@ -359,7 +359,7 @@ camber_status camber_tile_stitcher_finish(camber_tile_stitcher *stitcher, camber
     drop_crumbs(&join, reach);
     for (size_t i = 0; i < sizeof passes / sizeof *passes; i++)
         find_partners(&join, &passes[i]);
-    status = emit(&join, features);
+    status = add_polylines(&join, features);
 done:
     camber_free(context, join.partner);
     camber_free(context, join.next);

@@ -302,7 +302,8 @@ static camber_status read_input(input *self, camber_tile_result *result) {
 }
 
 /* What it gave, looked at as a whole. */
-static camber_status judge(const input *self, const camber_mvt_stats *stats, const camber_features_mark *before) {
+static camber_status check_result(const input *self, const camber_mvt_stats *stats,
+                                  const camber_features_mark *before) {
     if (self->features->feature_count > before->feature_count)
         return CAMBER_OK;
     if (stats->damaged_features)
@@ -324,7 +325,7 @@ static void add_stats(camber_features *features, const camber_mvt_stats *stats) 
 }
 
 /* Points and areas are no news: nobody asked for them. */
-static void warn(const input *self, const camber_mvt_stats *stats) {
+static void warn_of_losses(const input *self, const camber_mvt_stats *stats) {
     if (stats->damaged_features)
         camber_log(self->context, CAMBER_LOG_WARNING,
                    "%s: %zu damaged features (the first: %s); what of them reads is kept", self->desc->path,
@@ -335,7 +336,7 @@ static void warn(const input *self, const camber_mvt_stats *stats) {
                    stats->skipped_features);
 }
 
-static camber_status finish(const input *self, size_t first_polyline) {
+static camber_status merge_and_weigh(const input *self, size_t first_polyline) {
     camber_features *features = self->features;
     const double start_ms = camber_now_ms();
     camber_status status = CAMBER_OK;
@@ -357,7 +358,7 @@ camber_status camber_features_read_tile_file(camber_features *features, const ca
     camber_tile_result result = {.found = 0};
     camber_status status = read_input(&self, &result);
     if (status == CAMBER_OK)
-        status = judge(&self, &result.stats, &before);
+        status = check_result(&self, &result.stats, &before);
     if (status == CAMBER_OK)
         status = camber_features_add_attribution(features, self.set->attribution);
     camber_tile_set_close(self.set);
@@ -366,13 +367,13 @@ camber_status camber_features_read_tile_file(camber_features *features, const ca
     camber_free(self.context, self.addresses);
     features->times.file_ms += camber_now_ms() - start_ms;
     if (status == CAMBER_OK)
-        status = finish(&self, before.polyline_count);
+        status = merge_and_weigh(&self, before.polyline_count);
     if (status != CAMBER_OK) {
         camber_features_reset(features, &before);
         return status;
     }
     add_stats(features, &result.stats);
-    warn(&self, &result.stats);
+    warn_of_losses(&self, &result.stats);
     camber_progress(features->context, "reading", 1);
     return CAMBER_OK;
 }

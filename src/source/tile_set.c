@@ -167,8 +167,8 @@ static void put_quadkey(char *out, int zoom, camber_tile_index tile) {
 }
 
 /* What {...} stands for. false: it is left as it is. */
-static bool expand(const file_set *files, const char *token, size_t length, int zoom, camber_tile_index tile,
-                   char out[40]) {
+static bool expand_token(const file_set *files, const char *token, size_t length, int zoom, camber_tile_index tile,
+                         char out[40]) {
     const uint32_t turned = (UINT32_C(1) << zoom) - 1 - tile.row;
     static const char *const tokens[] = {"{z}", "{x}", "{y}", "{-y}", "{ratio}", "{quadkey}", "{prefix}"};
     size_t i = 0;
@@ -194,7 +194,7 @@ static char *path_of(camber_tile_set *set, int zoom, camber_tile_index tile) {
         char text[40];
         const char *end = *at == '{' ? strchr(at, '}') : NULL, *put = at;
         size_t taken = 1, size = 1;
-        if (end && expand(files, at, (size_t)(end + 1 - at), zoom, tile, text)) {
+        if (end && expand_token(files, at, (size_t)(end + 1 - at), zoom, tile, text)) {
             taken = (size_t)(end + 1 - at);
             size = strlen(text);
             put = text;
@@ -262,7 +262,7 @@ static const camber_tile_set_calls file_calls = {get_file, NULL, close_files};
 
 /* ---- All kinds ---- */
 
-static camber_status make(camber_context *context, const char *name, camber_tile_set **set) {
+static camber_status make_set(camber_context *context, const char *name, camber_tile_set **set) {
     camber_tile_set *made = camber_alloc_zero(context, 1, sizeof *made);
     if (!made)
         return CAMBER_ERROR_MEMORY;
@@ -282,7 +282,7 @@ static camber_status make(camber_context *context, const char *name, camber_tile
 camber_status camber_tile_set_of_files(camber_context *context, const camber_tile_template *files,
                                        camber_tile_set **set) {
     camber_tile_set *made;
-    if (make(context, files->name, &made) != CAMBER_OK)
+    if (make_set(context, files->name, &made) != CAMBER_OK)
         return CAMBER_ERROR_MEMORY;
     file_set *self = camber_alloc(context, 1, sizeof *self);
     char *path = self ? camber_copy_string(context, files->path) : NULL;
@@ -311,7 +311,7 @@ bool camber_tile_set_knows(const char *path) {
 camber_status camber_tile_set_open(camber_context *context, const char *path, camber_file_naming naming,
                                    camber_tile_set **set) {
     camber_tile_set *made;
-    if (make(context, path, &made) != CAMBER_OK)
+    if (make_set(context, path, &made) != CAMBER_OK)
         return CAMBER_ERROR_MEMORY;
     made->naming = naming;
     const camber_status status =

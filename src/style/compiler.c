@@ -33,7 +33,7 @@ void camber_compiler_end(camber_compiler *c) {
     c->operand_capacity = c->binding_capacity = 0;
 }
 
-static void say(camber_compiler *c, camber_log_level level, const char *format, va_list list) {
+static void report(camber_compiler *c, camber_log_level level, const char *format, va_list list) {
     char pointer[CAMBER_POINTER_SIZE], message[512];
     vsnprintf(message, sizeof message, format, list);
     if (c->report) {
@@ -47,7 +47,7 @@ static void say(camber_compiler *c, camber_log_level level, const char *format, 
 bool camber_compiler_fail(camber_compiler *c, const char *format, ...) {
     va_list list;
     va_start(list, format);
-    say(c, CAMBER_LOG_ERROR, format, list);
+    report(c, CAMBER_LOG_ERROR, format, list);
     va_end(list);
     c->status = CAMBER_ERROR_INPUT;
     return false;
@@ -56,7 +56,7 @@ bool camber_compiler_fail(camber_compiler *c, const char *format, ...) {
 void camber_compiler_warn(camber_compiler *c, const char *format, ...) {
     va_list list;
     va_start(list, format);
-    say(c, CAMBER_LOG_WARNING, format, list);
+    report(c, CAMBER_LOG_WARNING, format, list);
     va_end(list);
 }
 

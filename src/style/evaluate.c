@@ -246,7 +246,7 @@ static bool run_inputs(evaluator *e) {
 
 /* ---- Documents ---- */
 
-static camber_status run(evaluator *e) {
+static camber_status run_document(evaluator *e) {
     camber_compiler *c = &e->compiler;
     if (!json_object_get(e->document, "expression") && !json_object_get(e->document, "filter"))
         return camber_fail(c->context, CAMBER_ERROR_INPUT,
@@ -288,7 +288,7 @@ camber_status camber_style_evaluate(camber_context *context, const char *json, s
     e.errors = json_array();
     e.compiled = json_object();
     e.outputs = json_array();
-    status = run(&e);
+    status = run_document(&e);
     if (status == CAMBER_OK)
         status = write_result(&e, sink);
     camber_expression_destroy(context, e.expression);

@@ -7,12 +7,13 @@ static const camber_typing boolean = {.type = CAMBER_TYPE_BOOL};
 
 static bool compile_filter(camber_compiler *c, json_t *json, size_t depth, uint32_t *node);
 
-static bool is(const char *text, const char *word) {
+static bool is_word(const char *text, const char *word) {
     return text && strcmp(text, word) == 0;
 }
 
 static bool is_comparison(const char *op) {
-    return is(op, "==") || is(op, "!=") || is(op, "<") || is(op, "<=") || is(op, ">") || is(op, ">=");
+    return is_word(op, "==") || is_word(op, "!=") || is_word(op, "<") || is_word(op, "<=") || is_word(op, ">") ||
+           is_word(op, ">=");
 }
 
 /* The specification's isExpressionFilter, of an array. all, any and none are neither: each of their operands is told
@@ -21,11 +22,11 @@ static bool is_expression(const json_t *json) {
     const char *op = json_string_value(json_array_get(json, 0));
     const size_t size = json_array_size(json);
     const json_t *second = json_array_get(json, 1), *third = json_array_get(json, 2);
-    if (is(op, "has"))
-        return size >= 2 && !is(json_string_value(second), "$id") && !is(json_string_value(second), "$type");
-    if (is(op, "in"))
+    if (is_word(op, "has"))
+        return size >= 2 && !is_word(json_string_value(second), "$id") && !is_word(json_string_value(second), "$type");
+    if (is_word(op, "in"))
         return size >= 3 && (!json_is_string(second) || json_is_array(third));
-    if (is(op, "!in") || is(op, "!has"))
+    if (is_word(op, "!in") || is_word(op, "!has"))
         return json_is_array(second) || json_is_array(third);
     if (is_comparison(op))
         return size != 3 || json_is_array(second) || json_is_array(third);
@@ -66,7 +67,7 @@ static bool compile_value(camber_compiler *c, const json_t *array, size_t index,
 static bool require_key(camber_compiler *c, const json_t *array, uint32_t *node) {
     const size_t first_operand = c->operand_count;
     uint32_t has = 0;
-    if (is(json_string_value(json_array_get(array, 1)), "$id"))
+    if (is_word(json_string_value(json_array_get(array, 1)), "$id"))
         return true;
     return compile_key(c, array, camber_evaluate_has, &has) && camber_push_operand(c, has) &&
            camber_push_operand(c, *node) &&
@@ -94,7 +95,7 @@ static bool compile_comparison(camber_compiler *c, const json_t *array, const ch
         return false;
     if (json_is_null(json_array_get(array, 2)) && !require_key(c, array, node))
         return false;
-    return !is(op, "!=") || camber_wrap_node(c, camber_evaluate_not, boolean, node);
+    return !is_word(op, "!=") || camber_wrap_node(c, camber_evaluate_not, boolean, node);
 }
 
 /* Whether all values are strings, or all are integers: labels, then. */
@@ -148,10 +149,10 @@ static bool compile_junction(camber_compiler *c, const json_t *array, const char
             return false;
         camber_compiler_leave(c);
     }
-    const camber_node junction = {.evaluate = is(op, "all") ? camber_evaluate_all : camber_evaluate_any,
+    const camber_node junction = {.evaluate = is_word(op, "all") ? camber_evaluate_all : camber_evaluate_any,
                                   .type = boolean};
     return camber_make_node(c, &junction, first_operand, node) &&
-           (!is(op, "none") || camber_wrap_node(c, camber_evaluate_not, boolean, node));
+           (!is_word(op, "none") || camber_wrap_node(c, camber_evaluate_not, boolean, node));
 }
 
 static bool compile_filter(camber_compiler *c, json_t *json, size_t depth, uint32_t *node) {
@@ -162,7 +163,7 @@ static bool compile_filter(camber_compiler *c, json_t *json, size_t depth, uint3
             c, "expected a filter, found %s; write e.g. [\"==\", [\"get\", \"highway\"], \"primary\"]",
             camber_json_name(json));
     const char *op = json_string_value(json_array_get(json, 0));
-    if (is(op, "all") || is(op, "any") || is(op, "none"))
+    if (is_word(op, "all") || is_word(op, "any") || is_word(op, "none"))
         return compile_junction(c, json, op, depth, node);
     if (json_is_array(json) && json_array_size(json) == 0)
         return camber_make_constant(c, &(camber_value){.type = CAMBER_VALUE_BOOL, .boolean = true}, boolean, node);
@@ -173,12 +174,12 @@ static bool compile_filter(camber_compiler *c, json_t *json, size_t depth, uint3
     if (json_array_size(json) < 2)
         return camber_compiler_fail(
             c, "\"%s\" without a property's name; write e.g. [\"==\", \"highway\", \"primary\"]", op);
-    if (is(op, "has"))
+    if (is_word(op, "has"))
         return compile_key(c, json, camber_evaluate_has, node);
-    if (is(op, "!has"))
+    if (is_word(op, "!has"))
         return compile_key(c, json, camber_evaluate_has, node) &&
                camber_wrap_node(c, camber_evaluate_not, boolean, node);
-    if (is(op, "in") || is(op, "!in"))
+    if (is_word(op, "in") || is_word(op, "!in"))
         return compile_in(c, json, op[0] == '!', node);
     return compile_comparison(c, json, op, node);
 }
@@ -195,7 +196,7 @@ bool camber_compile_filter(camber_compiler *c, json_t *json, camber_expression *
 
 static bool names_polygon(const json_t *json) {
     const char *text = json_string_value(json);
-    if (is(text, "Polygon") || is(text, "MultiPolygon"))
+    if (is_word(text, "Polygon") || is_word(text, "MultiPolygon"))
         return true;
     for (size_t i = 0; i < json_array_size(json); i++)
         if (names_polygon(json_array_get(json, i)))
@@ -204,12 +205,13 @@ static bool names_polygon(const json_t *json) {
 }
 
 static bool is_geometry_type(const json_t *json) {
-    return is(json_string_value(json), "$type") || is(json_string_value(json_array_get(json, 0)), "geometry-type");
+    return is_word(json_string_value(json), "$type") ||
+           is_word(json_string_value(json_array_get(json, 0)), "geometry-type");
 }
 
 bool camber_filter_asks_polygons(const json_t *json) {
     const char *op = json_string_value(json_array_get(json, 0));
-    if (!op || op[0] == '!' || is(op, "none"))
+    if (!op || op[0] == '!' || is_word(op, "none"))
         return false;
     bool about_type = false, asks = false;
     for (size_t i = 1; i < json_array_size(json); i++)

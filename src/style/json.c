@@ -48,7 +48,7 @@ static size_t copy_token(char *to, const char *from, size_t size, size_t *copied
 }
 
 /* Copies a document with what jansson refuses replaced; lines and columns stay, but behind a NaN. */
-static size_t mend(char *to, const char *from, size_t size) {
+static size_t replace_refused(char *to, const char *from, size_t size) {
     size_t written = 0, copied;
     bool in_string = false;
     for (size_t at = 0; at < size; written += copied) {
@@ -76,7 +76,7 @@ camber_status camber_json_load(camber_context *context, const char *bytes, size_
         char *mended = camber_alloc(context, size_bytes + size_bytes / 3 + 1, 1); /* null is longer than NaN */
         if (!mended)
             return CAMBER_ERROR_MEMORY;
-        *json = json_loadb(mended, mend(mended, bytes, size_bytes), flags, error);
+        *json = json_loadb(mended, replace_refused(mended, bytes, size_bytes), flags, error);
         camber_free(context, mended);
     }
     return *json ? CAMBER_OK : CAMBER_ERROR_INPUT;

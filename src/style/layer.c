@@ -260,7 +260,7 @@ static bool is_known_type(const char *type) {
 }
 
 /* A layer with a "ref" takes from that layer all that is not paint. *resolved is a new reference. */
-static bool resolve(camber_document *d, json_t *json, json_t **resolved) {
+static bool resolve_reference(camber_document *d, json_t *json, json_t **resolved) {
     static const char *const taken[] = {"type", "source", "source-layer", "minzoom", "maxzoom", "filter", "layout"};
     camber_compiler *c = &d->compiler;
     const json_t *ref = json_object_get(json, "ref");
@@ -315,7 +315,7 @@ static bool read_any_layer(camber_document *d, json_t *json) {
     if (!json_is_string(json_object_get(json, "id")))
         return camber_compiler_fail(c, "the layer has no \"id\" that is a string; name it");
     camber_document_warn_unknown(d, json, known, "layer");
-    const bool done = resolve(d, json, &resolved) && read_resolved(d, resolved);
+    const bool done = resolve_reference(d, json, &resolved) && read_resolved(d, resolved);
     json_decref(resolved);
     return done;
 }

@@ -211,8 +211,8 @@ static bool mix_arrays(camber_evaluation *e, const camber_value *low, const camb
     return camber_evaluate_work(e, count);
 }
 
-static bool mix(camber_evaluation *e, const camber_node *node, const camber_value *low, const camber_value *high,
-                double t, camber_value *value) {
+static bool mix_values(camber_evaluation *e, const camber_node *node, const camber_value *low, const camber_value *high,
+                       double t, camber_value *value) {
     if (low->type == CAMBER_VALUE_NUMBER && high->type == CAMBER_VALUE_NUMBER) {
         *value = camber_value_number(low->number * (1.0 - t) + high->number * t);
         return true;
@@ -243,7 +243,7 @@ bool camber_evaluate_interpolate(camber_evaluation *e, const camber_node *node, 
     double t = exponential(input, node->value.number, stops[lower], stops[lower + 1]);
     if (node->bezier)
         t = bezier_at(stops + node->index_count, t);
-    return mix(e, node, &low, &high, t, value);
+    return mix_values(e, node, &low, &high, t, value);
 }
 
 static const camber_operator rows[] = {

@@ -115,8 +115,8 @@ static bool needle_text(camber_evaluation *e, const camber_value *needle, const 
 }
 
 /* Where needle begins in haystack, from the from-th item or unit of UTF-16 on; -1: nowhere. */
-static bool find(camber_evaluation *e, const camber_value *needle, const camber_value *haystack, double from,
-                 double *found) {
+static bool find_needle(camber_evaluation *e, const camber_value *needle, const camber_value *haystack, double from,
+                        double *found) {
     *found = -1.0;
     if (haystack->type == CAMBER_VALUE_ARRAY) {
         const double first = from < 0.0 ? fmax(from + haystack->count, 0.0) : from;
@@ -154,7 +154,7 @@ bool camber_evaluate_in(camber_evaluation *e, const camber_node *node, camber_va
         return fail(e, "\"in\" looks for a string, a number, a boolean or null");
     if (!nothing && haystack.type != CAMBER_VALUE_STRING && haystack.type != CAMBER_VALUE_ARRAY)
         return fail(e, "\"in\" looks in a string or an array");
-    if (!nothing && !find(e, &needle, &haystack, 0.0, &found))
+    if (!nothing && !find_needle(e, &needle, &haystack, 0.0, &found))
         return false;
     *value = camber_value_bool(found >= 0.0);
     return true;
@@ -171,7 +171,7 @@ static bool evaluate_index_of(camber_evaluation *e, const camber_node *node, cam
         return false;
     if (haystack.type != CAMBER_VALUE_STRING && haystack.type != CAMBER_VALUE_ARRAY)
         return fail(e, "\"index-of\" looks in a string or an array");
-    if (!find(e, &needle, &haystack, isnan(from) ? 0.0 : trunc(from), &found))
+    if (!find_needle(e, &needle, &haystack, isnan(from) ? 0.0 : trunc(from), &found))
         return false;
     *value = camber_value_number(found);
     return true;

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-static bool passes(const camber_expression *filter, double zoom, const camber_feature_view *feature) {
+static bool passes_filter(const camber_expression *filter, double zoom, const camber_feature_view *feature) {
     if (!filter)
         return true;
     camber_evaluation evaluation;
@@ -19,11 +19,11 @@ bool camber_style_layer_matches(const camber_style_layer *layer, double zoom, co
     /* 24 is the largest limit that a style can name, and stands for none. */
     if (!layer->visible || zoom < layer->min_zoom || (zoom >= layer->max_zoom && layer->max_zoom < 24.0))
         return false;
-    return passes(layer->filter, zoom, feature);
+    return passes_filter(layer->filter, zoom, feature);
 }
 
 bool camber_style_source_matches(const camber_style_source *source, const camber_feature_view *feature) {
-    return passes(source->filter, 0.0, feature);
+    return passes_filter(source->filter, 0.0, feature);
 }
 
 static bool store_number(const camber_property_row *row, const camber_value *value, double *number) {
@@ -87,8 +87,8 @@ static bool store_value(const camber_property_row *row, const camber_value *valu
 }
 
 /* Puts a property where the paint has it, which holds the default. */
-static void store(const camber_style_layer *layer, unsigned id, camber_evaluation *evaluation,
-                  camber_layer_paint *paint) {
+static void store_property(const camber_style_layer *layer, unsigned id, camber_evaluation *evaluation,
+                           camber_layer_paint *paint) {
     const camber_property_row *row = camber_property_rows + id;
     camber_value value;
     if (camber_expression_evaluate(layer->properties[id], evaluation, &value))
@@ -106,7 +106,7 @@ camber_layer_look camber_style_layer_look(const camber_style_layer *layer, doubl
         if (expression->reads_feature)
             look.by_feature |= 1u << i;
         else
-            store(layer, i, &evaluation, &look.paint);
+            store_property(layer, i, &evaluation, &look.paint);
     }
     camber_evaluation_end(&evaluation);
     return look;
@@ -128,7 +128,7 @@ camber_layer_paint camber_layer_look_paint(const camber_layer_look *look, const 
         camber_evaluation_begin(&evaluation, look->zoom, feature);
         for (unsigned i = 0; look->by_feature >> i; i++)
             if (look->by_feature >> i & 1)
-                store(look->layer, i, &evaluation, &paint);
+                store_property(look->layer, i, &evaluation, &paint);
         camber_evaluation_end(&evaluation);
     }
     if (paint.border_width > 0.0 && paint.border_color.a <= 0.0f) {

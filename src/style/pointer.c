@@ -11,7 +11,7 @@ typedef struct text {
     size_t length;   /* of what was put */
 } text;
 
-static void put(text *t, char c) {
+static void put_byte(text *t, char c) {
     if (t->length < HEAD)
         t->head[t->length] = c;
     t->tail[t->length % TAIL] = c;
@@ -19,13 +19,13 @@ static void put(text *t, char c) {
 }
 
 static void put_step(text *t, const char *step) {
-    put(t, '/');
+    put_byte(t, '/');
     for (; *step; step++) {
         if (*step == '~' || *step == '/') {
-            put(t, '~');
-            put(t, *step == '~' ? '0' : '1');
+            put_byte(t, '~');
+            put_byte(t, *step == '~' ? '0' : '1');
         } else {
-            put(t, *step);
+            put_byte(t, *step);
         }
     }
 }

@@ -1,5 +1,8 @@
-/* What GDAL may reach while it reads a file: by itself it follows what files say to servers and to other files. Drivers
- * are those whose files have their data in themselves and in the parts of their format; fetching is refused. */
+/* Limits GDAL to the file it reads. By itself it would follow what files say, to servers and to other files.
+ *
+ * Only drivers are allowed whose files hold their data themselves, or in the other files of their format. Fetching from
+ * the network is refused, unless the context's access allows it.
+ */
 #include "gdal/vector_file.h"
 
 #include <cpl_conv.h>
@@ -10,8 +13,9 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* Files, and no programs, servers or descriptions of other files. What is not listed is for who allows the network:
- * GDAL grows new drivers, and those that read by Xerces (NAS, Interlis) fetch what a DOCTYPE names. */
+/* Drivers of files; not of programs, servers or descriptions of other files. A driver that is not listed needs
+ * access to the network: GDAL grows new drivers, and those that read by Xerces (NAS, Interlis) fetch what a DOCTYPE
+ * names. */
 static const char *const file_drivers[] = {
     "OSM",    "GeoJSON",      "GeoJSONSeq", "ESRIJSON",      "TopoJSON",  "JSONFG",   "ESRI Shapefile",
     "GPKG",   "SQLite",       "FlatGeobuf", "MBTiles",       "MVT",       "PMTiles",  "GML",
@@ -24,7 +28,7 @@ static const char *const file_drivers[] = {
     "VICAR",  "JP2OpenJPEG",  "BAG",        "FITS",          "Memory",
 };
 static const char *const databases[] = {"GPKG", "SQLite", "MBTiles"};
-/* Their files name others. */
+/* Drivers whose files name other files. */
 static const char *const describing_drivers[] = {"OGR_VRT", "VRT", "GDALG", "GTI", "GMLAS", "PDS4", "OGR_PDS"};
 
 static bool is_in(const char *name, const char *const *list, size_t count) {
@@ -53,7 +57,7 @@ char **camber_gdal_drivers(const camber_context *context, const char *path) {
     char **names = NULL;
     for (int i = 0; i < GDALGetDriverCount(); i++) {
         const char *name = GDALGetDriverShortName(GDALGetDriver(i));
-        /* What a database within an archive names cannot be looked at before. */
+        /* A database inside an archive cannot be checked before it is opened. */
         const bool hidden = STARTS_WITH(path, "/vsi") && is_in(name, databases, sizeof databases / sizeof *databases);
         if (camber_gdal_has_driver(context, name) && (!hidden || context->desc.access.vrt))
             names = CSLAddString(names, name);
@@ -61,7 +65,8 @@ char **camber_gdal_drivers(const camber_context *context, const char *path) {
     return names;
 }
 
-/* GDAL asks a driver that cannot tell by the beginning of a file to open it: those that can are asked. */
+/* GDAL opens a file to ask a driver that cannot tell by the file's beginning; so only drivers that can tell are
+ * asked. */
 const char *camber_gdal_refused(const camber_context *context, const char *path) {
     static const char *const asked[] = {"OGR_VRT",    "GMLAS", "PDS4",          "OGR_PDS", "WFS", "OAPIF",
                                         "PostgreSQL", "MySQL", "Elasticsearch", "CSW",     NULL};
@@ -88,7 +93,7 @@ static bool has_word(const char *text, const char *word) {
     return false;
 }
 
-/* The beginning of a file beside path. */
+/* Reads the beginning of a file beside path. */
 static bool read_beside(const char *path, const char *ending, char *text, size_t size) {
     VSILFILE *file = VSIFOpenL(CPLResetExtension(path, ending), "rb");
     if (!file)
@@ -111,7 +116,7 @@ bool camber_gdal_leads_elsewhere(const char *path) {
     return false;
 }
 
-/* Each of GDAL's file systems that a path goes through, as /vsizip//vsicurl/... does. */
+/* Examines each of GDAL's file systems that a path goes through, as in /vsizip//vsicurl/... */
 bool camber_gdal_is_remote(const char *path) {
     static const char *const systems[] = {"curl", "s3", "gs", "az", "adls", "oss", "swift", "hdfs", "webhdfs"};
     const char *at = path;
@@ -136,7 +141,7 @@ static const struct {
     {"CPL_VSIL_GZIP_WRITE_PROPERTIES", "NO", false},
     /* The other parser fetches what a DOCTYPE names. */
     {"GML_PARSER", "EXPAT", false},
-    /* Its file systems of the network have this one file, which nobody names. */
+    /* GDAL's network file systems are limited to this one file, which nobody names. */
     {"CPL_VSIL_CURL_ALLOWED_FILENAME", "/vsicurl/none", true},
 };
 

@@ -1,4 +1,4 @@
-/* stat64, which VSIStatBufL is. */
+/* for stat64, which VSIStatBufL is */
 #define _LARGEFILE64_SOURCE
 
 #include "base/embedded.h"
@@ -22,7 +22,7 @@ void CPL_STDCALL camber_gdal_collect(CPLErr level, CPLErrorNum number, const cha
     if (errors->failures++ == 0) {
         errors->number = number;
         snprintf(errors->message, sizeof errors->message, "%s", message);
-        /* It stands within a sentence of ours. */
+        /* GDAL's message becomes part of a sentence of ours. */
         size_t length = strlen(errors->message);
         while (length && strchr(". \n", errors->message[length - 1]))
             errors->message[--length] = 0;
@@ -58,7 +58,7 @@ static bool add_key(key_list *list, const char *key, size_t length) {
     return true;
 }
 
-/* Columns that are no keys, and that the driver makes on demand. */
+/* Columns that are not keys, and that the driver makes on demand. */
 static const char *const columns[] = {"osm_id",   "osm_version",   "osm_timestamp", "osm_uid",
                                       "osm_user", "osm_changeset", "other_tags",    "all_tags"};
 
@@ -71,7 +71,7 @@ static bool take_column(bool named[COLUMNS], const char *word, size_t length) {
     return false;
 }
 
-/* OGR's own names of every feature's parts, which are no keys. */
+/* OGR's own names for every feature's properties, which are not keys. */
 static bool is_ogrs(const char *word, size_t length) {
     return (length == 3 && EQUALN(word, "FID", 3)) || (length > 4 && EQUALN(word, "OGR_", 4));
 }
@@ -107,7 +107,7 @@ static char *fill_template(camber_context *context, const char *text, const char
     return filled;
 }
 
-/* A line each. */
+/* Writes each on a line of its own. */
 static void list_columns(const bool named[COLUMNS], char text[256]) {
     size_t used = 0;
     for (size_t i = 0; i < COLUMNS; i++)
@@ -159,14 +159,15 @@ static bool ends_with(const char *text, const char *end) {
     return length >= end_length && EQUAL(text + length - end_length, end);
 }
 
-/* "PG:dbname=x", standard input: not a path of the file system, and only its driver knows whether it is there. */
+/* Whether this is not a path of the file system, as "PG:dbname=x" or standard input: only its driver knows whether
+ * it exists. */
 static bool is_connection(const char *path) {
     const char *colon = strchr(path, ':'), *slash = strchr(path, '/');
     return STARTS_WITH(path, "/vsistdin") || (colon && (!slash || colon < slash));
 }
 
-/* The file that GDAL's own file systems and prefixes go by: /vsizip//a/b.zip/c.shp has /a/b.zip/c.shp,
- * /vsisubfile/0_9,a has a, GeoJSON:a has a. Those that are within archives are not there. */
+/* Finds the file behind GDAL's own file systems and prefixes: /a/b.zip for /vsizip//a/b.zip/c.shp, a for
+ * /vsisubfile/0_9,a and for GeoJSON:a. Files inside archives cannot be found. */
 static const char *find_file(const char *path) {
     while (STARTS_WITH(path, "/vsi")) {
         const char *slash = strchr(path + 1, '/');
@@ -183,7 +184,8 @@ static const char *find_file(const char *path) {
     return path;
 }
 
-/* GDAL merges a log into the file, and opens what virtual tables name. */
+/* Refuses databases with a log, which GDAL would merge into the file, and virtual tables, which may open other
+ * files. */
 static camber_status check_database(camber_context *context, const char *path) {
     const camber_database_kind kind = camber_database_get_kind(path);
     if (kind == CAMBER_DATABASE_INTERRUPTED || kind == CAMBER_DATABASE_LOGGED)
@@ -207,7 +209,7 @@ static camber_status check_exists(camber_context *context, const char *path, boo
                            "%s: is on the network, which nothing is fetched from; download it, or allow it "
                            "(--allow-remote)",
                            path);
-    /* Devices and pipes end nowhere. */
+    /* Devices and pipes may have no end. */
     struct stat found;
     const char *file = find_file(path);
     if (!STARTS_WITH(path, "/vsistdin") && stat(file, &found) == 0 && !S_ISDIR(found.st_mode)) {
@@ -229,7 +231,7 @@ static camber_status check_exists(camber_context *context, const char *path, boo
     return camber_fail(context, CAMBER_ERROR_NOT_FOUND, "%s: no such file; check the path", path);
 }
 
-/* A format that is known, but that reaches beyond its file. */
+/* Fails for a format that is known but reaches beyond its file. */
 static camber_status fail_driver(const camber_dataset *dataset, const char *driver) {
     const bool describes = camber_gdal_describes(driver);
     return camber_fail(dataset->context, CAMBER_ERROR_INPUT,
@@ -239,7 +241,7 @@ static camber_status fail_driver(const camber_dataset *dataset, const char *driv
                        dataset->desc->path, driver);
 }
 
-/* What GDAL quotes may be of any file that somebody named. */
+/* Removes quotes from GDAL's message: it may quote any file that somebody named. */
 static void leave_out_quotes(char *message) {
     char *out = message;
     for (const char *at = message; *at; at++) {
@@ -282,7 +284,7 @@ static camber_status fail_open(camber_dataset *dataset, bool directory) {
                        said);
 }
 
-/* Tiles' zoom: MBTiles tell it; a directory of tiles is named by it. */
+/* The zoom of tiles: MBTiles say it; a directory of tiles is named by it. */
 static int zoom_of(const camber_dataset *dataset) {
     const char *driver = GDALGetDriverShortName(GDALGetDatasetDriver(dataset->handle)), *text = NULL;
     if (EQUAL(driver, "MBTiles"))
@@ -294,7 +296,7 @@ static int zoom_of(const camber_dataset *dataset) {
     return end && *end == 0 && zoom >= 0 && zoom <= 30 ? (int)zoom : -1;
 }
 
-/* How GDAL is told: a .gz goes through its decompressor, - is standard input. */
+/* The path as GDAL wants it: a .gz goes through its decompressor, - is standard input. */
 static char *gdal_path(camber_context *context, const char *path, bool directory) {
     const size_t size = strlen(path) + sizeof "/vsistdin/";
     char *made = camber_alloc(context, size, 1);
@@ -334,15 +336,15 @@ camber_status camber_dataset_open(camber_context *context, const camber_source_d
     options = CSLSetNameValue(options, "CONFIG_FILE", dataset->conf_path);
     if (unsorted)
         options = CSLSetNameValue(options, "USE_CUSTOM_INDEXING", "NO");
-    /* We clip exactly where the pieces are joined, which needs the buffer. */
+    /* CLIP=NO: the stitcher cuts lines exactly where it joins them, and needs the buffer. */
     options = CSLSetNameValue(options, "CLIP", "NO");
-    /* Nothing is left beside the file. */
+    /* GDAL must leave no file beside the one it reads. */
     options = CSLSetNameValue(options, "WRITE_GFS", "NO");
     if (camber_database_get_kind(desc->path) == CAMBER_DATABASE_AT_REST)
         options = CSLSetNameValue(options, "IMMUTABLE", "YES");
     drivers = camber_gdal_drivers(context, path);
     CPLPushErrorHandlerEx(camber_gdal_collect, &dataset->errors);
-    /* A driver warns of options that it does not know, and that is collected: warnings are dropped. */
+    /* A driver warns of options that it does not know; warnings are dropped, failures collected. */
     dataset->handle = GDALOpenEx(path, GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
                                  (const char *const *)drivers, (const char *const *)options, NULL);
     CPLPopErrorHandler();

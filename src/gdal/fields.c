@@ -1,4 +1,4 @@
-/* Attributes of features: which fields of a layer are read, and as what. */
+/* Finds the fields of a layer that the style reads, and reads a feature's attributes from them. */
 #include "gdal/vector_file.h"
 
 #include <cpl_string.h>

@@ -1,10 +1,10 @@
-/* Which layers of a file are read. */
+/* Chooses the layers of a file that are read: the one that is named, the roads, or all that hold lines. */
 #include "gdal/vector_file.h"
 
 #include <cpl_string.h>
 #include <string.h>
 
-/* Features looked at to learn what a layer of no declared type holds. */
+/* How many features are examined to learn what a layer of no declared type holds. */
 enum { PEEKED_FEATURES = 32 };
 
 static bool holds_lines(OGRwkbGeometryType type, bool wants_polygons) {
@@ -29,7 +29,7 @@ static bool holds_lines(OGRwkbGeometryType type, bool wants_polygons) {
     }
 }
 
-/* Tiles declare no types: looks at the first features. */
+/* Whether the first features are lines: tiles declare no types. */
 static bool begins_with_lines(OGRLayerH layer) {
     bool found = false;
     OGR_L_ResetReading(layer);

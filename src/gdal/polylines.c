@@ -1,3 +1,9 @@
+/* Turns the geometry of a feature that OGR read into polylines in world coordinates.
+ *
+ * Input: any OGR geometry and the coordinate system of its layer. Output: points, and where each polyline ends. Lines
+ * that cross the antimeridian are split there; points that are not numbers split the line; latitudes beyond Web
+ * Mercator's limit are moved to it.
+ */
 #include "gdal/vector_file.h"
 #include "source/mercator.h"
 
@@ -5,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Deeper than any real collection; a file that nests deeper is after the stack. */
+/* Deeper than any real collection; a file that nests deeper wants to exhaust the stack. */
 enum { MAX_DEPTH = 64 };
 
 /* ---- Projection of a layer ---- */
@@ -27,7 +33,7 @@ static bool is_code(OGRSpatialReferenceH srs, const char *code) {
     return authority && own && strcmp(authority, "EPSG") == 0 && strcmp(own, code) == 0;
 }
 
-/* WGS 84 in any of its names, CRS84 among them. */
+/* Whether this is WGS 84 by any of its names, CRS84 among them. */
 static bool is_wgs84(OGRSpatialReferenceH srs) {
     if (!OSRIsGeographic(srs))
         return false;
@@ -104,16 +110,16 @@ void camber_feature_lines_free(camber_feature_lines *lines) {
 
 /* ---- One line ---- */
 
-/* Why a part begins or ends: a point alone between two cuts at the antimeridian lies on it and is drawn by its
- * neighbours. */
+/* The state of the line under construction. A point alone between two cuts at the antimeridian lies on it and is
+ * left out: its neighbours draw it. */
 typedef struct line_state {
-    size_t first; /* point that the open part begins with */
-    bool open;    /* a part is open and has a point */
+    size_t first; /* the point that the open line begins with */
+    bool open;    /* a line is open and has a point */
     bool begun_by_cut;
     double x, y; /* the last point */
 } line_state;
 
-/* Capacity for all that a line can add is there already: see add_line. */
+/* Adds a point; add_line has made room for all that a line can add. */
 static void push(camber_feature_lines *lines, line_state *line, double x, double y) {
     if (!line->open) {
         line->first = lines->point_count;
@@ -135,8 +141,8 @@ static void end_line(camber_feature_lines *lines, line_state *line, bool cut) {
     line->begun_by_cut = cut;
 }
 
-/* The short way from the last point to (x, y) crosses x = 0 or 1: ends the part there and begins one on the other
- * side. Linear in world coordinates, as the segment is drawn. */
+/* Called where the short way from the last point to (x, y) crosses x = 0 or 1: ends the line there and begins one on
+ * the other side. Linear in world coordinates, as the segment is drawn. */
 static void cross_antimeridian(camber_feature_lines *lines, line_state *line, double x, double y) {
     const double out = x < line->x ? 1.0 : 0.0; /* the edge it leaves by */
     const double beyond = x < line->x ? x + 1.0 : x - 1.0;
@@ -150,7 +156,7 @@ static void cross_antimeridian(camber_feature_lines *lines, line_state *line, do
     lines->antimeridian_splits++;
 }
 
-/* Ordinates as the file has them to the world. false: not a number. */
+/* Converts the file's ordinates to world coordinates. false: not a number. */
 static bool to_world(camber_feature_lines *lines, double east, double north, double *x, double *y) {
     if (!isfinite(east) || !isfinite(north))
         return false;
@@ -172,16 +178,16 @@ static bool to_world(camber_feature_lines *lines, double east, double north, dou
             latitude = copysign(CAMBER_MERCATOR_LATITUDE, latitude);
         }
         camber_mercator_project(longitude, latitude, x, y);
-        /* The limit itself may come out a last bit beyond the world. */
+        /* The limit itself may come out a rounding error beyond the world. */
         *y = fmin(fmax(*y, 0), 1);
     }
     *x = camber_mercator_wrap(*x);
     return true;
 }
 
-/* The line's ordinates to raw: count of x, then of y. */
+/* Fetches the line's ordinates to raw: count of x, then count of y. */
 static bool fetch(camber_feature_lines *lines, OGRGeometryH geometry, size_t count) {
-    /* A line adds its points, two more for each crossing of the antimeridian, and no more parts than points. */
+    /* A line adds its points, two more for each crossing of the antimeridian, and no more lines than points. */
     if (count > SIZE_MAX / 64 - lines->point_count ||
         !camber_grow(lines->context, &lines->raw, &lines->raw_capacity, 2 * count, sizeof *lines->raw) ||
         !camber_grow(lines->context, &lines->points, &lines->point_capacity, lines->point_count + 3 * count,
@@ -216,7 +222,7 @@ static void turn_back(double *numbers, size_t count) {
     }
 }
 
-/* clockwise: which way a ring is to go as seen; below 0: as it does. */
+/* clockwise: the direction that a ring is to have as seen; below 0: as it is. */
 static camber_status add_line(camber_feature_lines *lines, OGRGeometryH geometry, int clockwise) {
     const int points = OGR_G_GetPointCount(geometry);
     if (points <= 0) {

@@ -1,4 +1,8 @@
-/* Streams the features of a file into a set. */
+/* Streams the features of a file that GDAL opens into a set of features.
+ *
+ * Input: a path and a selection (layer, attribute filter). Output: features with polylines, merged and weighed, or an
+ * error after which the set is as before. This is the module's entry: camber_gdal.
+ */
 #include "gdal/vector_file.h"
 #include "source/gdal_calls.h"
 
@@ -10,7 +14,7 @@
 #include <string.h>
 
 static const double PROGRESS_MS = 50;
-/* The clock is looked at so often. */
+/* The clock is read once in this many features. */
 enum { PROGRESS_FEATURES = 64 };
 
 typedef struct reader {
@@ -26,10 +30,10 @@ typedef struct reader {
     uint32_t layer_index;
     camber_columns columns;
 
-    camber_features_stats stats; /* of this file */
-    char damage[512];            /* what the first damage was */
-    size_t read;                 /* features that the layer gave */
-    size_t passed;               /* that all layers gave */
+    camber_features_stats stats; /* counts of this file */
+    char damage[512];            /* a message about the first damage */
+    size_t read;                 /* features of the layer so far */
+    size_t passed;               /* features of all layers so far */
     double shown_ms;
 } reader;
 
@@ -46,7 +50,7 @@ static camber_status begin_layer(reader *self, int index) {
         status = camber_columns_find(&self->columns, self->features, schema, self->stitcher, self->dataset.osm);
     if (status != CAMBER_OK)
         return status;
-    /* A filter may look at any field. */
+    /* A filter may read any field, so none is ignored then. */
     if (!self->desc->where)
         camber_columns_ignore_others(&self->columns, self->layer);
     self->dataset.errors = (camber_gdal_errors){0};
@@ -58,8 +62,8 @@ static camber_status begin_layer(reader *self, int index) {
 
 /* ---- One feature ---- */
 
-/* The tile that a feature comes from. OGR's drivers put it into the feature's number: column in the low bits, then
- * row, then the feature. Where that does not fit the coordinates, the middle of the feature tells. */
+/* Finds the tile that a feature comes from. OGR's drivers put it into the feature's number: column in the low bits,
+ * then row, then the feature. Where that does not fit the coordinates, the middle of the feature decides. */
 static void find_tile(const reader *self, OGRFeatureH feature, camber_tile_feature *tile) {
     const int zoom = self->dataset.zoom;
     const double side = ldexp(1.0, zoom);
@@ -137,7 +141,7 @@ static bool is_read_error(const camber_gdal_errors *errors) {
     return errors->number == CPLE_FileIO || strstr(errors->message, "fread(") != NULL;
 }
 
-/* OSM_USE_CUSTOM_INDEXING is named in the message; the option of the driver is USE_CUSTOM_INDEXING. */
+/* The message names OSM_USE_CUSTOM_INDEXING; the driver's option is USE_CUSTOM_INDEXING. */
 static bool is_unsorted(const camber_gdal_errors *errors) {
     return strstr(errors->message, "USE_CUSTOM_INDEXING=NO") != NULL;
 }
@@ -159,7 +163,7 @@ static void show_progress(reader *self, double fraction) {
     camber_progress(self->context, "reading", fraction);
 }
 
-/* While OpenStreetMap's nodes are read, which are no features. */
+/* Shows progress while OpenStreetMap's nodes are read, which are not features. */
 static int CPL_STDCALL show_node_progress(double fraction, const char *message, void *user) {
     reader *self = user;
     (void)message;
@@ -223,7 +227,7 @@ static camber_status check_count(reader *self, GIntBig expected) {
     return fail_stream(self, "its header announces more");
 }
 
-/* Of OpenStreetMap every key is a field. */
+/* Fails for a filter that does not fit the layer. For OpenStreetMap every key is a field. */
 static camber_status fail_where(const reader *self) {
     char fields[512] = "keys of OpenStreetMap, as in highway = 'primary'";
     if (!self->dataset.osm)
@@ -274,7 +278,7 @@ static camber_status read_layers(reader *self, const int *layers, size_t count, 
 
 /* ---- A file ---- */
 
-/* Points and areas are no news: nobody asked for them. */
+/* Warns of losses. Points and areas are not mentioned as such: nobody asked for them. */
 static void warn_of_losses(const reader *self) {
     const camber_features_stats *stats = &self->stats;
     const char *path = self->desc->path;
@@ -295,7 +299,7 @@ static void warn_of_losses(const reader *self) {
                    stats->clamped_points);
 }
 
-/* What the file gave, looked at as a whole. */
+/* Fails where the file as a whole gave nothing that can be drawn. */
 static camber_status check_result(reader *self, size_t features_before) {
     const camber_feature_lines *lines = &self->lines;
     if (lines->strange_points > lines->raw_points / 2)
@@ -369,7 +373,7 @@ static void add_stats(camber_features *features, const reader *self) {
     sum->antimeridian_splits += self->stats.antimeridian_splits;
 }
 
-/* The file's lines, from first_polyline on. */
+/* Merges and weighs the file's lines, from first_polyline on. */
 static camber_status merge_and_weigh(camber_features *features, const camber_source_desc *desc, size_t first_polyline) {
     const double start_ms = camber_now_ms();
     camber_status status = CAMBER_OK;
@@ -401,7 +405,7 @@ static camber_status read_once(camber_features *features, const camber_source_de
     self.stats.invalid_points = self.lines.invalid_points;
     self.stats.clamped_points = self.lines.clamped_points;
     self.stats.antimeridian_splits = self.lines.antimeridian_splits;
-    /* What GDAL holds goes before the lines are copied. */
+    /* GDAL's memory is freed before the lines are copied. */
     close_reader(&self);
     features->times.file_ms += camber_now_ms() - start_ms;
     if (status == CAMBER_OK)

@@ -1,4 +1,4 @@
-/* What the files that need GDAL share: geometry of one feature, an open file, fields. */
+/* Shared by the files that need GDAL: the geometry of one feature, an open file, what GDAL may reach, fields. */
 #ifndef CAMBER_VECTOR_FILE_H
 #define CAMBER_VECTOR_FILE_H
 
@@ -9,7 +9,7 @@
 #include <ogr_api.h>
 #include <ogr_srs_api.h>
 
-/* ---- geometry.c: a feature's geometry as world polylines ---- */
+/* ---- polylines.c: a feature's geometry as world polylines ---- */
 
 typedef enum camber_projection_kind {
     CAMBER_PROJECTION_DEGREES = 0, /* longitude and latitude of WGS 84 */
@@ -22,12 +22,12 @@ typedef struct camber_feature_lines {
     camber_projection_kind projection;
     bool latitude_first;                    /* degrees come as latitude, longitude */
     OGRCoordinateTransformationH transform; /* owned */
-    /* Tiles: coordinates are left where they are, beyond the world's edges too; clipping comes later. */
+    /* of tiles: coordinates stay where they are, beyond the world's edges too; they are cut later */
     bool whole;
     bool wants_polygons;
     bool directed; /* outlines go clockwise as seen, those of holes the other way */
 
-    /* The last feature's polylines: part i ends before point ends[i]. */
+    /* The last feature's polylines: line i ends before point ends[i]. */
     double *points;
     size_t point_count, point_capacity;
     size_t *ends;
@@ -55,10 +55,10 @@ void camber_feature_lines_free(camber_feature_lines *lines);
 /* CAMBER_ERROR_INPUT: a file, or its coordinate system, leads to another file. */
 camber_status camber_dataset_fail_elsewhere(camber_context *context, const char *name);
 
-/* What GDAL said since the last reset. */
+/* GDAL's failures since the last reset. */
 typedef struct camber_gdal_errors {
     size_t failures;
-    CPLErrorNum number; /* of the first */
+    CPLErrorNum number; /* number of the first failure */
     char message[512];  /* the first */
 } camber_gdal_errors;
 
@@ -67,7 +67,7 @@ typedef struct camber_dataset {
     const camber_source_desc *desc;
     GDALDatasetH handle;
     bool osm;   /* the OSM driver */
-    int zoom;   /* of vector tiles, below 0 for anything else */
+    int zoom;   /* the zoom of vector tiles, below 0 for anything else */
     char *conf; /* OSM: the configuration, and where GDAL sees it */
     char conf_path[64];
     camber_gdal_errors errors;
@@ -77,7 +77,8 @@ typedef struct camber_dataset {
 camber_status camber_dataset_open(camber_context *context, const camber_source_desc *desc, const camber_style *style,
                                   bool unsorted, camber_dataset *dataset);
 void camber_dataset_close(camber_dataset *dataset);
-/* Of OpenStreetMap's own formats what its licence asks for, of others what the file says. NULL: nothing. */
+/* The attribution: for OpenStreetMap's own formats what its licence asks for, for others what the file says. NULL:
+ * none. */
 const char *camber_dataset_attribution(const camber_dataset *dataset);
 /* Indices of the layers to read; freed with camber_free. */
 camber_status camber_dataset_layers(camber_dataset *dataset, bool wants_polygons, int **layers, size_t *count);
@@ -89,7 +90,7 @@ void CPL_STDCALL camber_gdal_collect(CPLErr level, CPLErrorNum number, const cha
 /* Until the end nothing is fetched on this thread, unless the context's access has it, and nothing is written beside
  * files. */
 typedef struct camber_gdal_confined {
-    char *kept[3]; /* of the thread's options, what they were */
+    char *kept[3]; /* former values of the thread's options */
     bool http;
     size_t refused; /* fetches */
 } camber_gdal_confined;
@@ -98,7 +99,7 @@ void camber_gdal_release(camber_context *context, camber_gdal_confined *confined
 /* Names of the drivers that the context's access has, for GDALOpenEx; freed with CSLDestroy. */
 char **camber_gdal_drivers(const camber_context *context, const char *path);
 bool camber_gdal_has_driver(const camber_context *context, const char *name);
-/* The driver of a file, where it is none of these. NULL: it is, or none knows the file. */
+/* The driver of a file, where the context's access does not allow it. NULL: it does, or no driver knows the file. */
 const char *camber_gdal_refused(const camber_context *context, const char *path);
 /* Whether a driver reads files that have their data in themselves. */
 bool camber_gdal_reads_file(const char *driver);
@@ -117,17 +118,17 @@ bool camber_gdal_is_remote(const char *path);
 
 /* The next word of a filter outside '...': it may be a key. *at moves behind it. NULL: there is no more. */
 const char *camber_where_next(const char **at, size_t *length);
-/* Whether it is made of what such words are. */
+/* Whether the text consists of the characters of such words. */
 bool camber_where_is_key(const char *text, size_t length);
-/* Of OpenStreetMap data whose filter nothing passes: the first key it names that no feature of the layer has. Reads the
- * file again, without the filter. false: all keys are there. */
+/* Finds the first key of a filter that no feature of the layer has, for OpenStreetMap data where nothing passes the
+ * filter. Reads the file again, without the filter. false: all keys are there. */
 bool camber_where_find_unknown(const camber_dataset *dataset, OGRLayerH layer, char *key, size_t size);
 /* "class, name, ...": the fields that a filter of the layer can compare. */
 void camber_where_list_fields(OGRLayerH layer, char *text, size_t size);
 
-/* ---- attributes.c: the fields of a layer that are read ---- */
+/* ---- fields.c: the fields of a layer that are read ---- */
 
-/* What a style's property is read from. */
+/* The field that a property of the style is read from. */
 typedef struct camber_column {
     int field; /* below 0: the layer does not have it */
     OGRFieldType type;
@@ -138,7 +139,7 @@ typedef struct camber_columns {
     camber_features *features;
     camber_column *items; /* style->property_count */
     camber_value *values; /* style->property_count */
-    bool plain;           /* the layer has none of them */
+    bool plain;           /* the layer has none of the style's properties */
     int ids[4];           /* vector tiles: fields with an id, the best first */
     size_t id_count;
     int highway;

@@ -1,4 +1,4 @@
-/* Attribute filters: the words of one that may be keys, and which key is why nothing passes it. */
+/* Attribute filters: finds the words of a filter that may be keys, and the key because of which nothing passes it. */
 #include "gdal/vector_file.h"
 
 #include <cpl_string.h>
@@ -70,7 +70,7 @@ static void list_keys(const char *where, OGRFeatureDefnH schema, named_keys *key
     }
 }
 
-/* Forgets the keys that the feature has. */
+/* Takes out the keys that the feature has. */
 static void cross_out(named_keys *keys, OGRFeatureH feature) {
     size_t left = 0;
     for (size_t i = 0; i < keys->count; i++)

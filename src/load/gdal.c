@@ -16,7 +16,7 @@
 
 static const int MODE = RTLD_LAZY | RTLD_LOCAL;
 
-/* By its place: beside this library where it is built, in a folder beside it where it is installed. */
+/* Opens the module by its path: beside this library where it is built, in a folder beside it where it is installed. */
 static void *open_beside(void) {
     static const char *const folders[] = {"", "camber/"};
     Dl_info here;
@@ -34,8 +34,8 @@ static void *open_beside(void) {
     return module;
 }
 
-/* By the library's RUNPATH, which a sanitizer's dlopen does not know. It stays loaded: GDAL's own threads and caches
- * live as long as the process. */
+/* Opens the module by the library's RUNPATH, which a sanitizer's dlopen does not know. It stays loaded: GDAL's own
+ * threads and caches live as long as the process. */
 static const camber_gdal_calls *load(const char **why) {
     void *module = dlopen(CAMBER_GDAL_MODULE, MODE);
     if (!module)
@@ -51,7 +51,7 @@ static const camber_gdal_calls *load(const char **why) {
 }
 #endif
 
-/* Kept, since asking the loader again waits while another thread loads a driver. */
+/* The result is kept, since asking the loader again waits while another thread loads a driver. */
 camber_status camber_gdal_load(camber_context *context) {
     const char *why = NULL;
     if (!context->gdal)
@@ -65,7 +65,8 @@ camber_status camber_gdal_load(camber_context *context) {
                        why ? why : "no reason given");
 }
 
-/* GDAL opens tiles one by one, and knows no PMTiles; but it filters by attributes, and reads from within archives. */
+/* Decides who reads a file of tiles. GDAL opens tiles one by one and knows no PMTiles, but it filters by attributes
+ * and reads inside archives. */
 bool camber_source_needs_gdal(const camber_source_desc *desc) {
     struct stat about;
     if (!camber_tile_set_knows(desc->path) || strncmp(desc->path, "/vsi", 4) == 0)

@@ -15,7 +15,7 @@
 static const double WIDEST_PX = 16384.0;
 static const size_t MOST_ROWS = (size_t)1 << 24, MOST_MATCHES = (size_t)1 << 26;
 
-/* The part of camber_style_layer_matches that needs no feature; a limit of 24 stands for none. */
+/* The part of camber_style_layer_matches that needs no feature. A max_zoom of 24 means no limit. */
 static bool is_active(const camber_style_layer *layer, double zoom) {
     return layer->visible && layer->min_zoom <= zoom && (zoom < layer->max_zoom || layer->max_zoom >= 24.0);
 }
@@ -41,7 +41,7 @@ static bool draws_class(const camber_features *features, const camber_style_laye
 
 /* ---- Background ---- */
 
-/* An opaque one hides all layers before it: the first layer to draw. */
+/* Finds the first layer to draw: an opaque background hides all layers before it. */
 static size_t find_first(const camber_style *style, double zoom) {
     for (size_t i = style->layer_count; i-- > 0;) {
         const camber_style_layer *layer = style->layers + i;
@@ -65,8 +65,8 @@ static bool shares_polylines(const camber_layer_look *a, const camber_layer_look
            same_text(a->layer->filter_key, b->layer->filter_key) && camber_layer_look_shares(a, b);
 }
 
-/* Sets by what layers must agree in to share one, and more: a hash, so that many layers take no longer than their
- * number. */
+/* A hash table of sets, by what layers must agree in to share one, so that time grows only with the number of
+ * layers. */
 typedef struct set_table {
     uint32_t *slots;   /* set + 1; 0: free */
     size_t slot_count; /* a power of two */
@@ -79,7 +79,7 @@ static uint64_t set_hash(const camber_style_layer *layer) {
     return camber_hash(hash, layer->filter_key, strlen(layer->filter_key));
 }
 
-/* The set that the layer shares, or the place for a new one's number. */
+/* Finds the slot of the set that the layer shares, or an empty slot for a new one. */
 static uint32_t *find_set(const camber_plan *plan, const set_table *table, const camber_layer_look *look) {
     const uint64_t hash = set_hash(look->layer);
     size_t at = (size_t)(hash ^ hash >> 32) & (table->slot_count - 1);
@@ -89,7 +89,7 @@ static uint32_t *find_set(const camber_plan *plan, const set_table *table, const
     return table->slots + at;
 }
 
-/* A map's translation turns with it. */
+/* Computes the translation: one that is fixed to the map turns with it. */
 static void find_translation(const camber_layer_look *look, const camber_view *view, float translate_px[2]) {
     const bool turns = look->paint.translate_anchor == CAMBER_TRANSLATE_MAP;
     const double cosine = turns ? view->cosine : 1.0, sine = turns ? view->sine : 0.0;
@@ -157,7 +157,8 @@ static camber_status group_layers(camber_plan *plan, const camber_style *style, 
 
 /* ---- Rows ---- */
 
-/* The stroke of one class in a set, its paints in all of the set's layers, and a hash of rows to find equal ones by. */
+/* The stroke of one class in a set, with its paints in all of the set's layers, and a hash table of rows to find
+ * equal ones by. */
 typedef struct row_table {
     camber_stroke stroke;
     camber_paint *tuple;
@@ -177,13 +178,13 @@ typedef struct class_rows {
     row_table table;
 } class_rows;
 
-/* What a paint takes of a stroke. */
+/* The width that a paint covers, with its gap. */
 static float whole_width(const camber_paint *paint) {
     return paint->gap_px > 0.0f ? paint->gap_px + 2.0f * paint->width_px : paint->width_px;
 }
 
-/* The paint of a layer without its border, or of the border alone: a wider line below, or, where that would be seen
- * through, two bands beside. */
+/* The paint of a layer without its border, or of the border alone. The border is a wider line below, or, where that
+ * would be seen through, two rails beside the line. */
 static camber_layer_paint part_of(const camber_plan_layer *layer, const camber_layer_paint *whole) {
     camber_layer_paint part = *whole;
     const double border = fmin(whole->border_width, 0.5 * whole->width), inside = whole->width - 2.0 * border;
@@ -208,7 +209,7 @@ static camber_layer_paint part_of(const camber_plan_layer *layer, const camber_l
 
 static camber_paint paint_of(const camber_plan_layer *layer, const camber_layer_paint *whole, double ratio) {
     const camber_layer_paint part = part_of(layer, whole);
-    const double widest_px = part.gap_width > 0.0 ? WIDEST_PX / 3.0 : WIDEST_PX; /* of a band */
+    const double widest_px = part.gap_width > 0.0 ? WIDEST_PX / 3.0 : WIDEST_PX; /* the most for one rail */
     if (!(part.width * ratio > 0.0 && part.color.a > 0.0f && (float)part.layer_opacity > 0.0f))
         return (camber_paint){0};
     return (camber_paint){.width_px = (float)fmin(part.width * ratio, widest_px),
@@ -264,7 +265,7 @@ static uint32_t intern_dash(camber_plan *plan, const camber_layer_dashes *dashes
     return *slot = (uint32_t)plan->dash_count;
 }
 
-/* What passes take, once the lengths stay where they are. */
+/* Makes the list of dashes that passes take, now that the lengths do not move any more. */
 static camber_status list_dashes(camber_plan *plan) {
     plan->dashes = camber_alloc(plan->context, plan->dash_count, sizeof *plan->dashes);
     if (!plan->dashes)
@@ -274,8 +275,8 @@ static camber_status list_dashes(camber_plan *plan) {
     return CAMBER_OK;
 }
 
-/* The width at the whole zoom below, grown with the map: other engines draw dashes and patterns of that width up to the
- * next. */
+/* The width at the whole zoom below, scaled with the map: other engines draw dashes and patterns of that width up to
+ * the next whole zoom. */
 static float whole_zoom_px(const camber_plan_layer *layer, const camber_view *view,
                            const camber_feature_view *feature) {
     const double grown = exp2(camber_view_style_zoom(view) - layer->below.zoom);
@@ -289,7 +290,7 @@ typedef struct pattern_choice {
     float one_px;   /* along the line */
 } pattern_choice;
 
-/* A pattern leaves of the colour only the opacity, and of dashes nothing. */
+/* Chooses the pattern. With one, only the opacity of the colour counts, and dashes do not. */
 static pattern_choice choose_pattern(camber_plan *plan, const camber_plan_layer *layer, const camber_view *view,
                                      const camber_feature_view *feature, camber_layer_paint *paint) {
     pattern_choice choice = {0};
@@ -314,7 +315,7 @@ static void put_pattern(const camber_plan_layer *layer, const pattern_choice *ch
     paint->pattern_px = choice->one_px;
 }
 
-/* A limit of 1 bevels every turn, and so do those below; 0 would mean the default. */
+/* A limit of 1 or less bevels every turn; 0 would mean the default. */
 static camber_stroke stroke_of(const camber_layer_paint *paint, double ratio) {
     return (camber_stroke){
         .join = paint->join,
@@ -324,7 +325,7 @@ static camber_stroke stroke_of(const camber_layer_paint *paint, double ratio) {
         .round_limit = paint->join == CAMBER_JOIN_ROUND ? (float)fmin(fmax(paint->round_limit, 0.0), 1e6) : 0.0f};
 }
 
-/* A tip that is no more than a quarter of a pixel is not worth what drawing miters costs: a tenth of a frame. */
+/* Miter tips of up to a quarter of a pixel are not worth what drawing miters costs: a tenth of a frame. */
 static float round_limit_that_shows(const camber_stroke *stroke) {
     const double limit = (double)stroke->round_limit, half_px = 0.5 * (double)stroke->width_px;
     const double turn = limit > 1.0 ? 2.0 * acos(1.0 / limit) : 0.0;
@@ -337,7 +338,7 @@ static bool same_row(const camber_plan *plan, const camber_plan_set *set, const 
            memcmp(paints, table->tuple, set->layer_count * sizeof *table->tuple) == 0;
 }
 
-/* The row of the stroke and the tuple, a new one where no row of the set has them. */
+/* Finds the row of the stroke and its paints, or adds one where no row of the set has them. */
 static uint32_t intern_row(camber_plan *plan, camber_plan_set *set, row_table *table) {
     const size_t size_bytes = set->layer_count * sizeof *table->tuple;
     uint64_t hash = camber_hash(CAMBER_HASH_START, &table->stroke, sizeof table->stroke);
@@ -359,7 +360,7 @@ static uint32_t intern_row(camber_plan *plan, camber_plan_set *set, row_table *t
     return row;
 }
 
-/* The tuple of a class, and its stroke; false where none of the set's layers draws it. */
+/* Fills the paints of a class and its stroke; false where none of the set's layers draws it. */
 static bool fill_tuple(camber_plan *plan, const camber_plan_set *set, const camber_view *view,
                        const camber_feature_view *feature, row_table *table, double *key) {
     bool *failed = &table->failed;
@@ -391,7 +392,7 @@ static bool fill_tuple(camber_plan *plan, const camber_plan_set *set, const camb
     return table->stroke.width_px > 0.0f || *failed;
 }
 
-/* Rows of every class in one set. */
+/* Finds the rows of every class in one set. */
 static camber_status match_set(const camber_features *features, const camber_view *view, camber_plan *plan,
                                camber_plan_set *set, class_rows *rows) {
     const camber_style_layer *first = plan->layers[set->first_layer].look.layer;
@@ -432,7 +433,8 @@ typedef struct class_sets {
     set_pair *pairs;
 } class_sets;
 
-/* What is sorted is another order of entries for other keys. */
+/* Ends the pairs of a set. Where it is sorted, the plan's key includes the sort keys, since other keys mean another
+ * order. */
 static void end_set(camber_plan *plan, camber_plan_set *set) {
     const double *keys = plan->pair_keys + set->first_pair;
     set->pair_count = plan->pair_count - set->first_pair;
@@ -510,7 +512,7 @@ static int compare_keys(const void *left, const void *right) {
     return a->key < b->key ? -1 : a->key > b->key;
 }
 
-/* The entries of a set by their features' keys, those of one key as they were. */
+/* Sorts the entries of a set by their features' keys; entries of one key stay as they were. */
 static camber_status sort_entries(camber_plan *plan, const camber_plan_set *set) {
     camber_plan_entry *entries = plan->entries + set->first_entry;
     keyed_pair *keyed = camber_alloc(plan->context, set->pair_count, sizeof *keyed);
@@ -608,7 +610,7 @@ camber_status camber_plan_create(const camber_features *features, const camber_v
     while (table->slot_count / 2 < features->class_count)
         table->slot_count *= 2;
     status = CAMBER_ERROR_MEMORY;
-    /* Of rows one more than needed, so that no element is empty; classes are in memory: their count cannot overflow. */
+    /* One row more than needed, so that no element is empty; classes are in memory, so their count cannot overflow. */
     const size_t count = features->class_count + 1;
     if (!(table->tuple = camber_alloc(context, plan->layer_count, sizeof *table->tuple)) ||
         !(table->slots = camber_alloc(context, table->slot_count, sizeof *table->slots)) ||

@@ -1,3 +1,9 @@
+/* Makes a network of what a plan draws, and on the host projects the part of it that a camera sees.
+ *
+ * Input: features, a view and its plan. Output: a network whose rows are the plan's pairs. Near the antimeridian, and
+ * where the picture is wider than the world, a polyline has several entries: one for each copy of the world. The
+ * network serves other views as long as their plans draw the same entries.
+ */
 #include "map/plan_network.h"
 
 #include "camber_proof.h"
@@ -27,8 +33,9 @@ double camber_plan_reach(const camber_plan *plan) {
 
 /* ---- Copies of the world ---- */
 
-/* The worlds from the first to the last in the picture; where it is about as wide as a world, what lies within half a
- * world of its centre, in one copy, or in two where that crosses the line. */
+/* Copies of the world, from the first to the last in the picture. Where the picture is about as wide as a world,
+ * first lies behind last: then each polyline is drawn within half a world of the centre, in one copy, or in two
+ * where it crosses that line. */
 typedef struct copies {
     double first, last, centre;
 } copies;
@@ -68,7 +75,7 @@ static bool find_shifts(const camber_features *features, const copies *worlds, s
         *last = fmax(*first, ceil(worlds->centre + 0.5 - box.x0) - 1.0);
         return true;
     }
-    /* What ends on the border of two worlds lies in the western one. */
+    /* A line that ends on the border of two worlds lies in the western one. */
     *first = worlds->first - fmax(ceil(box.x1) - 1.0, floor(box.x0));
     *last = worlds->last - floor(box.x0);
     return true;
@@ -167,7 +174,7 @@ void camber_plan_network_destroy(camber_plan_network *geometry) {
 
 /* ---- What is seen of it ---- */
 
-/* Counts polylines once a set, however often the world repeats and in however many pieces. */
+/* Counts polylines once a set, however often the world repeats and however many lines the camera cuts them into. */
 static void count_set(const camber_features *features, const camber_plan_network *geometry, size_t first, size_t end,
                       camber_visible_lines *seen) {
     uint32_t before = UINT32_MAX, counted = UINT32_MAX;
@@ -177,14 +184,14 @@ static void count_set(const camber_features *features, const camber_plan_network
             continue;
         before = polyline;
         seen->points_in += features->offsets[polyline + 1] - features->offsets[polyline];
-        /* A later part of a feature counts where the first is not seen. */
+        /* A later line of a feature counts where its first line is not seen. */
         const uint32_t feature = features->polyline_feature[polyline], count = features->feature_counts[polyline];
         seen->feature_count += count || feature == counted ? count : 1;
         counted = feature;
     }
 }
 
-/* The row of each polyline, and where each set begins. */
+/* Fills in the row of each polyline, and where each set begins. */
 static camber_status fill_rows(const camber_plan_network *geometry, const camber_plan *plan,
                                camber_visible_lines *seen) {
     const size_t count = seen->lines.polyline_count;

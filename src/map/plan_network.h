@@ -1,4 +1,4 @@
-/* What a plan draws, as a network, and on the host the part of it that a camera sees. */
+/* The network that a plan draws, and on the host the polylines of it that a camera sees. */
 #ifndef CAMBER_PLAN_NETWORK_H
 #define CAMBER_PLAN_NETWORK_H
 
@@ -8,7 +8,7 @@ typedef struct camber_plan_network {
     camber_context *context;
     bool measured;               /* the network is, for what lies along lines */
     camber_network *network;     /* rows are the plan's pairs; entries by set, and in input order in a set */
-    uint32_t *polylines, *pairs; /* of the entries: the features' and the plan's */
+    uint32_t *polylines, *pairs; /* by entry: the polyline of the features, and the pair of the plan */
     size_t *first_entries;       /* set_count + 1 */
     size_t set_count;
     uint64_t key;
@@ -26,10 +26,10 @@ void camber_plan_network_destroy(camber_plan_network *geometry);
 typedef struct camber_visible_lines {
     camber_context *context;
     camber_lines lines;
-    uint32_t *entries, *rows; /* of the polylines; rows are the plan's */
+    uint32_t *entries, *rows; /* by polyline: its entry, and its row of the plan */
     size_t *first_polylines;  /* set_count + 1 */
-    size_t feature_count;     /* of which something is seen, a set */
-    size_t points_in;         /* of the polylines of which something is seen */
+    size_t feature_count;     /* features of which something is seen, counted once a set */
+    size_t points_in;         /* points of the polylines of which something is seen */
 } camber_visible_lines;
 
 /* camber_visible_lines_destroy frees also what a failure left. */

@@ -1,3 +1,8 @@
+/* Chooses the images that a plan draws with, and lays backgrounds that are images onto the map.
+ *
+ * Input: the style's pattern properties and the sprites. Output: the list of images in use, each once, and fills that
+ * are drawn between layers.
+ */
 #include "map/plan_patterns.h"
 
 #include <math.h>
@@ -30,7 +35,8 @@ static camber_image image_of(const camber_sprites *sprites, size_t number) {
                           4 * (size_t)sheet->width};
 }
 
-/* The place of a sprite's image among those that are drawn, from 1; 0 where memory ran out. Styles draw few. */
+/* Finds the number of a sprite's image among those that are drawn, from 1; 0 where memory ran out. Styles draw few
+ * images, so the search is linear. */
 static uint32_t intern(camber_plan_patterns *patterns, size_t number) {
     for (size_t i = 0; i < patterns->count; i++)
         if (patterns->numbers[i] == number)
@@ -70,8 +76,8 @@ static camber_color blend_over(camber_color top, camber_color below) {
                           (top.b * top.a + below.b * rest) / a, a};
 }
 
-/* Images lie on the map, from the world's north-western corner on, in their own size at the whole zoom below; from
- * there to the next they grow with the map. */
+/* Lays images onto the map, from the world's north-western corner, in their own size at the whole zoom below; up to
+ * the next whole zoom they grow with the map. */
 static void place_images(const camber_plan_patterns *patterns, const camber_view *view, uint32_t image,
                          camber_fill *fill) {
     const camber_sprite_image *from = patterns->sprites->images + patterns->numbers[image - 1];

@@ -3,10 +3,10 @@
 #include "source/sources.h"
 #include "source/tile_reader.h"
 
-/* As camber_plan_fit has it. */
+/* The same as in fit.c. */
 static const double FILL = 0.96, LARGEST_FIT_ZOOM = 22.0;
 
-/* Without a camera: all that the sources say they have. */
+/* Moves the view, where no camera is given, over all that the sources say they have. */
 static void fit_bounds(const camber_sources *sources, camber_view *view) {
     double world[4];
     if (!camber_sources_bounds(sources, world))

@@ -7,12 +7,12 @@
 /* 2.4 GB. */
 static const size_t MOST_PAINTS = (size_t)1 << 26;
 
-/* The passes over the polylines of a mesh: by entries and pairs where a network was tessellated, by pieces and rows
+/* The passes over the polylines of a mesh: by entries and pairs where a network was tessellated, by lines and rows
  * where polylines were. */
 typedef struct pass_list {
     camber_pass *passes;
     size_t count;
-    camber_paint *paints; /* of all passes */
+    camber_paint *paints; /* the paints of all passes */
 } pass_list;
 
 struct camber_scene {
@@ -29,7 +29,7 @@ struct camber_scene {
     /* On the host; nothing until asked for. */
     bool is_seen;
     camber_visible_lines seen;
-    size_t layer_count; /* that draw something */
+    size_t layer_count; /* how many layers draw something */
     camber_polylines *polylines;
     pass_list passes;
 };
@@ -74,7 +74,7 @@ typedef struct layer_run {
     size_t first_layer, end_layer; /* of the plan */
     size_t first_polyline, end_polyline;
     size_t end_paint;
-    float opacity; /* of the layer; 1: of runs of several */
+    float opacity; /* the layer's opacity; 1 where several layers are drawn at once */
     camber_overlap overlap;
     bool opaque;
     const camber_plan_fill *fill; /* NULL: none; else nothing of the above */
@@ -95,8 +95,8 @@ static bool layer_draws(const numbering *n, const camber_plan_layer *layer, bool
     return draws;
 }
 
-/* Opaque layers whose polylines follow each other become one run. A translucent layer is one by itself: it is
- * flattened by itself. Fills come between. */
+/* Opaque layers whose polylines follow each other are drawn by one pass. A translucent layer has a pass of its own,
+ * since it is flattened by itself. Fills come between. */
 static size_t find_runs(const numbering *n, layer_run *runs, size_t *layer_count) {
     const camber_plan *plan = n->plan;
     size_t count = 0, fill = 0;
@@ -127,7 +127,8 @@ static size_t find_runs(const numbering *n, layer_run *runs, size_t *layer_count
     return count;
 }
 
-/* Pieces do not know where their lines begin: a gradient's have the colour of its middle. */
+/* Lines that were cut do not know where their polylines begin, so patterns are dropped, and a gradient becomes the
+ * colour of its middle. */
 static void forget_progress(const camber_plan *plan, camber_paint *paint) {
     if (paint->ramp) {
         const camber_ramp *ramp = plan->ramps + paint->ramp - 1;
@@ -139,7 +140,7 @@ static void forget_progress(const camber_plan *plan, camber_paint *paint) {
     paint->trim_start = paint->trim_end = 0.0f;
 }
 
-/* The paints of a run: those below its end, of width 0 where it does not draw them. */
+/* Writes the paints of a pass: one for each row below its end, of width 0 where the pass does not draw the row. */
 static void put_paints(const numbering *n, const layer_run *run, camber_paint *paints) {
     memset(paints, 0, run->end_paint * sizeof *paints);
     for (size_t i = run->first_layer; i < run->end_layer; i++) {
@@ -204,7 +205,7 @@ static void free_passes(camber_context *context, pass_list *list) {
     camber_free(context, list->paints);
 }
 
-/* Of the network: every pair has an entry somewhere. */
+/* Makes the passes over the network, where every pair has an entry somewhere. */
 static camber_status make_pair_passes(camber_scene *scene) {
     size_t layer_count;
     bool *used = camber_alloc_zero(scene->context, scene->plan.pair_count, sizeof *used);
@@ -286,7 +287,7 @@ static camber_status see(camber_scene *scene) {
     return status;
 }
 
-/* What is made when it is asked for is no change of the scene. */
+/* Making what is asked for does not change the scene, so it may be const. */
 static bool is_seen(const camber_scene *scene) {
     return see((camber_scene *)(uintptr_t)scene) == CAMBER_OK;
 }
@@ -349,8 +350,8 @@ static bool has_patterns(const camber_plan *plan) {
     return false;
 }
 
-/* What a style leaves out is its business, but not where that is everything. Images of patterns that are not there are
- * told of already. */
+/* Warns where a style draws nothing at all; what else it leaves out is its own business. Images of patterns that are
+ * not there were warned of already. */
 static void tell_undrawn(const camber_scene *scene) {
     const size_t undrawn = scene->plan.undrawn, all = scene->features->feature_count;
     char keys[256];
@@ -394,7 +395,7 @@ camber_status camber_scene_create(const camber_features *features, const camber_
 
 camber_status camber_scene_move(camber_scene *scene, const camber_view_desc *view) {
     camber_scene moved = bare_scene(scene->features, scene->simplify_px);
-    /* The geometry is the one or the other's, never both's. */
+    /* The network belongs to one of the two, never to both. */
     camber_plan_network geometry = scene->geometry;
     const camber_status status = look(&moved, view, &geometry);
     if (status != CAMBER_OK) {

@@ -1,5 +1,5 @@
-/* Whom a set of features is signed by: what its files say of themselves, each once, as plain text. Nothing is guessed
- * from what the data looks like: a road of anyone's may have a key of OpenStreetMap's. */
+/* The attribution of a set of features: what its files say of themselves, each text once, as plain text. Nothing is
+ * guessed from the data: any road may have a key of OpenStreetMap's. */
 #include "source/features.h"
 
 #include <ctype.h>
@@ -20,7 +20,7 @@ static const entity *find_entity(const char *at) {
     return NULL;
 }
 
-/* Past a tag, or NULL: none begins here. Its name tells it from a < that is text. */
+/* Returns the text past a tag, or NULL where none begins. The tag's name tells it from a < that is text. */
 static const char *skip_tag(const char *at) {
     if (*at != '<' || !(isalpha((unsigned char)at[1]) || at[1] == '/' || at[1] == '!'))
         return NULL;
@@ -33,8 +33,8 @@ static const char *skip_tag(const char *at) {
     return NULL;
 }
 
-/* Without tags, entities, control characters and blanks that do not part words. plain has as much room as text. Returns
- * its length. */
+/* Copies the text without tags, entities, control characters and blanks that separate no words. plain has as much
+ * room as text. Returns its length. */
 static size_t make_plain(const char *text, char *plain) {
     size_t size = 0;
     while (*text) {

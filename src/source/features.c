@@ -1,3 +1,8 @@
+/* A set of features in memory: how it grows, and how equal things are kept once.
+ *
+ * Input: the lines and attributes that a reader gives, one feature after the other. Output: camber_features. Texts and
+ * values are interned, so equal ones have one pointer; features that agree in all attributes form one class.
+ */
 #include "source/features.h"
 #include "lines/importance.h"
 
@@ -6,7 +11,7 @@
 
 /* Open addressing with linear probing; at most half of the slots are in use, so that probes stay short. */
 typedef struct interned {
-    camber_value value; /* of the text as JSON, once it is asked for: an array or an object */
+    camber_value value; /* the value that the text means as JSON, once it was asked for: an array or an object */
     char text[];
 } interned;
 
@@ -19,7 +24,7 @@ typedef struct interner {
 
 enum { FIRST_SLOTS = 256 };
 
-/* items and members are the set's own blocks. */
+/* Frees a value whose items and members are the set's own memory. */
 static void free_value(camber_context *context, camber_value *value) {
     if (value->type == CAMBER_VALUE_ARRAY) {
         camber_value *items = (camber_value *)(uintptr_t)value->items;
@@ -253,7 +258,7 @@ camber_status camber_features_find_layer(camber_features *features, const char *
 
 /* ---- Classes ---- */
 
-/* What an interned value is told by is a pointer. */
+/* Whether the value is interned: it is then known by its pointer. */
 static bool is_pointer(const camber_value *value) {
     return value->type == CAMBER_VALUE_STRING || value->type == CAMBER_VALUE_ARRAY ||
            value->type == CAMBER_VALUE_OBJECT;
@@ -385,7 +390,7 @@ camber_status camber_features_add_feature(camber_features *features, uint32_t cl
     return CAMBER_OK;
 }
 
-/* Room for so many polylines; the last of them has all of its line. */
+/* Makes room for this many polylines; the last of them has all of its line. */
 static bool grow_progress(camber_features *features, size_t polylines) {
     if (!camber_grow(features->context, &features->progress, &features->progress_capacity, polylines,
                      2 * sizeof *features->progress))
@@ -400,7 +405,7 @@ camber_status camber_features_set_progress(camber_features *features, double fir
         for (size_t n = 1; n <= features->polyline_count; n++)
             if (!grow_progress(features, n))
                 return CAMBER_ERROR_MEMORY;
-    if (!features->progress) /* of no polyline */
+    if (!features->progress) /* belongs to no polyline */
         return CAMBER_OK;
     features->progress[2 * features->polyline_count - 2] = (float)first;
     features->progress[2 * features->polyline_count - 1] = (float)last;

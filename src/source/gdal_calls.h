@@ -1,4 +1,4 @@
-/* What is called of the files that need GDAL. */
+/* The functions of the gdal layer that the rest calls: a table, since the shared library loads that layer late. */
 #ifndef CAMBER_GDAL_CALLS_H
 #define CAMBER_GDAL_CALLS_H
 
@@ -11,7 +11,7 @@ typedef struct camber_gdal_calls {
 } camber_gdal_calls;
 
 #ifdef __GNUC__
-__attribute__((visibility("default"))) /* of the module */
+__attribute__((visibility("default"))) /* the module exports it */
 #endif
 extern const camber_gdal_calls camber_gdal;
 

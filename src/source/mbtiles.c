@@ -1,5 +1,6 @@
-/* MBTiles: a SQLite database with a table of tiles, rows from the south, and one of metadata. Either may be a view, and
- * a view is a program: only what joins and picks is run, and only so many steps of it. */
+/* MBTiles: a SQLite database with a table of tiles, whose rows count from the south, and a table of metadata. Either
+ * may be a view, and a view is a program: only those that join and select are run, and only for a limited number of
+ * steps. */
 #include "source/database.h"
 #include "source/tile_set.h"
 
@@ -12,7 +13,7 @@ typedef struct database {
     sqlite3 *handle;
     sqlite3_stmt *get;
     camber_context *context;
-    bool computes; /* a view of it wants what is not allowed */
+    bool computes; /* a view of it asked for something that is not allowed */
 } database;
 
 static int count_steps(void *user) {
@@ -20,7 +21,7 @@ static int count_steps(void *user) {
     return !camber_budget_take_steps(self->context, STEPS_A_CALL);
 }
 
-/* Functions take any time over their text, and recursion makes rows of nothing. */
+/* Refuses functions, which may take any time over their text, and recursion, which makes rows out of nothing. */
 static int authorize(void *user, int action, const char *first, const char *second, const char *base,
                      const char *view) {
     static const char *const functions[] = {"abs", "coalesce", "count", "ifnull", "iif",   "length", "max",
@@ -110,7 +111,7 @@ static void take_metadata_row(json_t *about, sqlite3_stmt *row) {
     json_decref(inner);
 }
 
-/* Sets without the table are read all the same. */
+/* Sets without the table of metadata are read all the same. */
 static camber_status read_metadata(camber_tile_set *set) {
     database *self = set->self;
     sqlite3_stmt *rows = NULL;
@@ -185,7 +186,8 @@ static int compare_tiles(const void *left, const void *right) {
     return a->row > b->row ? -1 : a->row < b->row;
 }
 
-/* In the order of the table's own rows, from the south, each once: lines are drawn as they are read. */
+/* Sorts the tiles in the order of the table's own rows, from the south, each once: lines are drawn in the order in
+ * which they are read. */
 static size_t sort_tiles(camber_tile_index *tiles, size_t count) {
     size_t kept = 0;
     if (count)

@@ -11,17 +11,17 @@
 #include <math.h>
 #include <string.h>
 
-/* Of a turn of 40 degrees. */
+/* The cosine of a turn of 40 degrees. */
 static const double STRAIGHT_COSINE = 0.766;
-/* Ends at a node that are looked at for those that go on straight. */
+/* The most ends at a node among which partners are sought that go on straight. */
 enum { NODE_ENDS_MAX = 16 };
 
-/* The lines from first_polyline on, as pieces. */
+/* Merges the lines from first_polyline on. */
 typedef struct merger {
     camber_features *features;
     size_t first_polyline;
     size_t line_count;
-    uint32_t *partner; /* of the ends; CAMBER_NO_END */
+    uint32_t *partner; /* by end: the end that it is joined with; CAMBER_NO_END: none */
     uint32_t *next;    /* by the straight rule: another end at the same node; CAMBER_NO_END */
     uint8_t *met;      /* ends at the node of which this end was the first, up to 3 */
     uint32_t *slots;   /* the first end at a node, + 1; 0: free. A power of two of them, at most half in use */
@@ -47,7 +47,7 @@ static uint32_t class_of(const merger *m, uint32_t end) {
     return m->features->feature_class[m->features->polyline_feature[m->first_polyline + end / 2]];
 }
 
-/* A line that goes nowhere is a dot, and has no ends. */
+/* Whether the line has ends that may be joined: a line whose points are all one is a dot and has none. */
 static bool has_ends(const merger *m, size_t line) {
     size_t count;
     const double *points = line_points(m, line, &count);
@@ -59,7 +59,7 @@ static bool has_ends(const merger *m, size_t line) {
     return false;
 }
 
-/* The first end that met at the end's node; itself where it is that. */
+/* Returns the first end that was found at the end's node: this one where there was none. */
 static uint32_t find_node(merger *m, uint32_t end) {
     const double *at = end_point(m, end);
     const uint32_t class_index = class_of(m, end);
@@ -105,7 +105,7 @@ static void find_partners(merger *m, bool directed) {
 
 /* ---- Lines that go on straight ---- */
 
-/* The direction in which a line leaves its end. */
+/* Computes the direction in which a line leaves its end. */
 static void find_direction(const merger *m, uint32_t end, double direction[2]) {
     size_t count;
     const double *points = line_points(m, end / 2, &count), *at = points + (end & 1 ? 2 * (count - 1) : 0);
@@ -120,7 +120,7 @@ static void find_direction(const merger *m, uint32_t end, double direction[2]) {
     direction[1] /= length;
 }
 
-/* Makes partners of the ends at a node, of which first is one, those that turn least first. */
+/* Makes partners of the ends at a node, where first is one of them; those that turn least come first. */
 static void pair_straight(merger *m, uint32_t first) {
     uint32_t ends[NODE_ENDS_MAX];
     double directions[NODE_ENDS_MAX][2];

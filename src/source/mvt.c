@@ -1,3 +1,8 @@
+/* Reads vector tiles (Mapbox Vector Tile 2) into a set of features.
+ *
+ * Input: the decompressed bytes of one tile after the other. Output: features, whose lines go to the stitcher, which
+ * cuts them at the tiles' borders. Messages are unpacked by protobuf-c into a bounded pool. Damage is counted.
+ */
 #include "source/mvt.h"
 #include "source/mvt_geometry.h"
 
@@ -7,17 +12,18 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* A tile's messages unpacked; the largest of real maps take a few megabytes. */
+/* The most memory for the unpacked messages of a tile; the largest of real maps take a few megabytes. */
 static const size_t LARGEST_TILE_BYTES = (size_t)256 << 20;
 
-/* Features looked at to learn whether a layer has lines. */
+/* How many features are examined to learn whether a layer has lines. */
 enum { PEEKED_FEATURES = 32, MOST_LAYERS = 1024 };
 
-/* What tells pieces of one feature in several tiles, besides the format's own id: OSM's, anyone's, TIGER's. */
+/* Names of properties by which one feature is recognised in several tiles, besides the format's own id: OSM's, a
+ * common one, TIGER's. */
 static const char *const id_keys[] = {"osm_id", "id", "TLID"};
 enum { ID_KEYS = 3 };
 
-/* What tiles made of GeoJSON with lineMetrics have. */
+/* Properties of tiles that were made from GeoJSON with lineMetrics: where the line was clipped. */
 static const char *const clip_keys[] = {"mapbox_clip_start", "mapbox_clip_end"};
 
 typedef Camber__Tile__Layer tile_layer;
@@ -54,7 +60,7 @@ static void note_damage(camber_mvt *mvt, const char *cause) {
                  mvt->address.column, mvt->address.row, mvt->name[0] ? ", layer " : "", mvt->name, cause);
 }
 
-/* After a message that did not unpack. */
+/* Says why a message did not unpack. */
 static camber_status judge_failure(camber_mvt *mvt, const char *cause) {
     if (mvt->pool.out_of_memory)
         return CAMBER_ERROR_MEMORY;
@@ -67,7 +73,7 @@ static bool is_text(ProtobufCBinaryData bytes, const char *text) {
     return bytes.len == length && (length == 0 || memcmp(bytes.data, text, length) == 0);
 }
 
-/* Text with a 0 behind it, in the pool. NULL: refused. */
+/* Copies the text into the pool with a 0 behind it. NULL: refused. */
 static char *to_text(camber_mvt *mvt, ProtobufCBinaryData bytes) {
     char *text = camber_pool_alloc(&mvt->pool, bytes.len + 1);
     if (!text)
@@ -148,7 +154,7 @@ static camber_value number_value(double number) {
     return isnan(number) ? (camber_value){0} : (camber_value){.type = CAMBER_VALUE_NUMBER, .number = number};
 }
 
-/* Text that is no UTF-8 is no value. */
+/* A text that is not UTF-8 counts as no value. */
 static camber_status text_value(camber_mvt *mvt, ProtobufCBinaryData bytes, camber_value *value) {
     json_t *checked = json_stringn((const char *)bytes.data, bytes.len);
     if (bytes.len && !checked)
@@ -222,7 +228,7 @@ static camber_status read_all_properties(camber_mvt *mvt, const tile_feature *fe
     return status;
 }
 
-/* The values of the style's properties, and what the feature is known by across tiles. */
+/* Reads the values of the style's properties, and the id by which the feature is recognised in other tiles. */
 static camber_status read_tags(camber_mvt *mvt, const tile_feature *feature, camber_value *id,
                                camber_tile_feature *piece, const char **damage) {
     const camber_style *style = mvt->desc.features->style;
@@ -340,7 +346,7 @@ static bool is_wanted(const camber_mvt *mvt) {
     return false;
 }
 
-/* Where no layer is wanted: what there is. */
+/* Lists a layer, where none is wanted and the question is which layers there are. */
 static camber_status list_layer(camber_mvt *mvt) {
     size_t i = 0;
     while (i < mvt->layer_count && strcmp(mvt->layers[i].name, mvt->name) != 0)

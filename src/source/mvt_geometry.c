@@ -1,3 +1,8 @@
+/* Turns the drawing commands of one feature of a vector tile into lines in world coordinates.
+ *
+ * Input: 32-bit words of commands (move, line, close) and zigzag deltas. Output: points and where each line ends.
+ * Commands that make no sense end the reading; the lines before them stay.
+ */
 #include "source/mvt_geometry.h"
 
 enum { MOVE_TO = 1, LINE_TO = 2, CLOSE_PATH = 7 };
@@ -6,7 +11,7 @@ typedef struct pen {
     camber_mvt_geometry *geometry;
     const camber_mvt_commands *commands;
     int64_t x, y; /* 2^26 words of 2^31 each stay in range */
-    size_t first; /* point of the open part */
+    size_t first; /* the first point of the open line */
     bool closed;
 } pen;
 
@@ -67,7 +72,7 @@ static bool close_ring(pen *p) {
     return add_world_point(geometry, x, y) && end_line(p);
 }
 
-/* So many points from words on. */
+/* Reads this many points from words on. */
 static bool run_command(pen *p, uint32_t command, const uint32_t *words, size_t count) {
     for (size_t i = 0; i < count; i++) {
         if (command == MOVE_TO) {

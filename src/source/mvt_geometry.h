@@ -1,4 +1,4 @@
-/* The geometry of a vector tile's feature: commands to parts. */
+/* The geometry of a vector tile's feature: drawing commands become lines. */
 #ifndef CAMBER_MVT_GEOMETRY_H
 #define CAMBER_MVT_GEOMETRY_H
 
@@ -10,7 +10,7 @@ typedef struct camber_mvt_geometry {
     double *points; /* world coordinates */
     size_t *ends;
     size_t point_count, point_capacity, line_count, line_capacity;
-    const char *damage; /* NULL: none. The parts are what reads */
+    const char *damage; /* NULL: none. The lines are those that can be read */
 } camber_mvt_geometry;
 
 typedef struct camber_mvt_commands {
@@ -18,10 +18,10 @@ typedef struct camber_mvt_commands {
     size_t count;
     camber_geometry_kind kind;
     uint32_t column, row, extent;
-    double side; /* tiles that the world is wide */
+    double side; /* the world's width in tiles */
 } camber_mvt_commands;
 
-/* Replaces the parts. Returns CAMBER_ERROR_MEMORY. */
+/* Replaces the lines. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_mvt_geometry_read(camber_mvt_geometry *geometry, const camber_mvt_commands *commands);
 void camber_mvt_geometry_free(camber_mvt_geometry *geometry);
 

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-/* By thing: what stands right before it in the lists. */
+/* For each thing, the things that stand right before it in the lists. */
 typedef struct befores {
     size_t *first; /* count + 1 */
     uint32_t *things;
@@ -12,7 +12,7 @@ typedef struct sorter {
     befores before;
     size_t *next;    /* by thing: the first of its befores that was not looked at */
     bool *begun;     /* by thing */
-    uint32_t *stack; /* of things that wait for others */
+    uint32_t *stack; /* the stack of things that wait for others */
     uint32_t *order;
     size_t done;
 } sorter;
@@ -36,7 +36,8 @@ static void list_befores(const camber_order_desc *desc, befores *before) {
     before->first[0] = 0;
 }
 
-/* Puts the thing, and before it what it waits for. What waits for itself that way is a contradiction: it is passed. */
+/* Appends the thing, and before it all that it waits for. Where it waits for itself that way, the lists contradict
+ * each other, and it is appended without waiting. */
 static void append_thing(sorter *sort, uint32_t thing) {
     size_t depth = 0;
     sort->stack[depth++] = thing;

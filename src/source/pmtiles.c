@@ -43,7 +43,7 @@ uint64_t camber_pmtiles_number(int zoom, uint32_t column, uint32_t row) {
     for (int z = zoom - 1; z >= 0; z--) {
         const uint32_t half = UINT32_C(1) << (z & 31), right = x & half ? 1 : 0, down = y & half ? 1 : 0;
         along += ((uint64_t)half * half) * ((3 * right) ^ down);
-        /* The curve of a quarter is turned. */
+        /* Turns the curve for a quarter of the square. */
         if (!down) {
             if (right) {
                 x = half - 1 - (x & (half - 1));
@@ -99,7 +99,7 @@ static uint64_t take_varint(cursor *c) {
     return 0;
 }
 
-/* What is wrong with them, NULL where nothing is. */
+/* Says why the entries are not valid; NULL: they are. */
 static const char *read_entries(cursor *c, camber_pmtiles_entry *made, size_t count) {
     const char *why = NULL;
     uint64_t number = 0;
@@ -148,7 +148,7 @@ static camber_status fail(const camber_tile_set *set, const char *why) {
                        why);
 }
 
-/* The bytes of a part of the file. *why: it lies past the end. */
+/* Reads a range of the file. *why: it lies past the end. */
 static camber_status read_range(camber_tile_set *set, range at, size_t limit_bytes, camber_bytes *bytes,
                                 const char **why) {
     const archive *self = set->self;
@@ -178,7 +178,7 @@ static camber_status read_range(camber_tile_set *set, range at, size_t limit_byt
     return CAMBER_OK;
 }
 
-/* A part that is compressed as directories are: in *bytes. */
+/* Reads a range that is compressed as directories are, and decompresses it to *bytes. */
 static camber_status read_packed(camber_tile_set *set, range at, const char *what, const camber_bytes **bytes) {
     archive *self = set->self;
     const char *why = NULL;
@@ -214,7 +214,7 @@ static range leaf_of(const archive *self, const camber_pmtiles_entry *entry) {
     return (range){entry->offset <= room ? self->leaves.offset + entry->offset : UINT64_MAX, entry->size};
 }
 
-/* The last entry that does not lie behind the number; NULL: all do. */
+/* Finds the last entry that does not begin behind the number; NULL: all do. */
 static const camber_pmtiles_entry *find_entry(const directory *in, uint64_t number) {
     size_t low = 0, high = in->count;
     while (in->entries && low < high) {
@@ -259,7 +259,7 @@ static camber_status get_tile(camber_tile_set *set, int zoom, camber_tile_index 
 typedef struct listing {
     camber_tile_set *set;
     int zoom;
-    uint64_t first, end; /* numbers of the zoom */
+    uint64_t first, end; /* the tile numbers of the zoom */
     camber_tile_index *tiles;
     size_t count, capacity;
 } listing;
@@ -408,7 +408,7 @@ static camber_status read_metadata(camber_tile_set *set) {
         return status;
     json_t *about = json_loadb((const char *)bytes->data, bytes->size_bytes, JSON_DECODE_INT_AS_REAL, NULL);
     if (json_is_object(about)) {
-        /* What the header tells is right. */
+        /* The header's own zooms and bounds come last, since they are right. */
         json_object_del(about, "minzoom");
         json_object_del(about, "maxzoom");
         json_object_del(about, "bounds");

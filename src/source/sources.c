@@ -1,3 +1,8 @@
+/* Opens the sources that a style's line layers name, and reads them.
+ *
+ * Input: the style, the folder that its relative paths start from, and the quadrangle that the view sees. Output:
+ * features. GeoJSON is read when it is opened; tiles are read for the view, at the zoom that it has.
+ */
 #include "source/sources.h"
 #include "source/geojson.h"
 #include "source/mercator.h"
@@ -16,8 +21,8 @@ typedef struct source {
     const camber_style_source *style;
     uint32_t index;
     char what[160];       /* source "name" */
-    char pointer[1024];   /* STYLE: /sources/name, for what is wrong there */
-    camber_tile_set *set; /* of a vector source */
+    char pointer[1024];   /* STYLE: /sources/name, for messages about the style */
+    camber_tile_set *set; /* set for a vector source */
     bool is_bounded;      /* the document has bounds: no tiles lie outside */
     double bounds[4];     /* world coordinates; x0 > x1: not known */
 } source;
@@ -64,7 +69,7 @@ static camber_status load_json(camber_context *context, const char *what, const 
                                                                           : "get the file again");
 }
 
-/* The style says what to do, or it is a matter of its paths. */
+/* Fails where a file is missing; the style says what to do, or the message tells to check its paths. */
 static camber_status check_there(const camber_sources *sources, const source *one, const char *path) {
     struct stat about;
     if (!camber_file_is_reached(sources->context, path) || stat(path, &about) == 0 ||
@@ -145,7 +150,7 @@ static camber_status open_archive(camber_sources *sources, source *one, const ca
                        "%s: %s ends neither in .mbtiles nor in .pmtiles; rename it", one->what, url->path);
 }
 
-/* about: of the style, or of the TileJSON file at base_path. */
+/* about: the style's own object, or the TileJSON file at base_path. */
 static camber_status open_template(camber_sources *sources, source *one, const json_t *about, const char *base_path) {
     const bool is_style = base_path == sources->desc.base_path;
     const char *pointer = is_style ? one->pointer : base_path;
@@ -170,7 +175,7 @@ static camber_status open_template(camber_sources *sources, source *one, const j
     return status;
 }
 
-/* about: of the style, laid over what the TileJSON file tells. */
+/* about: the style's own object, laid over that of the TileJSON file. */
 static camber_status open_tilejson(camber_sources *sources, source *one, const char *path, json_t *about) {
     json_t *loaded = NULL;
     camber_status status = check_there(sources, one, path);
@@ -178,7 +183,7 @@ static camber_status open_tilejson(camber_sources *sources, source *one, const c
         status = load_json(sources->context, one->what, path, &loaded);
     if (status != CAMBER_OK)
         return status;
-    /* Its own paths start from itself. */
+    /* Paths in the TileJSON file start from its own folder. */
     const char *base_path = json_object_get(about, "tiles") ? sources->desc.base_path : path;
     json_object_update_missing(about, loaded);
     json_decref(loaded);
@@ -228,8 +233,8 @@ done:
 
 /* ---- All of them ---- */
 
-/* The lines added since, of one source. Dashes and what follows a line's progress begin with each feature, and ends
- * that darken each other are for the style to have. */
+/* Merges and weighs the lines that one source added. They are not merged where dashes or line-progress begin anew
+ * with each feature, or where the style wants overlapping ends to darken each other. */
 static camber_status merge_and_weigh(camber_features *features, size_t first_polyline) {
     const double start_ms = camber_now_ms();
     camber_status status = CAMBER_OK;
@@ -262,7 +267,7 @@ static camber_status open_source(camber_sources *sources, source *one) {
     return CAMBER_OK;
 }
 
-/* A style that is no file has its own name. */
+/* Writes where the source stands; a style that is not a file goes by its own name. */
 static void write_pointer(source *one, const camber_style *style, const char *base_path) {
     const char *name = style->name && *style->name ? style->name : "style";
     snprintf(one->pointer, sizeof one->pointer, "%.800s: /sources/", base_path ? base_path : name);

@@ -1,3 +1,8 @@
+/* Loads the sprites of a style: a sheet of pictures (PNG) and an index (JSON) that says where each picture is.
+ *
+ * Input: the style's sprite URLs and the ratio of device pixels. Output: images by name. A sprite that cannot be read
+ * is warned of and left out, since a map without its patterns is better than no map.
+ */
 #include "source/sprite.h"
 
 #include "source/features.h"
@@ -23,7 +28,7 @@ static void premultiply(camber_sprite_sheet *sheet) {
     }
 }
 
-/* libpng's short form: it says what is wrong and jumps nowhere. */
+/* libpng's simplified interface, which returns errors as text and does not longjmp. */
 static camber_status decode_png(camber_context *context, const char *path, png_image *image,
                                 camber_sprite_sheet *sheet) {
     if (image->width > SIDE_MAX_PX || image->height > SIDE_MAX_PX || image->width > AREA_MAX_PX / image->height)
@@ -66,7 +71,7 @@ typedef struct index_reader {
     size_t sheet;
 } index_reader;
 
-/* A whole number of px. */
+/* Reads a whole number of px. */
 static bool read_px(const json_t *image, const char *key, double least, uint32_t *px) {
     const json_t *json = json_object_get(image, key);
     const double value = json_number_value(json);
@@ -130,7 +135,7 @@ static camber_status load_index(index_reader *r) {
 
 /* ---- Sprites ---- */
 
-/* path and what comes behind it. */
+/* Puts a suffix behind the path. */
 static char *add_suffix(camber_context *context, const char *path, const char *tail) {
     const size_t size = strlen(path) + strlen(tail) + 1;
     char *made = camber_alloc(context, size, 1);
@@ -164,12 +169,12 @@ static camber_status find_file(camber_context *context, const char *path, const 
         return CAMBER_ERROR_MEMORY;
     struct stat about;
     *found = !camber_file_is_reached(context, whole) || stat(whole, &about) == 0 ||
-             (errno != ENOENT && errno != ENOTDIR); /* what else is wrong is told later */
+             (errno != ENOENT && errno != ENOTDIR); /* other errors are told when the file is read */
     camber_free(context, whole);
     return CAMBER_OK;
 }
 
-/* A sprite without a large form is drawn from its small one. */
+/* Loads the large form of a sprite, or the small one where it has no other. */
 static camber_status load_either_density(camber_sprites *sprites, const camber_style_sprite *sprite, const char *path,
                                          double ratio) {
     bool large = false, small = false;
@@ -185,7 +190,7 @@ static camber_status load_either_density(camber_sprites *sprites, const camber_s
                        sprite->id, path);
 }
 
-/* A map without its patterns is better than none. */
+/* Warns of a sprite that cannot be read: a map without its patterns is better than none. */
 static void warn_left_out(const camber_sprites *sprites, const camber_style_sprite *sprite) {
     camber_log(sprites->context, CAMBER_LOG_WARNING,
                "sprite \"%s\": %s is on the network, which camber does not use; what is drawn with its images is left "

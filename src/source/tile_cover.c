@@ -4,13 +4,13 @@
 
 static const double MOST_TILES = 65536;
 
-/* A view that ends on a border does not see what lies behind it. */
+/* The tolerance, in tiles, at which a view that ends on a border does not see the tile behind it. */
 static const double SLACK = 1e-6;
 
 typedef struct grid {
     const camber_tile_cover *cover;
-    double side;                       /* tiles that the world is wide */
-    double west, north, columns, rows; /* the tiles looked at; west may be negative */
+    double side;                       /* the world's width in tiles */
+    double west, north, columns, rows; /* the tiles that may be seen; west may be negative */
     double wanted[4];                  /* bounds in tiles */
 } grid;
 
@@ -36,7 +36,8 @@ static bool is_beside(const grid *g, double column, double row) {
     return false;
 }
 
-/* Bounds have no worlds: those of a tile of the next one are looked at in the first. */
+/* Whether the view sees the tile. Bounds have no copies of the world: a tile of the next world is compared in the
+ * first. */
 static bool is_seen(const grid *g, double column, double row) {
     const double at = column - floor(column / g->side) * g->side;
     return column >= g->west && column < g->west + g->columns && row >= g->north && row < g->north + g->rows &&
@@ -58,7 +59,7 @@ static void find_grid(grid *g) {
     }
     g->west = floor(low[0] + SLACK);
     g->columns = ceil(high[0] - SLACK) - g->west;
-    /* As wide as the world or wider: each tile once, in the world of the middle. */
+    /* The view is as wide as the world or wider: each tile is listed once, in the world of the middle. */
     if (high[0] - low[0] >= g->side) {
         g->west = floor((low[0] + high[0]) / 2 / g->side) * g->side;
         g->columns = g->side;

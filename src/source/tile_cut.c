@@ -12,7 +12,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Coordinates come through metres; what lies this close to a multiple of 1/16 unit was one. */
+/* Coordinates went through metres and back; those this close to a multiple of 1/16 unit are rounded to it. */
 static const double SNAP = 0.01 / 16;
 
 camber_status camber_tile_stitcher_create(camber_context *context, int zoom, camber_tile_stitcher **stitcher) {
@@ -99,10 +99,10 @@ typedef struct tile_box {
 typedef struct tile_cut {
     camber_tile_stitcher *stitcher;
     tile_box box;
-    camber_cut_line line; /* the open one where open; its place and feature hold for all */
+    camber_cut_line line; /* the line under construction while open; its tile and feature hold for all lines */
     bool open;
     const double *progress; /* NULL: none */
-    double length, done;    /* of the part, and of it before the segment */
+    double length, done;    /* the line's length, and its length before the segment */
 } tile_cut;
 
 static bool on_border(const tile_box *box, const double *point) {
@@ -120,8 +120,8 @@ static bool along_border(const tile_box *box, const double *p, const double *q) 
     return false;
 }
 
-/* Liang and Barsky: the part of the segment p q inside the box, ends put on the border exactly. false: none, or a
- * point only. */
+/* Clips the segment p q to the box (Liang and Barsky) and puts cut ends exactly on the border. false: nothing of it
+ * is inside, or one point only. */
 static bool clip_segment(const tile_box *box, const double *p, const double *q, double ends[4], bool cut[2]) {
     double t[2] = {0, 1};
     int axis_of[2] = {-1, -1};
@@ -230,7 +230,7 @@ static camber_status cut_segment(tile_cut *cut, const double *p, const double *q
     return status;
 }
 
-/* A ring that the border cuts comes in two pieces at the point where it happens to begin: makes them one. */
+/* A ring that the border cuts comes as two lines that meet where the ring happens to begin: makes them one. */
 static camber_status close_ring(camber_tile_stitcher *stitcher, size_t first_line, const double *start) {
     if (stitcher->line_count < first_line + 2)
         return CAMBER_OK;
@@ -252,7 +252,7 @@ static camber_status close_ring(camber_tile_stitcher *stitcher, size_t first_lin
     return CAMBER_OK;
 }
 
-/* To the next point. */
+/* The distance to the next point. */
 static double segment_length(const double *point) {
     return hypot(point[2] - point[0], point[3] - point[1]);
 }
@@ -284,7 +284,7 @@ static camber_status cut_line(tile_cut *cut, const double *points, size_t count,
     return status;
 }
 
-/* A whole tile more where the buffer is kept: what lies beyond is no buffer. */
+/* The box that lines are cut to: a whole tile more at open sides, where the buffer is kept. */
 static tile_box box_of(const camber_tile_feature *feature) {
     const double column = feature->column, row = feature->row;
     const unsigned open = feature->open_sides;

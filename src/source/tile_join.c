@@ -11,20 +11,20 @@
 #include <math.h>
 #include <string.h>
 
-/* How far partners may lie apart, in units. A tile's lines are rounded to its grid, of 2048 or 4096 units as a rule,
- * and a line that the buffer cuts is rounded once more, which moves where it crosses the border. */
+/* How far partners may lie apart, in units. A tile's lines are rounded to its grid, mostly of 2048 or 4096 units. A
+ * line that the buffer cuts is rounded once more, which moves where it crosses the border. */
 static const double REACH = 4;
 
-/* The same for pieces with one id, whose lines may cross the border at a flat angle: 1/128 of a tile. */
+/* The same for lines with one id, which may cross the border at a flat angle: 1/128 of a tile. */
 static const double ID_REACH = 32;
 
-/* Grids coarser than 1/64 of a tile are no grids of maps. */
+/* No map uses a grid coarser than 1/64 of a tile. */
 static const double MOST_REACH = 32;
 
-/* Partners that agree to the point are taken first, so that two lines that cross side by side keep apart. */
+/* Partners that agree exactly are joined first, so that two lines that cross side by side stay apart. */
 static const double EXACT = 0.01;
 
-/* Candidates looked at in a cell; more share one only in files made to slow us down. */
+/* How many candidates are compared in a cell; more of them share one only in files that were made to slow us down. */
 enum { MAX_CANDIDATES = 64 };
 
 #define NONE CAMBER_NO_END
@@ -32,13 +32,13 @@ enum { MAX_CANDIDATES = 64 };
 typedef struct joiner {
     camber_tile_stitcher *stitcher;
     uint32_t *partner;
-    uint32_t *heads; /* of the lists of ends in a cell; head_count is a power of two */
+    uint32_t *heads; /* the first end in each cell's list; head_count is a power of two */
     size_t head_count;
     uint32_t *next;
 } joiner;
 
 typedef struct join_pass {
-    bool by_id; /* else by class: what is left has no id, or one that its tile gave it */
+    bool by_id; /* else by class: the lines that are left have no id, or one that its tile gave them */
     double reach;
     bool directed;
 } join_pass;
@@ -129,7 +129,7 @@ static void find_partners(joiner *join, const join_pass *pass) {
     }
 }
 
-/* Both neighbours have what runs along their border: keeps one of each. Uses the lists, by piece. */
+/* Both neighbours have the lines that run along their border: keeps one of each. Uses the lists, by line. */
 static void drop_repeated_border_lines(joiner *join) {
     camber_tile_stitcher *stitcher = join->stitcher;
     memset(join->heads, 0xff, join->head_count * sizeof *join->heads);
@@ -159,8 +159,8 @@ static void drop_repeated_border_lines(joiner *join) {
     }
 }
 
-/* Where a line passes the corner of four tiles, one of them may hold nothing but a crumb between two cuts, and both
- * ends of it lie within reach of the neighbours. Without it these find each other. */
+/* Drops crumbs. Where a line passes the corner of four tiles, one tile may hold only a crumb between two cuts, whose
+ * ends both lie within reach of the neighbours. Without the crumb the neighbours find each other. */
 static void drop_crumbs(const joiner *join, double reach) {
     camber_tile_stitcher *stitcher = join->stitcher;
     for (uint32_t i = 0; i < stitcher->line_count; i++) {
@@ -173,15 +173,15 @@ static void drop_crumbs(const joiner *join, double reach) {
 
 /* ---- Chains ---- */
 
-/* Whether the point that a piece is entered by is left out: at a joint one point is left, or none where both were made
- * by cutting. */
+/* Whether the point that a line is entered by is left out. At a joint one point stays, or none where cutting made
+ * both. */
 static bool skips_entry(const joiner *join, uint32_t enter) {
     const camber_cut_line *lines = join->stitcher->lines;
     const uint32_t leave = join->partner[enter];
     return leave != NONE && (!lines[leave / 2].cut[leave & 1] || lines[enter / 2].cut[enter & 1]);
 }
 
-/* The chain's points, in world coordinates, to scratch; last: the end that it is left by. */
+/* Copies the chain's points, in world coordinates, to scratch; last: the end that the chain ends with. */
 static bool gather_points(const joiner *join, uint32_t start, size_t *count, uint32_t *last) {
     camber_tile_stitcher *stitcher = join->stitcher;
     size_t points = 0;
@@ -222,7 +222,7 @@ typedef struct chain_list {
     size_t key_count;
 } chain_list;
 
-/* A chain takes the place of each of its pieces. */
+/* Each line of a chain gets the chain's key. */
 static void key_lines(const joiner *join, const chain_list *list, uint32_t *keys) {
     for (size_t i = 0; i < list->count; i++) {
         uint32_t end = list->chains[i].start;
@@ -241,8 +241,9 @@ static bool same_list(const camber_tile_stitcher *stitcher, const camber_feature
            features->classes[classes[0]].layer == features->classes[classes[1]].layer;
 }
 
-/* What lies on top in one tile does so in all: a tile's order of features is its author's, roads of more weight last,
- * and a road that begins in the first tile must not lie below all of the second. */
+/* Decides the order of drawing: lines that lie on top in one tile do so in all. A tile's order of features is its
+ * author's, with roads of more weight last; a road that begins in the first tile must not lie below all of the
+ * second. */
 static camber_status find_order(const joiner *join, const camber_features *features, uint32_t *keys, chain_list *list) {
     const camber_tile_stitcher *stitcher = join->stitcher;
     camber_context *context = stitcher->context;
@@ -349,7 +350,7 @@ camber_status camber_tile_stitcher_finish(camber_tile_stitcher *stitcher, camber
         join.partner[i] = NONE;
     drop_repeated_border_lines(&join);
     const bool directed = features->style->directed;
-    /* Tiles of a coarser grid than 2048 round as much more. */
+    /* Tiles with a coarser grid than 2048 round correspondingly more. */
     const double reach = REACH * fmin(fmax(1, stitcher->grid / 2), MOST_REACH), id_reach = fmax(ID_REACH, reach);
     const join_pass passes[] = {{true, EXACT, directed},
                                 {true, reach, directed},

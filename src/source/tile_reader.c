@@ -1,3 +1,9 @@
+/* Reads the tiles of a set into features, and a file of tiles as a whole.
+ *
+ * Input: an open set, and the addresses of the tiles to read. Output: features whose lines are joined across borders,
+ * and counts of what was found, lost and damaged. For a file without a style of its own the layer with roads is
+ * chosen by the names that common schemas give to it.
+ */
 #include "source/tile_reader.h"
 
 #include <stdio.h>
@@ -111,12 +117,12 @@ typedef struct input {
     int zoom;
     camber_tile_address *addresses;
     size_t address_count;
-    const char **layers; /* to read */
+    const char **layers; /* the layers to read */
     size_t layer_count;
     char *layer; /* the one of them that the style does not name. NULL: it names all */
 } input;
 
-/* Every tile of the highest zoom. */
+/* Lists every tile of the highest zoom. */
 static camber_status list_addresses(input *self) {
     camber_tile_index *addresses = NULL;
     camber_status status = CAMBER_OK;
@@ -148,7 +154,7 @@ static camber_status fail_damaged(const input *self, const camber_mvt_stats *sta
                        self->desc->path, stats->damage);
 }
 
-/* What tiles do not tell of themselves is looked for in all of them. */
+/* Lists the layers by looking through all tiles, where the set does not tell them. */
 static camber_status look_for_layers(input *self) {
     camber_context *context = self->context;
     reader look = {.context = context, .bytes.context = context};
@@ -248,7 +254,7 @@ static bool names_layers(const camber_style *style) {
     return false;
 }
 
-/* Those of the set that the style's layers name. */
+/* Lists the layers of the set that the style's layers name. */
 static void list_named(input *self) {
     const camber_style *style = self->features->style;
     for (size_t i = 0; i < style->layer_count; i++) {
@@ -301,7 +307,7 @@ static camber_status read_input(input *self, camber_tile_result *result) {
     return camber_features_read_tiles(self->features, &reading, result);
 }
 
-/* What it gave, looked at as a whole. */
+/* Fails where the file as a whole gave nothing that can be drawn. */
 static camber_status check_result(const input *self, const camber_mvt_stats *stats,
                                   const camber_features_mark *before) {
     if (self->features->feature_count > before->feature_count)
@@ -324,7 +330,7 @@ static void add_stats(camber_features *features, const camber_mvt_stats *stats) 
     features->stats.damaged_features += stats->damaged_features;
 }
 
-/* Points and areas are no news: nobody asked for them. */
+/* Warns of losses. Points and areas are not mentioned as such: nobody asked for them. */
 static void warn_of_losses(const input *self, const camber_mvt_stats *stats) {
     if (stats->damaged_features)
         camber_log(self->context, CAMBER_LOG_WARNING,

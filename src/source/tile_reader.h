@@ -1,4 +1,4 @@
-/* Tiles of a set into features, their pieces joined. */
+/* Reads tiles of a set into features, whose lines are joined across the tiles' borders. */
 #ifndef CAMBER_TILE_READER_H
 #define CAMBER_TILE_READER_H
 
@@ -16,13 +16,13 @@ typedef struct camber_tile_reading {
 typedef struct camber_tile_result {
     camber_mvt_stats stats;
     size_t found; /* tiles that are there */
-    size_t lost;  /* of these, those that are damaged and give nothing */
+    size_t lost;  /* those of them that are damaged and give nothing */
 } camber_tile_result;
 
-/* Adds features and their polylines, of features->source. Where it fails the caller takes them out again. */
+/* Adds features and their polylines to features->source. Where it fails, the caller resets the set. */
 camber_status camber_features_read_tiles(camber_features *features, const camber_tile_reading *reading,
                                          camber_tile_result *result);
-/* camber_features_read of a file that camber_tile_set_knows. */
+/* The part of camber_features_read for files that camber_tile_set_knows. */
 camber_status camber_features_read_tile_file(camber_features *features, const camber_source_desc *desc);
 
 /* ---- A set as it was, for what fails half way ---- */
@@ -35,7 +35,7 @@ typedef struct camber_features_mark {
 } camber_features_mark;
 
 camber_features_mark camber_features_get_mark(const camber_features *features);
-/* Spare classes stay. */
+/* Takes out all that was added since the mark; classes that nothing uses any more stay. */
 void camber_features_reset(camber_features *features, const camber_features_mark *mark);
 
 #endif

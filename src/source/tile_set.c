@@ -1,3 +1,8 @@
+/* Sets of vector tiles: what folders of files, MBTiles and PMTiles have in common, and the folders themselves.
+ *
+ * Input: a path or a template of paths. Output: the decompressed bytes of a tile, and what the set says of itself:
+ * zooms, bounds, attribution, layers. How much a tile may take when decompressed is limited by the budget.
+ */
 #include "source/tile_set.h"
 
 #include <errno.h>
@@ -6,7 +11,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
-/* Tiles of real maps stay below a megabyte or few; a bomb does not. */
+/* The most that one tile may take decompressed: real maps stay below a few megabytes, a decompression bomb does not. */
 static const size_t LARGEST_TILE_BYTES = (size_t)64 << 20;
 
 void camber_bytes_free(camber_bytes *bytes) {
@@ -124,7 +129,7 @@ static bool read_bounds(const json_t *json, double bounds[4]) {
            bounds[1] < bounds[3];
 }
 
-/* What tells more of the set later has the last word. */
+/* A later description of the set replaces an earlier one. */
 static camber_status take_attribution(camber_tile_set *set, const json_t *about) {
     const char *text = json_string_value(json_object_get(about, "attribution"));
     char *copy = text ? camber_copy_string(set->context, text) : NULL;
@@ -166,7 +171,7 @@ static void put_quadkey(char *out, int zoom, camber_tile_index tile) {
     *out = 0;
 }
 
-/* What {...} stands for. false: it is left as it is. */
+/* Writes what {...} stands for. false: it is left as it is. */
 static bool expand_token(const file_set *files, const char *token, size_t length, int zoom, camber_tile_index tile,
                          char out[40]) {
     const uint32_t turned = (UINT32_C(1) << zoom) - 1 - tile.row;

@@ -6,21 +6,21 @@
 
 typedef struct camber_tile_stitcher camber_tile_stitcher;
 
-/* Sides of a tile: x0, x1 (east), y0, y1 (south). */
+/* Sides of a tile: west x0, east x1, north y0, south y1. */
 enum { CAMBER_SIDE_WEST = 1, CAMBER_SIDE_EAST = 2, CAMBER_SIDE_NORTH = 4, CAMBER_SIDE_SOUTH = 8 };
 
 typedef struct camber_tile_feature {
     uint32_t column, row; /* tile, from the north-west; a column beyond the last is one of the next world */
     uint32_t class_index;
-    bool outline; /* of a polygon: what runs along the border is the tile's doing */
+    bool outline; /* of a polygon: lines along the border were made by the tile and are left out */
     bool has_id;
     uint64_t id; /* the same in every tile */
     bool has_progress;
-    double progress[2];  /* line-progress at the ends of each part; whatever the style, without it none is kept */
+    double progress[2];  /* line-progress at the ends of each line; without has_progress none is kept */
     unsigned open_sides; /* CAMBER_SIDE_*: the neighbour there is not read, and the tile's buffer is kept */
 } camber_tile_feature;
 
-/* Polylines as world coordinates: part i ends before point ends[i]. */
+/* Polylines in world coordinates: line i ends before point ends[i]. */
 typedef struct camber_tile_lines {
     const double *points;
     const size_t *ends;
@@ -30,25 +30,25 @@ typedef struct camber_tile_lines {
 /* zoom: 0 to 30. */
 camber_status camber_tile_stitcher_create(camber_context *context, int zoom, camber_tile_stitcher **stitcher);
 void camber_tile_stitcher_destroy(camber_tile_stitcher *stitcher);
-/* Cuts the parts at the tile's border and keeps what lies inside. */
+/* Cuts the lines at the tile's border and keeps what lies inside. */
 camber_status camber_tile_stitcher_add(camber_tile_stitcher *stitcher, const camber_tile_feature *feature,
                                        const camber_tile_lines *lines);
-/* Joins the pieces and adds them to the set. Where the style is directed, an end is joined to a start only. */
+/* Joins the lines and adds them to the set. Where the style is directed, an end is joined only to a start. */
 camber_status camber_tile_stitcher_finish(camber_tile_stitcher *stitcher, camber_features *features);
 
 /* ---- Between the two ---- */
 
-/* Coordinates of pieces are units of 1/4096 of a tile, from the world's north-west corner: tiles are quantised to
+/* Coordinates of cut lines are units of 1/4096 of a tile, from the world's north-west corner. Tiles are quantised to
  * this or to half or double as much, and a double holds them exactly at all zooms. */
 #define CAMBER_TILE_UNITS 4096.0
 
 typedef struct camber_cut_line {
-    size_t first, count; /* points; count 0: not there any more */
+    size_t first, count; /* its points; count 0: the line is not there any more */
     uint32_t feature;    /* index into features */
     uint32_t column, row;
     bool cut[2];       /* the first and last point were cut, and are no points of the feature */
     bool border[2];    /* they lie on the tile's border */
-    bool along_border; /* runs along the border: the neighbour has it too */
+    bool along_border; /* the whole line lies along the border: the neighbour has it too */
     float progress[2];
 } camber_cut_line;
 
@@ -61,16 +61,16 @@ typedef struct camber_cut_feature {
 
 struct camber_tile_stitcher {
     camber_context *context;
-    double units;      /* that the world is wide */
-    double grid;       /* of the coarsest tile, in units */
-    bool has_progress; /* of some piece */
+    double units;      /* the world's width in units */
+    double grid;       /* the step of the coarsest tile's grid, in units */
+    bool has_progress; /* a line has progress */
     double *points;
     size_t point_count, point_capacity;
     camber_cut_line *lines; /* fewer than 2^31 */
     size_t line_count, line_capacity;
-    camber_cut_feature *features; /* one for all the pieces with one id and class */
+    camber_cut_feature *features; /* one for all the lines with one id and class */
     size_t feature_count, feature_capacity;
-    uint32_t *slots; /* of features with an id, + 1; slot_count is a power of two */
+    uint32_t *slots; /* hash table of features with an id, + 1; slot_count is a power of two */
     size_t slot_count;
     double *scratch; /* one polyline */
     size_t scratch_capacity;

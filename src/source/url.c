@@ -17,7 +17,7 @@ static int hex_digit(char c) {
     return isdigit((unsigned char)c) ? c - '0' : isxdigit((unsigned char)c) ? tolower((unsigned char)c) - 'a' + 10 : -1;
 }
 
-/* %20 and its like; a 0 is left as it stands. */
+/* Decodes %20 and its like; %00 is left as it stands. */
 static void decode_escapes(char *text) {
     char *out = text;
     for (; *text; text++) {

@@ -1,5 +1,8 @@
-/* What is wrong with a style document, and what is drawn of it: the document is read to its end, and what reading says
- * is collected. */
+/* Checks a style document: lists all that is wrong with it, and says which layers and sources are drawn.
+ *
+ * Input: the document's bytes. Output: a report of findings, each with a JSON pointer. The document is read to its end,
+ * past what is wrong, and the messages of reading are collected instead of logged.
+ */
 #include "style/document.h"
 
 #include <stdio.h>

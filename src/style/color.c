@@ -1,3 +1,7 @@
+/* Parses colours as CSS Color Module Level 4 writes them: hex digits, rgb(), hsl() and names.
+ *
+ * Input: text. Output: straight sRGB components from 0 to 1; false where the text is not a colour.
+ */
 #include "style/color.h"
 
 #include "style/number.h"

@@ -1,4 +1,8 @@
-/* Places and errors, nodes, types, constants. */
+/* The compiler of expressions: where in the document it is, errors, nodes, types, and constants that are folded.
+ *
+ * Input: JSON. Output: camber_expression. Operands are compiled first and wait on a stack; an operator takes its own
+ * from there. An operator whose operands are all constants is evaluated at once and becomes a constant.
+ */
 #include "style/compiler.h"
 
 #include <math.h>

@@ -1,4 +1,7 @@
-/* Style documents: what the specification calls the root. */
+/* Reads a style document: its root, sources, sprites, camera and state; layer.c reads the layers.
+ *
+ * Input: bytes. Output: camber_style. Sources are read before the layers, which name them.
+ */
 #include "style/document.h"
 
 #include "base/embedded.h"

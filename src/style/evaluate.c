@@ -1,4 +1,8 @@
-/* One expression over inputs, as the specification's own tests have it. */
+/* Evaluates one expression over a list of inputs, in the format of the specification's own tests.
+ *
+ * Input: {"expression": ..., "propertySpec": ..., "inputs": [...]}. Output: JSON with the compiled type or the errors,
+ * and an output for each input. `camber style eval` prints it.
+ */
 #include "style/compiler.h"
 
 #include <math.h>

@@ -1,4 +1,7 @@
-/* Filters: expressions, and the older form ["==", "highway", "primary"], told apart as the specification does. */
+/* Compiles filters: expressions, and the older form ["==", "highway", "primary"].
+ *
+ * Input: JSON. Output: an expression that is true or false. The two forms are told apart as the specification does.
+ */
 #include "style/operators.h"
 
 #include <string.h>

@@ -1,5 +1,8 @@
-/* Functions as styles had them before expressions: of zoom, of a feature's property, or of both. What they become is
- * what the specification's own conversion makes of them. */
+/* Compiles functions as styles had them before expressions: of zoom, of a feature's property, or of both.
+ *
+ * Input: {"stops": ...} and the property's row. Output: nodes of an expression, as the specification's own conversion
+ * from functions to expressions makes them.
+ */
 #include "style/operators.h"
 
 #include <math.h>

@@ -1,3 +1,8 @@
+/* Reads JSON with jansson, and turns it into values of expressions.
+ *
+ * Input: bytes, of a style or of data. Output: jansson's document, or values in an arena. Data may hold numbers that
+ * jansson refuses (NaN, infinities, beyond a double): they are replaced in a copy, so that it parses.
+ */
 #include "style/json.h"
 
 #include <errno.h>

@@ -1,4 +1,7 @@
-/* Layers of a style document: what any layer has, its filter, and its layout and paint by the table of properties. */
+/* Reads the layers of a style document: source, zooms, filter, and layout and paint by the table of properties.
+ *
+ * Input: JSON of a layer. Output: camber_style_layer. Layers of kinds that are not drawn are left out with a warning.
+ */
 #include "style/document.h"
 #include "style/ramp.h"
 

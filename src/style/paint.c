@@ -1,4 +1,7 @@
-/* What a layer draws a feature with: its properties evaluated, those that features do not change once. */
+/* Evaluates how a layer draws a feature: the properties that features do not change are evaluated once.
+ *
+ * Input: a compiled layer, a zoom, a feature. Output: camber_layer_paint.
+ */
 #include "style/properties.h"
 
 #include <math.h>

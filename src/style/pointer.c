@@ -1,4 +1,5 @@
-/* JSON pointers of messages: where something stands, and short, so that cause and cure stay in sight. */
+/* Writes JSON pointers for messages: where something is in the document, shortened so that cause and cure stay visible.
+ */
 #include "style/compiler.h"
 
 #include <stdio.h>

@@ -1,4 +1,7 @@
-/* What stands for a property: a constant, an expression or a function, and what it may depend on. */
+/* Compiles the value of a property (a constant, an expression or a function) and checks what it may depend on.
+ *
+ * Input: JSON and the property's row. Output: an expression, or an error that says what to write instead.
+ */
 #include "style/compiler.h"
 
 #include <math.h>

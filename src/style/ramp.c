@@ -1,5 +1,8 @@
-/* A line-gradient as a ramp of stops: at the stops of its steps and interpolations, and between them where it bends, so
- * that straight pieces between the stops are as good as the expression. */
+/* Turns a line-gradient into a ramp of colour stops.
+ *
+ * Input: an expression of line-progress. Output: sorted stops. Stops stand where the expression's own curves have them,
+ * and between these where it bends, so that straight colours between stops are as good as the expression.
+ */
 #include "style/ramp.h"
 
 #include "style/evaluation.h"

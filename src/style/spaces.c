@@ -1,3 +1,7 @@
+/* Mixes two colours: in sRGB, in CIELAB, or in CIELAB's cylinder LCh, which the specification calls hcl.
+ *
+ * CIELAB is over the white point D50, with sRGB's primaries adapted to D50 by Bradford. Lightness goes from 0 to 100.
+ */
 #include "style/spaces.h"
 
 #include <math.h>

@@ -1,3 +1,7 @@
+/* Types of expressions: making them, comparing them and naming them.
+ *
+ * Arrays carry the type of their items and their length, up to three levels deep; deeper ones hold any value.
+ */
 #include "style/typing.h"
 
 #include <stdio.h>

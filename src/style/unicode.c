@@ -1,3 +1,12 @@
+/* Unicode by hand, for expressions: reading UTF-8, upper and lower case, and the order of a collator.
+ *
+ * It knows the scripts that maps are mostly labelled in and that have case or diacritics: Latin, Greek, Cyrillic,
+ * Armenian, Georgian. Other letters have one case, and are ordered by code point.
+ *
+ * A library would know all scripts. ICU is 36 MB installed, and libcamber-map does not link it: only GDAL brings it,
+ * late, after the style is compiled. libunistring is 1.8 MB and has no collation by base letters without a locale of
+ * the process. Filters on roads need neither, so these tables stay (Debian 12, 2026-11).
+ */
 #include "style/unicode.h"
 
 #include <string.h>

@@ -1,11 +1,11 @@
-/* Cuts features at the borders of their vector tiles, for join.c to join.
+/* Cuts the lines of features at the borders of their vector tiles; tile_join.c joins them again.
  *
- * A tile holds a feature's points inside it and in a buffer around it, so neighbours hold the buffer's lines
- * twice. Each piece is cut at its tile's border, where the neighbour's piece goes on:
+ * A tile holds the points of a feature inside it and in a buffer around it, so neighbours hold the buffer's lines
+ * twice. Each line is cut at its tile's border, where the neighbour's line continues it:
  *
  *         tile A    |    tile B
- *     a ------------c - - -            A's piece, with its buffer
- *             - - - c ------------ b   B's piece
+ *     a ------------c - - -            A's line, with its buffer
+ *             - - - c ------------ b   B's line
  */
 #include "source/tile_stitcher.h"
 

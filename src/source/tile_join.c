@@ -1,8 +1,8 @@
-/* Joins the pieces of features that vector tiles cut.
+/* Joins the lines of features that vector tiles cut.
  *
- * Ends that lie on borders are hashed by feature and place; the nearest end in another tile is the partner. Where
- * both are cuts, they are no points of the feature and are dropped: their neighbours were neighbours. Chains of
- * partners become polylines. All is linear in the number of points.
+ * Ends that lie on borders are hashed by feature and position; the nearest end in another tile is the partner. Where
+ * both ends were made by cutting, they are not points of the feature and are dropped: the points before and behind
+ * them were neighbours. Chains of partners become polylines. Time is linear in the number of points.
  */
 #include "source/chains.h"
 #include "source/order.h"

@@ -1,4 +1,6 @@
-/* Features in pieces, cut by vector tiles: tiles.c cuts them at the tiles' borders, join.c joins them again. */
+/* The stitcher joins features that vector tiles cut: tile_cut.c cuts their lines at the tiles' borders, exactly, and
+ * tile_join.c joins them across the borders.
+ */
 #ifndef CAMBER_TILE_STITCHER_H
 #define CAMBER_TILE_STITCHER_H
 

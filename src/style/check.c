@@ -7,9 +7,9 @@
 
 #include <stdio.h>
 
-/* A report, with room for what comes. */
+/* A report and what it is made from. */
 typedef struct checker {
-    camber_style_report report; /* first: what is handed out */
+    camber_style_report report; /* first, since its address is handed out */
     camber_context *context;
     camber_style_finding *findings;
     camber_style_type *types;
@@ -18,7 +18,7 @@ typedef struct checker {
     char **texts;
     size_t text_count, text_capacity;
     bool out_of_memory;
-    camber_soft_log log; /* kept, once that is said */
+    camber_soft_log log; /* holds back messages once memory ran out */
 } checker;
 
 static void fail_memory(checker *k) {
@@ -55,7 +55,7 @@ static void keep_problem(void *user, const camber_compiler *c, camber_log_level 
     report->error_count += error;
 }
 
-/* What reads well but draws otherwise than one may expect, of layers and the sources that they name. */
+/* Finds what is valid but may draw otherwise than expected, in layers and the sources that they name. */
 static void find_in_layer(camber_document *d, const camber_style_layer *layer, const char *type) {
     camber_compiler *c = &d->compiler;
     if (layer->kind != CAMBER_LAYER_LINE)
@@ -149,7 +149,7 @@ static void find_in_tiles(camber_document *d, const json_t *source) {
     }
 }
 
-/* What reading a source would tell, had a line layer named it. */
+/* Finds what reading a source would complain of, had a line layer named it. */
 static void find_in_sources(camber_document *d) {
     static const char *const types[] = {"vector", "raster", "raster-dem", "geojson", "image", "video", "canvas", NULL};
     camber_compiler *c = &d->compiler;

@@ -64,7 +64,7 @@ void camber_compiler_warn(camber_compiler *c, const char *format, ...) {
     va_end(list);
 }
 
-/* camber_alloc has told of it. */
+/* Sets the status; camber_alloc has logged the message. */
 static bool fail_memory(camber_compiler *c) {
     c->status = CAMBER_ERROR_MEMORY;
     return false;
@@ -194,7 +194,7 @@ bool camber_make_reader(camber_compiler *c, camber_evaluate_fn *evaluate, camber
 
 /* ---- Properties of features ---- */
 
-/* Four slots a property keep probes short. */
+/* Four slots for each property keep probes short. */
 enum { PROPERTY_SLOTS = 4 * CAMBER_PROPERTY_LIMIT };
 
 static size_t property_slot(const camber_compiler *c, const char *name) {
@@ -285,8 +285,9 @@ const camber_binding *camber_find_binding(const camber_compiler *c, const char *
 
 /* ---- Folding ---- */
 
-/* The state is no constant to types, an error is to fail only where it is met, and a collator's value is no value of
- * the language. A variable's value belongs to an evaluation. */
+/* Whether a node may be replaced by its value now. The state counts as unknown to types. An error is to fail only
+ * where it is reached. A collator's value is not a value of the language. A variable's value belongs to an
+ * evaluation. */
 static bool is_foldable(const camber_expression *e, const camber_node *node) {
     static camber_evaluate_fn *const kept[] = {camber_evaluate_constant, camber_evaluate_state, camber_evaluate_var,
                                                camber_evaluate_error, camber_evaluate_collator};
@@ -299,7 +300,7 @@ static bool is_foldable(const camber_expression *e, const camber_node *node) {
         const camber_node *operand = &e->nodes[e->links[node->first + i]];
         if (!camber_is_constant(operand) ||
             (node->evaluate == camber_evaluate_coalesce && operand->type.type == CAMBER_TYPE_IMAGE))
-            return false; /* which images there are is seen later */
+            return false; /* which images exist is known later */
     }
     return true;
 }
@@ -373,7 +374,7 @@ bool camber_annotate(camber_compiler *c, camber_typing expected, camber_annotati
 
 /* ---- Compilation ---- */
 
-/* What a constant was made of is not needed once it is one. */
+/* Drops the nodes that a constant was made from. */
 static bool drop_since(camber_compiler *c, const camber_expression *before, uint32_t *node) {
     camber_expression *e = c->expression;
     const camber_node constant = e->nodes[*node];

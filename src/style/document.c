@@ -205,7 +205,7 @@ static bool read_version(camber_document *d) {
            camber_document_goes_on(d, depth);
 }
 
-/* As the map's view has it. */
+/* The same limit as the map's view has. */
 static const double PITCH_MAX_DEG = 85.0;
 
 static bool read_camera(camber_document *d) {
@@ -239,7 +239,7 @@ static bool read_camera(camber_document *d) {
     return true;
 }
 
-/* Of ["global-state", key]. */
+/* Reads the defaults of ["global-state", key]. */
 static bool read_state(camber_document *d) {
     camber_compiler *c = &d->compiler;
     json_t *state = json_object_get(d->root, "state"), *value;
@@ -268,7 +268,7 @@ static void warn_at(camber_document *d, const char *key, const char *message) {
     camber_compiler_leave(&d->compiler);
 }
 
-/* What would change where lines lie. */
+/* Warns of root properties that would change where lines lie. */
 static void warn_of_places(camber_document *d) {
     const json_t *projection = json_object_get(json_object_get(d->root, "projection"), "type");
     if (projection && !(json_is_string(projection) && strcmp(json_string_value(projection), "mercator") == 0))
@@ -278,8 +278,8 @@ static void warn_of_places(camber_document *d) {
 }
 
 static bool read_document(camber_document *d) {
-    /* What needs other kinds of layers, or a picture that changes, is nothing of these; nor is what editors of styles
-     * keep there. */
+    /* Properties that need other kinds of layers, or a picture that changes, do not move lines; nor do those that
+     * style editors keep there. */
     static const char *const known[] = {
         "version", "name",      "metadata", "center",     "centerAltitude", "zoom",   "bearing",    "pitch",
         "roll",    "state",     "light",    "sources",    "sprite",         "glyphs", "font-faces", "transition",
@@ -301,7 +301,7 @@ static bool read_document(camber_document *d) {
 
 static bool fail_json(camber_document *d, const json_error_t *error) {
     camber_compiler *c = &d->compiler;
-    /* jansson takes what it has no memory for to be a wrong character, mostly. */
+    /* jansson mostly reports a wrong character where it ran out of memory. */
     if (json_error_code(error) != json_error_out_of_memory && errno != ENOMEM)
         return camber_compiler_fail(c, "line %d, column %d: %s; %s", error->line, error->column, error->text,
                                     camber_json_cure(error));

@@ -14,7 +14,7 @@ typedef struct evaluator {
     camber_style style; /* gets the properties that are read */
     camber_expression *expression;
     json_t *document, *errors, *compiled, *outputs;
-    camber_arena arena; /* of one input's values */
+    camber_arena arena; /* memory of one input's values */
 } evaluator;
 
 /* ---- What it is for ---- */
@@ -41,7 +41,7 @@ static camber_type type_of(const json_t *name) {
     return CAMBER_TYPE_VALUE;
 }
 
-/* Members that are missing are the most general. */
+/* Reads the property's row; members that are missing allow most. */
 static camber_property read_property(const json_t *json) {
     const json_t *expression = json_object_get(json, "expression");
     const json_t *parameters = json_object_get(expression, "parameters");
@@ -137,7 +137,7 @@ static void describe(evaluator *e) {
 
 /* ---- Evaluating ---- */
 
-/* Components are floats: seven digits of them are true. */
+/* Components are floats, of which seven digits are exact. */
 static json_t *component(double number) {
     char text[32];
     snprintf(text, sizeof text, "%.7g", number);
@@ -146,7 +146,8 @@ static json_t *component(double number) {
 
 static json_t *to_json(const camber_value *value);
 
-/* As the specification's tests have colours: multiplied by alpha, and objects where a colour was not expected. */
+/* Writes a colour as the specification's tests do: multiplied by alpha, and as an object where a colour was not
+ * expected. */
 static json_t *color_to_json(camber_color color, bool expected) {
     static const char *const names[] = {"r", "g", "b", "a"};
     const double a = (double)color.a;
@@ -167,7 +168,7 @@ static json_t *object_to_json(const camber_value *value) {
     return object;
 }
 
-/* Whole numbers have no point: the numbers of JSON are what they are in ECMAScript. */
+/* Writes whole numbers without a point, as ECMAScript does. */
 static json_t *number_to_json(double number) {
     if (!isfinite(number))
         return json_null();

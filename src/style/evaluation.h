@@ -12,7 +12,7 @@ static inline bool camber_evaluate_node(camber_evaluation *e, uint32_t node, cam
 }
 bool camber_evaluate_fail(camber_evaluation *e, const char *cause);
 bool camber_evaluate_no_memory(camber_evaluation *e);
-/* Counts what is walked over; false past the limit. */
+/* Counts work; false past the limit. */
 bool camber_evaluate_work(camber_evaluation *e, size_t amount);
 
 static inline bool camber_evaluate_operand(camber_evaluation *e, const camber_node *node, uint32_t operand,

@@ -43,7 +43,7 @@ struct camber_node {
      * A comparison: the outcomes for which it holds. A match: its labels, sorted. A curve: its stops, one for each
      * output of an interpolation, one fewer for a step. */
     uint32_t index, index_count;
-    camber_value value; /* of a constant, or of the style's state; of an interpolation its base */
+    camber_value value; /* a constant's value, the style's state, or an interpolation's base */
 };
 
 typedef struct camber_label {
@@ -55,20 +55,20 @@ typedef struct camber_label {
 
 struct camber_expression {
     camber_context *context;
-    const json_t *document; /* what it was compiled from; documents keeps it */
+    const json_t *document; /* the JSON that it was compiled from; documents keeps it */
     json_t *documents;      /* references that keep the strings of constants and labels */
     camber_node *nodes;
     uint32_t *links;
     double *stops;
     camber_label *labels;
-    camber_arena arena; /* of constants that are no scalars */
+    camber_arena arena; /* memory of constants that are not scalars */
     size_t node_count, node_capacity;
     size_t link_count, link_capacity;
     size_t stop_count, stop_capacity;
     size_t label_count, label_capacity;
     uint32_t root;
     uint32_t slot_count;                                 /* values of variables that an evaluation keeps */
-    bool reads_zoom, reads_feature, reads_line_progress; /* what it depends on; none of them: a constant */
+    bool reads_zoom, reads_feature, reads_line_progress; /* all false: a constant */
 };
 
 /* An evaluation's texts and arrays, its variables among them, take so much memory at most. */
@@ -79,8 +79,8 @@ struct camber_expression {
 
 struct camber_evaluation {
     double zoom, line_progress;
-    const camber_feature_view *feature;  /* NULL: none, and what reads it fails */
-    const camber_style_images *images;   /* that there are. NULL: any that is named */
+    const camber_feature_view *feature;  /* NULL: none, and operators that read it fail */
+    const camber_style_images *images;   /* images that exist. NULL: any that is named */
     const char *cause;                   /* why it failed, a phrase */
     const camber_expression *expression; /* from here on set by the evaluation */
     camber_arena *arena;
@@ -88,15 +88,15 @@ struct camber_evaluation {
     bool *known;         /* whether a slot has its value */
     uint32_t work;
     camber_arena own;
-    _Alignas(8) char room[CAMBER_EVALUATION_ROOM]; /* what own hands out first: most texts fit */
+    _Alignas(8) char room[CAMBER_EVALUATION_ROOM]; /* the first memory of own: most texts fit */
 };
 
-/* feature may be NULL. What values point to lives until the end. */
+/* feature may be NULL. Memory that values point to lives until the end. */
 void camber_evaluation_begin(camber_evaluation *evaluation, double zoom, const camber_feature_view *feature);
 void camber_evaluation_end(camber_evaluation *evaluation);
-/* false: the value cannot be computed, as when a string stands where a number must. What the value points to lives as
- * long as the expression, the feature and the evaluation. Cost: linear in the nodes visited; no allocation but for
- * texts and arrays of more than CAMBER_EVALUATION_ROOM bytes. */
+/* Evaluates the expression. false: the value cannot be computed, as when a string stands where a number must. Memory
+ * that the value points to lives as long as the expression, the feature and the evaluation. Cost: linear in the
+ * nodes visited; it allocates only for texts and arrays of more than CAMBER_EVALUATION_ROOM bytes. */
 bool camber_expression_evaluate(const camber_expression *expression, camber_evaluation *evaluation,
                                 camber_value *value);
 void camber_expression_destroy(camber_context *context, camber_expression *expression);

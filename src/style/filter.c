@@ -19,8 +19,8 @@ static bool is_comparison(const char *op) {
            is_word(op, ">=");
 }
 
-/* The specification's isExpressionFilter, of an array. all, any and none are neither: each of their operands is told
- * apart by itself, so that the two forms may stand side by side. */
+/* The specification's isExpressionFilter for arrays. all, any and none are neither form: each of their operands is
+ * told apart by itself, so that both forms may be mixed. */
 static bool is_expression(const json_t *json) {
     const char *op = json_string_value(json_array_get(json, 0));
     const size_t size = json_array_size(json);
@@ -77,7 +77,7 @@ static bool require_key(camber_compiler *c, const json_t *array, uint32_t *node)
            camber_make_node(c, &(camber_node){.evaluate = camber_evaluate_all, .type = boolean}, first_operand, node);
 }
 
-/* [op, key, value]; values of different types do not compare, and then it is false. */
+/* Compiles [op, key, value]. Values of different types do not compare; then the filter is false. */
 static bool compile_comparison(camber_compiler *c, const json_t *array, const char *op, uint32_t *node) {
     static const struct {
         const char *name;

@@ -23,8 +23,8 @@ typedef struct function {
     camber_typing type;
     const json_t *object, *stops;
     json_t *otherwise; /* NULL: none */
-    const char *key;   /* of the feature. NULL: a function of zoom */
-    bool composite;    /* of zoom and key */
+    const char *key;   /* the feature's property. NULL: a function of zoom */
+    bool composite;    /* a function of both zoom and key */
     shape shape;
     double base;
     camber_color_space space;
@@ -105,7 +105,7 @@ static bool compile_get(function *f, uint32_t *node) {
     return camber_make_property(f->c, camber_evaluate_get, f->key, node);
 }
 
-/* The text from start on, before the next token; its copy lives as long as the expression. */
+/* Pushes the text from start on, before the next token; its copy lives as long as the expression. */
 static bool push_text(function *f, const char *start, size_t length) {
     uint32_t node = 0;
     if (length == 0)
@@ -117,7 +117,7 @@ static bool push_text(function *f, const char *start, size_t length) {
     return camber_make_constant(f->c, &value, string_type, &node) && camber_push_operand(f->c, node);
 }
 
-/* "a {name}": the value of the property stands for the token. */
+/* Compiles "a {name}", where the property's value replaces the token. */
 static bool compile_tokens(function *f, const char *text, uint32_t *node) {
     camber_compiler *c = f->c;
     const size_t first_operand = c->operand_count;
@@ -181,7 +181,7 @@ static bool push_otherwise(function *f) {
 
 /* ---- Stops ---- */
 
-/* Checks [input, value], and of zoom and property [{"zoom": number, "value": input}, value]. */
+/* Checks a stop: [input, value], or for zoom and property [{"zoom": number, "value": input}, value]. */
 static bool read_stop(function *f, size_t index, const json_t **input, double *zoom) {
     const json_t *stop = json_array_get(f->stops, index);
     *input = json_array_get(stop, 0);
@@ -211,8 +211,8 @@ typedef struct span {
     size_t first, last;
 } span;
 
-/* Pushes the stops and their values. Of stops at the same place the first counts, as ever; below its first stop a step
- * has that stop's value. */
+/* Pushes the stops and their values. Where stops have one input, the first counts; below its first stop a step has
+ * that stop's value. */
 static bool push_stops(function *f, span stops) {
     camber_compiler *c = f->c;
     const bool step = f->shape == SHAPE_INTERVAL;
@@ -296,7 +296,7 @@ static bool same_input(const json_t *a, const json_t *b) {
     return a && json_equal(a, b);
 }
 
-/* Pushes a stop's condition, of a boolean, or its label. */
+/* Pushes a stop's condition where inputs are booleans, else its label. */
 static bool push_category(function *f, const json_t *input, camber_label label, camber_type *type) {
     camber_compiler *c = f->c;
     uint32_t node = 0;
@@ -348,7 +348,7 @@ static bool compile_categories(function *f, span stops, uint32_t *node) {
 
 /* ---- Kinds ---- */
 
-/* A default stands in for values of another type, or that an enum does not have. */
+/* Compiles an identity function. The default replaces values of another type, or that an enum does not have. */
 static bool compile_identity(function *f, uint32_t *node) {
     camber_compiler *c = f->c;
     const size_t first_operand = c->operand_count, first_label = c->expression->label_count;
@@ -389,7 +389,7 @@ static bool compile_composite(function *f, uint32_t *node) {
     camber_compiler *c = f->c;
     const size_t count = json_array_size(f->stops), first_operand = c->operand_count;
     const bool step = !f->property->interpolated;
-    /* The base and the colour space are the zoom's. */
+    /* The base and the colour space apply to the zoom. */
     const camber_color_space space = f->space;
     f->space = CAMBER_SPACE_RGB;
     if (!camber_make_reader(c, camber_evaluate_zoom, CAMBER_TYPE_NUMBER, node) || !camber_push_operand(c, *node))

@@ -12,14 +12,14 @@
 
 /* ---- Parsing ---- */
 
-/* What GDAL takes for numbers, and jansson does not. */
+/* Words that GDAL reads as numbers, and jansson refuses. */
 static const struct {
     const char *word, *instead;
 } words[] = {{"NaN", "null"}, {"Infinity", "1e308   "}, {"-Infinity", "-1e308   "}};
 
 static bool is_beyond(const char *number, size_t size) {
     json_error_t error;
-    /* Short ones without an exponent are not: most are looked at no further. */
+    /* Whether the number is beyond a double. Short ones without an exponent are not; most are examined no further. */
     if (size < 300 && !memchr(number, 'e', size) && !memchr(number, 'E', size))
         return false;
     json_t *json = json_loadb(number, size, JSON_DECODE_ANY | JSON_DECODE_INT_AS_REAL, &error);
@@ -27,8 +27,8 @@ static bool is_beyond(const char *number, size_t size) {
     return !json && json_error_code(&error) == json_error_numeric_overflow;
 }
 
-/* Copies a token that is no string, or a character of it, as what jansson reads. Returns its size; that of the copy
- * goes to *copied. */
+/* Copies a token that is not a string, or one character of it, in a form that jansson reads. Returns its size; the
+ * copy's size goes to *copied. */
 static size_t copy_token(char *to, const char *from, size_t size, size_t *copied) {
     size_t length = 0;
     for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
@@ -52,7 +52,7 @@ static size_t copy_token(char *to, const char *from, size_t size, size_t *copied
     return length;
 }
 
-/* Copies a document with what jansson refuses replaced; lines and columns stay, but behind a NaN. */
+/* Copies a document and replaces numbers that jansson refuses. Lines and columns stay, except behind a NaN. */
 static size_t replace_refused(char *to, const char *from, size_t size) {
     size_t written = 0, copied;
     bool in_string = false;
@@ -101,7 +101,7 @@ void camber_json_unquote(json_error_t *error) {
 
 static camber_status fail(camber_context *context, const char *name, json_error_t *error) {
     camber_json_unquote(error);
-    /* jansson takes what it has no memory for to be a wrong character, mostly. */
+    /* jansson mostly reports a wrong character where it ran out of memory. */
     if (json_error_code(error) == json_error_out_of_memory || errno == ENOMEM)
         return camber_fail(context, CAMBER_ERROR_MEMORY, "%s: out of memory; make the document shorter", name);
     return camber_fail(context, CAMBER_ERROR_INPUT, "%s: line %d, column %d: %s; %s", name, error->line, error->column,

@@ -256,7 +256,7 @@ static bool is_there(const camber_evaluation *e, const camber_node *operand, con
     return value->type == CAMBER_VALUE_STRING && e->images->find(e->images->user, value->string) != 0;
 }
 
-/* Of images that are all missing the first is the one that is missed. */
+/* Where all images are missing, the result is the first of them. */
 bool camber_evaluate_coalesce(camber_evaluation *e, const camber_node *node, camber_value *value) {
     camber_value first = nothing;
     *value = nothing;

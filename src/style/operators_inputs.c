@@ -1,4 +1,4 @@
-/* What an expression takes in: literals, the feature, zoom, the style's state, variables; and operators of the
+/* Inputs of an expression: literals, the feature, zoom, the style's state, variables; and operators of the
  * specification that lines have no use for.
  *
  * Each operator stands here once: the function that compiles it, the one that evaluates it, and its row in the table at
@@ -219,7 +219,7 @@ static bool compile_state(camber_compiler *c, const camber_operator *row, json_t
     return camber_make_node(c, &prototype, c->operand_count, node);
 }
 
-/* Nobody sets the states of features of a picture: each is null. */
+/* feature-state is always null: nothing sets states of features in a picture. */
 static bool compile_feature_state(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
                                   uint32_t *node) {
     (void)expected;

@@ -101,7 +101,7 @@ static bool is_needle(const camber_value *value) {
     return value->type <= CAMBER_VALUE_STRING;
 }
 
-/* A needle's text as ECMAScript's indexOf makes it: null is looked for as "null". */
+/* Makes the text of a needle as ECMAScript's indexOf does: null is looked for as "null". */
 static bool needle_text(camber_evaluation *e, const camber_value *needle, const char **string) {
     camber_text text = {.e = e};
     camber_value value;

@@ -8,8 +8,8 @@ enum { HEAD = 120, TAIL = 60 };
 
 typedef struct text {
     char head[HEAD];
-    char tail[TAIL]; /* a ring */
-    size_t length;   /* of what was put */
+    char tail[TAIL]; /* a ring buffer of the last bytes */
+    size_t length;   /* bytes put so far */
 } text;
 
 static void put_byte(text *t, char c) {
@@ -35,7 +35,7 @@ static bool is_continued(char c) {
     return ((unsigned char)c & 0xc0) == 0x80;
 }
 
-/* Behind a step, or within a long one behind a character. */
+/* Finds where to cut: behind a step, or behind a character of a long step. */
 static size_t cut_head(const char head[HEAD]) {
     for (size_t end = HEAD; end > HEAD / 2; end--)
         if (head[end - 1] == '/')

@@ -16,7 +16,7 @@ camber_typing camber_property_typing(const camber_property *property) {
 
 /* ---- Zoom ---- */
 
-/* What of a node's zoom curves is known: its curve, none, or that the rule is broken. */
+/* The state of knowledge about a node's zoom curves: one curve, none, or that the rule is broken. */
 typedef struct curve {
     uint32_t node;
     enum { CURVE_NONE, CURVE_ONE, CURVE_NESTED, CURVE_SEVERAL } kind;
@@ -136,7 +136,7 @@ static bool check_property(camber_compiler *c, const camber_property *property, 
 
 static bool check_outputs(camber_compiler *c, const camber_property *property, const json_t *json);
 
-/* Of the operands those that may be the result: from first on each step-th, and the last. */
+/* Checks the operands that may be the result: from first on each step-th, and the last. */
 static bool check_operands(camber_compiler *c, const camber_property *property, const json_t *array, size_t first,
                            size_t step) {
     const size_t count = json_array_size(array);
@@ -151,7 +151,7 @@ static bool check_operands(camber_compiler *c, const camber_property *property, 
     return true;
 }
 
-/* What is out of range is held to it when it is evaluated, and a name that is none is the default. */
+/* Warns of an output: when evaluated, a number out of range is clamped, and an unknown name becomes the default. */
 static void warn_of_output(camber_compiler *c, const camber_property *property, const json_t *json) {
     const bool ranged = property->low < 0.0 || property->high > 0.0;
     const double number = json_number_value(json);

@@ -10,23 +10,24 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* A piece is straight where samples inside it lie this close to the line between its ends, premultiplied. */
+/* A span between two stops is straight where samples inside it lie this close to the line between its ends,
+ * premultiplied. */
 static const double TOLERANCE = 1.0 / 512.0;
-/* Shorter pieces are as good as steps. */
+/* Shorter spans are as good as steps. */
 static const double SHORTEST = 1e-6;
-/* Nodes that are looked at, and bytes that texts take, in all: some hundred milliseconds at most. */
+/* The most nodes that are evaluated and bytes that texts take, in all: some hundred milliseconds at most. */
 static const double MOST_WORK = 2e7;
 enum { INSIDE = 15, GRID = 64, KNOWN_MAX = 1000, ENDS_MAX = KNOWN_MAX + 4 };
-/* Stops that pieces may take besides their own: twice as many as one is halved. */
+/* The most stops that spans may take besides their own; a span that is halved takes twice as many. */
 enum { ROOM = 64 };
 
 typedef struct sampler {
     const camber_expression *expression;
     camber_layer_ramp *ramp;
-    size_t capacity;   /* of its stops */
+    size_t capacity;   /* of its own stops */
     bool failed;       /* no memory */
-    double cost, work; /* of an evaluation; that may still be done */
-    size_t pieces;     /* that come: each wants two stops */
+    double cost, work; /* work of evaluations that may still be done */
+    size_t pieces;     /* spans that still come: each needs two stops */
     const char **cause;
     double *failed_at;
 } sampler;
@@ -91,7 +92,7 @@ static void put_stop(sampler *s, const sample *at) {
     ramp->stops[ramp->count++] = stop;
 }
 
-/* From a place to just before another one; the room that the pieces behind it need stays. */
+/* Adds the stops from one position to just before another; the room that later spans need stays free. */
 static void put_piece(sampler *s, double from, double to) {
     const sample first = sample_at(s, from), last = sample_at(s, to - 1e-7 * (to - from));
     const bool room = s->ramp->count + 2 * s->pieces + ROOM <= CAMBER_RAMP_STOPS_MAX;

@@ -43,7 +43,7 @@ static bool add_number(camber_text *text, double number) {
     return add(text, digits);
 }
 
-/* Alpha is a float: its digits are those of the 255th that it is, or six. */
+/* Alpha is a float: it is written as the 255th that it is, or with six digits. */
 static double true_alpha(double alpha) {
     const double step = round(alpha * 255.0) / 255.0;
     return fabs(alpha - step) < 1e-7 ? step : round(alpha * 1e6) / 1e6;
@@ -105,7 +105,7 @@ static bool add_array(camber_text *text, const camber_value *array) {
     return add(text, "]");
 }
 
-/* Values come from documents and calls of bounded depth, and so does the recursion. */
+/* The recursion is limited, since documents and calls that make values have a limited depth. */
 static bool add_json(camber_text *text, const camber_value *value) {
     switch (value->type) {
     case CAMBER_VALUE_NULL: return add(text, "null");

@@ -41,7 +41,7 @@ size_t camber_unicode_write(uint32_t code, char bytes[4]) {
 
 /* ---- Case ---- */
 
-/* Small letters from first to last, every step-th, with their capitals so far away. */
+/* Small letters from first to last, every step-th, and the distance to their capitals. */
 typedef struct range {
     uint16_t first, last, step;
     int16_t to_capital;
@@ -93,7 +93,8 @@ size_t camber_unicode_lower(uint32_t code, uint32_t lower[2]) {
 
 /* ---- Order ---- */
 
-/* Base letters of small ones: from e0 one each, from 100 one a pair; a blank: it is its own. */
+/* Base letters of small letters: one for each code from e0, one for each pair from 100. A blank: the letter is its
+ * own base. */
 static const char latin_1[] = "aaaaaa ceeeeiiii nooooo  uuuuy y";
 static const char latin_a[] = "aaaccccd eeeeeggggh iiii  jk";
 
@@ -102,7 +103,7 @@ typedef struct base_range {
     char base[3];
 } base_range;
 
-/* What the two rows above leave out, by the small letters. */
+/* Base letters of small letters that the two rows above do not cover. */
 static const base_range bases[] = {
     {0x13a, 0x13e, "l"},        {0x144, 0x148, "n"},        {0x14d, 0x151, "o"},        {0x155, 0x159, "r"},
     {0x15b, 0x161, "s"},        {0x163, 0x165, "t"},        {0x169, 0x173, "u"},        {0x175, 0x175, "w"},
@@ -124,7 +125,7 @@ static uint32_t base_of(uint32_t small) {
     return base;
 }
 
-/* A letter's parts in the order in which they count. */
+/* A letter's properties in the order in which they are compared. */
 typedef struct weight {
     uint32_t base;
     uint32_t mark;
@@ -143,7 +144,7 @@ static uint32_t rank(uint32_t base) {
     return base + group;
 }
 
-/* The next letter with the marks behind it; base is 0 at the end. */
+/* Reads the next letter with the marks behind it; base is 0 at the end. */
 static const char *next_weight(const char *text, weight *made) {
     uint32_t code, small[2];
     *made = (weight){0};

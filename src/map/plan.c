@@ -185,37 +185,37 @@ static float whole_width(const camber_paint *paint) {
 
 /* The paint of a layer without its border, or of the border alone. The border is a wider line below, or, where that
  * would be seen through, two rails beside the line. */
-static camber_layer_paint part_of(const camber_plan_layer *layer, const camber_layer_paint *whole) {
-    camber_layer_paint part = *whole;
+static camber_layer_paint line_or_border(const camber_plan_layer *layer, const camber_layer_paint *whole) {
+    camber_layer_paint own = *whole;
     const double border = fmin(whole->border_width, 0.5 * whole->width), inside = whole->width - 2.0 * border;
     const float alpha = layer->ramp ? (float)whole->opacity : whole->color.a;
     const bool seen_through = alpha < 1.0f || layer->translucent_ramp || whole->layer_opacity < 1.0 ||
                               layer->look.layer->properties[CAMBER_LINE_PATTERN];
     if (layer->ramp)
-        part.color = (camber_color){1.0f, 1.0f, 1.0f, (float)whole->opacity};
+        own.color = (camber_color){1.0f, 1.0f, 1.0f, (float)whole->opacity};
     if (layer->border) {
-        part.color = layer->ramp ? part.color : whole->border_color;
-        part.width = border > 0.0 ? whole->width : 0.0;
+        own.color = layer->ramp ? own.color : whole->border_color;
+        own.width = border > 0.0 ? whole->width : 0.0;
         if (seen_through && !(whole->gap_width > 0.0) && inside > 0.0 && border > 0.0) {
-            part.width = border;
-            part.gap_width = inside;
+            own.width = border;
+            own.gap_width = inside;
         }
     } else if (border > 0.0) {
-        part.width = inside;
-        part.gap_width = whole->gap_width > 0.0 ? whole->gap_width + 2.0 * border : 0.0;
+        own.width = inside;
+        own.gap_width = whole->gap_width > 0.0 ? whole->gap_width + 2.0 * border : 0.0;
     }
-    return part;
+    return own;
 }
 
 static camber_paint paint_of(const camber_plan_layer *layer, const camber_layer_paint *whole, double ratio) {
-    const camber_layer_paint part = part_of(layer, whole);
-    const double widest_px = part.gap_width > 0.0 ? WIDEST_PX / 3.0 : WIDEST_PX; /* the most for one rail */
-    if (!(part.width * ratio > 0.0 && part.color.a > 0.0f && (float)part.layer_opacity > 0.0f))
+    const camber_layer_paint own = line_or_border(layer, whole);
+    const double widest_px = own.gap_width > 0.0 ? WIDEST_PX / 3.0 : WIDEST_PX; /* the most for one rail */
+    if (!(own.width * ratio > 0.0 && own.color.a > 0.0f && (float)own.layer_opacity > 0.0f))
         return (camber_paint){0};
-    return (camber_paint){.width_px = (float)fmin(part.width * ratio, widest_px),
-                          .color = part.color,
-                          .gap_px = (float)fmin(part.gap_width * ratio, widest_px),
-                          .blur_px = (float)fmin(part.blur * ratio, WIDEST_PX),
+    return (camber_paint){.width_px = (float)fmin(own.width * ratio, widest_px),
+                          .color = own.color,
+                          .gap_px = (float)fmin(own.gap_width * ratio, widest_px),
+                          .blur_px = (float)fmin(own.blur * ratio, WIDEST_PX),
                           .translate_x_px = layer->translate_px[0],
                           .translate_y_px = layer->translate_px[1],
                           .trim_start = (float)whole->trim[0],

@@ -1,4 +1,4 @@
-/* Makes a network of what a plan draws, and on the host projects the part of it that a camera sees.
+/* Makes a network of what a plan draws, and on the host projects the lines of it that a camera sees.
  *
  * Input: features, a view and its plan. Output: a network whose rows are the plan's pairs. Near the antimeridian, and
  * where the picture is wider than the world, a polyline has several entries: one for each copy of the world. The

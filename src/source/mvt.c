@@ -230,7 +230,7 @@ static camber_status read_all_properties(camber_mvt *mvt, const tile_feature *fe
 
 /* Reads the values of the style's properties, and the id by which the feature is recognised in other tiles. */
 static camber_status read_tags(camber_mvt *mvt, const tile_feature *feature, camber_value *id,
-                               camber_tile_feature *piece, const char **damage) {
+                               camber_tile_feature *stitched, const char **damage) {
     const camber_style *style = mvt->desc.features->style;
     int best = ID_KEYS;
     for (size_t i = 0; i < style->property_count; i++)
@@ -251,8 +251,8 @@ static camber_status read_tags(camber_mvt *mvt, const tile_feature *feature, cam
         if (rank < best) {
             const ProtobufCBinaryData bytes = mvt->layer->values[index];
             best = rank;
-            piece->has_id = true;
-            piece->id = camber_hash(camber_mix(CAMBER_HASH_START, (uint64_t)rank + 1), bytes.data, bytes.len);
+            stitched->has_id = true;
+            stitched->id = camber_hash(camber_mix(CAMBER_HASH_START, (uint64_t)rank + 1), bytes.data, bytes.len);
         }
         const uint32_t property = mvt->key_properties[key];
         const bool clips = key == mvt->clips[0] || key == mvt->clips[1];
@@ -267,15 +267,15 @@ static camber_status read_tags(camber_mvt *mvt, const tile_feature *feature, cam
         if (key == mvt->promoted)
             *id = value;
         if (clips && value.type == CAMBER_VALUE_NUMBER && value.number >= 0 && value.number <= 1) {
-            piece->has_progress = true;
-            piece->progress[key == mvt->clips[1]] = value.number;
+            stitched->has_progress = true;
+            stitched->progress[key == mvt->clips[1]] = value.number;
         }
     }
     if (feature->n_tags & 1)
         *damage = "a key without a value";
     if (feature->has_id && feature->id) {
-        piece->has_id = true;
-        piece->id = camber_mix(CAMBER_HASH_START, feature->id);
+        stitched->has_id = true;
+        stitched->id = camber_mix(CAMBER_HASH_START, feature->id);
     }
     return CAMBER_OK;
 }
@@ -283,14 +283,14 @@ static camber_status read_tags(camber_mvt *mvt, const tile_feature *feature, cam
 static camber_status add_to_stitcher(camber_mvt *mvt, const tile_feature *feature, camber_geometry_kind kind,
                                      const char **damage) {
     const camber_style *style = mvt->desc.features->style;
-    camber_tile_feature piece = {.column = mvt->address.column,
-                                 .row = mvt->address.row,
-                                 .outline = kind == CAMBER_GEOMETRY_POLYGON,
-                                 .progress = {0, 1},
-                                 .open_sides = mvt->address.open_sides};
+    camber_tile_feature stitched = {.column = mvt->address.column,
+                                    .row = mvt->address.row,
+                                    .outline = kind == CAMBER_GEOMETRY_POLYGON,
+                                    .progress = {0, 1},
+                                    .open_sides = mvt->address.open_sides};
     camber_feature_class wanted = {.layer = mvt->layer_index, .geometry = kind};
     camber_value promoted = {0};
-    camber_status status = read_tags(mvt, feature, &promoted, &piece, damage);
+    camber_status status = read_tags(mvt, feature, &promoted, &stitched, damage);
     if (style->wants_id && promoted_name(mvt))
         wanted.id = promoted;
     else if (style->wants_id && feature->has_id)
@@ -298,11 +298,11 @@ static camber_status add_to_stitcher(camber_mvt *mvt, const tile_feature *featur
     if (status == CAMBER_OK && style->wants_all_properties)
         status = read_all_properties(mvt, feature, &wanted.all);
     if (status == CAMBER_OK)
-        status = camber_features_find_class_of(mvt->desc.features, &wanted, mvt->values, &piece.class_index);
+        status = camber_features_find_class_of(mvt->desc.features, &wanted, mvt->values, &stitched.class_index);
     if (status != CAMBER_OK)
         return status;
     const camber_tile_lines lines = {mvt->geometry.points, mvt->geometry.ends, mvt->geometry.line_count};
-    return camber_tile_stitcher_add(mvt->desc.stitcher, &piece, &lines);
+    return camber_tile_stitcher_add(mvt->desc.stitcher, &stitched, &lines);
 }
 
 static camber_status read_geometry(camber_mvt *mvt, const tile_feature *feature, camber_geometry_kind kind) {

@@ -38,7 +38,7 @@ void camber_tile_stitcher_destroy(camber_tile_stitcher *stitcher) {
     camber_free(context, stitcher);
 }
 
-/* ---- Features: one record for all the pieces with one id ---- */
+/* ---- Features: one record for all the lines with one id ---- */
 
 static size_t id_slot(const camber_tile_stitcher *stitcher, uint64_t id, uint32_t class_index) {
     return (size_t)camber_mix(camber_mix(0, id), class_index) & (stitcher->slot_count - 1);

@@ -311,7 +311,7 @@ bool camber_evaluate_list(camber_evaluation *e, const camber_node *node, camber_
     return true;
 }
 
-/* The end of the piece that begins at text: its separator, or its letter where there is none. */
+/* The end of the part that begins at text: its separator, or its letter where there is none. */
 static const char *part_end(const char *text, const char *separator) {
     const char *end = separator[0] ? strstr(text, separator) : skip_letters(text, 1);
     return end ? end : text + strlen(text);

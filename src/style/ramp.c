@@ -27,7 +27,7 @@ typedef struct sampler {
     size_t capacity;   /* of its own stops */
     bool failed;       /* no memory */
     double cost, work; /* work of evaluations that may still be done */
-    size_t pieces;     /* spans that still come: each needs two stops */
+    size_t spans;      /* spans that still come: each needs two stops */
     const char **cause;
     double *failed_at;
 } sampler;
@@ -93,20 +93,20 @@ static void put_stop(sampler *s, const sample *at) {
 }
 
 /* Adds the stops from one position to just before another; the room that later spans need stays free. */
-static void put_piece(sampler *s, double from, double to) {
+static void put_span(sampler *s, double from, double to) {
     const sample first = sample_at(s, from), last = sample_at(s, to - 1e-7 * (to - from));
-    const bool room = s->ramp->count + 2 * s->pieces + ROOM <= CAMBER_RAMP_STOPS_MAX;
+    const bool room = s->ramp->count + 2 * s->spans + ROOM <= CAMBER_RAMP_STOPS_MAX;
     if (room && !s->failed && s->work > 0.0 && to - from > SHORTEST && !is_straight(s, &first, &last)) {
         const double middle = 0.5 * (from + to);
-        put_piece(s, from, middle);
-        put_piece(s, middle, to);
+        put_span(s, from, middle);
+        put_span(s, middle, to);
         return;
     }
     put_stop(s, &first);
     put_stop(s, &(sample){to, last.color});
 }
 
-/* ---- Where pieces end ---- */
+/* ---- Where spans end ---- */
 
 static int compare_numbers(const void *left, const void *right) {
     const double a = *(const double *)left, b = *(const double *)right;
@@ -177,9 +177,9 @@ camber_status camber_layer_ramp_create(const camber_expression *expression, camb
                  .cause = cause,
                  .failed_at = failed_at};
     for (size_t i = 0; i + 1 < end_count && !s.failed; i++) {
-        s.pieces = end_count - 2 - i;
+        s.spans = end_count - 2 - i;
         if (i == 0 || s.work > -MOST_WORK) /* past that the last colour stays */
-            put_piece(&s, ends[i], ends[i + 1]);
+            put_span(&s, ends[i], ends[i + 1]);
     }
     if (s.failed) {
         camber_free(context, made.stops);

@@ -165,13 +165,14 @@ static void test_attribution(void **state) {
     for (size_t i = 0; i < sizeof nothing / sizeof *nothing; i++)
         assert_int_equal(camber_features_add_attribution(set, nothing[i]), CAMBER_OK);
     assert_null(camber_features_attribution(set));
-    assert_int_equal(
-        camber_features_add_attribution(set, " <a href=\"https://a.example/?b>c\" target='_blank'>&copy; A &amp; B</a>\n"),
-        CAMBER_OK);
+    assert_int_equal(camber_features_add_attribution(
+                         set, " <a href=\"https://a.example/?b>c\" target='_blank'>&copy; A &amp; B</a>\n"),
+                     CAMBER_OK);
     assert_string_equal(camber_features_attribution(set), "\xc2\xa9 A & B");
     camber_features_cut_attribution(set, 0);
     assert_null(camber_features_attribution(set));
-    assert_int_equal(camber_features_add_attribution(set, "<a href=\"https://a.example\">&copy;  A</a> <i>1 < 2</i>"), CAMBER_OK);
+    assert_int_equal(camber_features_add_attribution(set, "<a href=\"https://a.example\">&copy;  A</a> <i>1 < 2</i>"),
+                     CAMBER_OK);
     assert_string_equal(camber_features_attribution(set), "\xc2\xa9 A 1 < 2");
     const size_t size = set->attribution_size;
     assert_int_equal(camber_features_add_attribution(set, "B"), CAMBER_OK);

@@ -1,11 +1,12 @@
 /* The benchmark: sections that measure, each into rows and figures of one JSON document, from which tables, plots,
- * comparisons and the README's numbers are made. */
-#ifndef CAMBER_BENCH_H
-#define CAMBER_BENCH_H
+ * comparisons and the numbers of the documents are made. */
+#ifndef CAMBER_BENCH_BENCH_H
+#define CAMBER_BENCH_BENCH_H
 
 #include "camber_files.h"
 #include "camber_network.h"
 #include "peers/peer.h"
+#include "validate/fixture.h"
 
 #include <jansson.h>
 #include <stdbool.h>
@@ -33,12 +34,13 @@ typedef struct bench_scene {
 
 typedef struct bench {
     camber_context *context;
+    camber_fixture opened; /* which has the next four */
     camber_surface *surface;
     camber_device *device;
     camber_renderer *renderer; /* GL */
-    camber_mesh *mesh;
-    camber_renderer *covering; /* OpenCL, and no GL */
-    camber_mesh *covered;
+    camber_renderer *cl_renderer;
+    camber_mesh *mesh;    /* that GL draws */
+    camber_mesh *cl_mesh; /* that kernels draw */
     bench_size size;
     size_t warm_ups, runs;          /* up to BENCH_RUNS_MAX */
     const char *data;               /* the folder that has data/ with the larger cities, or NULL */
@@ -49,7 +51,7 @@ typedef struct bench {
     size_t scene_count;
 } bench;
 
-/* ---- rig.c: camber at work ---- */
+/* ---- frame.c: camber at work ---- */
 
 bool bench_open(bench *b);
 void bench_close(bench *b);
@@ -185,7 +187,8 @@ void bench_document_print(const json_t *document, FILE *to);
 bool bench_plot_mosaic(const json_t *document, const char *path);
 /* Measures again what looks like a loss against old. Gives the losses that stay; -1: the two cannot be compared. */
 int bench_compare(bench *b, const json_t *document, const json_t *old, FILE *to);
-/* Rewrites what lies between the markers in the README at path. */
+/* Rewrites the numbers between the markers of a document at path: README.md has the table of frames,
+ * docs/performance.md the rest. false: it has no such markers, or cannot be written; the reason is printed. */
 bool bench_readme_write(const json_t *document, const char *json_path, const char *path);
 
 #endif

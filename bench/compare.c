@@ -86,12 +86,12 @@ static void measure_again(bench *b, const bench_section *section, suspect *suspe
 
 /* ---- Section by section ---- */
 
-typedef struct tally {
+typedef struct comparison_counts {
     int compared, gains, losses;
-} tally;
+} comparison_counts;
 
-static bool compare_section(bench *b, const bench_section *section, const json_t *result, const json_t *old, tally *sum,
-                            FILE *to) {
+static bool compare_section(bench *b, const bench_section *section, const json_t *result, const json_t *old,
+                            comparison_counts *sum, FILE *to) {
     const json_t *figures = json_object_get(result, "figures"), *figure;
     suspect *suspects = calloc(json_array_size(figures) + 1, sizeof *suspects);
     size_t i, count = 0;
@@ -123,7 +123,7 @@ static bool compare_section(bench *b, const bench_section *section, const json_t
 int bench_compare(bench *b, const json_t *document, const json_t *old, FILE *to) {
     const json_t *sections = json_object_get(document, "sections"), *before = json_object_get(old, "sections");
     const json_t *gl = json_object_get(document, "gl"), *old_gl = json_object_get(old, "gl");
-    tally sum = {.compared = 0};
+    comparison_counts sum = {.compared = 0};
     if (!json_is_object(before) || !same_text(document, old, "size") ||
         json_boolean_value(json_object_get(gl, "software")) !=
             json_boolean_value(json_object_get(old_gl, "software"))) {

@@ -1,5 +1,5 @@
-/* How fast the memory is: memcpy on as many threads as the kernels run on, each on a core of its own. Devices with memory
- * of their own copy from buffer to buffer instead. */
+/* How fast the memory is: memcpy on as many threads as the kernels run on, each on a core of its own. Devices with
+ * memory of their own copy from buffer to buffer instead. */
 #define _GNU_SOURCE /* pthread_setaffinity_np */
 
 #include "bench.h"

@@ -41,9 +41,9 @@ static json_t *describe(const bench *b) {
                   "name", device.name, "platform", device.platform, "version", device.version, "driver", device.driver,
                   "units", (json_int_t)device.compute_units, "gl", "backend", surface.backend, "renderer",
                   surface.renderer, "version", surface.version, "software", surface.software, "sharing",
-                  camber_sharing_name(camber_renderer_get_sharing(b->renderer)), "peers", describe_peers());
+                  camber_sharing_get_name(camber_renderer_get_sharing(b->renderer)), "peers", describe_peers());
 #ifdef CAMBER_MAP
-    json_object_set_new(document, "gdal", json_string(camber_gdal_version()));
+    json_object_set_new(document, "gdal", json_string(camber_gdal_get_version()));
 #endif
     return document;
 }

@@ -14,7 +14,7 @@ typedef struct request {
 static int usage(void) {
     fprintf(stderr, "usage: camber_bench [--quick | --tiny] [--json OUT.json] [--plot OUT.svg] [--against OLD.json]\n"
                     "                    [--section NAME] [--fly WIDTHxHEIGHT]\n"
-                    "       camber_bench --readme RESULTS.json README.md\n");
+                    "       camber_bench --readme RESULTS.json FILE...\n");
     return 2;
 }
 
@@ -64,9 +64,11 @@ static json_t *load(const char *path) {
     return document;
 }
 
-static int publish(const char *json_path, const char *readme_path) {
+static int publish(const char *json_path, char **paths, int count) {
     json_t *document = load(json_path);
-    const bool done = document && bench_readme_write(document, json_path, readme_path);
+    bool done = document != NULL;
+    for (int i = 0; i < count && done; i++)
+        done = bench_readme_write(document, json_path, paths[i]);
     json_decref(document);
     return done ? 0 : 1;
 }
@@ -102,8 +104,8 @@ static int measure_all(bench *b, const request *r) {
 int main(int argc, char **argv) {
     static const size_t runs[] = {7, 3, 3};
     request r = {.fly_width = 1280, .fly_height = 720};
-    if (argc == 4 && strcmp(argv[1], "--readme") == 0)
-        return publish(argv[2], argv[3]);
+    if (argc >= 4 && strcmp(argv[1], "--readme") == 0)
+        return publish(argv[2], argv + 3, argc - 3);
     if (!parse(argc, argv, &r))
         return usage();
     /* As the tool does: a core for each of PoCL's threads, and one build of each kernel. */

@@ -2,6 +2,7 @@
 #include "bench.h"
 
 #include "base/base.h"
+#include "validate/scenes.h"
 #include "validate/statistics.h"
 
 #include <math.h>
@@ -10,46 +11,26 @@
 
 /* ---- Random walks ---- */
 
-enum { WALK_POINTS_MAX = 40 };
-
-/* xorshift64 (Marsaglia 2003): 0 to 1. */
-static double uniform(uint64_t *state) {
-    *state ^= *state << 13;
-    *state ^= *state >> 7;
-    *state ^= *state << 17;
-    return (double)(*state >> 11) / 9007199254740992.0;
-}
-
+/* In the context's memory, as those of cities are. */
 static bool make_walks(camber_context *context, size_t polyline_count, double step_px, camber_lines *lines) {
-    uint64_t state = 88172645463325252ull;
-    camber_lines made = {.polyline_count = polyline_count};
-    made.offsets = camber_alloc(context, polyline_count + 1, sizeof *made.offsets);
-    made.points = camber_alloc(context, polyline_count * WALK_POINTS_MAX, 2 * sizeof *made.points);
-    if (!made.offsets || !made.points) {
-        camber_lines_free(context, &made);
-        return false;
-    }
-    for (size_t i = 0; i < polyline_count; i++) {
-        made.offsets[i] = (uint32_t)made.point_count;
-        size_t count = 2 + (size_t)(-log(1 - uniform(&state)) * 5);
-        count = count < WALK_POINTS_MAX ? count : WALK_POINTS_MAX;
-        double x = uniform(&state) * BENCH_SIDE_PX;
-        double y = uniform(&state) * BENCH_SIDE_PX;
-        double heading = uniform(&state) * 6.283;
-        for (size_t k = 0; k < count; k++) {
-            made.points[2 * made.point_count] = (float)x;
-            made.points[2 * made.point_count + 1] = (float)y;
-            made.point_count++;
-            const double length = step_px * (0.3 + 1.4 * uniform(&state));
-            const double turn = uniform(&state) - 0.5;
-            heading += turn * (uniform(&state) < 0.1 ? 4 : 0.8);
-            x += cos(heading) * length;
-            y += sin(heading) * length;
+    camber_made_scene scene;
+    bool done = camber_road_walks_make(polyline_count, BENCH_SIDE_PX, step_px, &scene);
+    if (done) {
+        camber_lines made = {
+            .context = context, .point_count = scene.point_count, .polyline_count = scene.polyline_count};
+        made.offsets = camber_alloc(context, made.polyline_count + 1, sizeof *made.offsets);
+        made.points = camber_alloc(context, made.point_count, 2 * sizeof *made.points);
+        done = made.offsets && made.points;
+        if (done) {
+            memcpy(made.offsets, scene.offsets, (made.polyline_count + 1) * sizeof *made.offsets);
+            memcpy(made.points, scene.points, made.point_count * 2 * sizeof *made.points);
+            *lines = made;
+        } else {
+            camber_lines_destroy(&made);
         }
     }
-    made.offsets[polyline_count] = (uint32_t)made.point_count;
-    *lines = made;
-    return true;
+    camber_made_scene_free(&scene);
+    return done;
 }
 
 /* ---- Cities ---- */
@@ -117,7 +98,7 @@ static bool add_layer(city *c, OGRLayerH layer) {
     return done;
 }
 
-/* Of OpenStreetMap its highways; of vector tiles their roads; of anything else every line. */
+/* Takes OpenStreetMap's highways, the roads of vector tiles, and every line of anything else. */
 static bool read_city(city *c, const char *path) {
     GDALAllRegister();
     const char *const options[] = {"USE_CUSTOM_INDEXING=NO", NULL}; /* reads files that are not sorted by id as well */
@@ -152,7 +133,7 @@ static double middle_of(const city *c, size_t axis, double *sorted, double *low)
 /* The middle 99 % of the points on each axis span the square; the rest lies outside. */
 static bool fit(const city *c, camber_lines *lines) {
     double *sorted = camber_alloc(c->context, c->point_count, sizeof *sorted);
-    camber_lines made = {.point_count = c->point_count, .polyline_count = c->polyline_count};
+    camber_lines made = {.context = c->context, .point_count = c->point_count, .polyline_count = c->polyline_count};
     made.points = camber_alloc(c->context, c->point_count, 2 * sizeof *made.points);
     made.offsets = camber_alloc(c->context, c->polyline_count + 1, sizeof *made.offsets);
     const bool done = sorted && made.points && made.offsets;
@@ -165,7 +146,7 @@ static bool fit(const city *c, camber_lines *lines) {
         memcpy(made.offsets, c->offsets, (c->polyline_count + 1) * sizeof *made.offsets);
         *lines = made;
     } else {
-        camber_lines_free(c->context, &made);
+        camber_lines_destroy(&made);
     }
     camber_free(c->context, sorted);
     return done;
@@ -270,6 +251,6 @@ const bench_scene *bench_scene_find(const bench *b, const char *key) {
 
 void bench_scenes_free(bench *b) {
     for (size_t i = 0; i < b->scene_count; i++)
-        camber_lines_free(b->context, &b->scenes[i].lines);
+        camber_lines_destroy(&b->scenes[i].lines);
     b->scene_count = 0;
 }

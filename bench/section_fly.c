@@ -34,11 +34,11 @@ typedef struct flight {
 } flight;
 
 static camber_renderer *renderer_of(const flight *f) {
-    return f->in_cl ? f->b->covering : f->b->renderer;
+    return f->in_cl ? f->b->cl_renderer : f->b->renderer;
 }
 
 static camber_mesh *mesh_of(const flight *f) {
-    return f->in_cl ? f->b->covered : f->b->mesh;
+    return f->in_cl ? f->b->cl_mesh : f->b->mesh;
 }
 
 /* Where the flight is after a share of its way: it circles over the city and goes down to the streets and up again. */
@@ -79,14 +79,16 @@ static camber_status fly_frame(flight *f, double share, double times[PARTS]) {
         status = tessellate(f);
     const double made = camber_now_ms();
     if (status == CAMBER_OK) {
-        const camber_frame frame = camber_scene_frame(f->scene, mesh_of(f));
-        status = camber_render(renderer_of(f), &frame, take_rows, f, &stats);
+        const camber_frame frame = camber_scene_get_frame(f->scene, mesh_of(f));
+        status = camber_renderer_render(renderer_of(f), &frame, take_rows, f, &stats);
     }
     times[PART_FRAME] = camber_now_ms() - begin;
     times[PART_SCENE] = moved - begin;
     times[PART_TESSELLATE] = made - moved;
     times[PART_DRAW] = stats.draw_ms;
     times[PART_READ] = stats.read_ms;
+    if (status == CAMBER_OK)
+        status = camber_scene_project(f->scene);
     if (status == CAMBER_OK) {
         f->draw_calls += (double)stats.draw_calls / (double)f->frames;
         f->points += (double)camber_scene_get_info(f->scene).points_in / (double)f->frames;
@@ -106,18 +108,18 @@ static camber_status fly_overlapped(flight *f) {
         if (status == CAMBER_OK)
             status = camber_scene_tessellate(f->scene, meshes[i % 2], CAMBER_METHOD_STRIP);
         if (status == CAMBER_OK) {
-            const camber_frame frame = camber_scene_frame(f->scene, meshes[i % 2]);
-            status = camber_render_begin(renderer_of(f), &frame);
+            const camber_frame frame = camber_scene_get_frame(f->scene, meshes[i % 2]);
+            status = camber_renderer_begin(renderer_of(f), &frame);
         }
         if (status == CAMBER_OK && i > 0)
-            status = camber_render_end(renderer_of(f), take_rows, f, NULL);
+            status = camber_renderer_end(renderer_of(f), take_rows, f, NULL);
         const double now = camber_now_ms();
         if (i >= WARM_UPS)
             f->times[PART_OVERLAPPED][n] = now - last;
         last = now;
     }
     if (status == CAMBER_OK)
-        status = camber_render_end(renderer_of(f), take_rows, f, NULL);
+        status = camber_renderer_end(renderer_of(f), take_rows, f, NULL);
     camber_mesh_destroy(meshes[1]);
     return status;
 }
@@ -142,7 +144,7 @@ static camber_status open_flight(flight *f, const char *path) {
     const camber_scene_desc whole = {.view = {.width = f->b->fly_width, .height = f->b->fly_height},
                                      .simplify_px = BENCH_SIMPLIFY_PX,
                                      .on_device = true};
-    camber_status status = camber_style_builtin(b->context, CAMBER_THEME_LIGHT, &f->style);
+    camber_status status = camber_style_create_builtin(b->context, CAMBER_THEME_LIGHT, &f->style);
     if (status == CAMBER_OK)
         status = camber_features_create(b->context, f->style, &f->features);
     if (status == CAMBER_OK)
@@ -150,7 +152,7 @@ static camber_status open_flight(flight *f, const char *path) {
     if (status == CAMBER_OK)
         status = camber_scene_create(f->features, &whole, &f->scene);
     if (status == CAMBER_OK)
-        f->start = camber_scene_get_view(f->scene);
+        f->start = camber_scene_get_info(f->scene);
     f->picture = calloc((size_t)b->fly_width * b->fly_height, 4);
     if (!f->picture)
         status = CAMBER_ERROR_MEMORY;

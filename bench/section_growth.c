@@ -115,23 +115,25 @@ static camber_status draw_once(bench *b, const load *l, const camber_polylines *
     const camber_stroke stroke = {.width_px = WIDTH_PX};
     const camber_tessellation_desc strokes = {.strokes = &stroke, .stroke_count = 1};
     const camber_paint paint = {.width_px = WIDTH_PX, .color = {0, 0, 0, 1}};
-    const camber_pass pass = {.mesh = b->covered, .paints = &paint, .paint_count = 1};
+    const camber_pass pass = {.mesh = b->cl_mesh, .paints = &paint, .paint_count = 1};
     const camber_frame frame = {
         .width = l->side_px, .height = l->side_px, .background = {1, 1, 1, 1}, .passes = &pass, .pass_count = 1};
     camber_frame_stats stats = {0};
     uint64_t rows = 0;
     const double begin = camber_now_ms(), busy = processor_ms();
-    camber_status status = camber_tessellate(b->covered, polylines, &strokes);
+    camber_status status = camber_mesh_tessellate(b->cl_mesh, polylines, &strokes);
     const double tessellated = camber_now_ms();
     if (status == CAMBER_OK)
-        status = camber_render(b->covering, &frame, take_rows, &rows, &stats);
+        status = camber_renderer_render(b->cl_renderer, &frame, take_rows, &rows, &stats);
     const double frame_ms = camber_now_ms() - begin;
     bench_series_add(&c->frame, frame_ms);
     bench_series_add(&c->tessellate, tessellated - begin);
     bench_series_add(&c->draw, stats.draw_ms);
-    bench_series_add(&c->shape, stats.shape_ms);
-    bench_series_add(&c->lists, stats.count_ms + stats.total_ms + stats.fill_ms);
-    bench_series_add(&c->cover, stats.cover_ms);
+    bench_series_add(&c->shape, camber_stage_times_get_ms(&stats.times, "setup"));
+    bench_series_add(&c->lists, camber_stage_times_get_ms(&stats.times, "bin_count") +
+                                    camber_stage_times_get_ms(&stats.times, "bin_scan") +
+                                    camber_stage_times_get_ms(&stats.times, "bin_scatter"));
+    bench_series_add(&c->cover, camber_stage_times_get_ms(&stats.times, "rasterize"));
     bench_series_add(&c->cores, (processor_ms() - busy) / frame_ms);
     return status;
 }
@@ -207,8 +209,8 @@ static json_t *measure(bench *b, const char *only) {
             json_pack("{s:s, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:f, s:f}", "key", kind_names[l->kind], "points",
                       (json_int_t)l->points, "side_px", (json_int_t)l->side_px, "frame_ms", bench_ms(frame_ms),
                       "tessellate_ms", bench_ms(bench_series_median(&c.tessellate)), "draw_ms",
-                      bench_ms(bench_series_median(&c.draw)), "shape_ms", bench_ms(bench_series_median(&c.shape)),
-                      "lists_ms", bench_ms(bench_series_median(&c.lists)), "cover_ms",
+                      bench_ms(bench_series_median(&c.draw)), "setup_ms", bench_ms(bench_series_median(&c.shape)),
+                      "lists_ms", bench_ms(bench_series_median(&c.lists)), "rasterize_ms",
                       bench_ms(bench_series_median(&c.cover)), "ns", unit_cost(l, frame_ms), "cores", cores));
         if (l->kind == LOAD_TILE || l->kind == LOAD_LINE)
             bench_result_add_figure(result, &(bench_figure){kind_names[l->kind], "cores at work", NULL, cores, false});
@@ -231,8 +233,8 @@ static void print(const json_t *result, FILE *to) {
     json_array_foreach(bench_result_rows(result), i, row) {
         fprintf(to, "%-7s %9.0f %6.0f | %9.1f %9.1f %9.1f | %9.1f %9.1f %9.1f | %8.2f %5.2f\n", bench_text(row, "key"),
                 bench_number(row, "points"), bench_number(row, "side_px"), bench_number(row, "frame_ms"),
-                bench_number(row, "tessellate_ms"), bench_number(row, "draw_ms"), bench_number(row, "shape_ms"),
-                bench_number(row, "lists_ms"), bench_number(row, "cover_ms"), bench_number(row, "ns"),
+                bench_number(row, "tessellate_ms"), bench_number(row, "draw_ms"), bench_number(row, "setup_ms"),
+                bench_number(row, "lists_ms"), bench_number(row, "rasterize_ms"), bench_number(row, "ns"),
                 bench_number(row, "cores"));
     }
     fprintf(to, "A point costs at most %.2f times what it costs in any smaller load, a pixel %.2f times.\n",

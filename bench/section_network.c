@@ -10,7 +10,7 @@ enum { STAGES = 5, TOLERANCES = 2 };
 /* Bytes a point of a network, read at least once: x, y, importance. */
 #define NETWORK_POINT_BYTES 12.0
 
-static const char *const stages[STAGES] = {"survey", "project", "classify", "scan", "emit"};
+static const char *const stages[STAGES] = {"cull_count", "cull_emit", "classify", "scan", "emit"};
 static const double tolerances_px[TOLERANCES] = {0, BENCH_SIMPLIFY_PX};
 
 typedef struct trial {
@@ -29,12 +29,15 @@ static camber_status tessellate(trial *t, double simplify_px) {
     camber_status status = CAMBER_OK;
     for (size_t run = 0; run < t->b->warm_ups + t->b->runs && status == CAMBER_OK; run++) {
         const double begin = camber_now_ms();
-        status = camber_tessellate_network(t->b->mesh, t->network, &camera, &desc);
+        status = camber_mesh_tessellate_network(t->b->mesh, t->network, &camera, &desc);
         const double ms = camber_now_ms() - begin;
         if (status != CAMBER_OK || run < t->b->warm_ups)
             continue;
         const camber_mesh_info info = camber_mesh_get_info(t->b->mesh);
-        const double times[STAGES] = {info.survey_ms, info.project_ms, info.classify_ms, info.scan_ms, info.emit_ms};
+        const double times[STAGES] = {
+            camber_stage_times_get_ms(&info.times, "cull_count"), camber_stage_times_get_ms(&info.times, "cull_emit"),
+            camber_stage_times_get_ms(&info.times, "classify"), camber_stage_times_get_ms(&info.times, "scan"),
+            camber_stage_times_get_ms(&info.times, "emit")};
         for (int i = 0; i < STAGES; i++)
             bench_series_add(t->series + i, times[i]);
         bench_series_add(&t->all, ms);

@@ -20,7 +20,7 @@ static const struct {
     {"emit", 16, 0},     /* x, y, info, joins; the mesh */
 };
 
-static const char *const drawn_names[DRAWN] = {"shape", "count", "total", "fill", "cover"};
+static const char *const drawn_names[DRAWN] = {"setup", "bin_count", "bin_scan", "bin_scatter", "rasterize"};
 
 typedef struct trial {
     bench *b;
@@ -35,15 +35,21 @@ typedef struct trial {
     bench_series drawn[DRAWN];
 } trial;
 
+static double offset_ms(camber_mesh_info info) {
+    return camber_stage_times_get_ms(&info.times, "offset_clip") +
+           camber_stage_times_get_ms(&info.times, "offset_count") +
+           camber_stage_times_get_ms(&info.times, "offset_emit");
+}
+
 static camber_status measure_offset(trial *t) {
     const camber_stroke stroke = {.width_px = t->width_px, .offset_px = OFFSET_PX};
     const camber_tessellation_desc desc = {.strokes = &stroke, .stroke_count = 1, .method = t->method};
     camber_status status = CAMBER_OK;
     t->offset.count = 0;
     for (size_t run = 0; run < t->b->warm_ups + t->b->runs && status == CAMBER_OK; run++) {
-        status = camber_tessellate(t->b->mesh, t->polylines, &desc);
+        status = camber_mesh_tessellate(t->b->mesh, t->polylines, &desc);
         if (status == CAMBER_OK && run >= t->b->warm_ups)
-            bench_series_add(&t->offset, camber_mesh_get_info(t->b->mesh).offset_ms);
+            bench_series_add(&t->offset, offset_ms(camber_mesh_get_info(t->b->mesh)));
     }
     return status;
 }
@@ -53,14 +59,17 @@ static camber_status tessellate(trial *t) {
     const camber_tessellation_desc desc = {.strokes = &stroke, .stroke_count = 1, .method = t->method};
     camber_status status = CAMBER_OK;
     for (size_t run = 0; run < t->b->warm_ups + t->b->runs && status == CAMBER_OK; run++) {
-        status = camber_tessellate(t->b->mesh, t->polylines, &desc);
+        status = camber_mesh_tessellate(t->b->mesh, t->polylines, &desc);
         if (status != CAMBER_OK || run < t->b->warm_ups)
             continue;
         const camber_mesh_info info = camber_mesh_get_info(t->b->mesh);
-        bench_series_add(t->series + 0, info.classify_ms);
-        bench_series_add(t->series + 1, info.scan_ms);
-        bench_series_add(t->series + 2, info.emit_ms);
-        bench_series_add(&t->all, info.classify_ms + info.scan_ms + info.emit_ms);
+        double all = 0;
+        for (int i = 0; i < STAGES; i++) {
+            const double ms = camber_stage_times_get_ms(&info.times, stages[i].name);
+            bench_series_add(t->series + i, ms);
+            all += ms;
+        }
+        bench_series_add(&t->all, all);
         t->info = info;
     }
     return status;
@@ -72,16 +81,19 @@ static camber_status measure_drawing(trial *t) {
     const camber_stroke stroke = {.width_px = t->width_px};
     const camber_tessellation_desc desc = {.strokes = &stroke, .stroke_count = 1};
     const camber_paint paint = {.width_px = t->width_px, .color = {0, 0, 0, 1}};
-    const camber_pass pass = {.mesh = b->covered, .paints = &paint, .paint_count = 1};
+    const camber_pass pass = {.mesh = b->cl_mesh, .paints = &paint, .paint_count = 1};
     const camber_frame frame = {
         .width = BENCH_SIDE_PX, .height = BENCH_SIDE_PX, .background = {1, 1, 1, 1}, .passes = &pass, .pass_count = 1};
-    camber_status status = camber_tessellate(b->covered, t->polylines, &desc);
+    camber_status status = camber_mesh_tessellate(b->cl_mesh, t->polylines, &desc);
     for (size_t run = 0; run < b->warm_ups + b->runs && status == CAMBER_OK; run++) {
         camber_frame_stats stats;
-        status = camber_render(b->covering, &frame, NULL, NULL, &stats);
+        status = camber_renderer_render(b->cl_renderer, &frame, NULL, NULL, &stats);
         if (status != CAMBER_OK || run < b->warm_ups)
             continue;
-        const double ms[DRAWN] = {stats.shape_ms, stats.count_ms, stats.total_ms, stats.fill_ms, stats.cover_ms};
+        const double ms[DRAWN] = {
+            camber_stage_times_get_ms(&stats.times, "setup"), camber_stage_times_get_ms(&stats.times, "bin_count"),
+            camber_stage_times_get_ms(&stats.times, "bin_scan"), camber_stage_times_get_ms(&stats.times, "bin_scatter"),
+            camber_stage_times_get_ms(&stats.times, "rasterize")};
         for (int i = 0; i < DRAWN; i++)
             bench_series_add(t->drawn + i, ms[i]);
     }
@@ -124,7 +136,7 @@ static void report(trial *t, json_t *result) {
         moved[i] = points * (stages[i].read + stages[i].written) + (i == STAGES - 1 ? mesh : 0);
         sum += moved[i];
     }
-    const char *method = camber_method_name(t->method);
+    const char *method = camber_method_get_name(t->method);
     json_t *row =
         json_pack("{s:s, s:s, s:s, s:f, s:I, s:I, s:f, s:f, s:f, s:f}", "key", t->scene->key, "scene", t->scene->name,
                   "method", method, "width_px", (double)t->width_px, "points", (json_int_t)points, "segments",
@@ -134,10 +146,10 @@ static void report(trial *t, json_t *result) {
         add_stage(row, stages[i].name, bench_series_median(t->series + i), points, moved[i], t->copied_gb_s);
     add_stage(row, "all", ms, points, sum, t->copied_gb_s);
     if (t->offset.count) {
-        const double offset_ms = bench_series_median(&t->offset);
-        json_object_set_new(row, "offset_m_points_s", json_real(offset_ms > 0 ? points / offset_ms / 1e3 : 0));
+        const double beside_ms = bench_series_median(&t->offset);
+        json_object_set_new(row, "offset_m_points_s", json_real(beside_ms > 0 ? points / beside_ms / 1e3 : 0));
         bench_result_add_figure(result, &(bench_figure){t->scene->key, "offset of 6 px, 2 px wide", "kernels",
-                                                        offset_ms > 0 ? ms / offset_ms : 0, false});
+                                                        beside_ms > 0 ? ms / beside_ms : 0, false});
     }
     report_drawing(t, row, result);
     char what[64];

@@ -98,7 +98,7 @@ static void measure_starts(bench *b, const char *only, json_t *result) {
 
 #include <gdal_utils.h>
 
-/* What came of a file, and how long its parts took. */
+/* The results of reading a file, and how long its parts took. */
 typedef struct reading {
     camber_features_stats stats;
     camber_features_times times;
@@ -107,7 +107,7 @@ typedef struct reading {
 static double read_ms(bench *b, const char *path, reading *read) {
     camber_style *style = NULL;
     camber_features *features = NULL;
-    camber_status status = camber_style_builtin(b->context, CAMBER_THEME_LIGHT, &style);
+    camber_status status = camber_style_create_builtin(b->context, CAMBER_THEME_LIGHT, &style);
     if (status == CAMBER_OK)
         status = camber_features_create(b->context, style, &features);
     const double begin = camber_now_ms();

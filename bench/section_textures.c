@@ -13,10 +13,12 @@ static const struct {
     const char *key, *name;
     camber_renderer_desc desc;
 } ways[WAYS] = {
-    {"rows_ms", "rows, no GL", {.draw = CAMBER_DRAW_CL}},
-    {"zero_copy_ms", "texture, zero copy", {.draw = CAMBER_DRAW_CL, .sharing = CAMBER_SHARING_ZERO_COPY}},
-    {"copy_ms", "texture, copy", {.draw = CAMBER_DRAW_CL, .sharing = CAMBER_SHARING_COPY}},
-    {"gl_ms", "texture, drawn by GL", {.draw = CAMBER_DRAW_GL}},
+    {"rows_ms", "rows, no GL", {.rasterizer = CAMBER_RASTERIZER_OPENCL}},
+    {"zero_copy_ms",
+     "texture, zero copy",
+     {.rasterizer = CAMBER_RASTERIZER_OPENCL, .sharing = CAMBER_SHARING_ZERO_COPY}},
+    {"copy_ms", "texture, copy", {.rasterizer = CAMBER_RASTERIZER_OPENCL, .sharing = CAMBER_SHARING_COPY}},
+    {"gl_ms", "texture, drawn by GL", {.rasterizer = CAMBER_RASTERIZER_GL}},
 };
 
 typedef struct trial {
@@ -43,7 +45,7 @@ static camber_status open_way(trial *t, int way, const camber_polylines *polylin
         return CAMBER_OK; /* and it has been said */
     if (status == CAMBER_OK)
         status = camber_mesh_create(t->b->device, t->renderers[way], &t->meshes[way]);
-    return status == CAMBER_OK ? camber_tessellate(t->meshes[way], polylines, &strokes) : status;
+    return status == CAMBER_OK ? camber_mesh_tessellate(t->meshes[way], polylines, &strokes) : status;
 }
 
 static camber_status open_trial(trial *t) {
@@ -84,8 +86,9 @@ static camber_status draw(trial *t, int way, bool counts) {
         .width = BENCH_SIDE_PX, .height = BENCH_SIDE_PX, .background = {1, 1, 1, 1}, .passes = &pass, .pass_count = 1};
     const double begin = camber_now_ms();
     const camber_status status =
-        way == WAY_ROWS ? camber_render(t->renderers[way], &frame, take_rows, t->b->picture, NULL)
-                        : camber_render_texture(t->renderers[way], &frame, &(camber_texture){.name = t->texture}, NULL);
+        way == WAY_ROWS
+            ? camber_renderer_render(t->renderers[way], &frame, take_rows, t->b->picture, NULL)
+            : camber_renderer_render_texture(t->renderers[way], &frame, &(camber_texture){.name = t->texture}, NULL);
     if (status == CAMBER_OK && counts)
         bench_series_add(t->series + way, camber_now_ms() - begin);
     return status;

@@ -1,11 +1,13 @@
 /* classify: per point, which join it is.
- * Reads x, y, info[n + 2] (one ghost before and after the n points), rows; writes joins[n + 2], of which the first and
- * the last stay 0. n is a multiple of CAMBER_BLOCK. CAMBER_METHOD and CAMBER_ITEM are set by the build. A work-group's
- * items take its points by turns; where one takes them all, it is the loop that is vectorised, in registers as wide as
- * there are: that leaves more points in flight than the vectoriser would by itself.
- * x_before, x_after and their like are x and y once more: where the compiler can see that a point's two neighbours lie
- * together, it packs them into a float2, and PoCL does not vectorise over the points any more (5 times slower). */
-#define LANES (CAMBER_BLOCK / CAMBER_ITEM)
+ * Reads x, y, info[n + 2] (one sentinel before and after the n points), rows; writes joins[n + 2], of which the first
+ * and the last stay 0. n is a multiple of CAMBER_BLOCK. CAMBER_METHOD and CAMBER_POINT_CHUNK are set by the build. A
+ * work-group's items take its points by turns; where one takes them all, it is the loop that is vectorised, in
+ * registers as wide as there are: that leaves more points in flight than the vectoriser would by itself. x_before,
+ * x_after and their like are x and y once more: where the compiler can see that a point's two neighbours lie together,
+ * it packs them into a float2, and PoCL does not vectorise over the points any more (5 times slower). */
+#include "join.h"
+
+#define LANES (CAMBER_BLOCK / CAMBER_POINT_CHUNK)
 
 CAMBER_KERNEL(LANES, classify,
               (global const float *restrict x, global const float *restrict y, global const float *restrict x_before,
@@ -14,7 +16,7 @@ CAMBER_KERNEL(LANES, classify,
                global const camber_u32 *restrict info_before, global const camber_u32 *restrict info_after,
                global const camber_row *restrict rows, global camber_u32 *restrict joins),
               (x, y, x_before, y_before, x_after, y_after, info, info_before, info_after, rows, joins)) {
-    const size_t first = CAMBER_ITEM_ID / LANES * CAMBER_BLOCK + CAMBER_ITEM_ID % LANES + 1;
+    const size_t first = CAMBER_WORK_ITEM / LANES * CAMBER_BLOCK + CAMBER_WORK_ITEM % LANES + 1;
 #pragma clang loop vectorize_width(16)
     for (size_t n = 0; n < CAMBER_BLOCK; n += LANES) {
         const size_t i = first + n;

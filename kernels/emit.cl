@@ -1,35 +1,33 @@
 /* emit: per point, its records and, for kite and fan, its indices.
- * Reads x, y, info[n + 2], joins[n + 2], offsets[n / CAMBER_ITEM], bases[2 * n / CAMBER_BLOCK] (each block's first
- * vertex and first index); writes records[CAMBER_RECORD_WORDS * record count], indices[index count]. Lists and their
- * order: camber_strip_records and camber_join_counts in join.h. A work-item appends what a run of CAMBER_ITEM points
- * has. Measured, it reads measures[2 * n] as well, and records are twice as long. */
-#define LANES (CAMBER_BLOCK / CAMBER_ITEM)
+ * Reads x, y, info[n + 2], joins[n + 2], offsets[n / CAMBER_POINT_CHUNK], bases[2 * n / CAMBER_BLOCK] (each block's
+ * first vertex and first index); writes records[CAMBER_RECORD_WORDS * record count], indices[index count]. Lists and
+ * their order: camber_strip_records and camber_join_counts in join.h. A work-item appends what a run of
+ * CAMBER_POINT_CHUNK points has. With CAMBER_HAS_ARC_LENGTH it reads measures[2 * n] as well, and records
+ * are twice as long; else measures is NULL. */
+#include "join.h"
+
+#define LANES (CAMBER_BLOCK / CAMBER_POINT_CHUNK)
 
 /* No restrict in what is inlined into kernels: oclgrind does not know what becomes of it there. */
 
 static inline void put_record(global camber_u32 *records, size_t k, float x, float y, camber_u32 join,
                               camber_u32 last) {
-    vstore4((uint4)(as_uint(x), as_uint(y), join, last), (1 + CAMBER_MEASURED) * k, records);
+    vstore4((uint4)(as_uint(x), as_uint(y), join, last), (1 + CAMBER_HAS_ARC_LENGTH) * k, records);
 }
 
-#if CAMBER_MEASURED
-#define MEASURES , global const float *restrict measures
-#define MEASURES_GIVEN , measures
+#if CAMBER_HAS_ARC_LENGTH
 /* The records [k, k + count) lie as far along their line as point i. */
-static inline void put_measures(global camber_u32 *records, size_t k, size_t count, global const float *measures,
+static inline void put_measures(global camber_u32 *records, size_t k, size_t count, global const float *arc_lengths,
                                 size_t i) {
-    const camber_u32 along = as_uint(measures[2 * i]), in_all = as_uint(measures[2 * i + 1]);
+    const camber_u32 along = as_uint(arc_lengths[2 * i]), in_all = as_uint(arc_lengths[2 * i + 1]);
     for (size_t r = 0; r < count; r++)
         vstore4((uint4)(along, in_all, 0u, 0u), 2 * (k + r) + 1, records);
 }
-#else
-#define MEASURES
-#define MEASURES_GIVEN
 #endif
 
 #if CAMBER_METHOD == CAMBER_STRIP
 
-/* Whether a point's records are others than two stores put: a ring's first, a dot, a split, a ghost. */
+/* Whether a point's records are others than two stores put: a ring's first, a dot, a split, a sentinel. */
 static inline camber_u32 is_rare(camber_u32 join, camber_u32 point) {
     const camber_u32 ring_begins = CAMBER_POINT_FIRST | CAMBER_POINT_RING;
     return (camber_join_kind(join) - CAMBER_KIND_CAP > CAMBER_KIND_TIGHT - CAMBER_KIND_CAP ? 1u : 0u) |
@@ -42,10 +40,10 @@ static inline size_t put_any(global const float *x, global const float *y, size_
     const camber_u32 kind = camber_join_kind(join), begins = point & CAMBER_POINT_FIRST ? 1u : 0u;
     const camber_u32 inside = point & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST) ? 0u : 1u;
     const camber_u32 breaks = CAMBER_RECORD_BREAK | (point & CAMBER_ROW_BITS);
-    if (kind == CAMBER_KIND_GHOST)
+    if (kind == CAMBER_KIND_SENTINEL)
         return 0;
     put_record(records, k + begins, x[i], y[i], join, point);
-    if (begins) { /* a ring's first segment comes in from a ghost; an open line begins with itself */
+    if (begins) { /* a ring's first segment comes in from a sentinel; an open line begins with itself */
         const size_t from = point & CAMBER_POINT_RING ? i - 1 : i;
         put_record(records, k, x[from], y[from], 0, breaks);
     }
@@ -60,9 +58,9 @@ static inline size_t put_any(global const float *x, global const float *y, size_
     return camber_strip_records(kind, point);
 }
 
-/* What a second record has of its point's first, and what it has beside: of one that goes on at a tight join, and of
- * the break before a polyline. */
-constant camber_u32 KEPT[8] = {~0u, ~0u, ~0u, ~0u, ~0u, ~0u, 0u, CAMBER_ROW_BITS};
+/* The bits that a second record takes from its point's first, and those that it has besides: for one that goes on at a
+ * tight join, and of the break before a polyline. */
+constant camber_u32 SAME[8] = {~0u, ~0u, ~0u, ~0u, ~0u, ~0u, 0u, CAMBER_ROW_BITS};
 constant camber_u32 ADDED[8] = {0u, 0u, 0u, CAMBER_RECORD_START, 0u, 0u, 0u, CAMBER_RECORD_BREAK};
 
 /* The one or two records of most points, in an order that no processor foresees. So two are stored for each: what may
@@ -72,7 +70,7 @@ static inline __attribute__((always_inline)) size_t put_two(camber_u32 join, cam
     const camber_u32 ends = point & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST);
     const camber_u32 begins = point / CAMBER_POINT_FIRST & 1u;
     const camber_u32 goes_on = ((camber_join_kind(join) ^ CAMBER_KIND_TIGHT) | ends) == 0u ? 1u : 0u;
-    vstore4((record & vload4(begins, KEPT)) | vload4(begins, ADDED), k + goes_on, records);
+    vstore4((record & vload4(begins, SAME)) | vload4(begins, ADDED), k + goes_on, records);
     vstore4(record, k + begins, records);
     return 1u + begins + goes_on;
 }
@@ -82,18 +80,19 @@ CAMBER_KERNEL(LANES, emit,
               (global const float *restrict x, global const float *restrict y, global const camber_u32 *restrict info,
                global const camber_row *restrict rows, global const camber_u32 *restrict joins,
                global const camber_u32 *restrict offsets, global const camber_u64 *restrict bases,
-               global camber_u32 *restrict records, global camber_u32 *restrict indices MEASURES),
-              (x, y, info, rows, joins, offsets, bases, records, indices MEASURES_GIVEN)) {
-    const size_t first = CAMBER_ITEM_ID * CAMBER_ITEM + 1;
+               global camber_u32 *restrict records, global camber_u32 *restrict indices,
+               global const float *restrict arc_lengths),
+              (x, y, info, rows, joins, offsets, bases, records, indices, arc_lengths)) {
+    const size_t first = CAMBER_WORK_ITEM * CAMBER_POINT_CHUNK + 1;
     /* two indices a record */
-    size_t k = ((size_t)bases[2 * (CAMBER_ITEM_ID / LANES) + 1] + (offsets[CAMBER_ITEM_ID] >> 16)) / 2;
-    for (size_t i = first; i < first + CAMBER_ITEM; i += 4) {
-        if (CAMBER_MEASURED | is_rare(joins[i], info[i]) | is_rare(joins[i + 1], info[i + 1]) |
+    size_t k = ((size_t)bases[2 * (CAMBER_WORK_ITEM / LANES) + 1] + (offsets[CAMBER_WORK_ITEM] >> 16)) / 2;
+    for (size_t i = first; i < first + CAMBER_POINT_CHUNK; i += 4) {
+        if (CAMBER_HAS_ARC_LENGTH | is_rare(joins[i], info[i]) | is_rare(joins[i + 1], info[i + 1]) |
             is_rare(joins[i + 2], info[i + 2]) | is_rare(joins[i + 3], info[i + 3])) {
             for (size_t n = i; n < i + 4; n++) {
                 const size_t count = put_any(x, y, n, joins[n], info[n], records, k);
-#if CAMBER_MEASURED
-                put_measures(records, k, count, measures, n - 1);
+#if CAMBER_HAS_ARC_LENGTH
+                put_measures(records, k, count, arc_lengths, n - 1);
 #endif
                 k += count;
             }
@@ -182,12 +181,12 @@ static inline size_t put_point(global const float *x, global const float *y, glo
                                global camber_u32 *index) {
     const camber_u32 join = joins[i], kind = camber_join_kind(join), point = info[i];
     const camber_u32 before = joins[i - 1];
-    /* A record a slot, ghosts too: a ring's are where its seam's neighbours lie. */
+    /* A record a slot, sentinels too: a ring's are where its seam's neighbours lie. */
     put_record(records, i - 1, x[i], y[i],
                camber_record_join(
                    join, camber_half_shorter(x[i] - x[i - 1], y[i] - y[i - 1], x[i + 1] - x[i], y[i + 1] - y[i])),
                point);
-    if (kind == CAMBER_KIND_GHOST || (point & CAMBER_POINT_FIRST && kind != CAMBER_KIND_DOT))
+    if (kind == CAMBER_KIND_SENTINEL || (point & CAMBER_POINT_FIRST && kind != CAMBER_KIND_DOT))
         return 0;
     const camber_u32 here = (camber_u32)(i - 1) << CAMBER_CORNER_BITS, in_left = here | CAMBER_CORNER_IN_LEFT;
     if (kind == CAMBER_KIND_DOT)
@@ -200,7 +199,7 @@ static inline size_t put_point(global const float *x, global const float *y, glo
     if (!joined)
         return body;
     put_join(index + body, here, camber_join_triangles(join),
-             CAMBER_METHOD == CAMBER_FAN && camber_join_end(join) == 0u,
+             CAMBER_METHOD == CAMBER_FAN && camber_join_end(join) == CAMBER_ENDS_ROUND,
              camber_turn_unpack(join) > 0.0f ? -1.0f : 1.0f);
     return body + 3u * camber_join_triangles(join);
 }
@@ -209,14 +208,15 @@ CAMBER_KERNEL(LANES, emit,
               (global const float *restrict x, global const float *restrict y, global const camber_u32 *restrict info,
                global const camber_row *restrict rows, global const camber_u32 *restrict joins,
                global const camber_u32 *restrict offsets, global const camber_u64 *restrict bases,
-               global camber_u32 *restrict records, global camber_u32 *restrict indices MEASURES),
-              (x, y, info, rows, joins, offsets, bases, records, indices MEASURES_GIVEN)) {
-    const size_t first = CAMBER_ITEM_ID * CAMBER_ITEM + 1;
-    size_t at = (size_t)bases[2 * (CAMBER_ITEM_ID / LANES) + 1] + (offsets[CAMBER_ITEM_ID] >> 16);
-    for (size_t i = first; i < first + CAMBER_ITEM; i++) {
+               global camber_u32 *restrict records, global camber_u32 *restrict indices,
+               global const float *restrict arc_lengths),
+              (x, y, info, rows, joins, offsets, bases, records, indices, arc_lengths)) {
+    const size_t first = CAMBER_WORK_ITEM * CAMBER_POINT_CHUNK + 1;
+    size_t at = (size_t)bases[2 * (CAMBER_WORK_ITEM / LANES) + 1] + (offsets[CAMBER_WORK_ITEM] >> 16);
+    for (size_t i = first; i < first + CAMBER_POINT_CHUNK; i++) {
         at += put_point(x, y, info, joins, i, records, indices + at);
-#if CAMBER_MEASURED
-        put_measures(records, i - 1, 1, measures, i - 1);
+#if CAMBER_HAS_ARC_LENGTH
+        put_measures(records, i - 1, 1, arc_lengths, i - 1);
 #endif
     }
 }

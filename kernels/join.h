@@ -8,8 +8,8 @@
  *     tan(t/4) = s / (1 + c)    in -1 to 1 for every turn: what is stored, as 16 bits
  *     1 / c                     the miter length over the width
  */
-#ifndef CAMBER_JOIN_MATHS_H
-#define CAMBER_JOIN_MATHS_H
+#ifndef CAMBER_KERNELS_JOIN_H
+#define CAMBER_KERNELS_JOIN_H
 
 #include "layout.h"
 
@@ -18,8 +18,8 @@
 #define CAMBER_ROUND_LIMITS 1
 #endif
 
-/* Of half the turn: a join that turns by less, 0.011 degrees, has no triangles of its own in kite and fan. Their
- * corners would fall on each other, and it is the rasteriser's rounding that says which way they wind. */
+/* The sine of half the turn: a join that turns by less, 0.011 degrees, has no triangles of its own in kite and fan.
+ * Their corners would fall on each other, and it is the rasteriser's rounding that says which way they wind. */
 #define CAMBER_STRAIGHT_SINE 1e-4f
 
 typedef struct camber_turn {
@@ -41,7 +41,7 @@ CAMBER_FN camber_turn camber_turn_between(float dx, float dy, float ex, float ey
     const float product = along * along + aside * aside; /* of the squared lengths */
     const float scale = 1.0f / CAMBER_SQRT(product > 1e-36f ? product : 1e-36f);
     const float dot = along * scale, cross = aside * scale;
-    /* Of c and s the larger comes from a root that loses nothing, the smaller from cross = 2 s c. */
+    /* The larger one of c and s comes from a root that loses nothing, the smaller from cross = 2 s c. */
     const float larger = CAMBER_SQRT(0.5f + 0.5f * CAMBER_FABS(dot));
     const float smaller = 0.5f * cross / larger;
     camber_turn turn;
@@ -76,11 +76,11 @@ CAMBER_FN camber_u32 camber_join_kind(camber_u32 join) {
 }
 
 CAMBER_FN camber_u32 camber_join_end(camber_u32 join) {
-    return join >> CAMBER_JOIN_END_SHIFT & 7u;
+    return join >> CAMBER_JOIN_END_SHIFT & CAMBER_JOIN_END_MASK;
 }
 
-/* What a join word tells of the line beyond the next point, from the info of the points beside it. A ring has neither
- * first nor last. */
+/* The bits of a join word that tell of the line beyond the next point, from the info of the points beside it. A ring
+ * has neither first nor last. */
 CAMBER_FN camber_u32 camber_line_ends(camber_u32 before, camber_u32 after) {
     const camber_u32 first = (before & (CAMBER_POINT_FIRST | CAMBER_POINT_RING)) == CAMBER_POINT_FIRST;
     const camber_u32 last = (after & (CAMBER_POINT_LAST | CAMBER_POINT_RING)) == CAMBER_POINT_LAST;
@@ -104,7 +104,9 @@ CAMBER_FN float camber_limit_unpack(camber_u32 join) {
 
 /* camber_end past a cap: round 0, butt 1, square 2. */
 CAMBER_FN camber_u32 camber_cap_end(camber_u32 cap) {
-    return cap == 1u ? 0u : cap == 2u ? 2u : 1u;
+    return cap == CAMBER_CAPS_ROUND    ? CAMBER_ENDS_ROUND
+           : cap == CAMBER_CAPS_SQUARE ? CAMBER_ENDS_SQUARE
+                                       : CAMBER_ENDS_BUTT;
 }
 
 /* Triangles of a round join as a fan: steps of the row's angle until they pass the turn. cos falls from 0 to
@@ -140,23 +142,27 @@ CAMBER_FN camber_u32 camber_fan_triangles(float turn_cos, float step_cos, float 
 CAMBER_FN camber_u32 camber_join_word(camber_turn turn, CAMBER_GLOBAL const camber_row *row, camber_u32 method) {
     const float sine = CAMBER_FABS(turn.s);
 #if CAMBER_ROUND_LIMITS
-    const camber_u32 asked = turn.c > row->round_cos ? 1u : row->join;
+    const camber_u32 asked = turn.c > row->round_cos ? CAMBER_JOINS_MITER : row->join;
 #else
     const camber_u32 asked = row->join;
 #endif
-    const camber_u32 miter = asked == 1u && turn.c * row->miter_limit >= 1.0f;
-    const camber_u32 bevel = asked != 0u && !miter;
+    const camber_u32 miter = asked == CAMBER_JOINS_MITER && turn.c * row->miter_limit >= 1.0f;
+    const camber_u32 bevel = asked != CAMBER_JOINS_ROUND && !miter;
     const camber_u32 split = !miter && sine > 2.0f * turn.c;
     const camber_u32 tight = row->reach_px * sine > turn.half_shorter * turn.c;
-    camber_u32 end = miter ? 3u : bevel ? 4u : 0u;
+    camber_u32 end = miter ? CAMBER_ENDS_MITER : bevel ? CAMBER_ENDS_BEVEL : CAMBER_ENDS_ROUND;
     camber_u32 triangles = 0;
     if (method == CAMBER_STRIP) {
-        end = split || tight ? (miter ? 7u : bevel ? 6u : 5u) : end;
+        const camber_u32 split_end = miter   ? CAMBER_ENDS_SPLIT_MITER
+                                     : bevel ? CAMBER_ENDS_SPLIT_BEVEL
+                                             : CAMBER_ENDS_SPLIT_ROUND;
+        end = split || tight ? split_end : end;
     } else if (sine > CAMBER_STRAIGHT_SINE) {
         /* Past 120 degrees the kite's tip runs away: two kites of half the angle. */
         const camber_u32 kites = !miter && sine > 1.7320508f * turn.c ? 4u : 2u;
-        triangles =
-            method == CAMBER_FAN && asked == 0u ? camber_fan_triangles(turn.dot, row->fan_cos, row->fan_sin) : kites;
+        triangles = method == CAMBER_FAN && asked == CAMBER_JOINS_ROUND
+                        ? camber_fan_triangles(turn.dot, row->fan_cos, row->fan_sin)
+                        : kites;
     }
     const camber_u32 kind = split ? CAMBER_KIND_SPLIT : tight ? CAMBER_KIND_TIGHT : CAMBER_KIND_CUT;
     const camber_u32 limit = kind == CAMBER_KIND_TIGHT ? camber_limit_pack(turn.half_shorter) : 0u;
@@ -166,7 +172,7 @@ CAMBER_FN camber_u32 camber_join_word(camber_turn turn, CAMBER_GLOBAL const camb
 
 /* The join word of an end of an open polyline, or of a dot. */
 CAMBER_FN camber_u32 camber_cap_word(camber_u32 cap, camber_u32 dot) {
-    const camber_u32 kind = !dot ? CAMBER_KIND_CAP : cap == 0u ? CAMBER_KIND_GHOST : CAMBER_KIND_DOT;
+    const camber_u32 kind = !dot ? CAMBER_KIND_CAP : cap == CAMBER_CAPS_BUTT ? CAMBER_KIND_SENTINEL : CAMBER_KIND_DOT;
     return kind << CAMBER_JOIN_KIND_SHIFT | camber_cap_end(cap) << CAMBER_JOIN_END_SHIFT;
 }
 
@@ -189,7 +195,7 @@ CAMBER_FN float camber_edge_along(camber_u32 join, float end, float side, camber
  */
 CAMBER_FN float camber_edge_limit(camber_u32 join, float side) {
     const camber_u32 kind = camber_join_kind(join);
-    const camber_u32 is_butt = kind < CAMBER_KIND_CUT && camber_join_end(join) == 1u;
+    const camber_u32 is_butt = kind < CAMBER_KIND_CUT && camber_join_end(join) == CAMBER_ENDS_BUTT;
     const camber_u32 is_inner = kind == CAMBER_KIND_TIGHT && side * camber_turn_unpack(join) > 0.0f;
     return is_butt ? CAMBER_PAD_PX : is_inner ? camber_limit_unpack(join) : CAMBER_NO_LIMIT_PX;
 }
@@ -204,7 +210,7 @@ CAMBER_FN float camber_edge_limit(camber_u32 join, float side) {
 CAMBER_FN camber_u32 camber_strip_records(camber_u32 kind, camber_u32 info) {
     const camber_u32 first = info & CAMBER_POINT_FIRST ? 1u : 0u;
     const camber_u32 inner = info & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST) ? 0u : 1u;
-    const camber_u32 live = kind == CAMBER_KIND_GHOST ? 0u : kind == CAMBER_KIND_DOT ? 3u : 1u + first;
+    const camber_u32 live = kind == CAMBER_KIND_SENTINEL ? 0u : kind == CAMBER_KIND_DOT ? 3u : 1u + first;
     return live + (kind > CAMBER_KIND_CUT ? inner : 0u) + (kind > CAMBER_KIND_TIGHT ? inner : 0u);
 }
 
@@ -254,7 +260,7 @@ CAMBER_FN camber_u32 camber_join_counts(camber_u32 join, camber_u32 before, camb
         const camber_u32 vertices = records == 3u ? 4u : inside ? 1u + records : 2u;
         return records == 0u ? 0u : vertices | records << 17;
     }
-    if (kind == CAMBER_KIND_GHOST)
+    if (kind == CAMBER_KIND_SENTINEL)
         return 0;
     if (kind == CAMBER_KIND_DOT)
         return 4u | 6u << 16;

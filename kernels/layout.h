@@ -1,9 +1,9 @@
-/* Layouts that host and device share. Scalar C that both compilers read; the build declares the dialect
- * (__OPENCL_VERSION__ is OpenCL's own). Sizes are asserted on both sides. */
-#ifndef CAMBER_LAYOUT_H
-#define CAMBER_LAYOUT_H
+/* Layouts that host and device share. Scalar C that both compilers read; the build declares the dialect:
+ * CAMBER_DEVICE is defined for OpenCL C. Sizes are asserted on both sides. */
+#ifndef CAMBER_KERNELS_LAYOUT_H
+#define CAMBER_KERNELS_LAYOUT_H
 
-#ifdef __OPENCL_VERSION__
+#ifdef CAMBER_DEVICE
 #pragma OPENCL FP_CONTRACT OFF
 typedef uint camber_u32;
 typedef int camber_i32;
@@ -25,23 +25,23 @@ typedef uint64_t camber_u64;
 #define CAMBER_FABS(x) fabsf(x)
 #endif
 
-/* Points a work-group, and the block of the scan. Point arrays are padded with ghosts to a multiple of it, so
+/* Points a work-group, and the block of the scan. Point arrays are padded with sentinels to a multiple of it, so
  * that no kernel needs a guard. A device may take smaller ones, which divide it: its build sets them. */
 #ifndef CAMBER_BLOCK
 #define CAMBER_BLOCK 256
 #endif
 /* Points a work-item of classify, scan and emit. On a CPU one takes a whole block: its build says so. */
-#ifndef CAMBER_ITEM
-#define CAMBER_ITEM 8
+#ifndef CAMBER_POINT_CHUNK
+#define CAMBER_POINT_CHUNK 8
 #endif
 
-/* A kernel, work-groups of `size` work-items; its body finds its work-item's number in CAMBER_ITEM_ID. On a CPU the
+/* A kernel, work-groups of `size` work-items; its body finds its work-item's number in CAMBER_WORK_ITEM. On a CPU the
  * body is a function that the kernel calls: PoCL puts a kernel's body into three entries of each build and compiles its
  * loop over work-items around each, which takes twice as long and runs no faster. */
-#ifdef __OPENCL_VERSION__
+#ifdef CAMBER_DEVICE
 #define CAMBER_LIST(...) __VA_ARGS__
-#if CAMBER_ITEM == CAMBER_BLOCK
-#define CAMBER_ITEM_ID item_id
+#if CAMBER_POINT_CHUNK == CAMBER_BLOCK
+#define CAMBER_WORK_ITEM item_id
 #define CAMBER_KERNEL(size, name, parameters, arguments)                                                               \
     static void name##_item(const size_t item_id, CAMBER_LIST parameters) __attribute__((noinline));                   \
     kernel __attribute__((reqd_work_group_size(size, 1, 1))) void name parameters {                                    \
@@ -49,15 +49,15 @@ typedef uint64_t camber_u64;
     }                                                                                                                  \
     static void name##_item(const size_t item_id, CAMBER_LIST parameters)
 #else
-#define CAMBER_ITEM_ID get_global_id(0)
+#define CAMBER_WORK_ITEM get_global_id(0)
 #define CAMBER_KERNEL(size, name, parameters, arguments)                                                               \
     kernel __attribute__((reqd_work_group_size(size, 1, 1))) void name parameters
 #endif
 #endif
 
-/* A point's info word: row << CAMBER_POINT_ROW_SHIFT | flags. 0 is a ghost: a neighbour to look at, or padding,
- * that emits nothing. A ring is stored as ghost of its last but one point, its points with the first repeated
- * at the end, ghost of its second point: so neighbours are always i - 1 and i + 1. */
+/* A point's info word: row << CAMBER_POINT_ROW_SHIFT | flags. 0 is a sentinel: a neighbour to look at, or padding,
+ * that emits nothing. A ring is stored as sentinel of its last but one point, its points with the first repeated
+ * at the end, sentinel of its second point: so neighbours are always i - 1 and i + 1. */
 #define CAMBER_POINT_REAL 1u
 #define CAMBER_POINT_FIRST 2u
 #define CAMBER_POINT_LAST 4u
@@ -78,10 +78,10 @@ typedef struct camber_row {
 } camber_row;
 
 /* Words of a record: see camber_record in camber_proof.h. A measured mesh has as many again behind them, of which the
- * first two are camber_measure. */
+ * first two are camber_arc_length. */
 #define CAMBER_RECORD_WORDS 4
-#ifndef CAMBER_MEASURED
-#define CAMBER_MEASURED 0
+#ifndef CAMBER_HAS_ARC_LENGTH
+#define CAMBER_HAS_ARC_LENGTH 0
 #endif
 
 /* A record's last word is its point's info, with one of these. The vertices of a start are placed by the segment that
@@ -111,6 +111,7 @@ typedef struct camber_row {
  * kind. The limit of a tight join, in units of CAMBER_PAD_PX / 127: half the shorter segment, and the pad at most. The
  * kind comes last, so that no mask narrows it to three bits: oclgrind 21.10 gets such integers wrong. */
 #define CAMBER_JOIN_END_SHIFT 16
+#define CAMBER_JOIN_END_MASK 7u
 #define CAMBER_JOIN_TRIANGLES_SHIFT 19
 #define CAMBER_JOIN_LIMIT_SHIFT 19
 #define CAMBER_JOIN_AFTER_FIRST (1u << 26)
@@ -118,21 +119,36 @@ typedef struct camber_row {
 #define CAMBER_JOIN_KIND_SHIFT 28
 #define CAMBER_JOIN_TRIANGLES_MAX 64 /* so that a block's index count fits 16 bits */
 
-#define CAMBER_KIND_GHOST 0u /* emits nothing: no point of a polyline, or a dot with butt caps */
-#define CAMBER_KIND_DOT 1u   /* a polyline of one point */
-#define CAMBER_KIND_CAP 2u   /* an end of an open polyline */
-#define CAMBER_KIND_CUT 3u   /* a join cut along its bisector */
-#define CAMBER_KIND_TIGHT 4u /* cut on the outer side; the inner side has no room */
-#define CAMBER_KIND_SPLIT 5u /* too sharp to cut: both segments end here */
+#define CAMBER_KIND_SENTINEL 0u /* emits nothing: no point of a polyline, or a dot with butt caps */
+#define CAMBER_KIND_DOT 1u      /* a polyline of one point */
+#define CAMBER_KIND_CAP 2u      /* an end of an open polyline */
+#define CAMBER_KIND_CUT 3u      /* a join cut along its bisector */
+#define CAMBER_KIND_TIGHT 4u    /* cut on the outer side; the inner side has no room */
+#define CAMBER_KIND_SPLIT 5u    /* too sharp to cut: both segments end here */
 
-/* The methods, as camber_method, and the ends, as camber_end: numbers that the preprocessor can compare. */
+/* The public enums, which OpenCL C does not read: camber_method, camber_join, camber_cap. */
 #define CAMBER_STRIP 0
 #define CAMBER_KITE 1
 #define CAMBER_FAN 2
+#define CAMBER_JOINS_ROUND 0u
+#define CAMBER_JOINS_MITER 1u
+#define CAMBER_JOINS_BEVEL 2u
+#define CAMBER_CAPS_BUTT 0u
+#define CAMBER_CAPS_ROUND 1u
+#define CAMBER_CAPS_SQUARE 2u
+/* camber_end: how a segment ends. stroke.vert and stroke.frag have the same names without the prefix. */
+#define CAMBER_ENDS_ROUND 0u
+#define CAMBER_ENDS_BUTT 1u
+#define CAMBER_ENDS_SQUARE 2u
+#define CAMBER_ENDS_MITER 3u
+#define CAMBER_ENDS_BEVEL 4u
+#define CAMBER_ENDS_SPLIT_ROUND 5u
+#define CAMBER_ENDS_SPLIT_BEVEL 6u
+#define CAMBER_ENDS_SPLIT_MITER 7u
 
 #define CAMBER_NO_LIMIT_PX 3.0e38f
 
-#ifdef __OPENCL_VERSION__
+#ifdef CAMBER_DEVICE
 typedef char camber_row_is_32_bytes[sizeof(camber_row) == 32 ? 1 : -1];
 #else
 _Static_assert(sizeof(camber_row) == 32, "the device reads rows of 32 bytes");
@@ -140,6 +156,16 @@ _Static_assert(sizeof(camber_record) == 4 * CAMBER_RECORD_WORDS, "the device wri
 _Static_assert(CAMBER_METHOD_STRIP == CAMBER_STRIP && CAMBER_METHOD_KITE == CAMBER_KITE &&
                    CAMBER_METHOD_FAN == CAMBER_FAN,
                "the build passes the method to the device as a number");
+_Static_assert(CAMBER_JOIN_ROUND == CAMBER_JOINS_ROUND && CAMBER_JOIN_MITER == CAMBER_JOINS_MITER &&
+                   CAMBER_JOIN_BEVEL == CAMBER_JOINS_BEVEL && CAMBER_CAP_BUTT == CAMBER_CAPS_BUTT &&
+                   CAMBER_CAP_ROUND == CAMBER_CAPS_ROUND && CAMBER_CAP_SQUARE == CAMBER_CAPS_SQUARE,
+               "rows have joins and caps as numbers");
+_Static_assert(CAMBER_END_ROUND == CAMBER_ENDS_ROUND && CAMBER_END_BUTT == CAMBER_ENDS_BUTT &&
+                   CAMBER_END_SQUARE == CAMBER_ENDS_SQUARE && CAMBER_END_MITER == CAMBER_ENDS_MITER &&
+                   CAMBER_END_BEVEL == CAMBER_ENDS_BEVEL && CAMBER_END_SPLIT_ROUND == CAMBER_ENDS_SPLIT_ROUND &&
+                   CAMBER_END_SPLIT_BEVEL == CAMBER_ENDS_SPLIT_BEVEL &&
+                   CAMBER_END_SPLIT_MITER == CAMBER_ENDS_SPLIT_MITER,
+               "join words and vertices have ends as numbers");
 #endif
 
 #endif

@@ -1,70 +1,70 @@
 /* Offset: the line that lies beside another, the one place where it is decided which points it has.
  *
- *     leg    the segment from a slot to the next, moved aside
- *     bend   where two legs meet: on the outer side an arc about the point, on the inner one where they cross
+ *     offset segment   the one from a slot to the next, moved aside
+ *     corner           where two of them meet: an arc about the point outside, a crossing inside
  *
  *         T0___T1                 outer: points on tangents, so that none lies nearer than the offset;
- *         /       \               the first and the last lie on the legs
- *        /    P----T2---- leg
- *       /    /                        leg ------J   P      inner: J, where both legs have room
- *      leg  /                                    \   \
+ *         /       \               the first and the last lie on the segments
+ *        /    P----T2---- segment
+ *       /    /                        seg ------J   P      inner: J, where both have room
+ *      seg  /                                    \   \
  *
- * What has no room goes: of a leg, and of an arc, that is left which lies no nearer than the offset to what the line
- * passes within its reach, CAMBER_OFFSET_REACH offsets around the end of the leg. As a capsule is convex, it hides one
- * interval of a leg; the line before hides the leg's beginning up to there, that behind its end. What is left is linked
- * in the order of the line. So a line has no more pieces than it had, and what lies farther along it than its reach
- * does not count: a line that crosses itself is drawn through. */
-#ifndef CAMBER_OFFSET_MATHS_H
-#define CAMBER_OFFSET_MATHS_H
+ * What has no room goes: of a segment, and of an arc, that is left which lies no nearer than the offset to what the
+ * line passes within its reach, CAMBER_OFFSET_REACH offsets around the end of the segment. As a capsule is convex, it
+ * hides one interval of a segment; the line before hides the segment's beginning up to there, that behind its end. What
+ * is left is linked in the order of the line. So a line has no more segments than it had, and what lies farther along
+ * it than its reach does not count: a line that crosses itself is drawn through. */
+#ifndef CAMBER_KERNELS_OFFSET_H
+#define CAMBER_KERNELS_OFFSET_H
 
 #include "join.h"
 
-/* Slots whose points a work-item counts and puts. */
+/* Slots whose points a work-item counts and emits. */
 #define CAMBER_OFFSET_CHUNK 16
-/* How far around a leg's end the line is looked at, in offsets, and how many segments of it at most. */
+/* How far around a segment's end the line is looked at, in offsets, and how many segments of it at most. */
 #define CAMBER_OFFSET_REACH 3.0f
 #define CAMBER_OFFSET_SEGMENTS 128u
 /* Slots that are passed at most to find a ring's other end, where its seam is looked across. */
 #define CAMBER_OFFSET_SEAM 65536u
 /* An arc's points lie no farther outside it; it has no more of them. */
-#define CAMBER_ARC_TOLERANCE_PX 0.125f
-#define CAMBER_ARC_POINTS_MAX 64u
-/* What is left of a leg is longer. Pieces that are linked are so by one point where they end closer. */
-#define CAMBER_LEG_SHORTEST_PX (1.0f / 1024.0f)
+#define CAMBER_OFFSET_ARC_TOLERANCE_PX 0.125f
+#define CAMBER_OFFSET_ARC_POINTS_MAX 64u
+/* The rest of a cut segment is longer. Elements that are linked are so by one point where they end closer. */
+#define CAMBER_OFFSET_SEGMENT_SHORTEST_PX (1.0f / 1024.0f)
 #define CAMBER_OFFSET_GAP_PX 0.25f
 /* Legs that are cut may end so far from where they cross. */
 #define CAMBER_OFFSET_SLACK_PX 1.0f
-/* Of a leg that is not cut at its end. */
-#define CAMBER_LEG_WHOLE 1.0e30f
+/* The end of a segment that is not cut there. */
+#define CAMBER_OFFSET_SEGMENT_WHOLE 1.0e30f
 
-/* What of a row an offset needs. */
-typedef struct camber_shift {
+/* The part of a row that an offset needs. */
+typedef struct camber_offset_row {
     float offset_px; /* to the right, as seen with y down */
     float miter_limit;
     camber_u32 join; /* camber_join */
     camber_u32 spare;
-} camber_shift;
+} camber_offset_row;
 
-/* What is left of the leg that begins at a slot, px along it, and of the arc there. */
-typedef struct camber_span {
+/* The rest of the offset segment that begins at a slot, px along it, and of the arc there. */
+typedef struct camber_offset_clip {
     float from, to; /* nothing where to is not above from */
     camber_u32 arc; /* its first point | the one behind its last << 8 | how many it would have << 16 */
-} camber_span;
+} camber_offset_clip;
 
 /* Lines as classify would read them, and what is known of them. */
-typedef struct camber_course {
+typedef struct camber_source_line {
     CAMBER_GLOBAL const float *x, *y;
     CAMBER_GLOBAL const camber_u32 *info;
-    CAMBER_GLOBAL const camber_shift *shifts;
-    CAMBER_GLOBAL const camber_span *spans;
-    CAMBER_GLOBAL const float *measures; /* camber_measure of each slot. NULL: not measured */
+    CAMBER_GLOBAL const camber_offset_row *offset_rows;
+    CAMBER_GLOBAL const camber_offset_clip *clips;
+    CAMBER_GLOBAL const float *arc_lengths; /* camber_arc_length of each slot. NULL: not measured */
     camber_u32 slots;
-} camber_course;
+} camber_source_line;
 
 /* ---- Slots along a line ---- */
 
 /* The other end of a ring, which is somewhere behind its first slot or before its last; 0: not found. */
-CAMBER_FN camber_u32 camber_seam_last(const camber_course *c, camber_u32 first, camber_u32 most) {
+CAMBER_FN camber_u32 camber_seam_last(const camber_source_line *c, camber_u32 first, camber_u32 most) {
     const camber_u32 wanted = CAMBER_POINT_LAST | CAMBER_POINT_RING;
     const camber_u32 end = c->slots - first > most ? first + most : c->slots;
     camber_u32 i = first;
@@ -73,7 +73,7 @@ CAMBER_FN camber_u32 camber_seam_last(const camber_course *c, camber_u32 first, 
     return i <= end ? i : 0u;
 }
 
-CAMBER_FN camber_u32 camber_seam_first(const camber_course *c, camber_u32 last, camber_u32 most) {
+CAMBER_FN camber_u32 camber_seam_first(const camber_source_line *c, camber_u32 last, camber_u32 most) {
     const camber_u32 wanted = CAMBER_POINT_FIRST | CAMBER_POINT_RING;
     const camber_u32 end = last > most ? last - most : 1u;
     camber_u32 i = last;
@@ -83,14 +83,14 @@ CAMBER_FN camber_u32 camber_seam_first(const camber_course *c, camber_u32 last, 
 }
 
 /* The slot before along the line, past a ring's seam; 0: none. */
-CAMBER_FN camber_u32 camber_slot_before(const camber_course *c, camber_u32 at, camber_u32 most) {
+CAMBER_FN camber_u32 camber_slot_before(const camber_source_line *c, camber_u32 at, camber_u32 most) {
     if (!(c->info[at] & CAMBER_POINT_FIRST))
         return at - 1u;
     const camber_u32 last = c->info[at] & CAMBER_POINT_RING ? camber_seam_last(c, at, most) : 0u;
     return last && !(c->info[last] & CAMBER_POINT_FIRST) ? last - 1u : 0u;
 }
 
-CAMBER_FN camber_u32 camber_slot_behind(const camber_course *c, camber_u32 at, camber_u32 most) {
+CAMBER_FN camber_u32 camber_slot_behind(const camber_source_line *c, camber_u32 at, camber_u32 most) {
     if (!(c->info[at] & CAMBER_POINT_LAST))
         return at + 1u;
     const camber_u32 first = c->info[at] & CAMBER_POINT_RING ? camber_seam_first(c, at, most) : 0u;
@@ -108,120 +108,122 @@ CAMBER_FN camber_u32 camber_is_open_end(camber_u32 info) {
 
 /* ---- Legs ---- */
 
-/* Of a direction: 0 where two slots have one place, as they may where a camera sees a whole city in a pixel. */
+/* A component of a direction: 0 where two slots have one place, as they may where a camera sees a whole city in a
+ * pixel. */
 CAMBER_FN float camber_direction(float offset, float length) {
     return length > 0.0f ? offset / length : 0.0f;
 }
 
-typedef struct camber_leg {
+typedef struct camber_offset_segment {
     float x, y; /* of its begin, px; not moved */
     float ux, uy, length;
-} camber_leg;
+} camber_offset_segment;
 
-CAMBER_FN camber_leg camber_leg_at(const camber_course *c, camber_u32 slot) {
-    camber_leg leg;
-    leg.x = c->x[slot];
-    leg.y = c->y[slot];
-    const float dx = c->x[slot + 1u] - leg.x, dy = c->y[slot + 1u] - leg.y;
-    leg.length = CAMBER_SQRT(dx * dx + dy * dy);
-    leg.ux = camber_direction(dx, leg.length);
-    leg.uy = camber_direction(dy, leg.length);
-    return leg;
+CAMBER_FN camber_offset_segment camber_offset_segment_at(const camber_source_line *c, camber_u32 slot) {
+    camber_offset_segment segment;
+    segment.x = c->x[slot];
+    segment.y = c->y[slot];
+    const float dx = c->x[slot + 1u] - segment.x, dy = c->y[slot + 1u] - segment.y;
+    segment.length = CAMBER_SQRT(dx * dx + dy * dy);
+    segment.ux = camber_direction(dx, segment.length);
+    segment.uy = camber_direction(dy, segment.length);
+    return segment;
 }
 
-CAMBER_FN float camber_leg_x(const camber_leg *leg, float offset, float along) {
-    return leg->x + leg->ux * along - leg->uy * offset;
+CAMBER_FN float camber_offset_segment_x(const camber_offset_segment *segment, float offset, float along) {
+    return segment->x + segment->ux * along - segment->uy * offset;
 }
 
-CAMBER_FN float camber_leg_y(const camber_leg *leg, float offset, float along) {
-    return leg->y + leg->uy * along + leg->ux * offset;
+CAMBER_FN float camber_offset_segment_y(const camber_offset_segment *segment, float offset, float along) {
+    return segment->y + segment->uy * along + segment->ux * offset;
 }
 
-CAMBER_FN camber_u32 camber_span_has_leg(camber_span span) {
-    return span.to > span.from ? 1u : 0u;
+CAMBER_FN camber_u32 camber_offset_has_segment(camber_offset_clip clip) {
+    return clip.to > clip.from ? 1u : 0u;
 }
 
 /* ---- Bends ---- */
 
-typedef struct camber_bend {
+typedef struct camber_offset_corner {
     float c, s;    /* cosine and sine of half the turn that the offset makes, positive from x to y */
-    float in, out; /* lengths of the legs */
+    float in, out; /* lengths of the segments */
     float ix, iy;  /* direction of the one that comes in */
     float x, y;    /* px */
     camber_u32 inner;
-} camber_bend;
+} camber_offset_corner;
 
-/* Of a slot that has neighbours. Legs that lie on each other, as of a way to a dead end and back, are gone around on
- * either side. */
-CAMBER_FN camber_bend camber_bend_at(const camber_course *c, camber_u32 slot, float offset) {
+/* The corner at a slot that has neighbours. Segments that lie on each other, as of a way to a dead end and back, are
+ * gone around on either side. */
+CAMBER_FN camber_offset_corner camber_offset_corner_at(const camber_source_line *c, camber_u32 slot, float offset) {
     const float x = c->x[slot], y = c->y[slot];
     const float dx = x - c->x[slot - 1u], dy = y - c->y[slot - 1u];
     const float ex = c->x[slot + 1u] - x, ey = c->y[slot + 1u] - y;
     const camber_turn turn = camber_turn_between(dx, dy, ex, ey);
     const float reach = CAMBER_OFFSET_REACH * CAMBER_FABS(offset);
-    camber_bend bend;
-    bend.x = x;
-    bend.y = y;
-    bend.c = turn.c;
-    bend.s = turn.s;
-    bend.in = CAMBER_SQRT(dx * dx + dy * dy);
-    bend.out = CAMBER_SQRT(ex * ex + ey * ey);
-    bend.ix = camber_direction(dx, bend.in);
-    bend.iy = camber_direction(dy, bend.in);
+    camber_offset_corner corner;
+    corner.x = x;
+    corner.y = y;
+    corner.c = turn.c;
+    corner.s = turn.s;
+    corner.in = CAMBER_SQRT(dx * dx + dy * dy);
+    corner.out = CAMBER_SQRT(ex * ex + ey * ey);
+    corner.ix = camber_direction(dx, corner.in);
+    corner.iy = camber_direction(dy, corner.in);
     const float shorter = 2.0f * turn.half_shorter < reach ? 2.0f * turn.half_shorter : reach;
     const float aside = CAMBER_FABS(2.0f * turn.s * turn.c);
     const camber_u32 folds = turn.dot < 0.0f && aside < 0.05f && aside * shorter < 0.25f ? 1u : 0u;
-    bend.inner = offset * turn.s > 0.0f ? 1u : 0u;
-    if (folds && bend.inner) {
-        bend.c = -turn.c;
-        bend.s = -turn.s;
-        bend.inner = 0u;
+    corner.inner = offset * turn.s > 0.0f ? 1u : 0u;
+    if (folds && corner.inner) {
+        corner.c = -turn.c;
+        corner.s = -turn.s;
+        corner.inner = 0u;
     }
-    return bend;
+    return corner;
 }
 
-/* How far along both legs the place lies where they cross. */
-CAMBER_FN float camber_bend_room(const camber_bend *bend, float offset) {
-    const float c = bend->c > 1.0e-6f ? bend->c : 1.0e-6f;
-    return CAMBER_FABS(offset * bend->s) / c;
+/* How far along both segments the place lies where they cross. */
+CAMBER_FN float camber_offset_corner_overlap(const camber_offset_corner *corner, float offset) {
+    const float c = corner->c > 1.0e-6f ? corner->c : 1.0e-6f;
+    return CAMBER_FABS(offset * corner->s) / c;
 }
 
-/* How much of a leg its neighbour over an inner bend hides. That may be too short to reach where both cross: then it is
- * the disc about its other end that does. */
-CAMBER_FN float camber_bend_hides(const camber_bend *bend, float offset, float neighbour) {
+/* How much of a segment its neighbour over an inner corner hides. That may be too short to reach where both cross: then
+ * it is the disc about its other end that does. */
+CAMBER_FN float camber_offset_corner_hides(const camber_offset_corner *corner, float offset, float neighbour) {
     const float d = CAMBER_FABS(offset), reach = CAMBER_OFFSET_REACH * d;
-    const float length = neighbour < reach ? neighbour : reach, room = camber_bend_room(bend, offset);
+    const float length = neighbour < reach ? neighbour : reach, room = camber_offset_corner_overlap(corner, offset);
     if (room <= length)
         return room;
-    const float aside = length * CAMBER_FABS(2.0f * bend->s * bend->c);
+    const float aside = length * CAMBER_FABS(2.0f * corner->s * corner->c);
     const float rest = aside * (2.0f * d - aside);
-    const float hidden = CAMBER_SQRT(rest > 0.0f ? rest : 0.0f) - length * (bend->c * bend->c - bend->s * bend->s);
+    const float hidden =
+        CAMBER_SQRT(rest > 0.0f ? rest : 0.0f) - length * (corner->c * corner->c - corner->s * corner->s);
     return hidden > 0.0f ? hidden : 0.0f;
 }
 
-/* An arc: where its next point lies from the bend, and the turn to the one behind. */
-typedef struct camber_arc {
+/* An arc: where its next point lies from the corner, and the turn to the one behind. */
+typedef struct camber_offset_arc {
     float vx, vy;
     float c, s;
     camber_u32 count;
-} camber_arc;
+} camber_offset_arc;
 
-CAMBER_FN void camber_arc_step(camber_arc *arc) {
+CAMBER_FN void camber_offset_arc_step(camber_offset_arc *arc) {
     const float vx = arc->vx * arc->c - arc->vy * arc->s;
     arc->vy = arc->vx * arc->s + arc->vy * arc->c;
     arc->vx = vx;
 }
 
-/* Of an outer bend; none of a bevel. One point is the tip. */
-CAMBER_FN camber_arc camber_arc_of(const camber_bend *bend, camber_shift shift) {
-    const float d = CAMBER_FABS(shift.offset_px);
-    float c = bend->c, s = bend->s;
-    camber_arc arc = {0.0f, 0.0f, 1.0f, 0.0f, 1u};
-    const camber_u32 gentle = d * (1.0f - c) <= CAMBER_ARC_TOLERANCE_PX * c ? 1u : 0u;
-    if (!gentle && shift.join != 0u)
-        arc.count = shift.join == 1u && c * shift.miter_limit >= 1.0f ? 1u : 0u;
-    if (shift.join == 0u)
-        while (d * (1.0f - c) > CAMBER_ARC_TOLERANCE_PX * c && arc.count < CAMBER_ARC_POINTS_MAX) {
+/* The arc of an outer corner; a bevel has none. One point is the tip. */
+CAMBER_FN camber_offset_arc camber_offset_arc_of(const camber_offset_corner *corner, camber_offset_row row) {
+    const float d = CAMBER_FABS(row.offset_px);
+    float c = corner->c, s = corner->s;
+    camber_offset_arc arc = {0.0f, 0.0f, 1.0f, 0.0f, 1u};
+    const camber_u32 gentle = d * (1.0f - c) <= CAMBER_OFFSET_ARC_TOLERANCE_PX * c ? 1u : 0u;
+    if (!gentle && row.join != CAMBER_JOINS_ROUND)
+        arc.count = row.join == CAMBER_JOINS_MITER && c * row.miter_limit >= 1.0f ? 1u : 0u;
+    if (row.join == CAMBER_JOINS_ROUND)
+        while (d * (1.0f - c) > CAMBER_OFFSET_ARC_TOLERANCE_PX * c && arc.count < CAMBER_OFFSET_ARC_POINTS_MAX) {
             const float cosine = CAMBER_SQRT(0.5f + 0.5f * c);
             s = 0.5f * s / cosine;
             c = cosine;
@@ -229,7 +231,7 @@ CAMBER_FN camber_arc camber_arc_of(const camber_bend *bend, camber_shift shift) 
         }
     if (arc.count == 0u)
         return arc;
-    const float nx = -bend->iy * shift.offset_px / c, ny = bend->ix * shift.offset_px / c;
+    const float nx = -corner->iy * row.offset_px / c, ny = corner->ix * row.offset_px / c;
     arc.vx = nx * c - ny * s;
     arc.vy = nx * s + ny * c;
     arc.c = c * c - s * s;
@@ -237,24 +239,24 @@ CAMBER_FN camber_arc camber_arc_of(const camber_bend *bend, camber_shift shift) 
     return arc;
 }
 
-CAMBER_FN camber_u32 camber_arc_first(camber_u32 word) {
+CAMBER_FN camber_u32 camber_offset_arc_first(camber_u32 word) {
     return word & 255u;
 }
 
-CAMBER_FN camber_u32 camber_arc_end(camber_u32 word) {
+CAMBER_FN camber_u32 camber_offset_arc_end(camber_u32 word) {
     return word >> 8 & 255u;
 }
 
-CAMBER_FN camber_u32 camber_arc_count(camber_u32 word) {
+CAMBER_FN camber_u32 camber_offset_arc_count(camber_u32 word) {
     return word >> 16;
 }
 
-#ifdef __OPENCL_VERSION__
-typedef char camber_shift_is_16_bytes[sizeof(camber_shift) == 16 ? 1 : -1];
-typedef char camber_span_is_12_bytes[sizeof(camber_span) == 12 ? 1 : -1];
+#ifdef CAMBER_DEVICE
+typedef char camber_offset_row_is_16_bytes[sizeof(camber_offset_row) == 16 ? 1 : -1];
+typedef char camber_offset_clip_is_12_bytes[sizeof(camber_offset_clip) == 12 ? 1 : -1];
 #else
-_Static_assert(sizeof(camber_shift) == 16, "the device reads shifts of 16 bytes");
-_Static_assert(sizeof(camber_span) == 12, "the device writes spans of 12 bytes");
+_Static_assert(sizeof(camber_offset_row) == 16, "the device reads rows of 16 bytes");
+_Static_assert(sizeof(camber_offset_clip) == 12, "the device writes clips of 12 bytes");
 #endif
 
 #endif

@@ -1,23 +1,26 @@
-/* scan: exclusive prefix sums of the counts within each block of CAMBER_BLOCK points, by runs of CAMBER_ITEM points,
- * and each block's sum. A work-group a block, a run a work-item: sums over 32 lanes are a tenth of the work of sums
- * over 256, and where one item takes the block there is but its sum. Reads joins[n + 2], info[n + 2]; writes offsets[n
- * / CAMBER_ITEM] and sums[n / CAMBER_BLOCK], both vertices | indices << 16. The sums of blocks are few; the host adds
- * them up in 64 bits and learns the sizes by it. joins_before is joins once more, for the vectoriser's sake. */
-#define LANES (CAMBER_BLOCK / CAMBER_ITEM)
+/* scan: exclusive prefix sums of the counts within each block of CAMBER_BLOCK points, by runs of CAMBER_POINT_CHUNK
+ * points, and each block's sum. A work-group a block, a run a work-item: sums over 32 lanes are a tenth of the work of
+ * sums over 256, and where one item takes the block there is but its sum. Reads joins[n + 2], info[n + 2]; writes
+ * offsets[n / CAMBER_POINT_CHUNK] and sums[n / CAMBER_BLOCK], both vertices | indices << 16. The sums of blocks are
+ * few; the host adds them up in 64 bits and learns the sizes by it. joins_before is joins once more, for the
+ * vectoriser's sake. */
+#include "join.h"
+
+#define LANES (CAMBER_BLOCK / CAMBER_POINT_CHUNK)
 
 CAMBER_KERNEL(LANES, scan,
               (global const camber_u32 *restrict joins, global const camber_u32 *restrict joins_before,
                global const camber_u32 *restrict info, global camber_u32 *restrict offsets,
                global camber_u32 *restrict sums),
               (joins, joins_before, info, offsets, sums)) {
-    const size_t first = CAMBER_ITEM_ID * CAMBER_ITEM + 1;
+    const size_t first = CAMBER_WORK_ITEM * CAMBER_POINT_CHUNK + 1;
     camber_u32 own = 0;
 #pragma clang loop vectorize_width(16)
-    for (size_t n = 0; n < CAMBER_ITEM; n++)
+    for (size_t n = 0; n < CAMBER_POINT_CHUNK; n++)
         own += camber_join_counts(joins[first + n], joins_before[first + n - 1], info[first + n], CAMBER_METHOD);
 #if LANES == 1
-    offsets[CAMBER_ITEM_ID] = 0u;
-    sums[CAMBER_ITEM_ID] = own;
+    offsets[CAMBER_WORK_ITEM] = 0u;
+    sums[CAMBER_WORK_ITEM] = own;
 #else
     local camber_u32 total[2][LANES];
     const size_t lane = get_local_id(0);

@@ -1,5 +1,5 @@
-// An edge by its unit normal, larger component p, smaller q: half the pixel's extent along the normal; q; 1 / p, the slope
-// of the covered area where it grows linearly; 1 / (2 p q), of its growth over the corners.
+// An edge by its unit normal, larger component p, smaller q: half the pixel's extent along the normal; q; 1 / p, the
+// slope of the covered area where it grows linearly; 1 / (2 p q), of its growth over the corners.
 highp vec2 edge_extent(highp vec2 normal) {
     highp vec2 n = abs(normal);
     return vec2(0.5 * (n.x + n.y), min(n.x, n.y));

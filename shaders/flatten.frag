@@ -1,7 +1,13 @@
-// A flattened layer onto the picture. COVERAGE: it has one channel and takes a colour; UNION: it has the four that
-// stroke.frag leaves, and takes a colour; neither: it has its own colours. MASKED: these
-// may be translucent by themselves, and their alphas lie beside, so that a line that lies on itself shows once. FILL: there
-// is no layer, but a colour, and with IMAGES images side by side. FLIPPED: its last row comes first.
+// Puts a flattened layer onto the picture, or fills it.
+//
+//     COVERAGE  the layer has one channel, coverage, and takes a colour
+//     UNION     the layer has the four sums that stroke.frag writes, and takes a colour
+//     MASKED    the layer has colours that may be translucent by themselves, and a second texture has their alphas, so
+//               that a line that lies on itself shows once
+//     FILL      there is no layer but one colour; with IMAGES copies of an image side by side
+//     FLIPPED   the layer's last row comes first
+//
+// With none of them the layer has colours of its own, and takes an opacity.
 precision highp float;
 
 #if !FILL
@@ -11,10 +17,10 @@ uniform mediump sampler2D u_layer;
 layout(binding = 2) uniform mediump sampler2D u_alphas;
 #endif
 #if IMAGES
-layout(binding = 3) uniform mediump sampler2D u_patterns;
-uniform vec4 u_place;            // of the image in the texture, and how far it reaches
+layout(binding = 3) uniform mediump sampler2D u_atlas;
+uniform vec4 u_image_rect;       // in the atlas: the corner of the image, and its size
 uniform vec2 u_mean;             // where it is one texel
-uniform vec2 u_origin;           // of this piece in the picture, px
+uniform vec2 u_origin;           // of the area in the picture, px
 uniform vec2 u_first;            // where a corner of an image lies, px
 uniform vec2 u_axis_x, u_axis_y; // images a px, along the image's x and y
 uniform vec4 u_eye;              // as stroke.vert has it. 0: the picture is seen from above
@@ -44,17 +50,17 @@ float united(vec4 layer) {
 
 #if IMAGES
 vec4 image_at(vec2 at) {
-    return textureLod(u_patterns, u_place.xy + fract(at) * u_place.zw, 0.0);
+    return textureLod(u_atlas, u_image_rect.xy + fract(at) * u_image_rect.zw, 0.0);
 }
 
-// So many images over.
+// The mean colour of the images over a pixel. reach: images a px. Of many texels the mean of all stands in.
 vec4 images_over(vec2 at, vec2 reach) {
-    vec2 texels = reach * u_place.zw * vec2(textureSize(u_patterns, 0));
+    vec2 texels = reach * u_image_rect.zw * vec2(textureSize(u_atlas, 0));
     ivec2 count = ivec2(clamp(texels + 0.5, 1.0, 8.0));
     vec4 sum = vec4(0.0);
     for (int i = 0; i < count.x * count.y; i++)
         sum += image_at(at + ((vec2(i % count.x, i / count.x) + 0.5) / vec2(count) - 0.5) * reach);
-    vec4 mean = textureLod(u_patterns, u_mean, 0.0);
+    vec4 mean = textureLod(u_atlas, u_mean, 0.0);
     return mix(sum / float(count.x * count.y), mean, clamp(max(texels.x, texels.y) / 8.0 - 1.0, 0.0, 1.0));
 }
 #endif

@@ -1,17 +1,25 @@
 // The coverage of a pixel by its segment's part of a stroke.
-// Built with LINEAR (a ramp in place of the exact area), SHARP_JOINS (miter, bevel), FLAT_CAPS (butt, square), TIPS (round
-// caps of thin strokes) and THIN (strokes with both edges in a pixel), each 0 or 1, so that a mesh pays for what it has: a software rasteriser
-// runs every branch. For the same reason stroke.vert computes what is constant over a segment. With COUNT it adds 1 of
-// 255 in place of the colour, and fragments without coverage leave nothing, in the stencil neither. With UNION it leaves,
-// to be summed over all fragments of a pixel, the edge's normal times a (1 - a) and the area a, and a once more, to be
-// gathered one over the other: flatten.frag makes the union of them. GAP: strokes that may be two bands; BLUR: that may fade;
-// DASH: that may be dashed; TRIM: that may be drawn in part; RAMP: whose
-// colour may change along them; PATTERN: that may be of images. With MASK colours that are translucent by themselves replace what lies below them as far as
-// they cover the pixel, and their alpha goes to a second target. PITCHED: the plane of the lines is seen at an angle; what is
-// measured is measured in the plane then, and each edge by itself becomes one of the picture.
+//
+// A software rasterizer runs every branch, so each of these is 0 or 1 at build time, and a frame pays for what it has:
+//
+//     LINEAR       coverage is a ramp one pixel wide, in place of the exact area
+//     SHARP_JOINS  some joins are miters or bevels          FLAT_CAPS  some caps are butt or square
+//     TIPS         some round caps are of thin strokes      THIN       some strokes have both edges in a pixel
+//     GAP          some strokes are two rails               BLUR       some strokes fade at their edges
+//     DASH         some strokes are dashed                  TRIM       some strokes are drawn in part
+//     RAMP         some change their colour along them      PATTERN    some are drawn with images
+//     COUNT        adds 1 of 255 in place of the colour; fragments without coverage write nothing, no stencil either
+//     UNION        writes sums for flatten.frag's union: the edge's normal times a (1 - a) and the area a add up over
+//                  the fragments of a pixel; a once more is gathered one over the other
+//     MASK         colours that are translucent by themselves replace what lies below as far as they cover the pixel;
+//                  their alpha goes to a second target
+//     PITCHED      the plane of the lines is seen at an angle: lengths lie in the plane, and each edge by itself
+//                  becomes one of the picture
+//
+// For the same reason stroke.vert computes what is constant over a segment.
 precision highp float;
 
-flat in vec4 v_segment; // A in the piece, of PITCHED from where the camera looks at; direction
+flat in vec4 v_segment; // A in the area, of PITCHED from where the camera looks at; direction
 flat in vec4 v_shape;   // length, half width; at A and B: where a flat cap lies, px past the end
 flat in vec4 v_turns;   // cosine and sine of half the turn at A, at B; the sine > 0 where it turns towards +y
 flat in vec4 v_rest;    // slope and curve of the edge; at A and B: foreign from here on, px past the end
@@ -19,7 +27,8 @@ flat in vec4 v_rest;    // slope and curve of the edge; at A and B: foreign from
 flat in vec2 v_tips; // at A and B: where the round cap of a thin line ends, px past the end
 #endif
 #if SHARP_JOINS
-flat in highp uvec3 v_ends; // camber_end at A and << 3 at B; bits of floats: round from here on at A, at B, px past the end
+// Camber_end at A and << 3 at B; bits of floats: round from here on at A, at B, px past the end
+flat in highp uvec3 v_ends;
 #endif
 flat in mediump vec4 v_color;
 #if GAP || BLUR
@@ -27,7 +36,8 @@ flat in vec2 v_band; // half the gap between two bands, below 0 where there is n
 #endif
 
 #if MEASURED
-flat in vec4 v_measure; // at A: how far along the line, px, and how fast that grows; length of the line; period of dashes, px
+// At A: how far along the line, px, and how fast that grows; length of the line; period of dashes, px
+flat in vec4 v_measure;
 #endif
 #if DASH
 flat in highp ivec2 v_dashes; // the first one's texel; twice how many there are, and 1 where they are round
@@ -43,12 +53,14 @@ uniform highp sampler2D u_rows;
 #endif
 #if PATTERN
 flat in vec4 v_image;   // where the image lies in the texture, how far it reaches
-flat in vec4 v_pattern; // at A: how far in the image, and how fast that grows, in images; tangents of half the turns at A, at B
-layout(binding = 3) uniform mediump sampler2D u_patterns;
+// At A: how far in the image, and how fast that grows, in images; tangents of half the turns at A, at B
+flat in vec4 v_pattern;
+layout(binding = 3) uniform mediump sampler2D u_atlas;
 #endif
 #if PITCHED
 flat in vec2 v_end; // B, as A
-flat in vec4 v_cut_a, v_cut_b; // joins narrower than a pixel: what lies past them in the picture, and 0; to 1 where they are wide
+// Joins narrower than a pixel: what lies past them in the picture, and 0; to 1 where they are wide
+flat in vec4 v_cut_a, v_cut_b;
 uniform vec2 u_origin;
 uniform vec4 u_eye; // as stroke.vert has them
 #endif
@@ -87,8 +99,8 @@ void look() {
     ground = vec2(seen.x, seen.y / u_eye.z) * depth;
 }
 
-// How an edge of the plane looks that lies s px from this place along its unit normal: the normal in the picture, by what a
-// px of the plane across the edge measures there, times depth. All of an edge has the same.
+// The normal that an edge of the plane has in the picture, as long as a px of the plane across it measures there, times
+// depth. normal: its unit normal in the plane, s px along which it lies from here. It is the same all along an edge.
 vec2 seen_normal(vec2 normal, float s) {
     return vec2(normal.x, (normal.y - u_eye.w * (dot(normal, ground) + s)) / u_eye.z);
 }
@@ -106,8 +118,8 @@ float scale_of(vec2 normal) {
     return inversesqrt(max(dot(seen, seen), 1e-30)) / depth;
 }
 
-// How much of a pixel belongs to a segment at an end. Where the line is wide, all where its centre lies before the join.
-// Where it is not, many segments may meet in one pixel, and each takes the share that lies between its ends.
+// How much of a pixel belongs to a segment at an end. Where the line is wide, all where its centre lies before the
+// join. Where it is not, many segments may meet in one pixel, and each takes the share that lies between its ends.
 float own_share(vec4 cut, bool foreign) {
     float share = cut.w < 1.0 ? covered(cut.z - dot(cut.xy, seen), edge_of(cut.xy)) : 1.0;
     return mix(share, foreign ? 0.0 : 1.0, cut.w);
@@ -204,8 +216,8 @@ int stop_behind(float place, int low) {
     return low;
 }
 
-// The mean colour of the ramp over a pixel: the share of it between two stops has the colour in the middle of what the pixel
-// sees of them. Where a pixel sees very many, several are taken for one.
+// The mean colour of the ramp over a pixel. The share of the pixel between two stops has the colour in the middle of
+// what it sees of them. Where it sees very many stops, several are taken for one.
 vec4 ramp_over(float along, vec4 edge, float scale) {
     const int MOST = 16;
     float from = along - edge.x / scale, to = along + edge.x / scale;
@@ -245,8 +257,8 @@ float inside_both(float a, float b, float cosine) {
 #if SHARP_JOINS
 const uint MITER = 3u, BEVEL = 4u, SPLIT_BEVEL = 6u, SPLIT_MITER = 7u;
 
-// The second line across the join, by its normal in the segment's frame (along, across): a bevel's looks along the bisector,
-// a miter's is the neighbour's edge, a whole turn away. inside: px from it, on the stroke's side.
+// The second line across a join, by its normal in the segment's frame (along, across). A bevel's normal looks along the
+// bisector; a miter's line is the neighbour's edge, a whole turn away. inside: px from it, on the stroke's side.
 struct Second {
     vec2 normal;
     float inside, outer;
@@ -265,7 +277,8 @@ Second second_line(uint kind, float past, vec2 turn, float y, float half_width) 
 
 #if PITCHED
 // u: of the segment; end: 1 at B, -1 at A.
-float cut_join_plane(float area, uint kind, float past, vec2 turn, float y, vec2 u, float end, vec2 side, float half_width) {
+float cut_join_plane(float area, uint kind, float past, vec2 turn, float y, vec2 u, float end, vec2 side,
+                     float half_width) {
     Second line = second_line(kind, past, turn, y, half_width);
     vec2 normal = line.normal.x * end * u + line.normal.y * vec2(-u.y, u.x);
     float second = covered_plane(line.inside, normal);
@@ -332,7 +345,8 @@ vec2 normal_of(vec2 past, float y, vec2 u, SIDE side, float half_width) {
     vec2 outward = side;
 #if FLAT_CAPS
     vec2 cap = v_shape.zw - past;
-    outward = min(cap.x, cap.y) * scale_of(u) < (half_width - abs(y)) * scale_of(side) ? (cap.x < cap.y ? -u : u) : side;
+    outward = min(cap.x, cap.y) * scale_of(u) < (half_width - abs(y)) * scale_of(side) ? (cap.x < cap.y ? -u : u)
+                                                                                       : side;
 #endif
     return -normalize(seen_normal(outward, 0.0));
 #else
@@ -356,8 +370,8 @@ float before_joint(float t, float tangent, float y) {
     return tangent == 0.0 || t > near ? t : near * clamp((t - bisector) / max(near - bisector, 1e-3), 0.0, 1.0);
 }
 
-// The image at x along and y across the segment, d from the line; past a round join it is swept around. scales: px of the
-// picture a px along and across.
+// The image at x along and y across the segment, d from the line; past a round join it is swept around. scales: px of
+// the picture a px along and across.
 vec4 image_at(float x, float y, float d, vec2 scales) {
     float t = v_shape.x - x;
     x = x < t ? before_joint(x, v_pattern.z, y) : v_shape.x - before_joint(t, v_pattern.w, y);
@@ -366,15 +380,15 @@ vec4 image_at(float x, float y, float d, vec2 scales) {
 #if PITCHED
     // Far away a pixel holds many texels.
     vec2 reach = vec2(v_pattern.y, 0.5 / v_shape.y) / max(scales, 1e-4);
-    ivec2 count = ivec2(clamp(reach * v_image.zw * vec2(textureSize(u_patterns, 0)) + 0.5, 1.0, 8.0));
+    ivec2 count = ivec2(clamp(reach * v_image.zw * vec2(textureSize(u_atlas, 0)) + 0.5, 1.0, 8.0));
     vec4 sum = vec4(0.0);
     for (int i = 0; i < count.x * count.y; i++) {
         vec2 part = (vec2(i % count.x, i / count.x) + 0.5) / vec2(count) - 0.5, at = place + part * reach;
-        sum += textureLod(u_patterns, v_image.xy + vec2(fract(at.x), clamp(at.y, 0.0, 1.0)) * v_image.zw, 0.0);
+        sum += textureLod(u_atlas, v_image.xy + vec2(fract(at.x), clamp(at.y, 0.0, 1.0)) * v_image.zw, 0.0);
     }
     return sum / float(count.x * count.y);
 #else
-    return textureLod(u_patterns, v_image.xy + vec2(fract(place.x), place.y) * v_image.zw, 0.0);
+    return textureLod(u_atlas, v_image.xy + vec2(fract(place.x), place.y) * v_image.zw, 0.0);
 #endif
 }
 #endif
@@ -393,7 +407,7 @@ void main() {
     vec4 edge = edge_of(seen_u);
 #else
     vec2 u = v_segment.zw, q = gl_FragCoord.xy - v_segment.xy;
-    // Of the sides and, turned by a right angle, of flat caps.
+    // Extents of the sides and, turned by a right angle, of flat caps.
     vec4 edge = vec4(edge_extent(u), v_rest.xy);
     float x = dot(q, u), y = q.y * u.x - q.x * u.y;
     vec2 past = vec2(-x, x - v_shape.x); // the ends, along the segment
@@ -407,7 +421,8 @@ void main() {
 #if PITCHED
     // A segment that is shorter than a pixel does not know how the line goes on.
     vec2 bends = vec2(bend(beyond.x * scale, v_turns.y), bend(beyond.y * scale, v_turns.w));
-    float bent = y - (bends.x + bends.y) / scale * max(1.0 - arc * scale, 0.0) * clamp(v_shape.x * scale - 1.0, 0.0, 1.0);
+    float bent = y - (bends.x + bends.y) / scale * max(1.0 - arc * scale, 0.0) *
+                         clamp(v_shape.x * scale - 1.0, 0.0, 1.0);
 #else
     float bent = y - (bend(beyond.x, v_turns.y) + bend(beyond.y, v_turns.w)) * max(1.0 - arc, 0.0);
 #endif
@@ -506,8 +521,8 @@ void main() {
 #if TRIM
     area *= 1.0 - covered((along - v_trim.x) * scale, edge) + covered((along - v_trim.y) * scale, edge);
 #endif
-    // The two sides of a split end know the turn to 16 bits only, 4 / 65534 off at most: between them lies a strip that both
-    // draw, so that neither leaves a hole.
+    // The two sides of a split end know the turn to 16 bits only, 4 / 65534 off at most: between them lies a strip that
+    // both draw, so that neither leaves a hole.
 #if PITCHED
     float tie = 6e-5 * (abs(y) + depth);
 #else

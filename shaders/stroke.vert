@@ -1,28 +1,34 @@
-// Makes a vertex from the mesh's records (camber_record in camber.h; expand.c says the same in C) and hands its segment
-// to the fragments. METHOD is camber_method. Of strips gl_VertexID is 2 * record, + 1 for the right edge; of kite and fan
-// record << 7 | corner.
+// Makes the vertices of strokes. A vertex reads a record of the mesh and its neighbours (camber_record in
+// camber_proof.h; src/tess/expand.c does the same in C), and hands all that is constant over its segment to the
+// fragments.
+//
+// METHOD is camber_method. gl_VertexID is, in strips, 2 * record, and 1 more for the right edge; of kite and fan it is
+// record << 7 | corner. With PITCHED it is 6 * record + corner of two triangles, whatever the method.
 precision highp float;
 precision highp int;
 
 layout(binding = 1) uniform highp usamplerBuffer u_records; // all other samplers are at unit 0
-uniform highp sampler2D u_rows; // TEXELS_A_ROW texels a row: half width px, -1 where not drawn, fan's step, translation px;
-                                // premultiplied colour; half the gap, below 0 where there is none, blur, px; dashes: the
-                                // first one's texel, how many, twice that and 1 where they are round, period px;
-                                // from where to where its line is not drawn, shares of its length; its ramp's first
-                                // texel and how many stops that has; where its image lies in the texture of patterns, and
-                                // how far it reaches, 0 where there is none; px of the line that one takes
-uniform vec2 u_origin;          // of this piece in the picture, px
-uniform vec2 u_corner;          // of the viewport in the picture, px: it reaches past the piece
-uniform int u_table;            // of the rows; of strips the bits of gl_VertexID below the table's number
+// Tables of rows, TEXELS_A_ROW texels a row, then the side table of dashes and ramps. The texels of a row:
+//     0  half the width px, -1: not drawn; the step of a fan; translation x, y px
+//     1  premultiplied colour
+//     2  half the gap px, below 0: none; blur px; 0; 0
+//     3  dashes: first texel in the side table; twice their count, and 1 more where they are round; period px; 0
+//     4  two shares of the line, between which it is not drawn; its ramp's first texel in the side table; stops of that
+//     5  its image in the atlas: corner x, y and size x, y, in texture coordinates; 0: no image
+//     6  px of the line that one image takes; 0; 0; 0
+uniform highp sampler2D u_rows;
+uniform vec2 u_origin;          // of the area in the picture, px
+uniform vec2 u_corner;          // of the viewport in the picture, px: it reaches past the area
+uniform int u_table;            // kite, fan: number of the table. Others: bits of gl_VertexID below that number
 uniform int u_table_rows;
 uniform vec2 u_scale;           // 2 / size of the viewport
-uniform int u_tail;             // the texel of dashes and ramps that is their first, in the texture of rows
+uniform int u_side_table;       // first texel of the side table
 #if PITCHED
 uniform vec4 u_eye;             // half the picture's size, px; cosine of the pitch; depth lost a px towards the viewer
 #endif
-uniform int u_stride;           // texels a record: measured ones have another, with how far along their line they lie
+uniform int u_stride;           // texels a record: 2 where it has its arc length, else 1
 
-// What stroke.frag says of them.
+// stroke.frag says what each is.
 flat out vec4 v_segment;
 flat out vec4 v_shape;
 flat out vec4 v_turns;
@@ -61,7 +67,7 @@ flat out vec4 v_cut_a, v_cut_b;
 const float PAD_PX = 0.75, NO_LIMIT_PX = 3.0e38;
 const uint FIRST = 2u, RING = 8u, BREAK = 16u, START = 32u; // of a record
 const uint AFTER_FIRST = 1u << 26u, BEFORE_LAST = 1u << 27u; // of a join
-const uint GHOST = 0u, DOT = 1u, CUT = 3u, TIGHT = 4u, SPLIT = 5u; // kinds of joins
+const uint SENTINEL = 0u, DOT = 1u, CUT = 3u, TIGHT = 4u, SPLIT = 5u; // kinds of joins
 const uint ROUND = 0u, BUTT = 1u, SQUARE = 2u, MITER = 3u, SPLIT_ROUND = 5u, SPLIT_MITER = 7u; // camber_end
 const float ALWAYS_PX = -1e30;
 
@@ -87,7 +93,7 @@ vec4 row_texel(int i) {
 }
 
 #if RAMP
-// How many stops of a ramp, its first texel and how many it has, lie up to a place px along a line of a length.
+// How many stops of a ramp lie up to a place px along a line of a length. ramp: its first texel, and its stops.
 int stops_up_to(float place, ivec2 ramp, float len) {
     int low = 0, high = ramp.y;
     while (low < high) {
@@ -111,7 +117,7 @@ uint kind_of(uint join) {
 uint end_of(uint join) {
     uint end = join >> 16u & 7u;
 #if PITCHED && METHOD != 0
-    // Of kite and fan the triangles say what belongs to a segment; here they do not.
+    // With kite and fan the triangles say what belongs to a segment; here they do not.
     end = kind_of(join) > CUT ? (end == ROUND ? SPLIT_ROUND : 10u - end) : end;
 #endif
     return end;
@@ -126,7 +132,7 @@ struct Extrusion {
     float along, limit, across;
 };
 
-// Of an edge; end: 1 at the segment's end, -1 at its start; side: 1 left, -1 right.
+// Places a vertex of an edge. end: 1 at the segment's end, -1 at its start. side: 1 left, -1 right.
 Extrusion edge_at(uint join, float end, float side) {
     uint kind = kind_of(join);
     float q = turn_of(join), cut = -end * side * tan_half(q);
@@ -181,8 +187,8 @@ float flat_cap(uint end, float half_width) {
     return end == BUTT ? 0.0 : end == SQUARE ? half_width : NEVER_PX;
 }
 
-// The arc alone takes a line thinner than the pixel for one that crosses it. A cap as thin as that ends like a flat one of
-// the same area, pi / 4 of half the width further on.
+// The arc alone takes a line thinner than the pixel for one that crosses it. A cap as thin as that ends like a flat one
+// of the same area, pi / 4 of half the width further on.
 float tip(uint join, float half_width) {
 #if PITCHED
     const float until = 0.0; // how wide it is seen differs from place to place
@@ -222,7 +228,8 @@ float seen_width(vec2 p, vec2 u, float half_width) {
 // The direction on the other side of a join; turns: 1 behind it, -1 before.
 vec2 other_direction(vec2 u, float turns, uint join) {
     vec2 half_turned = half_turn(turn_of(join));
-    float c = half_turned.x * half_turned.x - half_turned.y * half_turned.y, s = 2.0 * turns * half_turned.x * half_turned.y;
+    float c = half_turned.x * half_turned.x - half_turned.y * half_turned.y,
+          s = 2.0 * turns * half_turned.x * half_turned.y;
     return vec2(u.x * c - u.y * s, u.x * s + u.y * c);
 }
 
@@ -230,8 +237,8 @@ float narrowest_at(vec2 p, vec2 u, vec2 other, float half_width) {
     return min(seen_width(p, u, half_width), seen_width(p, other, half_width));
 }
 
-// A join that is narrower than a pixel as it is seen: the line between the two segments in the picture, by its normal and
-// where it lies, and 1 where it is wide and the bisector in the plane parts them, down to 0.
+// A join that is narrower than a pixel as it is seen: the line between the two segments in the picture, by its normal
+// and where it lies, and 1 where it is wide and the bisector in the plane parts them, down to 0.
 vec4 seen_cut(vec2 p, vec2 u, vec2 other, float turns, uint join, float narrowest) {
     if (kind_of(join) < CUT || depth_at(p) < 1e-3)
         return vec4(0.0, 0.0, 0.0, 1.0);
@@ -248,11 +255,11 @@ float end_reach(uint join, float half_width) {
     return half_width * (kind < CUT ? (end == BUTT ? 0.0 : 1.0) : kind == SPLIT ? max(tip, 1.0) : tip);
 }
 
-// A corner of what the segment's part of the stroke takes of the picture and half a pixel around it, px from its middle: a
-// trapezoid along the segment as it is seen. false: nothing is seen.
+// A corner of what the segment's part of the stroke takes of the picture and half a pixel around it, px from its
+// middle: a trapezoid along the segment as it is seen. false: nothing is seen.
 bool surround(vec2 a, vec2 u, float len, float half_width, uint join_a, uint join_b, int corner, out vec2 place) {
     float from = -end_reach(join_a, half_width), to = len + end_reach(join_b, half_width);
-    // What lies less deep than the picture's bottom is not seen, and what does by half cannot be projected well.
+    // Points less deep than the picture's bottom are not seen, and those less than half as deep cannot be projected well.
     float nearest = u_eye.z / (u_eye.z + u_eye.w * u_eye.y), hidden = 0.5 * nearest;
     float spread = u_eye.w * abs(u.x) * half_width, rate = u_eye.w * u.y, room = depth_at(a) - spread - hidden;
     bool right = (corner & 1) != 0, far = corner > 1;
@@ -270,13 +277,16 @@ bool surround(vec2 a, vec2 u, float len, float half_width, uint join_a, uint joi
     float seen_length = length(run);
     vec2 axis = seen_length > 1e-3 ? run / seen_length : vec2(1.0, 0.0);
     mat2 turned = mat2(axis.x, -axis.y, axis.y, axis.x); // along, across
-    vec2 left_a = turned * (seen_of(a + u * from + side) - start), left_b = turned * (seen_of(a + u * to + side) - start);
-    vec2 right_a = turned * (seen_of(a + u * from - side) - start), right_b = turned * (seen_of(a + u * to - side) - start);
+    vec2 left_a = turned * (seen_of(a + u * from + side) - start),
+         left_b = turned * (seen_of(a + u * to + side) - start);
+    vec2 right_a = turned * (seen_of(a + u * from - side) - start),
+         right_b = turned * (seen_of(a + u * to - side) - start);
     float begin = min(min(left_a.x, left_b.x), min(right_a.x, right_b.x)) - PAD_PX;
     float end = max(max(left_a.x, left_b.x), max(right_a.x, right_b.x)) + PAD_PX;
     vec2 near_side = right ? right_a : left_a, far_side = right ? right_b : left_b;
     float low = right ? -1.0 : 1.0; // of the two sides in the picture, as in the plane
-    float slope = (far_side.y - near_side.y) / max(abs(far_side.x - near_side.x), 1e-3) * sign(far_side.x - near_side.x);
+    float slope = (far_side.y - near_side.y) / max(abs(far_side.x - near_side.x), 1e-3) *
+                  sign(far_side.x - near_side.x);
     float at = far ? end : begin;
     vec2 own = far ? vec2(left_b.y, right_b.y) : vec2(left_a.y, right_a.y);
     float widest = max(low * own.x, low * own.y);
@@ -289,7 +299,7 @@ bool surround(vec2 a, vec2 u, float len, float half_width, uint join_a, uint joi
 }
 #endif
 
-// All that is constant over a segment.
+// Computes all that is constant over a segment.
 void hand_over(vec2 a, vec2 b, vec2 u, float len, float half_width, uint join_a, uint join_b) {
     uint end_a = end_of(join_a), end_b = end_of(join_b);
     vec2 turn_a = half_turn(turn_of(join_a)), turn_b = half_turn(turn_of(join_b));
@@ -324,7 +334,7 @@ void hand_over(vec2 a, vec2 b, vec2 u, float len, float half_width, uint join_a,
 // Whether a segment ends at a record, from the record before it; of a dot of kite and fan, at itself.
 bool ends_segment(Record r) {
     bool first = (r.last & FIRST) != 0u && (METHOD == 0 || kind_of(r.join) != DOT);
-    return kind_of(r.join) != GHOST && (r.last & (BREAK | START)) == 0u && !first;
+    return kind_of(r.join) != SENTINEL && (r.last & (BREAK | START)) == 0u && !first;
 }
 #endif
 
@@ -346,7 +356,8 @@ void main() {
         here = record_at(i);
     }
     uint kind = kind_of(here.join);
-    bool is_seam = (here.last & RING) != 0u && kind == CUT, is_outer = kind == TIGHT && right == (turn_of(here.join) > 0.0);
+    bool is_seam = (here.last & RING) != 0u && kind == CUT,
+         is_outer = kind == TIGHT && right == (turn_of(here.join) > 0.0);
     bool is_shared = (here.last & FIRST) != 0u ? is_seam : is_outer;
     bool goes_out = (here.last & (FIRST | START)) != 0u && !is_shared;
     bool is_again = (here.last & START) != 0u; // the end lies between
@@ -401,7 +412,7 @@ void main() {
 #if DASH
     vec4 dashes = row_texel(texel + 3);
     v_measure.w = dashes.z;
-    v_dashes = ivec2(dashes.xy) + ivec2(u_tail, 0);
+    v_dashes = ivec2(dashes.xy) + ivec2(u_side_table, 0);
 #endif
 #if TRIM || RAMP
     vec4 progress = row_texel(texel + 4);
@@ -410,7 +421,7 @@ void main() {
     v_trim = progress.xy * max(measure_a.y, 1e-6);
 #endif
 #if RAMP
-    v_ramp = ivec2(progress.zw) + ivec2(u_tail, 0);
+    v_ramp = ivec2(progress.zw) + ivec2(u_side_table, 0);
 #if !PITCHED
     // Only the stops that a pixel of the segment may see.
     int from = max(stops_up_to(min(measure_a.x, measure_b.x) - 1.0, v_ramp, measure_a.y) - 1, 0);

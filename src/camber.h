@@ -6,7 +6,7 @@
  * This header is the manual of libcamber. libcamber-map (camber_map.h) stands on it.
  *
  * Errors. What can fail returns a camber_status. Results go to the last parameter, which is left
- * untouched on failure. The story of a failure (what, where, and the cure, in one line) goes to the
+ * untouched on failure. The message of a failure (what, where, and the cure, in one line) goes to the
  * log callback of the context. Misuse (a NULL object, a count that contradicts a pointer) asserts.
  *
  * Ownership. X_create makes an object, X_destroy frees it and accepts NULL. Inputs are read during the
@@ -17,9 +17,9 @@
  *
  * Threads. A context and all that was made from it may be used by one thread at a time; different
  * contexts are independent, and threads may make and use them, and all that is made from them, at once.
- * There is no global state but that of drivers and GDAL, whose first set-up camber guards by a lock; a
- * host that asks them itself makes sure that it does not do so beside camber's first call. PoCL sets
- * HWLOC_PLUGINS_PATH when devices are first looked for: set it before other threads read the environment.
+ * There is no global state but that of drivers and GDAL, whose first set-up camber guards by a lock. A
+ * host that calls them itself does not do so while camber's first call runs. Drivers read and set environment
+ * variables when devices are first looked for: until then no other thread may read or change the environment.
  * A surface's GL context is made current on the calling thread by each call that needs it, and stays so
  * until camber_surface_release.
  *
@@ -60,7 +60,7 @@ typedef enum camber_status {
 } camber_status;
 
 /* A short English name of the status; never NULL. */
-CAMBER_API const char *camber_status_name(camber_status status);
+CAMBER_API const char *camber_status_get_name(camber_status status);
 
 /* "0.1.0" of the library in use. */
 CAMBER_API const char *camber_version(void);
@@ -74,7 +74,7 @@ typedef struct camber_budget_desc {
      * Libraries' own memory is not counted. 0: three quarters of what this process can still have, by what the machine
      * has free and what its control group and its limits allow, when it holds 64 MB for the first time or is asked. */
     uint64_t memory_bytes;
-    /* Of one set of features: */
+    /* The following bound one set of features: */
     uint64_t tiles;  /* vector tiles looked for. 0: 262144 */
     uint64_t steps;  /* of databases' machines, besides 4096 a tile. 0: 2^26, some seconds */
     uint32_t unfold; /* bytes that come out of tiles for each byte of their files, besides 4 MB. 0: 32 */
@@ -86,9 +86,9 @@ typedef struct camber_budget camber_budget;
  * Returns CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_budget_create(const camber_budget_desc *desc, camber_budget **budget);
 CAMBER_API void camber_budget_destroy(camber_budget *budget);
-/* What is held now, and what may be held. */
-CAMBER_API uint64_t camber_budget_held_bytes(const camber_budget *budget);
-CAMBER_API uint64_t camber_budget_most_bytes(camber_budget *budget);
+/* Return the bytes that are held now, and the bytes that may be held. */
+CAMBER_API uint64_t camber_budget_get_held_bytes(const camber_budget *budget);
+CAMBER_API uint64_t camber_budget_get_most_bytes(camber_budget *budget);
 
 /* ---- Access: what files may reach ------------------------------------------------------------------ */
 
@@ -106,7 +106,7 @@ typedef struct camber_access {
 /* ---- Context: allocator, log, cache -------------------------------------------------------------- */
 
 typedef enum camber_log_level {
-    CAMBER_LOG_ERROR = 0, /* the story of a failure that a status reports */
+    CAMBER_LOG_ERROR = 0, /* the message of a failure that a status reports */
     CAMBER_LOG_WARNING,   /* something was left out or repaired; said once a cause */
     CAMBER_LOG_INFO,      /* what was chosen and how long it took */
 } camber_log_level;
@@ -153,7 +153,7 @@ typedef struct camber_polylines_desc {
     bool keep_open;
 } camber_polylines_desc;
 
-/* What cleaning found. Nothing is dropped without being counted here. */
+/* The findings of cleaning. Nothing is dropped without being counted here. */
 typedef struct camber_polylines_stats {
     size_t polylines;       /* as given */
     size_t points;          /* as given */
@@ -171,7 +171,7 @@ typedef struct camber_polylines camber_polylines;
 /* Cleans and copies polylines into the form that the kernels read. A polyline that is split at invalid
  * points keeps its index and its row.
  * Returns CAMBER_ERROR_INPUT (offsets not ascending from 0 to point_count, a row of 2^24 or more),
- * CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT (more than 2.5 * 10^9 points). Cost: one pass, about 2 ns a point. */
+ * CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT (more than 2.5 * 10^9 points). Cost: one pass. */
 CAMBER_API camber_status camber_polylines_create(camber_context *context, const camber_polylines_desc *desc,
                                                  camber_polylines **polylines);
 CAMBER_API void camber_polylines_destroy(camber_polylines *polylines);
@@ -227,53 +227,53 @@ typedef struct camber_device_info {
     bool gl_sharing;               /* cl_khr_gl_sharing */
 } camber_device_info;
 
-/* Returns CAMBER_ERROR_MEMORY where the process may have too little address space for drivers (ulimit -v).
- * Fills up to capacity infos and sets *count to the number of devices present, which may be larger and may
- * be 0. infos may be NULL where capacity is 0. */
-CAMBER_API camber_status camber_device_list(camber_context *context, size_t capacity, camber_device_info *infos,
-                                            size_t *count);
+/* Gives the n-th device, from 0, and NULL past the last. The first call of a context looks for devices. What it finds
+ * lives as long as the context.
+ * Returns CAMBER_ERROR_MEMORY, also where the process has too little address space for drivers (ulimit -v). */
+CAMBER_API camber_status camber_device_list(camber_context *context, size_t n, const camber_device_info **info);
 
 /* Whether match, as in camber_device_desc, names the device. */
-CAMBER_API bool camber_device_matches(const camber_device_info *info, const char *match);
+CAMBER_API bool camber_device_info_matches(const camber_device_info *info, const char *match);
+
+/* A GL context that a device can share buffers with, as camber_surface_get_handles tells it. Zero: there is none. */
+typedef struct camber_gl_handles {
+    intptr_t context, display;
+    intptr_t display_kind;         /* the name that OpenCL has for such displays: CL_EGL_DISPLAY_KHR, ... */
+    uint64_t largest_buffer_bytes; /* that the context's shaders can read. 0: no bound */
+} camber_gl_handles;
 
 typedef struct camber_device_desc {
     /* "cpu", "gpu", or part of a device's or platform's name, case ignored. NULL: a GPU, else a CPU. */
     const char *match;
-    /* Of the devices that match, in the order of camber_device_list, the one to open: 1 is the first. 0: the first
+    /* Which of the devices that match is opened, in the order of camber_device_list: 1 is the first. 0: the first
      * GPU, else the first CPU. */
     uint32_t number;
-    /* Points a work-group takes: 64, 128 or 256, eight a work-item, and what draws has a work-item a pixel. 0: 256, and
-     * on a CPU one work-item takes them, and sixteen pixels. What comes out is the same bytes. */
+    /* Work-group size of all kernels: 64, 128 or 256 points. 0 (recommended): chosen for the device. It affects speed
+     * only; the output is the same bytes. */
     uint32_t work_group_size;
-    /* No buffer is made larger: a mesh that needs more is made in parts of whole polylines, and what is read or drawn
-     * of it is the same. 4096 at least. 0, or more than that: the device's own limit, and below 2^31 for GL's sake. */
+    /* No buffer is made larger. A mesh that needs more is made in parts of whole polylines; what is read or drawn is
+     * the same. At least 4096. 0, or more than the device allows: the device's own limit, below 2^31 bytes. */
     uint64_t largest_buffer_bytes;
-    /* What all meshes of the device may hold at once: buffers of points, joins, records and indices (copied ones
-     * twice), strokes, networks on a device with memory of its own, and counts a part. Not the polylines that a mesh
-     * keeps, what is read back, or pictures (largest_piece_px bounds those). Meshes are made in parts then, of an
-     * eighth of it or less; what does not fit is tessellated again when it is read or drawn, and is the same bytes and
-     * pixels. No polyline may take more than half of it: about 50 bytes a point that is seen. 65536 at least. 0: three
-     * quarters of the device's memory; no bound where that is the host's.
-     * A renderer that draws in OpenCL takes a quarter of it while it is there, or 4 MB besides where that is less, for
-     * segments and the lists of tiles; meshes have the rest. What takes more is drawn in slices, to the same bytes. */
+    /* The memory that all meshes of the device may hold at once: points, joins, records, indices (twice where they are
+     * copied), strokes and networks. Not counted are polylines on the host, what is read back, and pictures.
+     * A mesh is made in parts of an eighth of it or less. A part that does not fit is tessellated again when it is
+     * read or drawn, to the same bytes and pixels. A polyline may take half of it: about 50 bytes a point that is seen.
+     * A renderer that draws in OpenCL reserves a quarter of it, or 4 MB besides where that is less; it draws what
+     * needs more in slices, to the same bytes.
+     * At least 65536. 0: three quarters of the device's memory; no bound where that is the host's. */
     uint64_t memory_bytes;
+    /* The surface whose renderers will draw the device's meshes in GL. Zero: none; buffers are copied. */
+    camber_gl_handles gl;
 } camber_device_desc;
 
 typedef struct camber_device camber_device;
-typedef struct camber_surface camber_surface;
 
-/* Opens a device. surface may be NULL; where it is given, buffers can be shared with its GL context
- * (camber_renderer_create tells how). The kernels of a method are built, or loaded from the cache, when it is first
- * used.
- *
- * PoCL's threads are best pinned: POCL_AFFINITY=1 in the environment before the first OpenCL call of the process, where
- * there are no more threads than cores and the process may use them all (PoCL aborts else). That call sets
- * HWLOC_PLUGINS_PATH: a program with threads sets it to /dev/null before them.
- *
+/* Opens a device. The kernels of a method are built, or loaded from the cache, when it is first used.
+ * desc may be NULL.
  * Returns CAMBER_ERROR_DEVICE (no platform, no device that matches or not so many), CAMBER_ERROR_ARGUMENT (a work-group
  * size that is none of these, a largest buffer below 4096 bytes, memory below 65536), CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_device_create(camber_context *context, const camber_device_desc *desc,
-                                              camber_surface *surface, camber_device **device);
+                                              camber_device **device);
 CAMBER_API void camber_device_destroy(camber_device *device);
 
 typedef struct camber_warmed {
@@ -284,12 +284,11 @@ typedef struct camber_warmed {
 } camber_warmed;
 
 /* Builds all kernels that the device can be asked for and saves those that the cache lacks, so that later runs load
- * them: in the folder camber-kernels beside the library, which all users of the machine read, or where this user may
- * not write there, in the user's cache. What was built for another device, driver or version of camber is left alone.
- * Several processes can do it side by side, each its share of so many shares; 0 of 1 is all.
+ * them. They go to the folder camber-kernels beside the library, which all users of the machine read, or to the user's
+ * cache where that folder cannot be written. Kernels of other devices, drivers or versions of camber are left alone.
+ * share, shares: several processes can build at once, each its share of all; 0 of 1 is everything.
  * Returns CAMBER_ERROR_ARGUMENT (no such share), CAMBER_ERROR_DEVICE (kernels that do not build),
- * CAMBER_ERROR_MEMORY. Cost: some ten seconds of a CPU's compiler, once. PoCL's kernels are kept where
- * POCL_WORK_GROUP_SPECIALIZATION=0 was in the environment before the first OpenCL call; else kept stays 0. */
+ * CAMBER_ERROR_MEMORY. Some drivers do not let their kernels be saved; kept stays 0 then. */
 CAMBER_API camber_status camber_device_warm(camber_device *device, unsigned share, unsigned shares,
                                             camber_warmed *warmed);
 CAMBER_API camber_device_info camber_device_get_info(const camber_device *device);
@@ -309,10 +308,12 @@ typedef enum camber_backend {
     CAMBER_BACKEND_OSMESA,
 } camber_backend;
 
+typedef struct camber_surface camber_surface;
+
 typedef struct camber_surface_desc {
     camber_backend backend;
     /* A GLES context of the caller's (EGLContext) and its initialised display (EGLDisplay): the surface's own context
-     * shares textures and fences with it (camber_render_texture), and no state. NULL: none. Needs EGL. */
+     * shares textures and fences with it (camber_renderer_render_texture), and no state. NULL: none. Needs EGL. */
     void *egl_context, *egl_display;
 } camber_surface_desc;
 
@@ -335,6 +336,8 @@ CAMBER_API bool camber_surface_may_be_hardware(const camber_surface_desc *desc);
 CAMBER_API camber_status camber_surface_create(camber_context *context, const camber_surface_desc *desc,
                                                camber_surface **surface);
 CAMBER_API void camber_surface_destroy(camber_surface *surface);
+/* Returns the surface's GL context for camber_device_desc.gl. NULL gives zero. */
+CAMBER_API camber_gl_handles camber_surface_get_handles(const camber_surface *surface);
 /* Lets go of the GL context on the calling thread, so that another thread can use the surface. */
 CAMBER_API void camber_surface_release(camber_surface *surface);
 /* Whether the GL context is lost, as it is when the GPU is reset or its driver restarts. What needs it then returns
@@ -353,37 +356,55 @@ typedef enum camber_sharing {
     CAMBER_SHARING_COPY,      /* through host memory; works anywhere */
 } camber_sharing;
 
-/* What draws. */
-typedef enum camber_draw {
+/* The way in which frames are drawn. */
+typedef enum camber_rasterizer {
     /* OpenCL where there is no surface or its GL is a software rasteriser, which takes several times as long for the
      * same picture; GL where it is hardware. A program that wants pictures in memory opens a surface only where
      * camber_surface_may_be_hardware. */
-    CAMBER_DRAW_AUTO = 0,
-    CAMBER_DRAW_GL, /* GLES shaders */
-    CAMBER_DRAW_CL, /* OpenCL kernels, which need no surface */
-} camber_draw;
+    CAMBER_RASTERIZER_AUTO = 0,
+    CAMBER_RASTERIZER_GL,     /* GLES shaders */
+    CAMBER_RASTERIZER_OPENCL, /* OpenCL kernels, which need no surface */
+} camber_rasterizer;
 
 typedef struct camber_renderer_desc {
     /* Asking for one path and not AUTO fails with CAMBER_ERROR_DEVICE where it does not work. */
     camber_sharing sharing;
-    camber_draw draw;
+    camber_rasterizer rasterizer;
 } camber_renderer_desc;
 
 typedef struct camber_renderer camber_renderer;
 
-/* desc may be NULL, and so may the surface where OpenCL draws: its pictures need no GL, and only camber_render_texture
- * uses a surface then, whose paths of sharing pixels take. Returns CAMBER_ERROR_DEVICE (the sharing path asked for does
- * not work), CAMBER_ERROR_MEMORY. Shaders are built when they are first used. */
+/* desc may be NULL, and so may the surface where OpenCL draws: its pictures need no GL, and only
+ * camber_renderer_render_texture uses a surface then, whose paths of sharing pixels take. Returns CAMBER_ERROR_DEVICE
+ * (the sharing path asked for does not work), CAMBER_ERROR_MEMORY. Shaders are built when they are first used. */
 CAMBER_API camber_status camber_renderer_create(camber_device *device, camber_surface *surface,
                                                 const camber_renderer_desc *desc, camber_renderer **renderer);
 CAMBER_API void camber_renderer_destroy(camber_renderer *renderer);
 /* CAMBER_SHARING_AUTO without a surface: nothing is shared. */
 CAMBER_API camber_sharing camber_renderer_get_sharing(const camber_renderer *renderer);
-CAMBER_API camber_draw camber_renderer_get_draw(const camber_renderer *renderer);
+CAMBER_API camber_rasterizer camber_renderer_get_rasterizer(const camber_renderer *renderer);
 /* "auto", "gl" or "cl". */
-CAMBER_API const char *camber_draw_name(camber_draw draw);
+CAMBER_API const char *camber_rasterizer_get_name(camber_rasterizer draw);
 /* "cl_khr_gl_sharing", "zero copy" or "copy". */
-CAMBER_API const char *camber_sharing_name(camber_sharing sharing);
+CAMBER_API const char *camber_sharing_get_name(camber_sharing sharing);
+
+/* ---- Times of stages -------------------------------------------------------------------------------- */
+
+/* How long a kernel took. Which stages there are, and their names, may change from version to version. */
+typedef struct camber_stage_time {
+    const char *name; /* the library's: "classify", ... */
+    double ms;
+} camber_stage_time;
+
+#define CAMBER_STAGE_TIMES_MAX 24
+
+typedef struct camber_stage_times {
+    size_t count;
+    camber_stage_time stages[CAMBER_STAGE_TIMES_MAX]; /* count, in the order in which they run */
+} camber_stage_times;
+
+/* The time of the stage of that name. 0: it did not run, or there is none. */
+CAMBER_API double camber_stage_times_get_ms(const camber_stage_times *times, const char *name);
 
 /* ---- Meshes ---------------------------------------------------------------------------------------- */
 
@@ -393,15 +414,16 @@ typedef enum camber_method {
     CAMBER_METHOD_FAN,       /* bodies and a fan of triangles a round join */
 } camber_method;
 
-CAMBER_API const char *camber_method_name(camber_method method);
+CAMBER_API const char *camber_method_get_name(camber_method method);
 
 typedef struct camber_tessellation_desc {
     const camber_stroke *strokes; /* stroke_count rows; every row of the polylines must be below it */
     size_t stroke_count;
     camber_method method;
     float fan_tolerance_px; /* farthest that a fan's chord lies from its arc, up to 64 chords a half turn. 0: 0.25 */
-    bool measured; /* records say how far along their polyline they lie, as dashes, trims, ramps and patterns need it:
-                    * 32 bytes a record */
+    /* Records say how far along their polyline they lie, as dashes, trims, ramps and patterns need it. A record takes
+     * 32 bytes then. */
+    bool has_arc_length;
 } camber_tessellation_desc;
 
 /* How far the geometry reaches past the stroke's edge, so that every pixel an edge touches is shaded: exact
@@ -410,20 +432,18 @@ typedef struct camber_tessellation_desc {
 
 typedef struct camber_mesh_info {
     camber_method method;
-    bool strips;           /* triangle strips; else triangles */
-    bool measured;         /* as the tessellation was asked for */
-    size_t record_count;   /* camber_record */
-    size_t vertex_count;   /* of strips two a record, those between strips too */
-    size_t index_count;    /* of strips one a vertex, though none is kept */
-    size_t bytes;          /* all that is kept to draw from: records, and indices of kite and fan */
-    size_t triangle_count; /* not degenerate */
-    size_t joins;          /* points with a join, by kind: */
-    size_t tight_joins;    /* the inner side has no room: (h + pad) tan(turn / 2) > half the shorter neighbour */
-    size_t split_joins;    /* turns past 127 degrees */
-    size_t undrawn_dots;   /* dots with butt caps, which have no area */
-    double classify_ms, scan_ms, emit_ms; /* of the last tessellation, on the device's queue */
-    double survey_ms, project_ms;         /* of a network */
-    double offset_ms;                     /* of lines with an offset */
+    bool strips;              /* triangle strips; else triangles */
+    bool has_arc_length;      /* as the tessellation was asked for */
+    size_t record_count;      /* camber_record */
+    size_t vertex_count;      /* of strips two a record, those between strips too */
+    size_t index_count;       /* of strips one a vertex, though none is kept */
+    size_t bytes;             /* all that is kept to draw from: records, and indices of kite and fan */
+    size_t triangle_count;    /* not degenerate */
+    size_t joins;             /* points with a join, by kind: */
+    size_t tight_joins;       /* the inner side has no room: (h + pad) tan(turn / 2) > half the shorter neighbour */
+    size_t split_joins;       /* turns past 127 degrees */
+    size_t undrawn_dots;      /* dots with butt caps, which have no area */
+    camber_stage_times times; /* of the last tessellation's stages, on the device's queue */
 } camber_mesh_info;
 
 typedef struct camber_mesh camber_mesh;
@@ -438,11 +458,11 @@ CAMBER_API void camber_mesh_destroy(camber_mesh *mesh);
  * Returns CAMBER_ERROR_ARGUMENT (a width or a limit that is not a number or out of range, a row without a
  * stroke), CAMBER_ERROR_LIMIT (more than 2^30 records of strips or 2^25 of kite and fan, or a polyline that needs
  * more than the largest buffer, or than half of what the device's meshes may hold), CAMBER_ERROR_MEMORY,
- * CAMBER_ERROR_DEVICE (a kernel that does not build: the log has the build log). Cost: 1 s the first time a method is
- * used, 3 ms from the cache; then about 10 ns a point on two cores. */
-CAMBER_API camber_status camber_tessellate(camber_mesh *mesh, const camber_polylines *polylines,
-                                           const camber_tessellation_desc *desc);
-/* The counts of joins and triangles are made at the first call after a tessellation: about 1 ns a point. */
+ * CAMBER_ERROR_DEVICE (a kernel that does not build: the log has the build log). Cost: the first use of a method
+ * compiles its kernels or loads them from the cache; then linear in the points. */
+CAMBER_API camber_status camber_mesh_tessellate(camber_mesh *mesh, const camber_polylines *polylines,
+                                                const camber_tessellation_desc *desc);
+/* The first call after a tessellation counts joins and triangles: one pass over the points. */
 CAMBER_API camber_mesh_info camber_mesh_get_info(camber_mesh *mesh);
 
 typedef struct camber_mesh_memory {
@@ -470,11 +490,11 @@ typedef struct camber_paint {
     float translate_x_px, translate_y_px; /* where it is drawn, from where its polyline lies */
     uint32_t dash;                        /* 0: none; else one of the pass's dashes, counted from 1 */
     float dash_unit_px;                   /* that the dash's lengths are given in. 0: 1 */
-    /* Shares of its line's length, of a mesh that is measured: from the one to the other it is not drawn. What is
+    /* Shares of its line's length, of a mesh with arc lengths: from the one to the other it is not drawn. What is
      * trimmed at an end takes the cap too. trim_end not above trim_start: it is whole. */
     float trim_start, trim_end;
     uint32_t ramp; /* 0: none; else one of the pass's ramps, counted from 1, that color is multiplied by */
-    /* 0: none; else one of the pass's images, counted from 1, of a mesh that is measured: in place of the colour, whose
+    /* 0: none; else one of the pass's images, counted from 1, of a mesh with arc lengths: in place of the colour, whose
      * alpha it takes. It is as high as the stroke is wide, a gap with it, its top to the right of the line's direction,
      * and follows upon itself from where the line begins. */
     uint32_t pattern;
@@ -495,7 +515,7 @@ typedef struct camber_ramp_stop {
     camber_color color;
 } camber_ramp_stop;
 
-/* Colours along a line, of a mesh that is measured: between stops mixed as premultiplied ones, before the first and
+/* Colours along a line, of a mesh with arc lengths: between stops mixed as premultiplied ones, before the first and
  * behind the last as there. Two stops at one place are a step, whose edge has the exact area of the pixel. */
 typedef struct camber_ramp {
     const camber_ramp_stop *stops;
@@ -540,16 +560,21 @@ typedef enum camber_coverage {
     CAMBER_COVERAGE_LINEAR,    /* a ramp one pixel wide across the edge: cheaper, about twice the error */
 } camber_coverage;
 
-/* Draws polylines [first_polyline, first_polyline + polyline_count) of a mesh, in order; or fills the picture. */
+typedef enum camber_pass_kind {
+    CAMBER_PASS_LINES = 0, /* draws polylines of a mesh, in order */
+    CAMBER_PASS_FILL,      /* fills the picture; takes fill, images and opacity, and nothing else of the pass */
+} camber_pass_kind;
+
 typedef struct camber_pass {
-    camber_mesh *mesh; /* NULL: the pass is a fill, and of what else is here only the images matter */
+    camber_pass_kind kind;
+    camber_mesh *mesh; /* of the renderer that draws; not NULL for lines */
     size_t first_polyline;
     size_t polyline_count;      /* 0: to the last */
     const camber_paint *paints; /* paint_count; a row at or past it is not drawn */
     size_t paint_count;
-    const camber_dash *dashes; /* dash_count, of a mesh that is measured. NULL: none */
+    const camber_dash *dashes; /* dash_count, of a mesh with arc lengths. NULL: none */
     size_t dash_count;
-    const camber_ramp *ramps; /* ramp_count, of a mesh that is measured. NULL: none */
+    const camber_ramp *ramps; /* ramp_count, of a mesh with arc lengths. NULL: none */
     size_t ramp_count;
     const camber_image *images; /* image_count. NULL: none */
     size_t image_count;
@@ -567,10 +592,12 @@ typedef struct camber_frame {
     /* The picture is drawn in pieces where a side is longer than this. 0: the largest target, or less where
      * that would take more than 64 MB; a layer that is united takes 128 MB more. */
     uint32_t largest_piece_px;
-    /* 0 to 85: polylines lie in a plane that is seen at this angle, from straight above at 0. The camera looks at the
-     * picture's centre, where a px of the plane is one of the picture, and sees 36.87 degrees from the bottom to the
-     * top. Widths, dashes and translations lie in the plane; blurs do not. What is farther than 6.7 times the distance
-     * of the centre is not drawn: at 85 % of the way from there to the horizon. */
+    /* 0 to 85: the angle at which the plane of the polylines is seen, from straight above at 0. Meshes of a network
+     * bring the pitch of their camera (camber_camera.pitch_deg), which a frame then need not name: 0 takes theirs. It
+     * is for frames of fills, and of meshes of polylines. The camera looks at the picture's centre, where a px of the
+     * plane is one of the picture, and sees 36.87 degrees from the bottom to the top. Widths, dashes and translations
+     * lie in the plane; blurs do not. What is farther than 6.7 times the distance of the centre is not drawn: at 85 %
+     * of the way from there to the horizon. */
     double pitch_deg;
 } camber_frame;
 
@@ -579,45 +606,46 @@ typedef struct camber_frame_stats {
     size_t pieces;
     double draw_ms; /* clear, draw, finish; of a frame that overlaps others, what its calls take */
     double read_ms;
-    double shape_ms, count_ms, total_ms, fill_ms, cover_ms; /* of CAMBER_DRAW_CL's kernels on the device's queue */
+    camber_stage_times times; /* of CAMBER_RASTERIZER_OPENCL's stages, on the device's queue */
 } camber_frame_stats;
 
 /* Takes row_count rows of width * 4 bytes, premultiplied RGBA8, from the top down; a return of false stops the
  * drawing. */
 typedef bool camber_rows_fn(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count);
 
-/* Draws a frame and hands its rows over. rows may be NULL: the frame is drawn and finished, not read back.
- * stats may be NULL. Returns CAMBER_ERROR_ARGUMENT (a size or a pitch out of range, a dash, a ramp or an image that is
- * none, dashes, ramps, trims or patterns of a mesh that is not measured),
+/* Draws a frame and hands its rows over.
+ * rows may be NULL: the frame is drawn and finished, not read back. stats may be NULL.
+ * Returns CAMBER_ERROR_ARGUMENT (a size or a pitch out of range, meshes of cameras with different pitches, a dash, a
+ * ramp or an image that is none, dashes, ramps, trims or patterns of a mesh without arc lengths),
  * CAMBER_ERROR_LIMIT (more rows of strokes and paints, or images of one pass, than textures hold, or in OpenCL images
  * of one frame than a buffer), CAMBER_ERROR_DEVICE (a shader or a kernel does not build, or GL or OpenCL reported an
  * error), CAMBER_ERROR_MEMORY, CAMBER_ERROR_IO (rows returned false). */
-CAMBER_API camber_status camber_render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows,
-                                       void *user, camber_frame_stats *stats);
+CAMBER_API camber_status camber_renderer_render(camber_renderer *renderer, const camber_frame *frame,
+                                                camber_rows_fn *rows, void *user, camber_frame_stats *stats);
 
 #define CAMBER_FRAMES_IN_FLIGHT 2
 
-/* camber_render in two steps, so that what comes next overlaps the drawing: begin draws and does not wait, end waits
- * for the frame that began first and hands its rows over. With two meshes in turn,
+/* camber_renderer_render in two steps, so that what comes next overlaps the drawing: begin draws and does not wait, end
+ * waits for the frame that began first and hands its rows over. With two meshes in turn,
  *
  *     tessellate mesh n + 1, begin frame n + 1, end frame n
  *
  * keeps the device and GL at work on two frames. CAMBER_FRAMES_IN_FLIGHT frames at most may have begun and not ended,
- * and none when camber_render is called; the passes' meshes, dashes, ramps and images must live until the end.
+ * and none when camber_renderer_render is called; the passes' meshes, dashes, ramps and images must live until the end.
  * Tessellating a mesh before waits for the drawing, and so gains nothing; nor does drawing in OpenCL gain, which has
  * both steps on one device: begin draws the frame and keeps it. Where a picture takes several
  * pieces, those after the first are drawn at the end, in OpenCL all of them, from the meshes as they are then.
  *
- * They return what camber_render returns. Where begin fails no frame has begun; where end fails the frame is given up.
- * Destroying the renderer gives up what is in flight. */
-CAMBER_API camber_status camber_render_begin(camber_renderer *renderer, const camber_frame *frame);
-CAMBER_API camber_status camber_render_end(camber_renderer *renderer, camber_rows_fn *rows, void *user,
-                                           camber_frame_stats *stats);
+ * They return what camber_renderer_render returns. Where begin fails no frame has begun; where end fails the frame is
+ * given up. Destroying the renderer gives up what is in flight. */
+CAMBER_API camber_status camber_renderer_begin(camber_renderer *renderer, const camber_frame *frame);
+CAMBER_API camber_status camber_renderer_end(camber_renderer *renderer, camber_rows_fn *rows, void *user,
+                                             camber_frame_stats *stats);
 
 /* ---- Drawing into textures: for engines that draw more than lines ----------------------------------- */
 
-/* Of the surface's GL context, or of one that shares its objects (camber_surface_desc). Pixels are premultiplied:
- * engines put them over what they have by glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA). */
+/* A texture of the surface's GL context, or of one that shares its objects (camber_surface_desc). Pixels are
+ * premultiplied: engines put them over what they have by glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA). */
 typedef struct camber_texture {
     uint32_t name;  /* a GL_TEXTURE_2D of GL_RGBA8, as wide and high as the frame */
     bool keep;      /* the frame lies over what the texture holds. false: in place of it */
@@ -633,10 +661,11 @@ typedef struct camber_texture {
  * before it uses the texture, and the caller deletes it. It may be NULL then: all is done. With drawn NULL the call
  * itself waits. No frame may be in flight. The surface's context stays current: make your own one current again.
  *
- * Returns what camber_render does, and CAMBER_ERROR_ARGUMENT (no such texture, another size or format, a renderer
- * without a surface), CAMBER_ERROR_LIMIT (a side too long). The texture's pixels are not defined on failure. */
-CAMBER_API camber_status camber_render_texture(camber_renderer *renderer, const camber_frame *frame,
-                                               const camber_texture *texture, void **drawn);
+ * Returns what camber_renderer_render does, and CAMBER_ERROR_ARGUMENT (no such texture, another size or format, a
+ * renderer without a surface), CAMBER_ERROR_LIMIT (a side too long). The texture's pixels are not defined on failure.
+ */
+CAMBER_API camber_status camber_renderer_render_texture(camber_renderer *renderer, const camber_frame *frame,
+                                                        const camber_texture *texture, void **drawn);
 
 #ifdef __cplusplus
 }

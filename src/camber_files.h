@@ -13,12 +13,14 @@ extern "C" {
 
 /* ---- Polylines ----------------------------------------------------------------------------------- */
 
-/* Arrays in the form of camber_polylines_desc that the callee allocates; free with camber_lines_free. */
+/* Polylines as arrays, in the form of camber_polylines_desc. What a call makes is freed by camber_lines_destroy. */
 typedef struct camber_lines {
+    camber_context *context; /* which allocated the arrays. NULL: they are the caller's, and destroy leaves them */
     float *points;
     uint32_t *offsets;
     size_t point_count;
     size_t polyline_count;
+    uint32_t *entries; /* camber_network_project_lines: the entry that each polyline is of. NULL: not of a network */
 } camber_lines;
 
 /* Reads the interchange file: little-endian uint32 0x4c594c50, polyline count n, point count p; n + 1
@@ -28,11 +30,11 @@ typedef struct camber_lines {
 CAMBER_API camber_status camber_lines_parse(camber_context *context, const void *bytes, size_t size_bytes,
                                             const char *name, camber_lines *lines);
 /* Drops points where the line that is left stays within tolerance_px of them (Douglas and Peucker). Ends stay, and
- * rings keep their seam. simplified is freed with camber_lines_free. Returns CAMBER_ERROR_ARGUMENT (a tolerance
+ * rings keep their seam. Returns CAMBER_ERROR_ARGUMENT (a tolerance
  * that is negative or not a number), CAMBER_ERROR_MEMORY. Cost: n log n. */
 CAMBER_API camber_status camber_lines_simplify(camber_context *context, const camber_lines *lines, double tolerance_px,
                                                camber_lines *simplified);
-CAMBER_API void camber_lines_free(camber_context *context, camber_lines *lines);
+CAMBER_API void camber_lines_destroy(camber_lines *lines);
 
 /* Where output goes: returns false when the bytes could not be taken (the caller knows why). */
 typedef struct camber_sink {

@@ -30,19 +30,29 @@ typedef struct camber_style camber_style;
 CAMBER_API camber_status camber_style_parse(camber_context *context, const char *json, size_t size_bytes,
                                             const char *name, camber_style **style);
 /* The built-in road style. */
-CAMBER_API camber_status camber_style_builtin(camber_context *context, camber_theme theme, camber_style **style);
+CAMBER_API camber_status camber_style_create_builtin(camber_context *context, camber_theme theme, camber_style **style);
 CAMBER_API void camber_style_destroy(camber_style *style);
-/* Whether its layers ask for no more than lines of one colour: none of those that a zoom shows (NAN: any zoom) names
- * dashes, gap widths, blurs, trims, gradients, borders or patterns. OpenCL draws such frames with kernels that have
- * less to do, so that a program can make ready which ones it will need. */
-CAMBER_API bool camber_style_is_plain(const camber_style *style, double zoom);
+/* Effects that lines and backgrounds are drawn with, besides a width and a colour. */
+typedef enum camber_style_effect {
+    CAMBER_STYLE_EFFECT_GAP = 1,
+    CAMBER_STYLE_EFFECT_BLUR = 2,
+    CAMBER_STYLE_EFFECT_DASH = 4,
+    CAMBER_STYLE_EFFECT_TRIM = 8,
+    CAMBER_STYLE_EFFECT_GRADIENT = 16,
+    CAMBER_STYLE_EFFECT_PATTERN = 32,
+    CAMBER_STYLE_EFFECT_BORDER = 64,
+} camber_style_effect;
+
+/* Gives the effects that the layers of a zoom name, as bits; 0: none. zoom NAN: the layers of any zoom. A program can
+ * prepare what it will draw with before it reads its data. */
+CAMBER_API uint32_t camber_style_get_effects(const camber_style *style, double zoom);
 
 /* Names of the styles that ship with camber: "roads", the built-in one; "openmaptiles", roads, rails, rivers and
  * borders in tiles of the OpenMapTiles schema, of openmaptiles.mbtiles in the working folder; "transit", lines of
  * public transport side by side, of transit.geojson there. NULL past the last. */
-CAMBER_API const char *camber_style_name(size_t n);
+CAMBER_API const char *camber_style_list(size_t n);
 /* The style document of that name. NULL: there is none. The text is the library's. */
-CAMBER_API const char *camber_style_text(const char *name, camber_theme theme, size_t *size_bytes);
+CAMBER_API const char *camber_style_get_text(const char *name, camber_theme theme, size_t *size_bytes);
 
 /* Compiles one expression or older function, or a filter where "filter" stands for "expression", and evaluates it over
  * inputs. json is {"expression": ..., "propertySpec":
@@ -55,7 +65,7 @@ CAMBER_API const char *camber_style_text(const char *name, camber_theme theme, s
 CAMBER_API camber_status camber_style_evaluate(camber_context *context, const char *json, size_t size_bytes,
                                                const char *name, camber_sink sink);
 
-/* ---- What is wrong with a style, and what is drawn of it ---- */
+/* ---- Checking a style ---- */
 
 typedef struct camber_style_finding {
     bool error; /* against the specification; else something that is not drawn, or not as a reader may expect */
@@ -70,18 +80,18 @@ typedef struct camber_style_type {
     bool drawn;
 } camber_style_type;
 
-typedef struct camber_style_origin {
+typedef struct camber_style_report_source {
     const char *name, *type;
     size_t layers;       /* line layers that name it */
     const char *trouble; /* why it cannot be read, with the cure. NULL: nothing is seen from here; it is not opened */
-} camber_style_origin;
+} camber_style_report_source;
 
 typedef struct camber_style_report {
     const camber_style_finding *findings; /* in the order of the document, mostly */
     size_t finding_count, error_count;
     const camber_style_type *types; /* in the order they are met */
     size_t type_count;
-    const camber_style_origin *sources;
+    const camber_style_report_source *sources;
     size_t source_count;
 } camber_style_report;
 
@@ -136,7 +146,7 @@ CAMBER_API camber_status camber_features_create(camber_context *context, const c
  * Returns CAMBER_ERROR_NOT_FOUND, CAMBER_ERROR_INPUT (unreadable, cut off, no line layer, no such layer),
  * CAMBER_ERROR_ARGUMENT (where does not parse, or names a field that no layer has), CAMBER_ERROR_IO (also where GDAL
  * cannot be loaded), CAMBER_ERROR_MEMORY. Cost: the first call of a process does what camber_gdal_load does, and
- * registers GDAL's drivers (3 ms). */
+ * registers GDAL's drivers. */
 CAMBER_API camber_status camber_features_read(camber_features *features, const camber_source_desc *desc);
 CAMBER_API void camber_features_destroy(camber_features *features);
 CAMBER_API camber_features_stats camber_features_get_stats(const camber_features *features);
@@ -144,19 +154,19 @@ CAMBER_API camber_features_times camber_features_get_times(const camber_features
 /* Whom to name beside a picture of the data, as UTF-8: "(c) OpenStreetMap contributors" of OpenStreetMap's own formats,
  * whose licence asks for it; of tiles what their metadata or the style's source says, with its HTML left out. Of other
  * files nothing is known. Several stand with commas between. NULL: none is known. Valid until more is read. */
-CAMBER_API const char *camber_features_attribution(const camber_features *features);
+CAMBER_API const char *camber_features_get_attribution(const camber_features *features);
 
 /* Whether camber_features_read of such a file needs GDAL. */
 CAMBER_API bool camber_source_needs_gdal(const camber_source_desc *desc);
 /* Loads GDAL, which the first file that is read does else. It is half as long again once drivers have threads, so a
  * program that opens a device or a surface first may want it before. Returns CAMBER_ERROR_IO where GDAL or camber's
- * module for it is missing. Cost: 35 ms once a process; nothing in the static library, where GDAL is linked. */
+ * module for it is missing. Cost: once a process; nothing in the static library, where GDAL is linked. */
 CAMBER_API camber_status camber_gdal_load(camber_context *context);
 /* "GPKG", ... the short name of OGR's n-th vector driver that reads files without an allowance (camber_access), NULL
  * past the last or where GDAL cannot be loaded. The string is OGR's. */
-CAMBER_API const char *camber_format_name(size_t n);
+CAMBER_API const char *camber_format_list(size_t n);
 /* "GDAL 3.6.2, ...", NULL where GDAL cannot be loaded. */
-CAMBER_API const char *camber_gdal_version(void);
+CAMBER_API const char *camber_gdal_get_version(void);
 
 /* ---- View ----------------------------------------------------------------------------------------- */
 
@@ -211,7 +221,7 @@ typedef struct camber_scene_desc {
     /* A point is dropped where the line stays this close to it, device px; nodes that lines share go or stay in all of
      * them. 0: none */
     double simplify_px;
-    /* What the scene has on the host is made when it is asked for: camber_scene_tessellate does without. */
+    /* true: camber_scene_create leaves out camber_scene_project, which camber_scene_tessellate does not need. */
     bool on_device;
 } camber_scene_desc;
 
@@ -239,30 +249,33 @@ CAMBER_API void camber_scene_destroy(camber_scene *scene);
 
 /* Another view of the same features. Evaluates the style for its zoom; the network stays, on the device too, where
  * filters still draw the same features, and the picture does not come to another copy of the world. The scene is as
- * before where this fails. Cost: some microseconds a class of features; else about 30 ns a point. */
+ * before where this fails. Cost: an evaluation a class of
+ * features; where another network is needed, one pass over the points. */
 CAMBER_API camber_status camber_scene_move(camber_scene *scene, const camber_view_desc *view);
-/* camber_tessellate_network of what the view sees. */
+/* camber_mesh_tessellate_network of what the view sees. */
 CAMBER_API camber_status camber_scene_tessellate(const camber_scene *scene, camber_mesh *mesh, camber_method method);
-/* What that tessellates: the network, and into camera and desc what it is seen with; until the scene moves or goes. */
-CAMBER_API camber_network *camber_scene_network(const camber_scene *scene, camber_camera *camera,
-                                                camber_tessellation_desc *desc);
+/* Returns the network that camber_scene_tessellate tessellates, and in camera and desc how; until the scene moves or is
+ * destroyed. */
+CAMBER_API camber_network *camber_scene_get_network(const camber_scene *scene, camber_camera *camera,
+                                                    camber_tessellation_desc *desc);
 
-/* Where the view is, whether its background is opaque, and undrawn; other counts are 0. Makes nothing. */
-CAMBER_API camber_scene_info camber_scene_get_view(const camber_scene *scene);
-/* Counts are 0 where memory for the parts below ran out. */
+/* Makes what the view sees on the host, by the CPU twin: what the getters below give. Each stretch of a line that the
+ * view cuts becomes a polyline of its own, so lines have no dashes, gradients or trims when these are drawn. After
+ * camber_scene_move, and of a scene on the device, call it first; where all is there it does nothing.
+ * Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT. */
+CAMBER_API camber_status camber_scene_project(camber_scene *scene);
+/* layers, features, polylines and points are 0 until the scene is projected. */
 CAMBER_API camber_scene_info camber_scene_get_info(const camber_scene *scene);
-
-/* What the view sees, on the host and owned by the scene: made by the CPU twin, with each piece by itself, so that what
- * lies along lines (dashes, gradients, trims) is not drawn of these. After a move, and of a scene on the device, the
- * first of these calls makes it: NULL where memory ran out. */
-CAMBER_API const camber_polylines *camber_scene_polylines(const camber_scene *scene);
-CAMBER_API const camber_lines *camber_scene_lines(const camber_scene *scene);
-/* The row of each polyline, an index into the strokes. */
-CAMBER_API const uint32_t *camber_scene_rows(const camber_scene *scene);
-CAMBER_API const camber_stroke *camber_scene_strokes(const camber_scene *scene, size_t *count);
+/* A projected scene owns all that these return. */
+CAMBER_API const camber_polylines *camber_scene_get_polylines(const camber_scene *scene);
+CAMBER_API const camber_lines *camber_scene_get_lines(const camber_scene *scene);
+/* The row of each polyline: an index into the strokes. */
+CAMBER_API const uint32_t *camber_scene_get_rows(const camber_scene *scene);
+/* Any scene has strokes. */
+CAMBER_API const camber_stroke *camber_scene_get_strokes(const camber_scene *scene, size_t *count);
 /* The frame with all passes drawing mesh, which holds the scene as camber_scene_tessellate left it, or else its
  * polylines tessellated. Valid until the next call on this scene. */
-CAMBER_API camber_frame camber_scene_frame(camber_scene *scene, camber_mesh *mesh);
+CAMBER_API camber_frame camber_scene_get_frame(camber_scene *scene, camber_mesh *mesh);
 
 /* ---- GLB ------------------------------------------------------------------------------------------- */
 

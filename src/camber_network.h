@@ -27,10 +27,11 @@ typedef struct camber_network_desc {
     const float *importance;
     const camber_network_entry *entries; /* entry_count. NULL: each polyline once, with row 0 */
     size_t entry_count;
-    bool keep_open; /* as in camber_polylines_desc */
-    bool measured;  /* points know how far along their polyline they lie, for measured meshes: 4 bytes a point */
-    /* Of measured ones, pairs by polyline: it is a part of a longer line, from this share of that one's length to this
-     * one, and its measures are those of the whole. NULL: 0 and 1 for all. */
+    bool keep_open;      /* as in camber_polylines_desc */
+    bool has_arc_length; /* points know how far along their polyline they lie, for meshes with arc lengths: 4 bytes a
+                            point */
+    /* Where has_arc_length, pairs by polyline: it is a part of a longer line, from this share of that one's length to
+     * this one, and its measures are those of the whole. NULL: 0 and 1 for all. */
     const float *progress;
 } camber_network_desc;
 
@@ -48,7 +49,7 @@ CAMBER_API camber_status camber_network_create(camber_context *context, const ca
                                                camber_network **network);
 /* A mesh that holds the network keeps what it needs of it. */
 CAMBER_API void camber_network_destroy(camber_network *network);
-/* Of the entries. kept_points: before the camera leaves any out. */
+/* Counts over the entries. kept_points: before the camera leaves any out. */
 CAMBER_API camber_polylines_stats camber_network_get_stats(const camber_network *network);
 
 typedef struct camber_camera {
@@ -56,22 +57,23 @@ typedef struct camber_camera {
     double scale_px;        /* px a world unit */
     double bearing_deg;     /* clockwise: the direction that is up in the picture */
     uint32_t width, height; /* of the picture, px */
-    double simplify_px;     /* points of less importance than this are left out. 0: none */
-    double translate_px;    /* farthest that a paint translates what is drawn: so far around the picture it is seen */
-    double pitch_deg;       /* as the frame that draws the mesh has it */
+    double simplify_px;  /* points that matter less than this are left out (camber_network_desc.importance). 0: none */
+    double translate_px; /* lines that paints will translate by so much are kept around the picture as well */
+    double pitch_deg;    /* 0 to 85: the mesh remembers it, and the frame that draws the mesh is seen with it */
 } camber_camera;
 
 /* Tessellates what the camera sees of a network. The device projects, leaves out, cuts and compacts; of this the host
  * learns the sizes. Polylines are cut where they leave a window around the picture that lies farther out than any
  * stroke reaches, by 64 px at least, so that neither caps show there nor vertices lie far away. The mesh keeps the
  * network on the device: another call uploads nothing. The same camera gives the same bytes.
- * Returns what camber_tessellate does, and CAMBER_ERROR_ARGUMENT for a camera that is not finite, a scale or a size of
- * 0, a size above 65535, a scale that makes more than 10^9 px of a step. Cost: about 10 ns a point of what the boxes of
- * polylines do not rule out, on two cores. */
-CAMBER_API camber_status camber_tessellate_network(camber_mesh *mesh, camber_network *network,
-                                                   const camber_camera *camera, const camber_tessellation_desc *desc);
+ * Returns what camber_mesh_tessellate does, and CAMBER_ERROR_ARGUMENT for a camera that is not finite, a scale or a
+ * size of 0, a size above 65535, a scale that makes more than 10^9 px of a step. Cost: linear in the points of the
+ * polylines whose boxes are seen. */
+CAMBER_API camber_status camber_mesh_tessellate_network(camber_mesh *mesh, camber_network *network,
+                                                        const camber_camera *camera,
+                                                        const camber_tessellation_desc *desc);
 /* Whether the mesh's last tessellation was of this network. */
-CAMBER_API bool camber_mesh_holds(const camber_mesh *mesh, const camber_network *network);
+CAMBER_API bool camber_mesh_holds_network(const camber_mesh *mesh, const camber_network *network);
 
 #ifdef __cplusplus
 }

@@ -15,7 +15,7 @@ extern "C" {
 
 /* ---- Meshes in host memory ------------------------------------------------------------------------- */
 
-/* What the device keeps of a point: 16 bytes, which the vertex shader reads. A strip has two vertices a record, the
+/* A point as the device keeps it: 16 bytes, which the vertex shader reads. A strip has two vertices a record, the
  * left one and the right one, and no indices; kernels/join.h says which records a point has. kite and fan have a record
  * a point and indices of 4 bytes. */
 typedef struct camber_record {
@@ -24,11 +24,11 @@ typedef struct camber_record {
     uint32_t last; /* row << 8 | flags: CAMBER_POINT_* and CAMBER_RECORD_* there */
 } camber_record;
 
-/* How far along its polyline a record of a measured mesh lies: the arc length over all of the polyline's points, those
- * of a network also where the camera leaves points out or cuts. */
-typedef struct camber_measure {
+/* How far along its polyline a record lies, in a mesh with arc lengths: the arc length over all of the polyline's
+ * points, those of a network also where the camera leaves points out or cuts. */
+typedef struct camber_arc_length {
     float along_px, total_px; /* from its first point, and to its last */
-} camber_measure;
+} camber_arc_length;
 
 /* A vertex as the vertex shader makes it from records. A segment runs from A to B, u is its direction, L its length.
  * The vertex lies at P + u * clamp(along * g, -limit_px, +limit_px) + (-u.y, u.x) * across * g with g = half the width
@@ -48,7 +48,7 @@ typedef struct camber_vertex {
     uint32_t row;   /* of the polyline */
 } camber_vertex;
 
-/* What the fragment shader does past an end of a segment. */
+/* How the fragment shader draws past an end of a segment. */
 typedef enum camber_end {
     CAMBER_END_ROUND = 0, /* distance to the end point: the paper's arc */
     CAMBER_END_BUTT,      /* nothing past the end */
@@ -64,16 +64,17 @@ typedef enum camber_end {
 
 #define CAMBER_RESTART_INDEX 0xffffffffu
 
-/* A mesh in host memory; free with camber_mesh_data_free. */
+/* A mesh in host memory, which camber_mesh_data_destroy frees. */
 typedef struct camber_mesh_data camber_mesh_data;
 struct camber_mesh_data {
+    camber_context *context; /* which allocated the arrays. NULL: they are the caller's, and destroy leaves them */
     camber_mesh_info info;
-    /* What the device has: info.record_count, and of kite and fan info.index_count, record << 7 | corner
+    /* As on the device: info.record_count, and of kite and fan info.index_count, record << 7 | corner
      * (CAMBER_CORNER_* in kernels/layout.h); NULL of strips. */
     camber_record *records;
-    camber_measure *measures; /* as many, of measured meshes. NULL: not measured */
+    camber_arc_length *arc_lengths; /* as many. NULL: the mesh has none */
     uint32_t *corners;
-    /* What is drawn by it: info.vertex_count, and info.index_count. Of strips these are two indices a record, both
+    /* As drawn: info.vertex_count, and info.index_count. With strips these are two indices a record, both
      * CAMBER_RESTART_INDEX where it lies between two strips. At a tight join two records follow each other that have
      * one index in common: of the two triangles between them one has no area, the other winds the other way and is
      * culled. */
@@ -86,27 +87,25 @@ struct camber_mesh_data {
 CAMBER_API bool camber_mesh_data_draws(const camber_mesh_data *data, size_t first_index);
 
 CAMBER_API camber_status camber_mesh_read(camber_mesh *mesh, camber_mesh_data *data);
-/* The CPU twin: the same bytes as camber_tessellate where the device rounds correctly. Needs no device. */
-CAMBER_API camber_status camber_tessellate_on_host(camber_context *context, const camber_polylines *polylines,
-                                                   const camber_tessellation_desc *desc, camber_mesh_data *data);
-CAMBER_API void camber_mesh_data_free(camber_context *context, camber_mesh_data *data);
+/* The CPU twin: the same bytes as camber_mesh_tessellate where the device rounds correctly. Needs no device. */
+CAMBER_API camber_status camber_mesh_data_tessellate(camber_context *context, const camber_polylines *polylines,
+                                                     const camber_tessellation_desc *desc, camber_mesh_data *data);
+CAMBER_API void camber_mesh_data_destroy(camber_mesh_data *data);
 
 /* ---- Networks: what a camera makes of them ---------------------------------------------------------- */
 
-/* The CPU twin: the polylines that camber_tessellate would make the same mesh of, an entry each. Of desc only the
+/* The CPU twin: the polylines that camber_mesh_tessellate would make the same mesh of, an entry each. Of desc only the
  * strokes matter. */
 CAMBER_API camber_status camber_network_project(const camber_network *network, const camber_camera *camera,
                                                 const camber_tessellation_desc *desc, camber_polylines **polylines);
 /* The same polylines with each piece by itself and without entries of which nothing is seen; a ring that is cut begins
- * at a cut. *entries is the entry of each; free it with camber_entries_free. */
-CAMBER_API camber_status camber_network_lines(const camber_network *network, const camber_camera *camera,
-                                              const camber_tessellation_desc *desc, camber_lines *lines,
-                                              uint32_t **entries);
-CAMBER_API void camber_entries_free(camber_context *context, uint32_t *entries);
+ * at a cut. */
+CAMBER_API camber_status camber_network_project_lines(const camber_network *network, const camber_camera *camera,
+                                                      const camber_tessellation_desc *desc, camber_lines *lines);
 
 /* ---- Stages: what came before the mesh ----------------------------------------------------------- */
 
-/* What classify and scan found for a point that is tessellated. */
+/* A point that is tessellated, as classify and scan found it. */
 typedef struct camber_point_stages {
     uint32_t polyline;     /* as given */
     uint32_t point;        /* of the polyline's kept points */
@@ -116,34 +115,36 @@ typedef struct camber_point_stages {
     uint64_t first_index;  /* and its indices */
 } camber_point_stages;
 
-/* Free with camber_stages_free. */
+/* Calls make these; camber_stages_destroy frees them. */
 typedef struct camber_stages {
+    camber_context *context;     /* which allocated the array. NULL: nothing is there */
     camber_point_stages *points; /* point_count, in input order; rings have their first point again at the end */
     size_t point_count;
 } camber_stages;
 
-/* Of the last tessellation. Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_DEVICE. */
+/* Reads the stages of the last tessellation. Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_DEVICE. */
 CAMBER_API camber_status camber_mesh_read_stages(camber_mesh *mesh, camber_stages *stages);
 /* The CPU twin's. */
-CAMBER_API camber_status camber_stages_on_host(camber_context *context, const camber_polylines *polylines,
-                                               const camber_tessellation_desc *desc, camber_stages *stages);
-CAMBER_API void camber_stages_free(camber_context *context, camber_stages *stages);
+CAMBER_API camber_status camber_stages_tessellate(camber_context *context, const camber_polylines *polylines,
+                                                  const camber_tessellation_desc *desc, camber_stages *stages);
+CAMBER_API void camber_stages_destroy(camber_stages *stages);
 
-/* ---- Stages of drawing: what CAMBER_DRAW_CL's kernels found for a frame ------------------------------ */
+/* ---- Stages of drawing: what CAMBER_RASTERIZER_OPENCL's kernels found for a frame ------------------------------ */
 
-/* Of a frame's first area, which is all of it up to 16 M px and 8192 px a side. Tiles are 32 px square. Free with
- * camber_drawing_stages_free. */
+/* The stages of a frame's first area, which is all of it up to 16 M px and 8192 px a side. Tiles are 32 px square.
+ * camber_drawing_stages_destroy frees it. */
 typedef struct camber_drawing_stages {
+    camber_context *context; /* which allocated the arrays. NULL: nothing is there */
     /* shape: what each record of the passes, in drawing order, ends, rounded up to sixteens for each part of a mesh:
-     * shape_words floats and bits that tiles and pixels are drawn from, of what is drawn, and the tiles of its box, a
+     * segment_words floats and bits that tiles and pixels are drawn from, of what is drawn, and the tiles of its box, a
      * byte each: the first one's column, its row, the last one's column, its row. Where the last column lies before the
      * first, nothing is drawn. What lies along lines is measured where passes have gaps, blurs, dashes, trims or ramps;
      * a frame that is pitched has a shape's words of its plane too. */
-    float *shapes;   /* shape_words * shape_count */
-    uint32_t *boxes; /* shape_count */
-    float *measures; /* measure_words * shape_count. NULL: nothing lies along lines, or beside them */
-    float *planes;   /* plane_words * shape_count. NULL: not pitched */
-    size_t shape_count, shape_words, measure_words, plane_words;
+    float *segments;    /* segment_words * segment_count */
+    uint32_t *boxes;    /* segment_count */
+    float *arc_lengths; /* measure_words * segment_count. NULL: nothing lies along lines, or beside them */
+    float *planes;      /* plane_words * segment_count. NULL: not pitched */
+    size_t segment_count, segment_words, measure_words, plane_words;
     /* count and total: where the list of each tile begins, columns * rows + 1, row by row. */
     uint32_t *starts;
     uint32_t columns, rows;
@@ -152,14 +153,14 @@ typedef struct camber_drawing_stages {
     uint32_t width, height;
 } camber_drawing_stages;
 
-/* Draws the frame. Returns what camber_render returns, CAMBER_ERROR_LIMIT also where it takes several slices. The
- * renderer draws in OpenCL. */
-CAMBER_API camber_status camber_drawing_read_stages(camber_renderer *renderer, const camber_frame *frame,
-                                                    camber_drawing_stages *stages);
+/* Draws the frame. Returns what camber_renderer_render returns, CAMBER_ERROR_LIMIT also where it takes several slices.
+ * The renderer draws in OpenCL. */
+CAMBER_API camber_status camber_renderer_read_stages(camber_renderer *renderer, const camber_frame *frame,
+                                                     camber_drawing_stages *stages);
 /* The CPU twin's, from the records that the device has: the same bytes, but for shapes that are not drawn. */
-CAMBER_API camber_status camber_drawing_stages_on_host(camber_renderer *renderer, const camber_frame *frame,
-                                                       camber_drawing_stages *stages);
-CAMBER_API void camber_drawing_stages_free(camber_context *context, camber_drawing_stages *stages);
+CAMBER_API camber_status camber_drawing_stages_rasterize(camber_renderer *renderer, const camber_frame *frame,
+                                                         camber_drawing_stages *stages);
+CAMBER_API void camber_drawing_stages_destroy(camber_drawing_stages *stages);
 
 /* ---- Overdraw: what the GPU does for a mesh, counted on it ----------------------------------------- */
 
@@ -185,9 +186,10 @@ typedef struct camber_overdraw {
     uint64_t repeated_pixels; /* with coverage from more than one fragment of a range, once a range */
 } camber_overdraw;
 
-/* Counts with the stencil and additive blending, two draw calls a range. Returns what camber_render returns. */
-CAMBER_API camber_status camber_overdraw_count(camber_renderer *renderer, const camber_overdraw_desc *desc,
-                                               camber_overdraw *overdraw);
+/* Counts with the stencil and additive blending, two draw calls a range. Returns what camber_renderer_render returns.
+ */
+CAMBER_API camber_status camber_renderer_count_overdraw(camber_renderer *renderer, const camber_overdraw_desc *desc,
+                                                        camber_overdraw *overdraw);
 
 #ifdef __cplusplus
 }

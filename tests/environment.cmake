@@ -1,4 +1,4 @@
-# What every test of this directory gets: one cache for all, kernels that were compiled before the first of them, a count of
+# Every test of this directory gets one cache for all, kernels that were compiled before the first of them, a count of
 # those that are compiled all the same, and what the sanitizers are told.
 set(CAMBER_TEST_CACHE ${CMAKE_BINARY_DIR}/cache CACHE PATH "Where tests keep what they compile")
 set(CAMBER_TEST_KERNELS ${CMAKE_BINARY_DIR}/src/camber-kernels CACHE PATH "Kernels that are compiled before the tests")

@@ -1,6 +1,6 @@
-# The target `lint`: formatting, clang-tidy, every kernel and every public header by itself. It counts with the clang of
-# .ci/pinned: another one formats otherwise and has other checks. Such a clang-format or clang-tidy is left out, and what
-# such a clang warns of is information.
+# The target `lint`: the rules of the tree (tests/lint/lint_tree.py), formatting, clang-tidy, every kernel and every public
+# header by itself. It counts with the clang of .ci/pinned: another one formats otherwise and has other checks. Such a
+# clang-format or clang-tidy is left out, and what such a clang warns of is information.
 set(lint_notes)
 set(lint_missing)
 foreach(tool clang clang-format clang-tidy)
@@ -22,6 +22,10 @@ foreach(tool clang clang-format clang-tidy)
     list(APPEND lint_notes COMMAND ${CMAKE_COMMAND} -E echo "lint: ${tool} ${CMAKE_MATCH_1}, made for ${pinned_clang}: skipped")
   endif()
 endforeach()
+find_program(PYTHON3 python3)
+if(NOT PYTHON3)
+  list(APPEND lint_missing python3)
+endif()
 if(lint_missing)
   list(JOIN lint_missing ", " lint_missing)
   add_custom_target(lint COMMAND ${CMAKE_COMMAND} -E echo "lint: not here: ${lint_missing}, see ./dev setup"
@@ -47,44 +51,36 @@ function(lint_step name)
 endfunction()
 file(MAKE_DIRECTORY ${stamps})
 
+# Layers are checked in the object files that have been built. As it takes a second, it runs each time: there is no stamp.
+add_custom_command(OUTPUT ${stamps}/tree
+  COMMAND ${PYTHON3} ${CMAKE_CURRENT_LIST_DIR}/lint/lint_tree.py ${PROJECT_SOURCE_DIR} ${CMAKE_BINARY_DIR} VERBATIM)
+set_source_files_properties(${stamps}/tree PROPERTIES SYMBOLIC TRUE)
+list(APPEND done ${stamps}/tree)
+
 add_custom_target(lint_format ${lint_notes})
 if(CLANG_FORMAT_IS_PINNED)
   add_custom_command(TARGET lint_format COMMAND ${CLANG_FORMAT} --dry-run -Werror ${lint_sources} ${lint_headers} ${lint_others} VERBATIM)
   lint_step(format COMMAND ${CLANG_FORMAT} --dry-run -Werror ${lint_sources} ${lint_headers} ${lint_others} DEPENDS ${lint_sources} ${lint_headers} ${lint_others})
 endif()
 
-foreach(method 0 1 2)
-  # As for a GPU, and as for a CPU, where a kernel calls its body (CAMBER_KERNEL).
-  lint_step(kernels_cpu_${method}
-    COMMAND ${CLANG} -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only ${lint_warnings}
-            -Wno-unused-function -Wno-unused-parameter -Wno-ignored-pragmas -DCAMBER_METHOD=${method} -DCAMBER_ITEM=256 -D__OPENCL_VERSION__=120 ${CMAKE_BINARY_DIR}/src/kernels.cl
-    DEPENDS ${CMAKE_BINARY_DIR}/src/kernels.cl)
-  lint_step(kernels_${method}
-    COMMAND ${CLANG} -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only ${lint_warnings}
-            -Wno-unused-function -Wno-unused-parameter -Wno-ignored-pragmas -DCAMBER_METHOD=${method} -D__OPENCL_VERSION__=120 ${CMAKE_BINARY_DIR}/src/kernels.cl
-    DEPENDS ${CMAKE_BINARY_DIR}/src/kernels.cl)
+# Each kernel file by itself, as editors check it, in as many builds as show all of it: as for a CPU, where a kernel
+# calls its body (CAMBER_KERNEL), and as for a GPU.
+file(GLOB kernels CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/kernels/*.cl)
+file(GLOB kernel_headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/kernels/*.h)
+file(STRINGS ${PROJECT_SOURCE_DIR}/kernels/compile_flags.txt kernel_flags)
+set(build_plain)
+set(build_cpu -DCAMBER_POINT_CHUNK=256 -DCAMBER_HAS_ARC_LENGTH=1 -UCAMBER_METHOD -DCAMBER_METHOD=1 -DCAMBER_RASTER_RICH=1)
+set(build_pitched -DCAMBER_PITCHED=1 -DCAMBER_RASTER_RICH=1 -DCAMBER_RASTER_PITCHED=1)
+set(build_gpu -DCAMBER_LANES=1 -Wno-bitwise-instead-of-logical -UCAMBER_METHOD -DCAMBER_METHOD=2)
+foreach(kernel IN LISTS kernels)
+  get_filename_component(name ${kernel} NAME_WE)
+  foreach(build plain cpu pitched gpu)
+    lint_step(kernel_${name}_${build}
+      COMMAND ${CLANG} ${kernel_flags} -fsyntax-only ${lint_warnings} -Wno-unused-function -Wno-unused-parameter
+              -Wno-ignored-pragmas -Wno-missing-field-initializers ${build_${build}} ${kernel}
+      DEPENDS ${kernels} ${kernel_headers} ${PROJECT_SOURCE_DIR}/kernels/compile_flags.txt)
+  endforeach()
 endforeach()
-
-lint_step(kernels_network
-  COMMAND ${CLANG} -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only ${lint_warnings}
-          -Wno-unused-function -Wno-unused-parameter -Wno-ignored-pragmas -D__OPENCL_VERSION__=120 ${CMAKE_BINARY_DIR}/src/network.cl
-  DEPENDS ${CMAKE_BINARY_DIR}/src/network.cl)
-
-foreach(variant 0,0 1,0 1,1)
-  string(REGEX REPLACE "(.),(.)" "-DCAMBER_COVER_RICH=\\1;-DCAMBER_COVER_PITCHED=\\2" macros ${variant})
-  string(REPLACE "," "_" variant ${variant})
-  lint_step(kernels_cover_${variant}
-    COMMAND ${CLANG} -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only ${lint_warnings}
-            -Wno-unused-function -Wno-unused-parameter -Wno-ignored-pragmas -D__OPENCL_VERSION__=120 ${macros}
-            ${CMAKE_BINARY_DIR}/src/cover.cl
-    DEPENDS ${CMAKE_BINARY_DIR}/src/cover.cl)
-endforeach()
-
-lint_step(kernels_cover_lanes
-  COMMAND ${CLANG} -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -fsyntax-only ${lint_warnings}
-          -Wno-unused-function -Wno-unused-parameter -Wno-ignored-pragmas -D__OPENCL_VERSION__=120 -Wno-bitwise-instead-of-logical -DCAMBER_LANES=1
-          ${CMAKE_BINARY_DIR}/src/cover.cl
-  DEPENDS ${CMAKE_BINARY_DIR}/src/cover.cl)
 
 file(GLOB public_headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/camber*.h)
 foreach(header IN LISTS public_headers)
@@ -101,9 +97,13 @@ foreach(source IN LISTS lint_sources)
   if(name MATCHES "^src/(style|source|map)/" AND NOT CAMBER_MAP)
     continue()
   endif()
+  set(made)
+  if(name MATCHES "^src/source/") # clang-tidy reads the headers that protoc-c makes
+    set(made ${CMAKE_BINARY_DIR}/src/messages/vector_tile.pb-c.h)
+  endif()
   string(REPLACE "/" "_" name ${name})
   lint_step(tidy_${name} COMMAND ${CLANG_TIDY} --quiet --warnings-as-errors=* -p ${CMAKE_BINARY_DIR} ${source}
-            DEPENDS ${source} ${lint_headers} ${PROJECT_SOURCE_DIR}/.clang-tidy)
+            DEPENDS ${source} ${lint_headers} ${made} ${PROJECT_SOURCE_DIR}/.clang-tidy)
 endforeach()
 
 add_custom_target(lint ${lint_notes} DEPENDS ${done})

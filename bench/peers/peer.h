@@ -1,7 +1,7 @@
 /* A renderer that a user could pick instead: it draws the same polylines, black on white, with round joins and butt
  * caps, each polyline open, to a picture in memory on the CPU. C and C++ read this. */
-#ifndef CAMBER_BENCH_PEER_H
-#define CAMBER_BENCH_PEER_H
+#ifndef CAMBER_BENCH_PEERS_PEER_H
+#define CAMBER_BENCH_PEERS_PEER_H
 
 #include "camber_files.h"
 

@@ -1,4 +1,7 @@
-/* What files may make a run take: memory, tiles, steps of databases, bytes out of archives. Every bound stands here. */
+/* Limits what a file can make a run use: memory, tiles, steps of databases, and bytes unpacked from archives. All
+ * limits are here, so that a hostile file ends in an error and not in a dead machine. Memory is counted by the
+ * allocator; the limit is the caller's, or else three quarters of what the machine, the control group and ulimit leave
+ * free. The other counts start anew with each set of features. */
 #define _GNU_SOURCE /* RLIMIT_AS */
 
 #include "base/base.h"
@@ -10,10 +13,10 @@
 #include <unistd.h>
 
 static const uint64_t TILES = UINT64_C(1) << 18, STEPS = UINT64_C(1) << 26, STEPS_A_TILE = 4096;
-/* Archives keep what many tiles share once: of open water some 100 bytes a tile. */
+/* An archive stores a tile that repeats only once: open water takes about 100 bytes a tile. */
 static const uint32_t UNFOLD = 32;
 static const uint64_t UNFOLD_BYTES = 4 << 20, UNFOLD_BYTES_A_TILE = 128;
-/* The machine is asked when a run holds so much: few ever do. */
+/* Below this the machine is not asked for its free memory; few runs ever need more. */
 static const uint64_t UNASKED_BYTES = 64 << 20;
 
 void camber_budget_init(camber_budget *budget, const camber_budget_desc *desc) {
@@ -42,13 +45,13 @@ void camber_budget_destroy(camber_budget *budget) {
     free(budget);
 }
 
-uint64_t camber_budget_held_bytes(const camber_budget *budget) {
+uint64_t camber_budget_get_held_bytes(const camber_budget *budget) {
     return atomic_load(&budget->held_bytes);
 }
 
-/* ---- What the process can still have ---- */
+/* ---- Free memory ---- */
 
-/* The first number in a file, or behind a word in it. */
+/* Reads the first number in a file, or the first one behind a word at the start of a line. */
 static bool read_number(const char *path, const char *word, uint64_t *number) {
     char line[256];
     FILE *file = fopen(path, "re");
@@ -66,7 +69,7 @@ static uint64_t smaller(uint64_t left, uint64_t right) {
     return left < right ? left : right;
 }
 
-/* A control group of version 2 and those above it. */
+/* The memory that the control group (version 2) of the process and the groups above it leave free. */
 static uint64_t group_free_bytes(void) {
     char group[2048] = "", path[4096];
     uint64_t least = UINT64_MAX;
@@ -84,7 +87,7 @@ static uint64_t group_free_bytes(void) {
             continue;
         snprintf(path, sizeof path, "/sys/fs/cgroup%s/memory.current", group + 3);
         (void)read_number(path, "", &held);
-        /* What is kept of files goes when it is wanted. */
+        /* The kernel gives up cached files when memory is needed, so they count as free. */
         uint64_t kept = 0;
         snprintf(path, sizeof path, "/sys/fs/cgroup%s/memory.stat", group + 3);
         (void)read_number(path, "inactive_file", &kept);
@@ -104,7 +107,7 @@ static uint64_t limit_free_bytes(void) {
     return limit.rlim_cur > used ? limit.rlim_cur - used : 0;
 }
 
-/* Of a system that does not tell, half of its memory. */
+/* If the system does not say how much memory is free, assume half of it. */
 static uint64_t machine_free_bytes(void) {
     uint64_t kilobytes;
     if (read_number("/proc/meminfo", "MemAvailable:", &kilobytes))
@@ -119,9 +122,9 @@ static void look_up(camber_budget *budget, uint64_t held_bytes) {
     atomic_compare_exchange_strong(&budget->most_bytes, &unknown, held_bytes + free_bytes / 4 * 3);
 }
 
-uint64_t camber_budget_most_bytes(camber_budget *budget) {
+uint64_t camber_budget_get_most_bytes(camber_budget *budget) {
     if (atomic_load(&budget->most_bytes) == UINT64_MAX)
-        look_up(budget, camber_budget_held_bytes(budget));
+        look_up(budget, camber_budget_get_held_bytes(budget));
     return atomic_load(&budget->most_bytes);
 }
 
@@ -131,7 +134,7 @@ bool camber_budget_take(camber_context *context, uint64_t size_bytes) {
     camber_budget *budget = context->budget;
     const uint64_t held = atomic_fetch_add(&budget->held_bytes, size_bytes);
     const uint64_t most =
-        held + size_bytes > UNASKED_BYTES ? camber_budget_most_bytes(budget) : atomic_load(&budget->most_bytes);
+        held + size_bytes > UNASKED_BYTES ? camber_budget_get_most_bytes(budget) : atomic_load(&budget->most_bytes);
     if (size_bytes <= most && held <= most - size_bytes)
         return true;
     atomic_fetch_sub(&budget->held_bytes, size_bytes);
@@ -143,8 +146,8 @@ camber_status camber_budget_fail(camber_context *context, uint64_t size_bytes) {
     return camber_fail(context, CAMBER_ERROR_MEMORY,
                        "memory: %.1f MB are held, %.1f MB more are needed, and %.1f MB are allowed; give it less data, "
                        "or allow more memory",
-                       (double)camber_budget_held_bytes(budget) / 1e6, (double)size_bytes / 1e6,
-                       (double)camber_budget_most_bytes(budget) / 1e6);
+                       (double)camber_budget_get_held_bytes(budget) / 1e6, (double)size_bytes / 1e6,
+                       (double)camber_budget_get_most_bytes(budget) / 1e6);
 }
 
 void camber_budget_give(camber_context *context, uint64_t size_bytes) {
@@ -152,12 +155,13 @@ void camber_budget_give(camber_context *context, uint64_t size_bytes) {
 }
 
 bool camber_budget_has(const camber_context *context, uint64_t size_bytes) {
-    const uint64_t held = camber_budget_held_bytes(context->budget), most = camber_budget_most_bytes(context->budget);
+    const uint64_t held = camber_budget_get_held_bytes(context->budget),
+                   most = camber_budget_get_most_bytes(context->budget);
     return size_bytes <= most && held <= most - size_bytes;
 }
 
-/* PoCL and its compiler end the process where there is no address space for them: measured on two cores, cold, at
- * 0.8 GB. A thread has a stack of 8 MB and a heap of 64. */
+/* PoCL and its compiler end the process when they run out of address space. They were measured to need 0.8 GB on two
+ * cores with a cold cache. Each thread takes a stack of 8 MB and a heap of 64 MB. */
 camber_status camber_budget_check_drivers(camber_context *context) {
     const char *asked = getenv("POCL_MAX_PTHREAD_COUNT");
     const long threads = asked ? strtol(asked, NULL, 10) : sysconf(_SC_NPROCESSORS_ONLN);
@@ -172,7 +176,7 @@ camber_status camber_budget_check_drivers(camber_context *context) {
                        (double)left / 1e6, (double)wanted / 1e6);
 }
 
-/* ---- What one set of features reads ---- */
+/* ---- Counts of a set of features ---- */
 
 void camber_budget_begin(camber_context *context) {
     context->spent = (camber_spent){0};

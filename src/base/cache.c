@@ -1,7 +1,7 @@
-/* Small files that save time: compiled kernels and linked shaders. They lie in the user's cache folder. Kernels may
- * also lie in a folder beside the library, which all users of the machine read: camber_device_warm fills it where
- * camber is installed. What is read from there runs in the reader's process, so it counts only where nobody but the
- * owner could have written it, and the owner could have written the library as well. */
+/* Keeps compiled kernels and linked shaders in small files, so that the next run need not compile them. They are in the
+ * user's cache folder. Kernels may also be in a folder beside the library, which all users of the machine read:
+ * camber_device_warm fills it when camber is installed. A file from there runs as code in the reader's process. So it
+ * counts only if nobody but its owner can have written it, and the owner can also write the library. */
 #define _GNU_SOURCE /* dladdr, F_OFD_SETLK, realpath */
 
 #include "base/base.h"
@@ -36,7 +36,8 @@ static bool users_folder(const camber_context *context, char folder[PATH_SIZE]) 
     return length > 0 && length < PATH_SIZE;
 }
 
-/* The folder that $CAMBER_KERNELS names, or the one beside the library, which *owner could have written too. */
+/* Finds the shared folder: $CAMBER_KERNELS, or the one beside the library. *owner is the user who could have written
+ * it. */
 static bool shared_folder(char folder[PATH_SIZE], uid_t *owner) {
     const char *named = getenv("CAMBER_KERNELS");
     char library[PATH_MAX];
@@ -45,7 +46,7 @@ static bool shared_folder(char folder[PATH_SIZE], uid_t *owner) {
     *owner = geteuid();
     if (named)
         return named[0] == '/' && snprintf(folder, PATH_SIZE, "%s", named) < PATH_SIZE;
-    /* Of a program with the library in itself this is argv[0], which without a slash would be a file that lies here. */
+    /* In a statically linked program this is argv[0]. Without a slash it would name a file in the working folder. */
     if (!dladdr(SHARED_NAME, &here) || !here.dli_fname || here.dli_fname[0] != '/' ||
         !realpath(here.dli_fname, library) || stat(library, &about) != 0)
         return false;
@@ -75,7 +76,7 @@ bool camber_cache_is_on(const camber_context *context) {
     return users_folder(context, folder);
 }
 
-/* Whoever makes it means it for all, whatever the umask is. */
+/* Makes the folder readable for all users, whatever the umask is. */
 static bool make_shared(const char *folder) {
     return mkdir(folder, 0755) == 0 ? chmod(folder, 0755) == 0 : errno == EEXIST;
 }
@@ -101,7 +102,8 @@ bool camber_cache_folder(const camber_context *context, char folder[PATH_SIZE]) 
 
 /* ---- Files ---- */
 
-/* All of an open regular file that nobody but its owner can write: root, this user, or the one that is named. */
+/* Reads an open regular file, if nobody but its owner can write it and the owner is root, this user or the given one.
+ */
 static bool read_trusted(camber_context *context, int file, uid_t owner, char **bytes, size_t *size_bytes) {
     struct stat about;
     if (fstat(file, &about) != 0 || !S_ISREG(about.st_mode) || about.st_size > LARGEST_BYTES ||
@@ -121,7 +123,7 @@ static bool read_trusted(camber_context *context, int file, uid_t owner, char **
     return true;
 }
 
-/* By handles, so that what is looked at is what is read. */
+/* Opens folder and file first and checks the open handles, so that nobody can swap the file between check and read. */
 static bool load_from(camber_context *context, const char *path, bool shared, uid_t owner, const char *name,
                       char **bytes, size_t *size_bytes) {
     struct stat about;
@@ -181,7 +183,8 @@ int camber_cache_lock(camber_context *context, uint64_t key, double longest_ms) 
     const int handle = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
     if (handle < 0)
         return -1;
-    /* One file for all: each key has a byte of it. Locks of an open file go with it, also where a process dies. */
+    /* All keys share one file, in which each key has a byte to lock. Locks of an open file end with it, even if the
+     * process dies. */
     struct flock byte = {
         .l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = (off_t)(key & INT32_MAX), .l_len = 1, .l_pid = 0};
     const double begin = camber_now_ms();

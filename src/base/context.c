@@ -1,3 +1,6 @@
+/* The context: the caller's allocator, log and progress callbacks, and the budget. Every allocation of the library goes
+ * through camber_resize_quietly, which counts its size in the budget. Logging turns a message into one line and hands
+ * it to the callback. */
 #include "base/base.h"
 
 #include <stdio.h>
@@ -48,6 +51,7 @@ void camber_context_destroy(camber_context *context) {
     if (!context)
         return;
     const camber_context_desc desc = context->desc;
+    camber_free(context, context->devices);
     camber_free(context, (char *)(uintptr_t)desc.cache_dir);
     camber_free(context, (char *)(uintptr_t)desc.access.root);
     for (size_t i = 0; i < sizeof desc.access.outputs / sizeof *desc.access.outputs; i++)
@@ -55,7 +59,7 @@ void camber_context_destroy(camber_context *context) {
     desc.reallocate(desc.allocator_user, context, 0);
 }
 
-const char *camber_method_name(camber_method method) {
+const char *camber_method_get_name(camber_method method) {
     switch (method) {
     case CAMBER_METHOD_STRIP: return "strip";
     case CAMBER_METHOD_KITE: return "kite";
@@ -64,7 +68,7 @@ const char *camber_method_name(camber_method method) {
     return "unknown";
 }
 
-const char *camber_status_name(camber_status status) {
+const char *camber_status_get_name(camber_status status) {
     switch (status) {
     case CAMBER_OK: return "ok";
     case CAMBER_ERROR_MEMORY: return "out of memory";
@@ -85,7 +89,8 @@ const char *camber_version(void) {
     return TEXT(CAMBER_VERSION_MAJOR) "." TEXT(CAMBER_VERSION_MINOR) "." TEXT(CAMBER_VERSION_PATCH);
 }
 
-/* Each block begins with its size, which the budget has it for, and is aligned as the allocator's are. */
+/* Each block starts with its size, which the budget takes back when the block is freed. The head keeps the allocator's
+ * alignment. */
 enum { HEAD_BYTES = 16 };
 
 static size_t size_of(const void *block) {
@@ -168,10 +173,10 @@ char *camber_copy_string(camber_context *context, const char *text) {
 static void log_list(camber_context *context, camber_log_level level, const char *format, va_list list) {
     if (!context->desc.log)
         return;
-    /* Long enough for any path and cause; a build log is cut, its beginning names the error. */
+    /* Long enough for any path and cause. A build log is cut, but its beginning names the error. */
     char message[4096];
     vsnprintf(message, sizeof message, format, list);
-    /* Text of a file may stand in it: one line, and nothing that a terminal obeys. */
+    /* The message may quote a file, so it is made one line without control characters for a terminal. */
     for (char *c = message; *c; c++)
         if ((unsigned char)*c < ' ' || *c == 0x7f)
             *c = ' ';

@@ -1,17 +1,12 @@
-/* Text files that the build embeds (src/embed.cmake), each with a 0 behind its end. */
-#ifndef CAMBER_EMBEDDED_H
-#define CAMBER_EMBEDDED_H
+/* Text files that the build embeds in the library (src/embed.cmake). Each text ends with a 0. */
+#ifndef CAMBER_BASE_EMBEDDED_H
+#define CAMBER_BASE_EMBEDDED_H
 
-extern const char camber_kernels_source[]; /* kernels/ as one program */
-extern const unsigned long camber_kernels_source_size;
-extern const char camber_network_kernels_source[]; /* those of networks, as another */
-extern const unsigned long camber_network_kernels_source_size;
-extern const char camber_measure_kernels_source[]; /* those of measures */
-extern const unsigned long camber_measure_kernels_source_size;
-extern const char camber_offset_kernels_source[]; /* those of offsets */
-extern const unsigned long camber_offset_kernels_source_size;
-extern const char camber_cover_kernels_source[]; /* those that draw */
-extern const unsigned long camber_cover_kernels_source_size;
+/* The programs of kernels/, each with all that it includes. */
+extern const char camber_tessellate_kernels[], camber_cull_kernels[], camber_arc_length_kernels[];
+extern const unsigned long camber_tessellate_kernels_size, camber_cull_kernels_size, camber_arc_length_kernels_size;
+extern const char camber_offset_kernels[], camber_raster_kernels[];
+extern const unsigned long camber_offset_kernels_size, camber_raster_kernels_size;
 extern const char camber_edge_glsl[]; /* shaders/ without their #version line */
 extern const unsigned long camber_edge_glsl_size;
 extern const char camber_stroke_vert[], camber_stroke_frag[];
@@ -26,7 +21,7 @@ extern const char camber_style_openmaptiles_light[], camber_style_openmaptiles_d
 extern const unsigned long camber_style_openmaptiles_light_size, camber_style_openmaptiles_dark_size;
 extern const char camber_style_transit_light[], camber_style_transit_dark[];
 extern const unsigned long camber_style_transit_light_size, camber_style_transit_dark_size;
-extern const char camber_osmconf[]; /* src/source/osmconf.ini */
+extern const char camber_osmconf[]; /* src/gdal/osmconf.ini */
 extern const unsigned long camber_osmconf_size;
 
 #endif

@@ -1,15 +1,14 @@
-/* The files that camber reads: which may be read, and reading them. */
+/* Opens and reads the files that camber is given or that a style names. Before a file is read it is checked: it must be
+ * a regular file, not the output, and if a style names it, inside the context's root. */
 #define _XOPEN_SOURCE 700 /* realpath */
 
 #include "base/base.h"
+#include "base/open_file.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 camber_status camber_file_fail(camber_context *context, const char *path, int cause) {
     if (cause == EMFILE || cause == ENFILE)
@@ -30,7 +29,7 @@ static camber_status check_kind(camber_context *context, const char *path, const
     return camber_fail(context, CAMBER_ERROR_INPUT, "%s: is a device or a pipe; copy what it gives to a file", path);
 }
 
-/* As it is without links; of a file that is not there the first folder above it that is. */
+/* Resolves links. For a file that does not exist, resolves the closest folder above it that does. */
 static bool resolve(const char *path, char found[PATH_MAX]) {
     char above[PATH_MAX];
     if (snprintf(above, sizeof above, "%s%s", path[0] == '/' ? "" : "./", path) >= (int)sizeof above)
@@ -74,7 +73,7 @@ static camber_status check_access(camber_context *context, const char *path, con
                        path);
 }
 
-/* Before it is known whether there is such a file: beyond the root nobody is told. */
+/* Comes before the look whether the file exists: a style learns nothing about files outside the root. */
 static camber_status check_root(camber_context *context, const char *path, camber_file_naming naming) {
     if (naming == CAMBER_NAMED_BY_CALLER || camber_file_is_reached(context, path))
         return CAMBER_OK;
@@ -96,21 +95,18 @@ camber_status camber_file_check(camber_context *context, const char *path, cambe
     return status;
 }
 
-/* Opening a pipe without a writer does not wait, and the file that is looked at is the one that is read. */
 camber_status camber_file_open(camber_context *context, const char *path, camber_file_naming naming, int *file,
                                uint64_t *size_bytes) {
-    struct stat about = {0};
+    struct stat about;
     camber_status status = check_root(context, path, naming);
     if (status != CAMBER_OK)
         return status;
-    const int opened = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
-    if (opened < 0 || fstat(opened, &about) != 0)
-        status = camber_file_fail(context, path, errno);
-    else
-        status = check_access(context, path, &about);
+    const int opened = camber_open_file(path, &about);
+    if (opened < 0)
+        return camber_file_fail(context, path, errno);
+    status = check_access(context, path, &about);
     if (status != CAMBER_OK) {
-        if (opened >= 0)
-            close(opened);
+        close(opened);
         return status;
     }
     *file = opened;
@@ -131,11 +127,11 @@ static camber_status read_bytes(camber_context *context, int file, const char *p
     return got < 0 ? camber_file_fail(context, path, errno) : CAMBER_OK;
 }
 
-/* A file that grows meanwhile is read as far as it went when it was opened. */
+/* A file that grows while it is read is read up to the size that it had when it was opened. */
 camber_status camber_read_file(camber_context *context, const char *path, camber_file_naming naming, char **bytes,
                                size_t *size_bytes) {
-    int file;
-    uint64_t size;
+    int file = -1;
+    uint64_t size = 0;
     size_t done = 0;
     camber_status status = camber_file_open(context, path, naming, &file, &size);
     if (status != CAMBER_OK)

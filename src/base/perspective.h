@@ -1,11 +1,12 @@
-/* A camera that looks at the plane of the map at an angle, as MapLibre's does: it turns about the picture's centre,
- * where a px of the plane is one of the picture, and sees so many degrees from the picture's bottom to its top.
+/* A camera that looks at the plane of the map at an angle, as MapLibre's does. It turns about the centre of the
+ * picture, where one px of the plane is one px of the picture, and its field of view is given from the picture's bottom
+ * to its top.
  *
  *     x, y   px of the plane, from the centre, y down          seen_x = x / depth
  *     depth  1 - fall * y: 1 in the middle, more behind it     seen_y = cosine * y / depth
  */
-#ifndef CAMBER_PERSPECTIVE_H
-#define CAMBER_PERSPECTIVE_H
+#ifndef CAMBER_BASE_PERSPECTIVE_H
+#define CAMBER_BASE_PERSPECTIVE_H
 
 #include <math.h>
 #include <stdbool.h>
@@ -15,16 +16,16 @@
 
 typedef struct camber_perspective {
     double cosine, fall;
-    double nearest, farthest; /* depths of what is seen: at the picture's bottom, and past which nothing is drawn */
-    double far_y;             /* where that lies in the picture, px from its centre: below 0 */
+    double nearest, farthest; /* depth at the picture's bottom, and the depth past which nothing is drawn */
+    double far_y;             /* y of the farthest depth in the picture, px from its centre: below 0 */
 } camber_perspective;
 
 static inline double camber_perspective_depth(const camber_perspective *p, double seen_y) {
     return p->cosine / (p->cosine + p->fall * seen_y);
 }
 
-/* Of a picture that is so high; a pitch above 0. The far plane is MapLibre's: at 85 % of the way from the centre to the
- * horizon, or at the picture's top where that is nearer, and 1 % on. */
+/* Makes the perspective for a height of the picture and a pitch above 0. The far plane is MapLibre's: at 85 % of the
+ * way from the centre to the horizon, or at the picture's top if that is nearer, and 1 % farther. */
 static inline camber_perspective camber_perspective_of(double pitch_deg, double height_px) {
     const double tan_half_view = 1.0 / 3.0; /* of 0.6435011087932844 rad */
     const double angle = pitch_deg * (3.14159265358979323846 / 180.0), half = 0.5 * height_px;
@@ -36,7 +37,7 @@ static inline camber_perspective camber_perspective_of(double pitch_deg, double 
     return p;
 }
 
-/* Rows of the picture, from its top, in which nothing is drawn: their middles lie past the far plane. */
+/* Counts the scanlines at the top of the picture that stay empty, because their middles are past the far plane. */
 static inline uint32_t camber_perspective_horizon(const camber_perspective *p, uint32_t height_px) {
     const double row = floor(0.5 * height_px + p->far_y + 0.5);
     return row > 0.0 ? (uint32_t)row : 0;

@@ -1,8 +1,8 @@
-/* OpenCL buffers, and output buffers that lie in OpenCL memory alone. */
+/* Makes, fills and releases OpenCL buffers; and camber_buffer_plain, output buffers that GL does not read. */
 #include "cl/buffer.h"
 
-/* A driver that makes memory when a kernel first wants it has no way left to say that there is none: PoCL ends the
- * process. So it is asked for at once, where it is the host's. */
+/* Some drivers allocate memory only when a kernel first uses it, and then cannot report that there is none: PoCL ends
+ * the process. So host memory is asked for at once (CL_MEM_ALLOC_HOST_PTR), after the budget has agreed. */
 camber_status camber_make_buffer(const camber_device *device, cl_mem_flags flags, size_t size_bytes,
                                  const void *host_bytes, cl_mem *mem) {
     camber_context *context = device->context;
@@ -11,7 +11,7 @@ camber_status camber_make_buffer(const camber_device *device, cl_mem_flags flags
     cl_int code;
     if (counts && !camber_budget_take(context, size_bytes))
         return camber_budget_fail(context, size_bytes);
-    /* CL_MEM_USE_HOST_PTR wants a pointer to what may be written; what is named so is only read. */
+    /* OpenCL wants a pointer that may be written, also for CL_MEM_USE_HOST_PTR. Buffers made so are only read. */
     cl_mem made = clCreateBuffer(device->cl, flags | at_once, size_bytes, (void *)(uintptr_t)host_bytes, &code);
     if (code == CL_SUCCESS) {
         *mem = made;
@@ -22,7 +22,7 @@ camber_status camber_make_buffer(const camber_device *device, cl_mem_flags flags
     return camber_fail_cl(context, "clCreateBuffer", code);
 }
 
-/* What the budget has it for. */
+/* The bytes that the budget counts for this buffer; 0 where it counts none. */
 static size_t counted_bytes(const camber_device *device, cl_mem mem) {
     cl_mem_flags flags = 0;
     size_t size_bytes = 0;

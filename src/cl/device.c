@@ -1,4 +1,9 @@
-/* Finding and opening OpenCL devices. */
+/* Finds, describes and opens OpenCL devices.
+ *
+ * Input: a desc with a word that the device must match and bounds on its memory. Output: a camber_device with a
+ * context, a queue, and the sizes that its kernels are built for. Every platform is asked for every device; of those
+ * that match a GPU wins over a CPU, and a CPU over anything else. Programs are built later, when they are first used
+ * (program.c). */
 #include "cl/program.h"
 
 #include "kernels/layout.h"
@@ -11,7 +16,7 @@
 
 enum { PLATFORMS_MAX = 16, DEVICES_MAX = 64 };
 
-/* clGetPlatformIDs' answer where the loader finds no driver: an extension's number, not in cl.h. */
+/* The loader answers this where it finds no driver. It belongs to an extension, so that cl.h lacks it. */
 #define PLATFORM_NOT_FOUND_KHR (-1001)
 
 static const char *cl_error_name(cl_int code) {
@@ -48,7 +53,7 @@ typedef struct found_device {
     camber_device_info info;
 } found_device;
 
-/* A call that failed while devices were looked for. */
+/* A call that failed while devices were looked for: the reason to give where none is found. */
 typedef struct failed_call {
     const char *name; /* NULL: none failed */
     cl_int code;
@@ -69,12 +74,12 @@ static cl_int get_text(cl_device_id id, cl_device_info what, char *text, size_t 
     return code;
 }
 
-/* Gives CL_SUCCESS, or what the device answered: one that does not tell what it is cannot be used. */
-static cl_int describe(found_device *found) {
+/* Fills found->info. Returns the error of the first question that the device does not answer: it cannot be used. */
+static cl_int query_info(found_device *found) {
     camber_device_info *info = &found->info;
     cl_device_type type = 0;
     cl_ulong memory = 0, largest = 0;
-    char extensions[16384] = ""; /* of more, buffers are copied */
+    char extensions[16384] = ""; /* a longer list does not fit: buffers are copied then */
     const cl_int codes[] = {
         get_text(found->id, CL_DEVICE_NAME, info->name, sizeof info->name),
         get_text(found->id, CL_DEVICE_VERSION, info->version, sizeof info->version),
@@ -116,7 +121,7 @@ static size_t find_on_platform(cl_platform_id platform, found_device *found, siz
     for (cl_uint i = 0; i < id_count && i < DEVICES_MAX && count < capacity; i++) {
         found[count] = (found_device){.platform = platform, .id = ids[i]};
         snprintf(found[count].info.platform, sizeof found->info.platform, "%s", name);
-        code = describe(found + count);
+        code = query_info(found + count);
         if (code == CL_SUCCESS)
             count++;
         else
@@ -141,12 +146,12 @@ static size_t ask_platforms(found_device found[DEVICES_MAX], failed_call *failed
     return count;
 }
 
-/* The one lock of the whole process, as what it guards is the process's: a loader and drivers that set themselves up
- * when they are first asked. PoCL (3.1 and 6.0) tells another thread meanwhile that all is done, and gives it devices
- * without a name. Whatever else camber wants of OpenCL, it has been here before. */
+/* The only lock of the whole process. It guards state of the process: the OpenCL loader and the drivers set themselves
+ * up when they are first asked. PoCL (3.1 and 6.0) tells a second thread too early that this is done, and gives it
+ * devices without a name. Every use of OpenCL begins with find_devices, so locking here is enough. */
 static pthread_mutex_t asking = PTHREAD_MUTEX_INITIALIZER;
 
-/* failed takes what kept a device from being found, if anything did. */
+/* Returns how many devices were found. *failed takes the last call that failed, if any did. */
 static size_t find_devices(found_device found[DEVICES_MAX], failed_call *failed) {
     pthread_mutex_lock(&asking);
     const size_t count = ask_platforms(found, failed);
@@ -154,16 +159,27 @@ static size_t find_devices(found_device found[DEVICES_MAX], failed_call *failed)
     return count;
 }
 
-camber_status camber_device_list(camber_context *context, size_t capacity, camber_device_info *infos, size_t *count) {
+static camber_status list_devices(camber_context *context) {
+    found_device found[DEVICES_MAX];
+    failed_call failed;
     const camber_status status = camber_budget_check_drivers(context);
     if (status != CAMBER_OK)
         return status;
-    found_device found[DEVICES_MAX];
-    failed_call failed;
-    *count = find_devices(found, &failed);
-    for (size_t i = 0; i < *count && i < capacity; i++)
-        infos[i] = found[i].info;
+    const size_t count = find_devices(found, &failed);
+    context->devices = camber_alloc(context, count, sizeof *context->devices);
+    if (!context->devices)
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < count; i++)
+        context->devices[i] = found[i].info;
+    context->device_count = count;
     return CAMBER_OK;
+}
+
+camber_status camber_device_list(camber_context *context, size_t n, const camber_device_info **info) {
+    const camber_status status = context->devices ? CAMBER_OK : list_devices(context);
+    if (status == CAMBER_OK)
+        *info = n < context->device_count ? context->devices + n : NULL;
+    return status;
 }
 
 static bool contains_ignoring_case(const char *text, const char *part) {
@@ -177,7 +193,7 @@ static bool contains_ignoring_case(const char *text, const char *part) {
     return *part == 0;
 }
 
-bool camber_device_matches(const camber_device_info *info, const char *match) {
+bool camber_device_info_matches(const camber_device_info *info, const char *match) {
     if (!match)
         return true;
     if (contains_ignoring_case("cpu", match) && strlen(match) == 3)
@@ -191,7 +207,9 @@ static int rank(const camber_device_info *info) {
     return info->type == CAMBER_DEVICE_TYPE_GPU ? 2 : info->type == CAMBER_DEVICE_TYPE_CPU ? 1 : 0;
 }
 
-static camber_status choose(camber_device *device, const char *match, uint32_t number) {
+/* Picks the best device that matches: a GPU, else a CPU, else another; or the number-th of those that match, where
+ * number is not 0. */
+static camber_status choose_device(camber_device *device, const char *match, uint32_t number) {
     found_device found[DEVICES_MAX];
     failed_call failed;
     const size_t count = find_devices(found, &failed);
@@ -208,7 +226,7 @@ static camber_status choose(camber_device *device, const char *match, uint32_t n
         const camber_device_info info = found[i].info;
         const size_t used = strlen(names);
         snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", info.name);
-        if (!camber_device_matches(&info, match) || (number ? ++seen != number : rank(&info) <= best))
+        if (!camber_device_info_matches(&info, match) || (number ? ++seen != number : rank(&info) <= best))
             continue;
         best = rank(&info);
         device->platform = found[i].platform;
@@ -224,13 +242,13 @@ static camber_status choose(camber_device *device, const char *match, uint32_t n
     return CAMBER_OK;
 }
 
-/* A part of one block and the strokes of a style have to fit in. */
+/* Below these, a part of a single block and the strokes of a style would not fit. */
 enum { LEAST_BUFFER_BYTES = 4096, LEAST_MEMORY_BYTES = 65536 };
-/* llvmpipe finds a vertex by 32 signed bits, and falls past them. */
+/* llvmpipe addresses vertices with a signed 32-bit offset and crashes beyond it. */
 static const uint64_t LARGEST_BUFFER_BYTES = INT32_MAX;
 
-/* The desc's bounds on what the kernels are given. */
-static camber_status bound(camber_device *device, const camber_device_desc *desc, const camber_surface *surface) {
+/* Sets the work-group's size and the largest buffer, from the desc's bounds and the device's. */
+static camber_status apply_bounds(camber_device *device, const camber_device_desc *desc) {
     const uint32_t size = desc->work_group_size;
     if (size != 0 && size != 64 && size != 128 && size != 256)
         return camber_fail(device->context, CAMBER_ERROR_ARGUMENT,
@@ -244,38 +262,38 @@ static camber_status bound(camber_device *device, const camber_device_desc *desc
                            "%llu bytes of memory for meshes; it must be %d or more, or 0 for what the device has",
                            (unsigned long long)desc->memory_bytes, LEAST_MEMORY_BYTES);
     device->block = size ? size : CAMBER_BLOCK;
-    device->item = size == 0 && device->info.type == CAMBER_DEVICE_TYPE_CPU ? device->block : CAMBER_ITEM;
-    device->lanes = device->item == device->block ? 16 : 1;
+    device->point_chunk = size == 0 && device->info.type == CAMBER_DEVICE_TYPE_CPU ? device->block : CAMBER_POINT_CHUNK;
+    device->lanes = device->point_chunk == device->block ? 16 : 1;
     uint64_t *largest = &device->info.largest_buffer_bytes;
     if (*largest > LARGEST_BUFFER_BYTES)
         *largest = LARGEST_BUFFER_BYTES;
-    if (surface && *largest > camber_surface_largest_buffer_bytes(surface))
-        *largest = camber_surface_largest_buffer_bytes(surface);
+    if (desc->gl.largest_buffer_bytes && desc->gl.largest_buffer_bytes < *largest)
+        *largest = desc->gl.largest_buffer_bytes;
     if (desc->largest_buffer_bytes && desc->largest_buffer_bytes < *largest)
         *largest = desc->largest_buffer_bytes;
     return CAMBER_OK;
 }
 
-/* Without a bound of its own, a device whose memory is not the host's leaves a quarter for pictures. */
+/* Bounds what meshes may hold. Where the desc gives no bound, a device with memory of its own keeps a quarter of it for
+ * pictures. */
 static void bound_memory(camber_device *device, const camber_device_desc *desc) {
     device->memory_bytes = desc->memory_bytes;
     if (!desc->memory_bytes && !device->host_memory && device->info.memory_bytes)
         device->memory_bytes = device->info.memory_bytes / 4 * 3;
 }
 
-static camber_status open_cl(camber_device *device, camber_surface *surface) {
+/* Makes the context, shared with a GL context where that works, and the queue; then asks for properties. */
+static camber_status open_cl(camber_device *device, const camber_gl_handles *gl) {
     cl_int code;
-    const camber_gl_handles gl =
-        surface && device->info.gl_sharing ? camber_surface_handles(surface) : (camber_gl_handles){0};
     const cl_context_properties shared[] = {CL_CONTEXT_PLATFORM,
                                             (cl_context_properties)device->platform,
                                             CL_GL_CONTEXT_KHR,
-                                            gl.context,
-                                            gl.display_kind,
-                                            gl.display,
+                                            gl->context,
+                                            gl->display_kind,
+                                            gl->display,
                                             0};
     const cl_context_properties alone[] = {CL_CONTEXT_PLATFORM, (cl_context_properties)device->platform, 0};
-    if (gl.context) {
+    if (gl->context && device->info.gl_sharing) {
         device->cl = clCreateContext(shared, 1, &device->id, NULL, NULL, &code);
         device->gl_context = code == CL_SUCCESS;
     }
@@ -292,14 +310,13 @@ static camber_status open_cl(camber_device *device, camber_surface *surface) {
     if (code != CL_SUCCESS)
         return camber_fail_cl(device->context, "clGetDeviceInfo", code);
     device->rounds_correctly = (rounding & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
-    cl_bool unified = CL_FALSE; /* where the device does not tell, buffers are copied */
+    cl_bool unified = CL_FALSE; /* a device that does not answer gets copies */
     (void)clGetDeviceInfo(device->id, CL_DEVICE_HOST_UNIFIED_MEMORY, sizeof unified, &unified, NULL);
     device->host_memory = device->info.type == CAMBER_DEVICE_TYPE_CPU && unified;
     return CAMBER_OK;
 }
 
-camber_status camber_device_create(camber_context *context, const camber_device_desc *desc, camber_surface *surface,
-                                   camber_device **device) {
+camber_status camber_device_create(camber_context *context, const camber_device_desc *desc, camber_device **device) {
     camber_device *made = camber_alloc_zero(context, 1, sizeof *made);
     if (!made)
         return CAMBER_ERROR_MEMORY;
@@ -307,11 +324,11 @@ camber_status camber_device_create(camber_context *context, const camber_device_
     const camber_device_desc full = desc ? *desc : (camber_device_desc){0};
     camber_status status = camber_budget_check_drivers(context);
     if (status == CAMBER_OK)
-        status = choose(made, full.match, full.number);
+        status = choose_device(made, full.match, full.number);
     if (status == CAMBER_OK)
-        status = bound(made, &full, surface);
+        status = apply_bounds(made, &full);
     if (status == CAMBER_OK)
-        status = open_cl(made, surface);
+        status = open_cl(made, &full.gl);
     if (status == CAMBER_OK)
         bound_memory(made, &full);
     if (status != CAMBER_OK) {
@@ -325,17 +342,17 @@ camber_status camber_device_create(camber_context *context, const camber_device_
 void camber_device_destroy(camber_device *device) {
     if (!device)
         return;
-    for (int measured = 0; measured < 2; measured++) {
+    for (int has_arc_length = 0; has_arc_length < 2; has_arc_length++) {
         for (int kind = 0; kind < 6; kind++)
-            camber_program_destroy(device->context, device->programs[measured][kind / 3][kind % 3]);
+            camber_program_destroy(device->context, device->programs[has_arc_length][kind / 3][kind % 3]);
         for (int pitched = 0; pitched < 2; pitched++)
-            camber_program_destroy(device->context, device->network_programs[measured][pitched]);
+            camber_program_destroy(device->context, device->network_programs[has_arc_length][pitched]);
     }
-    camber_program_destroy(device->context, device->measures);
+    camber_program_destroy(device->context, device->arc_length_program);
     for (size_t i = 0; i < 2; i++)
         camber_program_destroy(device->context, device->offset_programs[i]);
-    for (size_t i = 0; i < sizeof device->cover / sizeof *device->cover; i++)
-        camber_program_destroy(device->context, device->cover[i]);
+    for (size_t i = 0; i < sizeof device->raster_programs / sizeof *device->raster_programs; i++)
+        camber_program_destroy(device->context, device->raster_programs[i]);
     if (device->queue)
         clReleaseCommandQueue(device->queue);
     if (device->cl)

@@ -1,7 +1,8 @@
-/* Counts of what a device holds, and the shares of its bound. */
+/* Counts what is held on a device, and divides its bound. memory.h has the rule. */
 #include "cl/memory.h"
 
-/* What a renderer that draws in OpenCL takes at least, beside what meshes may hold where a quarter of that is less. */
+/* An OpenCL renderer gets a quarter of the bound on meshes. Where that is less than this, it gets this much, and meshes
+ * keep their whole bound. */
 static const uint64_t DRAWING_LEAST_BYTES = 4 * 1024 * 1024;
 
 uint64_t camber_device_share(const camber_device *device, unsigned eighths) {
@@ -12,7 +13,7 @@ bool camber_device_is_roomy(const camber_device *device, uint64_t size_bytes) {
     return !device->memory_bytes || device->held_bytes + size_bytes <= camber_device_share(device, 4);
 }
 
-void camber_device_count(camber_device *device, uint64_t *held_bytes, uint64_t now_bytes) {
+void camber_device_count_bytes(camber_device *device, uint64_t *held_bytes, uint64_t now_bytes) {
     device->held_bytes += now_bytes - *held_bytes;
     *held_bytes = now_bytes;
     if (device->held_bytes + device->drawing_bytes > device->most_held_bytes)
@@ -35,14 +36,14 @@ void camber_drawing_open(camber_device *device, camber_drawing_memory *memory) {
     device->drawing_allowed_bytes += memory->allowed_bytes;
 }
 
-void camber_drawing_count(camber_device *device, camber_drawing_memory *memory, uint64_t now_bytes) {
+void camber_drawing_count_bytes(camber_device *device, camber_drawing_memory *memory, uint64_t now_bytes) {
     device->drawing_bytes += now_bytes - memory->held_bytes;
     memory->held_bytes = now_bytes;
-    camber_device_count(device, &device->held_bytes, device->held_bytes);
+    camber_device_count_bytes(device, &device->held_bytes, device->held_bytes);
 }
 
 void camber_drawing_close(camber_device *device, camber_drawing_memory *memory) {
-    camber_drawing_count(device, memory, 0);
+    camber_drawing_count_bytes(device, memory, 0);
     device->memory_bytes += memory->taken_bytes;
     device->drawing_allowed_bytes -= memory->allowed_bytes;
 }

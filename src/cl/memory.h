@@ -1,29 +1,34 @@
-/* How much memory a device's meshes and what draws in OpenCL may hold, and how much they do.
+/* How much memory the meshes of a device and its OpenCL renderers may hold, and how much they hold.
  *
- * A bound is shared out in eighths: one for strokes and counts, one for the network's section that is read, four for a
- * part of a single polyline, two for what is left over in buffers that a part takes from another. Parts of several
- * polylines take one, so that what is there need not all go for the next. */
+ * The bound on meshes is divided into eighths:
+ *     1   strokes and counts
+ *     1   the section of a network that is being read
+ *     4   a part of a single polyline, which cannot be cut
+ *     2   unused room in buffers that a part has taken over from another
+ * A part of several polylines gets one eighth, so that the next part does not have to evict everything. */
 #ifndef CAMBER_CL_MEMORY_H
 #define CAMBER_CL_MEMORY_H
 
 #include "cl/device.h"
 
-/* So many eighths of what the device's meshes may hold; UINT64_MAX where there is no bound. */
+/* That many eighths of the bound on the device's meshes, in bytes; UINT64_MAX where there is no bound. */
 uint64_t camber_device_share(const camber_device *device, unsigned eighths);
-/* Whether there is room for that much many times over. */
+/* Whether meshes would still hold at most half of their bound with size_bytes more. */
 bool camber_device_is_roomy(const camber_device *device, uint64_t size_bytes);
-/* A holder that had *held_bytes now has now_bytes. */
-void camber_device_count(camber_device *device, uint64_t *held_bytes, uint64_t now_bytes);
+/* Counts that something which held *held_bytes now holds now_bytes, and sets *held_bytes to that. */
+void camber_device_count_bytes(camber_device *device, uint64_t *held_bytes, uint64_t now_bytes);
 
-/* What a renderer's buffers may hold and do. */
+/* How much the buffers of one OpenCL renderer may hold, and how much they hold. */
 typedef struct camber_drawing_memory {
     uint64_t allowed_bytes; /* 0: no bound */
-    uint64_t taken_bytes;   /* of what meshes were allowed */
+    uint64_t taken_bytes;   /* taken out of the bound on meshes */
     uint64_t held_bytes;
 } camber_drawing_memory;
 
+/* Reserves memory for a renderer, counts what it holds, and gives the memory back to meshes. Without a bound on meshes
+ * the renderer has none either. */
 void camber_drawing_open(camber_device *device, camber_drawing_memory *memory);
-void camber_drawing_count(camber_device *device, camber_drawing_memory *memory, uint64_t now_bytes);
+void camber_drawing_count_bytes(camber_device *device, camber_drawing_memory *memory, uint64_t now_bytes);
 void camber_drawing_close(camber_device *device, camber_drawing_memory *memory);
 
 #endif

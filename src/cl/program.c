@@ -1,5 +1,17 @@
-/* Building the kernels, and keeping what was built: what has been compiled once on a machine is loaded from then on. Of
- * several processes that need a program which nobody has built yet, one compiles it and the others load it. */
+/* Loads and builds OpenCL programs, and keeps what was built.
+ *
+ * Input: sources embedded in the library and the options of a device. Output: a camber_program with its kernels. Main
+ * idea: a program is compiled once per machine and loaded from then on.
+ *
+ *     in the device?  -- yes --------------------------------------> use it
+ *          | no
+ *     in the cache?   -- yes -- load the binary -------------------> use it
+ *          | no
+ *     take the lock of this program: of several processes that need it, one compiles and the others wait
+ *          |
+ *     in the cache by now?  -- no -- compile, save the binary -----> use it
+ *
+ * A binary's file name is a hash of everything that it depends on, and its first 8 bytes are a hash of its contents. */
 #include "cl/program.h"
 
 #include "base/embedded.h"
@@ -9,27 +21,28 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const OPTIONS = "-cl-std=CL1.2 -w -DCAMBER_METHOD=%d%s%s -DCAMBER_ITEM=%zu%s";
+static const char *const OPTIONS =
+    "-cl-std=CL1.2 -w -DCAMBER_DEVICE=1 -DCAMBER_METHOD=%d%s%s -DCAMBER_POINT_CHUNK=%zu%s";
 
 /* Which kernels a program has. */
 typedef enum program_kind {
     PROGRAM_METHOD,
     PROGRAM_NETWORK,
-    PROGRAM_MEASURES,
+    PROGRAM_ARC_LENGTHS,
     PROGRAM_OFFSETS,
-    PROGRAM_COVER,
+    PROGRAM_RASTER,
 } program_kind;
 
-/* What a program is made of. */
+/* Everything that a program is made from. */
 typedef struct recipe {
     program_kind kind;
     const char *name;
     const char *source;
     size_t source_size;
-    char options[192];
+    char options[256];
 } recipe;
 
-/* Everything that a binary depends on. */
+/* A hash of everything that a binary depends on. */
 static uint64_t cache_key(const camber_device_info *info, const recipe *from) {
     uint64_t key = camber_hash(CAMBER_HASH_START, from->source, from->source_size);
     const char *options = from->options;
@@ -43,14 +56,14 @@ static void cache_name(uint64_t key, char name[64]) {
     snprintf(name, 64, "kernels-%016llx.bin", (unsigned long long)key);
 }
 
-/* Of a binary and its key: what a crash or a full disk left is told from a whole one, and so is a file under another's
- * name. */
+/* A hash of a binary and its key. It tells a whole file from one that a crash or a full disk cut short, and from one
+ * that has another program's name. */
 static uint64_t hash_binary(uint64_t key, const unsigned char *binary, size_t size_bytes) {
     return camber_hash(camber_hash(CAMBER_HASH_START, &key, sizeof key), binary, size_bytes);
 }
 
-/* A program of a binary behind its hash. */
-static bool take_binary(camber_device *device, camber_program *program, const char *options, const char *bytes,
+/* Makes a program of a cache file: 8 bytes of hash, then the binary. Returns false where that does not work. */
+static bool load_binary(camber_device *device, camber_program *program, const char *options, const char *bytes,
                         size_t size) {
     uint64_t hash;
     cl_int code = CL_INVALID_BINARY, binary_code = CL_INVALID_BINARY;
@@ -71,8 +84,9 @@ static bool take_binary(camber_device *device, camber_program *program, const ch
     return false;
 }
 
-/* What the machine's users share, or what this one has; where it is made for all of them, what they share. */
-static bool load(camber_device *device, camber_program *program, const char *options) {
+/* Looks in the cache that all users of the machine share, then in this user's own. A run that fills the shared cache
+ * looks only there. */
+static bool load_cached(camber_device *device, camber_program *program, const char *options) {
     bool (*const loads[])(camber_context *, const char *, char **, size_t *) = {camber_cache_load_shared,
                                                                                 camber_cache_load};
     char name[64];
@@ -84,12 +98,13 @@ static bool load(camber_device *device, camber_program *program, const char *opt
         size_t size = 0;
         if (!loads[i](device->context, name, &bytes, &size))
             continue;
-        loaded = take_binary(device, program, options, bytes, size);
+        loaded = load_binary(device, program, options, bytes, size);
         camber_free(device->context, bytes);
     }
     return loaded;
 }
 
+/* Fails with the compiler's log. */
 static camber_status fail_build(camber_device *device, cl_program program) {
     static const size_t LOG_MAX = 3000;
     size_t size = 0;
@@ -105,14 +120,15 @@ static camber_status fail_build(camber_device *device, cl_program program) {
     return CAMBER_ERROR_DEVICE;
 }
 
-/* A binary of PoCL's has work-groups of any size. Where PoCL makes kernels for the size, offset and count of each
- * launch instead, as it does unless it is told not to, that is compiled in vain, and PoCL's own cache has to do. */
+/* A binary from PoCL contains kernels for work-groups of any size. Unless it is told otherwise, PoCL does not run
+ * those: it compiles kernels anew for the size, offset and count of each launch. Then a saved binary is useless, and
+ * PoCL's own cache has to do. */
 static bool is_worth_saving(const camber_device *device) {
     const char *specialized = getenv("POCL_WORK_GROUP_SPECIALIZATION");
     return strcmp(device->info.platform, "Portable Computing Language") != 0 || (specialized && specialized[0] == '0');
 }
 
-static camber_status build(camber_device *device, camber_program *program, const recipe *from) {
+static camber_status build_from_source(camber_device *device, camber_program *program, const recipe *from) {
     cl_int code;
     program->cl = clCreateProgramWithSource(device->cl, 1, (const char *[]){from->source}, &from->source_size, &code);
     if (code != CL_SUCCESS)
@@ -126,8 +142,8 @@ static camber_status build(camber_device *device, camber_program *program, const
     return CAMBER_OK;
 }
 
-/* false, and nothing fails by it: the file is not saved. */
-static bool save(camber_device *device, const camber_program *program) {
+/* Saves the binary in the cache. Returns false where it could not be saved, which is no failure. */
+static bool save_binary(camber_device *device, const camber_program *program) {
     size_t size = 0;
     bool saved = false;
     if (!is_worth_saving(device))
@@ -150,19 +166,27 @@ static bool save(camber_device *device, const camber_program *program) {
     return saved;
 }
 
+/* Makes the kernels that belong to a kind of program. */
 static camber_status make_kernels(camber_device *device, camber_program *program, program_kind kind) {
     const struct {
         const char *name;
         cl_kernel *kernel;
         program_kind kind;
-    } stages[] = {{"survey", &program->survey, PROGRAM_NETWORK},    {"project", &program->project, PROGRAM_NETWORK},
-                  {"classify", &program->classify, PROGRAM_METHOD}, {"scan", &program->scan, PROGRAM_METHOD},
-                  {"emit", &program->emit, PROGRAM_METHOD},         {"tally", &program->tally, PROGRAM_MEASURES},
-                  {"measure", &program->measure, PROGRAM_MEASURES}, {"span", &program->span, PROGRAM_OFFSETS},
-                  {"tell", &program->tell, PROGRAM_OFFSETS},        {"shift", &program->shift, PROGRAM_OFFSETS},
-                  {"shape", &program->shape, PROGRAM_COVER},        {"count", &program->count, PROGRAM_COVER},
-                  {"total", &program->total, PROGRAM_COVER},        {"fill", &program->fill, PROGRAM_COVER},
-                  {"cover", &program->cover, PROGRAM_COVER}};
+    } stages[] = {{"cull_count", &program->cull_count, PROGRAM_NETWORK},
+                  {"cull_emit", &program->cull_emit, PROGRAM_NETWORK},
+                  {"classify", &program->classify, PROGRAM_METHOD},
+                  {"scan", &program->scan, PROGRAM_METHOD},
+                  {"emit", &program->emit, PROGRAM_METHOD},
+                  {"arc_length_sum", &program->arc_length_sum, PROGRAM_ARC_LENGTHS},
+                  {"arc_length_scan", &program->arc_length_scan, PROGRAM_ARC_LENGTHS},
+                  {"offset_clip", &program->offset_clip, PROGRAM_OFFSETS},
+                  {"offset_count", &program->offset_count, PROGRAM_OFFSETS},
+                  {"offset_emit", &program->offset_emit, PROGRAM_OFFSETS},
+                  {"setup", &program->setup, PROGRAM_RASTER},
+                  {"bin_count", &program->bin_count, PROGRAM_RASTER},
+                  {"bin_scan", &program->bin_scan, PROGRAM_RASTER},
+                  {"bin_scatter", &program->bin_scatter, PROGRAM_RASTER},
+                  {"rasterize", &program->rasterize, PROGRAM_RASTER}};
     for (size_t i = 0; i < sizeof stages / sizeof *stages; i++) {
         cl_int code;
         if (stages[i].kind != kind)
@@ -174,26 +198,26 @@ static camber_status make_kernels(camber_device *device, camber_program *program
     return CAMBER_OK;
 }
 
-/* PoCL unpacks a binary file by file, and another process that unpacks the same may look for one at the wrong moment.
- */
+/* Loads under the program's lock. PoCL unpacks a binary file by file, and a process that unpacks the same one might
+ * look for a file before it is there. */
 static bool load_alone(camber_device *device, camber_program *program, const char *options) {
-    static const double LONGEST_MS = 500; /* it takes two: longer, and something else is wrong */
+    static const double LONGEST_MS = 500; /* it takes 2 ms: after much longer something else is wrong */
     const int lock = camber_cache_lock(device->context, program->key, LONGEST_MS);
-    const bool loaded = load(device, program, options);
+    const bool loaded = load_cached(device, program, options);
     camber_cache_unlock(lock);
     return loaded;
 }
 
-/* Unless another process does so meanwhile. */
+/* Builds under the program's lock, unless another process has done so while this one waited. */
 static camber_status build_alone(camber_device *device, camber_program *program, const recipe *from) {
     static const double LONGEST_MS = 60e3;
     const int lock = camber_cache_lock(device->context, program->key, LONGEST_MS);
     camber_status status = CAMBER_OK;
-    program->kept = load(device, program, from->options);
+    program->kept = load_cached(device, program, from->options);
     if (!program->kept) {
         camber_progress(device->context, "compiling kernels", -1);
-        status = build(device, program, from);
-        program->kept = status == CAMBER_OK && save(device, program);
+        status = build_from_source(device, program, from);
+        program->kept = status == CAMBER_OK && save_binary(device, program);
     }
     camber_cache_unlock(lock);
     return status;
@@ -221,20 +245,21 @@ static camber_status make_program(camber_device *device, const recipe *from, cam
     return CAMBER_OK;
 }
 
-/* method: one of camber_method's, or what stands for no method. */
-static void set_options(const camber_device *device, int method, bool measured, recipe *from) {
+/* Writes the compiler's options. method: a camber_method, or -1 for programs that have none. */
+static void set_options(const camber_device *device, int method, bool has_arc_length, recipe *from) {
     char block[32] = "";
     if (device->block != CAMBER_BLOCK)
         snprintf(block, sizeof block, " -DCAMBER_BLOCK=%zu", device->block);
     snprintf(from->options, sizeof from->options, OPTIONS, method,
-             device->rounds_correctly ? " -cl-fp32-correctly-rounded-divide-sqrt" : "", block, device->item,
-             measured ? " -DCAMBER_MEASURED=1" : "");
+             device->rounds_correctly ? " -cl-fp32-correctly-rounded-divide-sqrt" : "", block, device->point_chunk,
+             has_arc_length ? " -DCAMBER_HAS_ARC_LENGTH=1" : "");
 }
 
 #ifdef CAMBER_KERNEL_FOLDER
-/* For who changes kernels: their text is read where the build has written it, and a change is no build. */
+/* For people who change kernels: sources are read at run time from the build tree, so that a change needs no compile of
+ * the library. */
 static camber_status make_current(camber_device *device, recipe *from, camber_program **program) {
-    static const char *const files[] = {"kernels.cl", "network.cl", "measure.cl", "offset.cl", "cover.cl"};
+    static const char *const files[] = {"tessellate.cl", "cull.cl", "arc_length.cl", "offset.cl", "raster.cl"};
     char path[CAMBER_FOLDER_SIZE], *text = NULL;
     snprintf(path, sizeof path, "%s/%s", CAMBER_KERNEL_FOLDER, files[from->kind]);
     camber_status status = camber_read_file(device->context, path, CAMBER_NAMED_BY_CALLER, &text, &from->source_size);
@@ -248,8 +273,9 @@ static camber_status make_current(camber_device *device, recipe *from, camber_pr
 #define make_current make_program
 #endif
 
-/* Makes a program unless it is there, and gives it. */
-static camber_status use_program(camber_device *device, recipe *from, camber_program **kept, camber_program **program) {
+/* Gives a program that the device keeps, and makes it first where it is missing. */
+static camber_status ensure_program(camber_device *device, recipe *from, camber_program **kept,
+                                    camber_program **program) {
     const camber_status status = *kept ? CAMBER_OK : make_current(device, from, kept);
     if (status == CAMBER_OK)
         *program = *kept;
@@ -257,66 +283,69 @@ static camber_status use_program(camber_device *device, recipe *from, camber_pro
 }
 
 camber_status camber_device_program(camber_device *device, camber_program_desc desc, camber_program **program) {
-    recipe from = {PROGRAM_METHOD, camber_method_name(desc.method), camber_kernels_source, camber_kernels_source_size,
-                   ""};
-    set_options(device, (int)desc.method, desc.measured, &from);
+    recipe from = {PROGRAM_METHOD, camber_method_get_name(desc.method), camber_tessellate_kernels,
+                   camber_tessellate_kernels_size, ""};
+    set_options(device, (int)desc.method, desc.has_arc_length, &from);
     const size_t used = strlen(from.options);
     if (!desc.round_limits)
         snprintf(from.options + used, sizeof from.options - used, " -DCAMBER_ROUND_LIMITS=0");
-    return use_program(device, &from, &device->programs[desc.measured][desc.round_limits][desc.method], program);
+    return ensure_program(device, &from, &device->programs[desc.has_arc_length][desc.round_limits][desc.method],
+                          program);
 }
 
-camber_status camber_device_measures(camber_device *device, camber_program **program) {
-    recipe from = {PROGRAM_MEASURES, "measures", camber_measure_kernels_source, camber_measure_kernels_source_size, ""};
+camber_status camber_device_arc_length_program(camber_device *device, camber_program **program) {
+    recipe from = {PROGRAM_ARC_LENGTHS, "measures", camber_arc_length_kernels, camber_arc_length_kernels_size, ""};
     set_options(device, -1, false, &from);
-    return use_program(device, &from, &device->measures, program);
+    return ensure_program(device, &from, &device->arc_length_program, program);
 }
 
-camber_status camber_device_offsets(camber_device *device, bool measured, camber_program **program) {
-    recipe from = {PROGRAM_OFFSETS, "offsets", camber_offset_kernels_source, camber_offset_kernels_source_size, ""};
-    set_options(device, -1, measured, &from);
-    return use_program(device, &from, &device->offset_programs[measured], program);
+camber_status camber_device_offset_program(camber_device *device, bool has_arc_length, camber_program **program) {
+    recipe from = {PROGRAM_OFFSETS, "offsets", camber_offset_kernels, camber_offset_kernels_size, ""};
+    set_options(device, -1, has_arc_length, &from);
+    return ensure_program(device, &from, &device->offset_programs[has_arc_length], program);
 }
 
-camber_status camber_device_cover_program(camber_device *device, unsigned variant, camber_program **program) {
-    recipe from = {PROGRAM_COVER, "drawing", camber_cover_kernels_source, camber_cover_kernels_source_size, ""};
+camber_status camber_device_raster_program(camber_device *device, unsigned variant, camber_program **program) {
+    recipe from = {PROGRAM_RASTER, "drawing", camber_raster_kernels, camber_raster_kernels_size, ""};
     set_options(device, -1, false, &from);
     const size_t used = strlen(from.options);
     snprintf(from.options + used, sizeof from.options - used, "%s%s%s",
              variant == 0 && device->lanes == 1 ? " -DCAMBER_LANES=1" : "",
-             variant & CAMBER_COVER_RICH ? " -DCAMBER_COVER_RICH=1" : "",
-             variant & CAMBER_COVER_PITCHED ? " -DCAMBER_COVER_PITCHED=1" : "");
-    return use_program(device, &from, &device->cover[variant], program);
+             variant & CAMBER_RASTER_RICH ? " -DCAMBER_RASTER_RICH=1" : "",
+             variant & CAMBER_RASTER_PITCHED ? " -DCAMBER_RASTER_PITCHED=1" : "");
+    return ensure_program(device, &from, &device->raster_programs[variant], program);
 }
 
-camber_status camber_device_network_program(camber_device *device, bool measured, bool pitched,
+camber_status camber_device_network_program(camber_device *device, bool has_arc_length, bool pitched,
                                             camber_program **program) {
-    recipe from = {PROGRAM_NETWORK, "networks", camber_network_kernels_source, camber_network_kernels_source_size, ""};
-    set_options(device, -1, measured, &from);
+    recipe from = {PROGRAM_NETWORK, "networks", camber_cull_kernels, camber_cull_kernels_size, ""};
+    set_options(device, -1, has_arc_length, &from);
     const size_t used = strlen(from.options);
     if (pitched)
         snprintf(from.options + used, sizeof from.options - used, " -DCAMBER_PITCHED=1");
-    return use_program(device, &from, &device->network_programs[measured][pitched], program);
+    return ensure_program(device, &from, &device->network_programs[has_arc_length][pitched], program);
 }
 
-/* The n-th program of all that a device can be asked for, or none; what takes longest comes first. */
-static camber_status use_nth(camber_device *device, unsigned n, camber_program **program) {
-    static const unsigned variants[] = {CAMBER_COVER_RICH | CAMBER_COVER_PITCHED, CAMBER_COVER_RICH, 0};
+/* Makes the n-th of all programs that a device can be asked for; past the last it leaves *program NULL. Those that take
+ * longest to compile come first. */
+static camber_status ensure_nth(camber_device *device, unsigned n, camber_program **program) {
+    static const unsigned variants[] = {CAMBER_RASTER_RICH | CAMBER_RASTER_PITCHED, CAMBER_RASTER_RICH, 0};
     enum { VARIANTS = sizeof variants / sizeof *variants, OFFSETS = 2, NETWORKS = 4, METHODS = 12 };
     if (n < VARIANTS)
-        return camber_device_cover_program(device, variants[n], program);
+        return camber_device_raster_program(device, variants[n], program);
     n -= VARIANTS;
     if (n < OFFSETS)
-        return camber_device_offsets(device, n, program);
+        return camber_device_offset_program(device, n, program);
     n -= OFFSETS;
     if (n < NETWORKS)
         return camber_device_network_program(device, n & 1, n >> 1 & 1, program);
     n -= NETWORKS;
     if (n < METHODS)
         return camber_device_program(device, (camber_program_desc){(camber_method)(n / 4), n & 1, n >> 1 & 1}, program);
-    return n == METHODS ? camber_device_measures(device, program) : CAMBER_OK;
+    return n == METHODS ? camber_device_arc_length_program(device, program) : CAMBER_OK;
 }
 
+/* Programs share, share + shares, share + 2 * shares and so on: several processes can compile at once. */
 camber_status camber_device_warm(camber_device *device, unsigned share, unsigned shares, camber_warmed *warmed) {
     camber_warmed all = {0};
     camber_status status = CAMBER_OK;
@@ -328,7 +357,7 @@ camber_status camber_device_warm(camber_device *device, unsigned share, unsigned
         all.folder[0] = 0;
     for (unsigned n = share; status == CAMBER_OK; n += shares) {
         camber_program *program = NULL;
-        status = use_nth(device, n, &program);
+        status = ensure_nth(device, n, &program);
         if (!program)
             break;
         all.programs++;
@@ -344,9 +373,11 @@ camber_status camber_device_warm(camber_device *device, unsigned share, unsigned
 void camber_program_destroy(camber_context *context, camber_program *program) {
     if (!program)
         return;
-    cl_kernel kernels[] = {program->survey, program->project, program->classify, program->scan, program->emit,
-                           program->tally,  program->measure, program->span,     program->tell, program->shift,
-                           program->shape,  program->count,   program->total,    program->fill, program->cover};
+    cl_kernel kernels[] = {
+        program->cull_count,   program->cull_emit,      program->classify,        program->scan,
+        program->emit,         program->arc_length_sum, program->arc_length_scan, program->offset_clip,
+        program->offset_count, program->offset_emit,    program->setup,           program->bin_count,
+        program->bin_scan,     program->bin_scatter,    program->rasterize};
     for (size_t i = 0; i < sizeof kernels / sizeof *kernels; i++)
         if (kernels[i])
             clReleaseKernel(kernels[i]);

@@ -1,40 +1,41 @@
-/* Kernels, built from their sources or loaded from the cache when a device first needs them. */
+/* OpenCL programs and their kernels. A program is loaded from the cache or built when a device first needs it. */
 #ifndef CAMBER_CL_PROGRAM_H
 #define CAMBER_CL_PROGRAM_H
 
 #include "cl/device.h"
 
+/* One program. Only the kernels of its kind are set; the others are NULL. */
 typedef struct camber_program {
     cl_program cl;
-    cl_kernel classify, scan, emit; /* of a method */
-    cl_kernel survey, project;      /* of networks */
-    cl_kernel tally, measure;
-    cl_kernel span, tell, shift; /* of offsets */
-    cl_kernel shape, count, total, fill, cover;
-    uint64_t key; /* of the cache */
-    bool built;   /* from source: no cache had it */
-    bool kept;    /* a cache has it now */
+    cl_kernel classify, scan, emit;  /* of a tessellation method */
+    cl_kernel cull_count, cull_emit; /* of networks: which points a camera sees */
+    cl_kernel arc_length_sum, arc_length_scan;
+    cl_kernel offset_clip, offset_count, offset_emit; /* of lines beside others */
+    cl_kernel setup, bin_count, bin_scan, bin_scatter, rasterize;
+    uint64_t key; /* names its file in the cache */
+    bool built;   /* compiled from source: no cache had it */
+    bool kept;    /* a cache has it by now */
 } camber_program;
 
-/* What the kernels of a mesh are built for. */
+/* The properties of a mesh that its kernels are built for. */
 typedef struct camber_program_desc {
     camber_method method;
-    bool measured;
-    bool round_limits; /* a row has one; without them classify is a fifth faster on PoCL */
+    bool has_arc_length;
+    bool round_limits; /* a stroke has one. Without them classify is a fifth faster on PoCL */
 } camber_program_desc;
 
-/* What kernels that draw are built for, as bits: the compiler has each that is set as a macro that is 1. All but the
- * plain ones are built for 16 lanes on every device. */
-#define CAMBER_COVER_RICH 1
-#define CAMBER_COVER_PITCHED 2 /* with RICH */
+/* Variants of the rasterizer, as bits: the compiler is given each bit that is set as a macro with the value 1. All
+ * variants but the plain one (0) are built for 16 lanes on every device. */
+#define CAMBER_RASTER_RICH 1
+#define CAMBER_RASTER_PITCHED 2 /* only together with RICH */
 
-/* The kernels, built or loaded at first use. */
+/* Each gives a program that the device owns, and loads or builds it at first use. */
 camber_status camber_device_program(camber_device *device, camber_program_desc desc, camber_program **program);
-camber_status camber_device_network_program(camber_device *device, bool measured, bool pitched,
+camber_status camber_device_network_program(camber_device *device, bool has_arc_length, bool pitched,
                                             camber_program **program);
-camber_status camber_device_measures(camber_device *device, camber_program **program);
-camber_status camber_device_offsets(camber_device *device, bool measured, camber_program **program);
-camber_status camber_device_cover_program(camber_device *device, unsigned variant, camber_program **program);
+camber_status camber_device_arc_length_program(camber_device *device, camber_program **program);
+camber_status camber_device_offset_program(camber_device *device, bool has_arc_length, camber_program **program);
+camber_status camber_device_raster_program(camber_device *device, unsigned variant, camber_program **program);
 void camber_program_destroy(camber_context *context, camber_program *program);
 
 #endif

@@ -1,10 +1,10 @@
-/* What compare measures: figures of a network, and measures of a method on it. */
+/* The numbers of a comparison: figures of a network, and metrics of a method on it. */
 #ifndef CAMBER_CLI_COMPARISON_H
 #define CAMBER_CLI_COMPARISON_H
 
-#include "cli/networks.h"
+#include "cli/compared_networks.h"
 
-/* Of a network, whatever the method. */
+/* Figures: they belong to a network, whatever the method. */
 enum {
     CAMBER_FIGURE_POLYLINES,
     CAMBER_FIGURE_SEGMENTS,
@@ -15,37 +15,37 @@ enum {
     CAMBER_FIGURE_COUNT,
 };
 
-/* Of a method on a network: the mesh and its picture, then what the GPU does for it. */
+/* Metrics: they belong to a method on a network. First the mesh and its picture, then the work of the GPU. */
 enum {
-    CAMBER_MEASURE_VERTICES,
-    CAMBER_MEASURE_TRIANGLES,
-    CAMBER_MEASURE_BYTES, /* of vertices and 32-bit indices */
-    CAMBER_MEASURE_DRAW_CALLS_16_BIT,
-    CAMBER_MEASURE_DRAW_CALLS,
-    CAMBER_MEASURE_TESSELLATE_MS, /* kernels; medians */
-    CAMBER_MEASURE_DRAW_MS,
-    CAMBER_MEASURE_MEAN_ERROR, /* in 255ths, over the pixels that either the picture or the truth covers */
-    CAMBER_MEASURE_MAX_ERROR,
-    CAMBER_MEASURE_FRAGMENTS,
-    CAMBER_MEASURE_DRAWN_PIXELS,
-    CAMBER_MEASURE_REPEATED_PIXELS,   /* within a polyline; the following tell where */
-    CAMBER_MEASURE_REPEATED_AT_PLAIN, /* between the two segments of a join, once a join */
-    CAMBER_MEASURE_REPEATED_AT_TIGHT,
-    CAMBER_MEASURE_REPEATED_AT_SPLIT,
-    CAMBER_MEASURE_REPEATED_ELSEWHERE, /* where a line comes back to itself: by no join, once a polyline */
-    CAMBER_MEASURE_COUNT,
-    CAMBER_MEASURE_OF_PIXELS = CAMBER_MEASURE_FRAGMENTS, /* the first of these */
+    CAMBER_METRIC_VERTICES,
+    CAMBER_METRIC_TRIANGLES,
+    CAMBER_METRIC_BYTES, /* of vertices and 32-bit indices */
+    CAMBER_METRIC_DRAW_CALLS_16_BIT,
+    CAMBER_METRIC_DRAW_CALLS,
+    CAMBER_METRIC_TESSELLATE_MS, /* kernels; medians */
+    CAMBER_METRIC_DRAW_MS,
+    CAMBER_METRIC_MEAN_ERROR, /* in 255ths, over the pixels that either the picture or the truth covers */
+    CAMBER_METRIC_MAX_ERROR,
+    CAMBER_METRIC_FRAGMENTS,
+    CAMBER_METRIC_DRAWN_PIXELS,
+    CAMBER_METRIC_REPEATED_PIXELS,   /* within a polyline; the following tell where */
+    CAMBER_METRIC_REPEATED_AT_PLAIN, /* between the two segments of a join, once a join */
+    CAMBER_METRIC_REPEATED_AT_TIGHT,
+    CAMBER_METRIC_REPEATED_AT_SPLIT,
+    CAMBER_METRIC_REPEATED_ELSEWHERE, /* where a line comes back to itself: by no join, once a polyline */
+    CAMBER_METRIC_COUNT,
+    CAMBER_METRIC_OF_PIXELS = CAMBER_METRIC_FRAGMENTS, /* the first of these */
 };
 
-typedef struct camber_measure_info {
+typedef struct camber_metric_info {
     const char *key;  /* in JSON */
     const char *head; /* of a column */
     int width;        /* of it */
     int decimals;     /* 0: a count */
-} camber_measure_info;
+} camber_metric_info;
 
-extern const camber_measure_info camber_figures[CAMBER_FIGURE_COUNT];
-extern const camber_measure_info camber_measures[CAMBER_MEASURE_COUNT];
+extern const camber_metric_info camber_figures[CAMBER_FIGURE_COUNT];
+extern const camber_metric_info camber_metrics[CAMBER_METRIC_COUNT];
 
 /* The order in which compare shows the methods. */
 enum { CAMBER_METHODS = 3 };
@@ -55,27 +55,27 @@ typedef struct camber_comparison_row {
     const char *name; /* of the network */
     double figures[CAMBER_FIGURE_COUNT];
     /* As camber_methods_shown; NAN: of GL alone, and kernels draw. */
-    double measures[CAMBER_METHODS][CAMBER_MEASURE_COUNT];
+    double metrics[CAMBER_METHODS][CAMBER_METRIC_COUNT];
     size_t max_at[CAMBER_METHODS]; /* the pixel of the maximum error */
 } camber_comparison_row;
 
 typedef struct camber_comparison {
     camber_session *session;
-    camber_networks networks;
+    camber_compared_networks networks;
     camber_mesh *mesh;
-    bool shown[CAMBER_METHODS];      /* which the options ask for */
+    bool shown[CAMBER_METHODS];      /* the methods that the options ask for */
     camber_comparison_row *rows;     /* of each network */
     camber_comparison_row average;   /* of the networks; maxima: the largest */
     uint8_t *levels[CAMBER_METHODS]; /* of each pixel, as drawn */
     uint8_t *repeated, *at_joins;    /* how often a pixel is repeated: by polylines, by joins */
 } camber_comparison;
 
-/* Opens the renderer, reads and measures. Returns an exit status, its line printed; the comparison can be closed in any
- * case. */
+/* Opens the renderer, reads the networks and metrics them. Returns an exit status, its line printed; the comparison
+ * can be closed in any case. */
 int camber_comparison_run(camber_comparison *comparison, camber_session *session);
 void camber_comparison_close(camber_comparison *comparison);
 
-/* What a method has to one of the kite's, the paper's method; NAN where that has none. */
-double camber_comparison_ratio(const camber_comparison *comparison, int method, int measure);
+/* A method's metric divided by the kite's, the paper's method. NAN: the kite has none. */
+double camber_comparison_ratio(const camber_comparison *comparison, int method, int metric);
 
 #endif

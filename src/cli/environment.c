@@ -1,4 +1,5 @@
-/* sched_getaffinity. */
+/* Prepares the process for drivers and libraries: environment variables, standard streams and file descriptors. It runs
+ * before any thread starts, since setenv is safe only then. */
 #define _GNU_SOURCE
 
 #include "cli/environment.h"
@@ -10,13 +11,13 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-/* PoCL 3.1 aborts where it compiles with fewer than 13. */
+/* PoCL 3.1 aborts if it compiles with fewer than 13. */
 enum { LEAST_DESCRIPTORS = 16 };
 
-/* The names of PoCL, of 4.0 and later and of before. */
+/* PoCL's names for the number of threads: since 4.0, and before. */
 static const char *const POCL_THREADS[] = {"POCL_CPU_MAX_CU_COUNT", "POCL_MAX_PTHREAD_COUNT"};
 
-/* llvmpipe's too, which it reads when it starts, and GDAL's. */
+/* Also sets the threads of llvmpipe, which reads the variable when it starts, and of GDAL. */
 static bool set_threads(uint32_t threads) {
     char text[16];
     snprintf(text, sizeof text, "%u", threads);
@@ -26,8 +27,8 @@ static bool set_threads(uint32_t threads) {
     return set;
 }
 
-/* PoCL pins thread i to core i, and aborts where the process may not run there or there is no such core: in a container
- * that has some of the cores, or with more threads than cores. */
+/* PoCL pins thread i to core i. It aborts if the process may not run on that core or the core does not exist: in a
+ * container with some of the cores, or with more threads than cores. */
 static bool may_pin(void) {
 #ifdef __linux__
     cpu_set_t cores;
@@ -46,7 +47,7 @@ static bool may_pin(void) {
 #endif
 }
 
-/* A relative folder counts as none, as the XDG rules say: PoCL and Mesa would make it wherever the tool is run. */
+/* A relative folder counts as none, as the XDG rules say. PoCL and Mesa would make it in the working folder. */
 static bool forget_relative(const char *name) {
     const char *folder = getenv(name);
     return !folder || folder[0] == '/' || unsetenv(name) == 0;
@@ -60,21 +61,21 @@ const char *camber_environment_temporary(void) {
 bool camber_environment_set(const camber_options *options) {
     bool set = !options->threads || set_threads(options->threads);
     set = forget_relative("XDG_CACHE_HOME") && forget_relative("HOME") && set;
-    /* GDAL would fill the working folder. */
+    /* Without it GDAL puts temporary files into the working folder. */
     set = setenv("CPL_TMPDIR", camber_environment_temporary(), 0) == 0 && set;
-    /* Mesa's own warnings about missing GPUs would stand among the errors. */
+    /* Otherwise Mesa prints warnings about missing GPUs among the errors. */
     set = setenv("EGL_LOG_LEVEL", "fatal", 0) == 0 && set;
-    /* A core for each of PoCL's threads: left to themselves two of them often share one. */
+    /* Gives each of PoCL's threads a core of its own: left alone, two of them often share one. */
     set = (!may_pin() || setenv("POCL_AFFINITY", "1", 0) == 0) && set;
-    /* One build of each kernel for all sizes of work-groups, which the cache can keep: a build for each size, offset
-     * and count is no faster for these kernels, and the first run would compile twice as much. */
+    /* Builds each kernel once for all sizes of work-groups, so that the cache can keep it. A build for each size,
+     * offset and count is no faster for these kernels, and the first run would compile twice as much. */
     set = setenv("POCL_WORK_GROUP_SPECIALIZATION", "0", 0) == 0 && set;
-    /* PoCL sets it while it looks for devices. A variable that is new then moves the environment, under a getenv of
-     * GDAL's on another thread; one that is there stays where it is. */
+    /* PoCL sets this variable while it looks for devices. Adding a variable moves the environment under a getenv on
+     * GDAL's thread; changing one that exists does not. */
     return setenv("HWLOC_PLUGINS_PATH", "/dev/null", 0) == 0 && set;
 }
 
-/* A driver that cannot open its files says that it is not here, if anything: so it is asked beforehand. */
+/* Asked before a driver starts: a driver that cannot open its files reports no device, if anything. */
 bool camber_environment_has_descriptors(void) {
     int copies[LEAST_DESCRIPTORS], count = 0;
     while (count < LEAST_DESCRIPTORS && (copies[count] = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0)) >= 0)

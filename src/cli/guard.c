@@ -1,3 +1,6 @@
+/* Removes temporary files however the process ends. One thread waits for signals from outside. A handler catches faults
+ * such as SIGSEGV or a driver's abort. Both remove the files in the guard's list, and then let the process end with the
+ * status or signal that it would have had. */
 #define _XOPEN_SOURCE 700 /* SIGPOLL, SIGPROF, SIGVTALRM */
 
 #include "cli/guard.h"
@@ -7,8 +10,8 @@
 #include <time.h>
 #include <unistd.h>
 
-/* What POSIX has end a process and another process, a terminal, a timer or a limit sends. SIGPIPE and SIGXFSZ are
- * failed writes here, and nobody waits for SIGKILL. */
+/* Signals that end a process by default and that another process, a terminal, a timer or a limit sends. SIGPIPE and
+ * SIGXFSZ are left out: they appear as failed writes. Nobody can wait for SIGKILL. */
 static const int from_outside[] = {
     SIGHUP,  SIGINT, SIGQUIT, SIGTERM, SIGXCPU, SIGALRM, SIGUSR1, SIGUSR2, SIGVTALRM, SIGPROF,
 #ifdef SIGPOLL
@@ -37,18 +40,18 @@ static void remove_files(camber_guard *guard) {
 
 /* ---- Faults ---- */
 
-/* A handler is given nothing but a number, so the guard that it serves has to lie here; for that one purpose. */
+/* A handler receives a number and nothing else, so it needs this one global pointer to its guard. */
 static _Atomic(camber_guard *) guard_of_faults;
 
-/* Another thread may be making or removing a file just now: that takes no second, unless it is this thread that the
- * fault has stopped in it. Neither changes the list any more then. */
+/* Another thread may be adding or removing a file right now, which takes less than a second. If the fault stopped that
+ * very thread, waiting ends in vain. Either way the list no longer changes afterwards. */
 static void wait_for_others(camber_guard *guard) {
     for (int i = 0; i < 1000 && atomic_load(&guard->locked); i++)
         poll(NULL, 0, 1);
 }
 
-/* Calls what POSIX allows in a handler only. The handler stays while it runs, so that a fault of a second thread
- * does not end the process in between. */
+/* Calls only functions that POSIX allows in a handler. The handler stays installed while it runs, so that a fault of a
+ * second thread does not end the process in between. */
 static void end_by_fault(int number) {
     camber_guard *guard = atomic_load(&guard_of_faults);
     if (guard) {
@@ -59,10 +62,10 @@ static void end_by_fault(int number) {
             next(number);
     }
     signal(number, SIG_DFL);
-    raise(number); /* as it would have ended, with a core where the system keeps one */
+    raise(number); /* end as without a handler, with a core file if the system writes one */
 }
 
-/* Only where nobody else has: sanitizers tell of a fault by handlers of their own. */
+/* Installs the handler only where there is none: sanitizers report faults by handlers of their own. */
 static void meet_faults(camber_guard *guard) {
     struct sigaction action = {.sa_handler = end_by_fault, .sa_flags = SA_ONSTACK};
     sigemptyset(&action.sa_mask);
@@ -74,9 +77,9 @@ static void meet_faults(camber_guard *guard) {
     }
 }
 
-/* LLVM, in PoCL and Mesa, has handlers that remove its own files and put back what was there before. A fault then comes
- * again and meets this one; an abort does not. So this one goes first and calls LLVM's. One with SA_SIGINFO is a
- * sanitizer's or a run time's, which knows better. */
+/* LLVM (in PoCL and Mesa) installs handlers that remove its own files and restore the former handlers. A fault then
+ * happens again and reaches this handler, but an abort does not. So this handler goes first and calls LLVM's. A handler
+ * with SA_SIGINFO belongs to a sanitizer or a language's run time, and stays first. */
 void camber_guard_go_first(camber_guard *guard) {
     struct sigaction action = {.sa_handler = end_by_fault, .sa_flags = SA_ONSTACK}, before;
     sigemptyset(&action.sa_mask);
@@ -98,7 +101,7 @@ static void leave_faults(void) {
 
 /* ---- Signals from outside ---- */
 
-/* Nobody tells when a driver starts LLVM, so the thread looks now and then. */
+/* There is no notice when a driver starts LLVM, so the thread looks every now and then. */
 static void *wait_for_signal(void *user) {
     camber_guard *guard = user;
     const struct timespec pause = {.tv_nsec = 100000000};
@@ -128,8 +131,8 @@ static void choose_signals(camber_guard *guard) {
         struct sigaction action;
         if (sigaction(number, NULL, &action) != 0)
             continue;
-        /* nohup and a shell's & ask for a signal to be ignored, and a profiler has a handler: it stays theirs. SIGTERM
-         * is waited for all the same, since it ends the guard, and then dropped. */
+        /* A signal that is ignored, as under nohup or a shell's &, or that a profiler handles stays theirs. SIGTERM is
+         * waited for in any case, because it also ends the guard's thread, and then dropped. */
         const bool ends = action.sa_handler == SIG_DFL;
         if (ends || number == SIGTERM)
             sigaddset(&guard->signals, number);
@@ -153,7 +156,7 @@ bool camber_guard_start(camber_guard *guard, bool erase_bar) {
     return false;
 }
 
-/* The thread is woken by a signal of its own, which the mark tells from one from outside. */
+/* A SIGTERM sent to the thread wakes it; the mark tells it from one that comes from outside. */
 void camber_guard_stop(camber_guard *guard) {
     camber_guard_lock(guard);
     guard->stopping = true;

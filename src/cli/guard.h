@@ -1,4 +1,4 @@
-/* Files that no end of the process may leave behind. */
+/* A list of files that are removed however the process ends. */
 #ifndef CAMBER_CLI_GUARD_H
 #define CAMBER_CLI_GUARD_H
 
@@ -17,25 +17,26 @@ typedef void camber_guard_handler(int number);
 
 typedef struct camber_guard {
     pthread_mutex_t mutex;
-    atomic_bool locked; /* the mutex, as a handler may look at it */
+    atomic_bool locked; /* whether the mutex is held, in a form that a handler may read */
     sigset_t signals, ignored, before;
     pthread_t thread;
     bool stopping;
     void (*look)(void *user); /* called by the thread now and then, with the guard locked. NULL: nothing */
     void *look_user;
-    _Atomic(camber_guard_handler *) after_abort; /* of a library's, called after the guard's own. NULL: none */
-    bool erase_bar;                              /* a progress bar may stand on standard error */
-    _Atomic(char *) paths[CAMBER_GUARD_FILES];   /* NULL: free */
+    _Atomic(camber_guard_handler *)
+        after_abort;                           /* a library's handler of aborts, called after the guard's. NULL: none */
+    bool erase_bar;                            /* a progress bar may stand on standard error */
+    _Atomic(char *) paths[CAMBER_GUARD_FILES]; /* NULL: free */
 } camber_guard;
 
-/* Before other threads start; one guard at a time. false where no thread can be made, and then signals end the
- * process as they do by default. */
+/* Starts the guard; call it before other threads start. Only one guard may run. false: no thread could be made, and
+ * signals end the process as they do by default. */
 bool camber_guard_start(camber_guard *guard, bool erase_bar);
-/* After a start that returned true. */
+/* Call it only if start returned true. */
 void camber_guard_stop(camber_guard *guard);
 
-/* Puts the guard's handler of aborts before one that a driver has installed: called now and then anyway, and where a
- * driver is known to be open. From any thread. */
+/* Puts the guard's handler of aborts before one that a driver has installed. The guard does so every now and then; call
+ * it when a driver has certainly been opened. Any thread may call it. */
 void camber_guard_go_first(camber_guard *guard);
 
 /* Between these two, no signal from outside ends the process. */
@@ -44,8 +45,8 @@ void camber_guard_unlock(camber_guard *guard);
 
 /* With the guard locked: removes the files and ends the process. */
 void camber_guard_end(camber_guard *guard, int exit_status);
-/* With the guard locked. add keeps the pointer, to be freed once remove has been called and the guard is unlocked;
- * false where CAMBER_GUARD_FILES are there already. */
+/* Call both with the guard locked. add keeps the pointer: free it after remove, when the guard is unlocked. false:
+ * there are CAMBER_GUARD_FILES already. */
 bool camber_guard_add(camber_guard *guard, char *path);
 void camber_guard_remove(camber_guard *guard, const char *path);
 

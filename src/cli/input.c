@@ -1,24 +1,26 @@
+/* The input of a verb: a map (files, a style, a view of them) or a file of polylines in pixels. Opening reads it;
+ * projecting makes the polylines, strokes and rows that the kernels read. The functions at the end give either kind in
+ * the same form. Standard input goes to a temporary file first, because OGR seeks. */
 #include "cli/input.h"
 
+#include "base/open_file.h"
+
 #include <errno.h>
-#include <fcntl.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
-#define WIDTH_PX 2.0 /* of --polylines without --width-px */
+#define WIDTH_PX 2.0 /* the width of --polylines without --width-px */
 
 /* ---- Polylines in pixels ---- */
 
-/* Opening a pipe without a writer does not wait, and a device has no end. NULL with errno, 0 where it is no file. */
+/* NULL with errno; errno is 0 for a device or a pipe, which may have no end. A folder fails when it is read. */
 static FILE *open_regular(const char *path) {
     struct stat about;
-    const int opened = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+    const int opened = camber_open_file(path, &about);
     if (opened < 0)
         return NULL;
-    if (fstat(opened, &about) == 0 && (S_ISREG(about.st_mode) || S_ISDIR(about.st_mode)))
+    if (S_ISREG(about.st_mode) || S_ISDIR(about.st_mode))
         return fdopen(opened, "rb");
     close(opened);
     errno = 0;
@@ -95,7 +97,7 @@ static camber_status project_polylines(camber_input *input) {
     camber_context *context = input->session->context;
     const double simplify_px = input->session->options->simplify_px;
     camber_polylines_destroy(input->polylines);
-    camber_lines_free(context, &input->simplified);
+    camber_lines_destroy(&input->simplified);
     input->polylines = NULL;
     if (simplify_px > 0) {
         const camber_status status = camber_lines_simplify(context, &input->lines, simplify_px, &input->simplified);
@@ -126,13 +128,13 @@ static camber_frame polylines_frame(camber_input *input, camber_mesh *mesh) {
 #ifdef CAMBER_MAP
 bool camber_input_ships(const char *name) {
     size_t size_bytes;
-    return camber_style_text(name, CAMBER_THEME_LIGHT, &size_bytes) && access(name, F_OK) != 0;
+    return camber_style_get_text(name, CAMBER_THEME_LIGHT, &size_bytes) && access(name, F_OK) != 0;
 }
 
 static int fail_name(camber_session *session, const char *name) {
     char names[128] = "";
     const char *next;
-    for (size_t i = 0; (next = camber_style_name(i)) != NULL; i++)
+    for (size_t i = 0; (next = camber_style_list(i)) != NULL; i++)
         snprintf(names + strlen(names), sizeof names - strlen(names), "%s%s", i ? ", " : "", next);
     return camber_report_fail(session->report, CAMBER_EXIT_NO_INPUT,
                               "%s: neither a file nor a style that ships; name a style document, or one of: %s", name,
@@ -142,7 +144,7 @@ static int fail_name(camber_session *session, const char *name) {
 int camber_input_read_style(camber_session *session, const char *path, camber_theme theme, camber_style_input *style) {
     *style = (camber_style_input){.name = path};
     if (camber_input_ships(path)) {
-        style->text = camber_style_text(path, theme, &style->size_bytes);
+        style->text = camber_style_get_text(path, theme, &style->size_bytes);
         return CAMBER_EXIT_DONE;
     }
     if (strcmp(path, "-") != 0 && !strchr(path, '/') && access(path, F_OK) != 0)
@@ -162,7 +164,8 @@ static int open_style(camber_input *input) {
     const camber_options *options = session->options;
     const camber_theme theme = options->theme < 0 ? CAMBER_THEME_LIGHT : (camber_theme)options->theme;
     if (!options->style)
-        return camber_report_status(session->report, camber_style_builtin(session->context, theme, &input->style));
+        return camber_report_status(session->report,
+                                    camber_style_create_builtin(session->context, theme, &input->style));
     camber_style_input style;
     const int status = camber_input_read_style(session, options->style, theme, &style);
     if (status != CAMBER_EXIT_DONE)
@@ -174,7 +177,7 @@ static int open_style(camber_input *input) {
     return camber_report_status(session->report, parsed);
 }
 
-/* What the options leave open is the style's. */
+/* Takes from the style the parts of the view that the options leave open. */
 static void take_view(camber_input *input) {
     const camber_options *options = input->session->options;
     const camber_view_desc own = camber_style_get_view(input->style);
@@ -194,13 +197,14 @@ static void take_view(camber_input *input) {
     }
 }
 
-/* What is read decides the zoom of a view that fits. */
+/* Opens the device while files are read. A view that fits the data has no zoom yet, so the kernels that it will need
+ * are unknown. */
 static void start_opening(const camber_input *input) {
     const camber_view_desc *view = &input->view;
     const double zoom = view->kind == CAMBER_VIEW_CENTER ? view->zoom : NAN;
-    const camber_outlook outlook = camber_style_is_plain(input->style, zoom) ? CAMBER_OUTLOOK_PLAIN
-                                   : view->kind == CAMBER_VIEW_CENTER        ? CAMBER_OUTLOOK_RICH
-                                                                             : CAMBER_OUTLOOK_OPEN;
+    const camber_outlook outlook = camber_style_get_effects(input->style, zoom) == 0 ? CAMBER_OUTLOOK_PLAIN
+                                   : view->kind == CAMBER_VIEW_CENTER                ? CAMBER_OUTLOOK_RICH
+                                                                                     : CAMBER_OUTLOOK_OPEN;
     camber_session_start(input->session, outlook, view->pitch_deg);
 }
 
@@ -249,7 +253,7 @@ static int open_map(camber_input *input) {
     if (status != CAMBER_EXIT_DONE)
         return status;
     const char *asked = session->options->attribution;
-    input->attribution = asked ? (*asked ? asked : NULL) : camber_features_attribution(input->features);
+    input->attribution = asked ? (*asked ? asked : NULL) : camber_features_get_attribution(input->features);
     const camber_features_stats stats = camber_features_get_stats(input->features);
     input->points_in = stats.points;
     input->segments_in = stats.points > stats.polylines ? stats.points - stats.polylines : 0;
@@ -285,8 +289,8 @@ void camber_input_close(camber_input *input) {
     camber_style_destroy(input->style);
 #endif
     camber_polylines_destroy(input->polylines);
-    camber_lines_free(input->session->context, &input->simplified);
-    camber_lines_free(input->session->context, &input->lines);
+    camber_lines_destroy(&input->simplified);
+    camber_lines_destroy(&input->lines);
     *input = (camber_input){0};
 }
 
@@ -303,13 +307,13 @@ int camber_input_project(camber_input *input) {
     return camber_report_status(input->session->report, status);
 }
 
-/* The library has told why there is nothing: no feature passed the filter, or the style draws none. */
+/* Whether the library has already said why nothing is drawn: no feature passed the filter, or the style draws none. */
 static bool knows_why_empty(const camber_input *input) {
 #ifdef CAMBER_MAP
     if (!input->features)
         return false;
     const size_t features = camber_features_get_stats(input->features).features;
-    return features ? camber_scene_get_view(input->scene).undrawn == features : input->session->options->where != NULL;
+    return features ? camber_scene_get_info(input->scene).undrawn == features : input->session->options->where != NULL;
 #else
     (void)input;
     return false;
@@ -326,7 +330,7 @@ void camber_input_warn_empty(const camber_input *input, const char *consequence)
 const camber_polylines *camber_input_polylines(const camber_input *input) {
 #ifdef CAMBER_MAP
     if (input->scene)
-        return camber_scene_polylines(input->scene);
+        return camber_scene_project(input->scene) == CAMBER_OK ? camber_scene_get_polylines(input->scene) : NULL;
 #endif
     return input->polylines;
 }
@@ -334,7 +338,7 @@ const camber_polylines *camber_input_polylines(const camber_input *input) {
 const camber_lines *camber_input_lines(const camber_input *input) {
 #ifdef CAMBER_MAP
     if (input->scene)
-        return camber_scene_lines(input->scene);
+        return camber_scene_project(input->scene) == CAMBER_OK ? camber_scene_get_lines(input->scene) : NULL;
 #endif
     return input->session->options->simplify_px > 0 ? &input->simplified : &input->lines;
 }
@@ -342,7 +346,7 @@ const camber_lines *camber_input_lines(const camber_input *input) {
 const uint32_t *camber_input_rows(const camber_input *input) {
 #ifdef CAMBER_MAP
     if (input->scene)
-        return camber_scene_rows(input->scene);
+        return camber_scene_project(input->scene) == CAMBER_OK ? camber_scene_get_rows(input->scene) : NULL;
 #endif
     (void)input;
     return NULL;
@@ -351,7 +355,7 @@ const uint32_t *camber_input_rows(const camber_input *input) {
 const camber_stroke *camber_input_strokes(const camber_input *input, size_t *count) {
 #ifdef CAMBER_MAP
     if (input->scene)
-        return camber_scene_strokes(input->scene, count);
+        return camber_scene_get_strokes(input->scene, count);
 #endif
     *count = 1;
     return &input->stroke;
@@ -360,7 +364,7 @@ const camber_stroke *camber_input_strokes(const camber_input *input, size_t *cou
 camber_network *camber_input_network(const camber_input *input, camber_camera *camera, camber_tessellation_desc *desc) {
 #ifdef CAMBER_MAP
     if (input->scene)
-        return camber_scene_network(input->scene, camera, desc);
+        return camber_scene_get_network(input->scene, camera, desc);
 #endif
     (void)input;
     (void)camera;
@@ -372,7 +376,7 @@ camber_frame camber_input_frame(camber_input *input, camber_mesh *mesh) {
     camber_frame frame;
 #ifdef CAMBER_MAP
     if (input->scene)
-        frame = camber_scene_frame(input->scene, mesh);
+        frame = camber_scene_get_frame(input->scene, mesh);
     else
 #endif
         frame = polylines_frame(input, mesh);
@@ -383,20 +387,20 @@ camber_frame camber_input_frame(camber_input *input, camber_mesh *mesh) {
 bool camber_input_opaque(const camber_input *input) {
 #ifdef CAMBER_MAP
     if (input->scene)
-        return camber_scene_get_view(input->scene).opaque;
+        return camber_scene_get_info(input->scene).opaque;
 #endif
-    return input->polylines != NULL; /* on white */
+    return input->polylines != NULL; /* polylines are drawn on white */
 }
 
 camber_status camber_input_tessellate(const camber_input *input, camber_mesh *mesh) {
     camber_tessellation_desc desc = {.method = camber_session_method(input->session)};
     camber_guard_go_first(input->session->guard);
 #ifdef CAMBER_MAP
-    /* What is drawn is made on the device; what proves something, of the polylines that it is held against. */
+    /* Verbs that draw project on the device. Verbs that prove something use the polylines, which they compare with. */
     const camber_verb verb = input->session->options->verb;
     if (input->scene && (verb == CAMBER_VERB_RENDER || verb == CAMBER_VERB_BENCH))
         return camber_scene_tessellate(input->scene, mesh, desc.method);
 #endif
     desc.strokes = camber_input_strokes(input, &desc.stroke_count);
-    return camber_tessellate(mesh, camber_input_polylines(input), &desc);
+    return camber_mesh_tessellate(mesh, camber_input_polylines(input), &desc);
 }

@@ -1,6 +1,8 @@
-/* The tool `camber`. */
+/* The tool `camber`: parses the command line, prepares the process, runs the verb under the guard, and returns its exit
+ * status. */
 #define _XOPEN_SOURCE 700 /* SIGXFSZ */
 
+#include "cli/completion.h"
 #include "cli/environment.h"
 #include "cli/stack.h"
 #include "cli/verbs.h"
@@ -16,7 +18,7 @@ static int run(camber_session *session) {
 #else
     case CAMBER_VERB_RENDER:
     case CAMBER_VERB_TESSELLATE:
-    case CAMBER_VERB_STYLE: break; /* no word for them in this build */
+    case CAMBER_VERB_STYLE: break; /* this build does not parse these verbs */
 #endif
     case CAMBER_VERB_COMPARE: return camber_verb_compare(session);
     case CAMBER_VERB_VALIDATE: return camber_verb_validate(session);
@@ -52,7 +54,8 @@ int main(int argc, char **argv) {
     camber_environment_fill_streams();
     int status = camber_options_parse(argc, argv, &options, message, sizeof message);
     camber_report_open(&report, &options);
-    /* A reader that has gone and a file that may grow no further show as failed writes, told of like any other. */
+    /* A reader that has gone away, and a file that may grow no further, appear as failed writes and are reported like
+     * any other. */
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN);
     if (status != CAMBER_EXIT_DONE) {
@@ -62,6 +65,9 @@ int main(int argc, char **argv) {
         status = camber_report_flush(&report);
     } else if (options.version) {
         printf("camber %s\n", camber_version());
+        status = camber_report_flush(&report);
+    } else if (options.completion >= 0) {
+        camber_completion_print((camber_shell)options.completion, stdout);
         status = camber_report_flush(&report);
     } else {
         camber_session session = {.options = &options, .report = &report, .start_ms = start_ms};

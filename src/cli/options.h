@@ -7,7 +7,7 @@
 
 #include <stdio.h>
 
-/* Exit statuses: sysexits.h's where it has one, named here since POSIX does not know that header. */
+/* Exit statuses. Values come from sysexits.h, which POSIX does not have, so they are named here. */
 enum {
     CAMBER_EXIT_DONE = 0,
     CAMBER_EXIT_CHECK = 1, /* a check of validate failed */
@@ -31,8 +31,8 @@ typedef enum camber_verb {
     CAMBER_VERB_STYLE,
 } camber_verb;
 
-/* Choices hold the value's place in the list that --help shows, which is that of the enum in camber.h;
- * -1: not given. Texts are those of argv; NULL: not given. */
+/* Choices hold the index of the word in the list that --help shows, which is also the value of the enum in camber.h;
+ * -1: not given. Texts point into argv; NULL: not given. */
 typedef struct camber_options {
     camber_verb verb;
     const char **inputs; /* input_count */
@@ -43,28 +43,29 @@ typedef struct camber_options {
     const char *output, *dump, *polylines, *plot, *junit, *pictures, *style, *layer, *device;
     const char *attribution; /* "": none */
     const char *where;       /* the first */
-    const char *root;        /* folder beyond which a style reaches no file. NULL: anywhere */
+    const char *root;        /* a style reads no file outside this folder. NULL: any file */
     bool allow_remote, allow_vrt;
-    int format; /* 0: png, 1: glb */
+    int completion; /* camber_shell whose completion is to be printed; -1: none */
+    int format;     /* 0: png, 1: glb */
     int theme, method, coverage, backend, sharing, draw;
     camber_view_desc view; /* width and height are set by camber_options_parse */
     bool has_bbox, has_center;
     double zoom, bearing_deg, pitch_deg; /* NAN where not given */
     double simplify_px, width_px, fan_tolerance_px;
     uint32_t threads;      /* 0: as many as there are */
-    uint64_t memory_bytes; /* of the run, its libraries apart. 0: as the library has it */
+    uint64_t memory_bytes; /* memory limit of the run without its libraries. 0: the library's default */
     uint32_t runs;
-    uint32_t windows; /* of each picture, held against the oracle */
+    uint32_t windows; /* windows of each picture that are compared with exact coverage */
 } camber_options;
 
-/* Parses argv. Returns CAMBER_EXIT_DONE, or CAMBER_EXIT_USAGE with one line in message. --help and --version
- * win over what is missing. The caller frees with camber_options_free in any case. */
+/* Parses argv. Returns CAMBER_EXIT_DONE, or CAMBER_EXIT_USAGE with one line in message. With --help, --version or
+ * --completion nothing else needs to be complete. Free the options with camber_options_free in any case. */
 int camber_options_parse(int argc, char **argv, camber_options *options, char *message, size_t message_size);
-/* The part of it that looks at options together; verb is the verb's name. */
+/* Checks options against each other; camber_options_parse calls it. verb is the name of the verb. */
 int camber_options_check(camber_options *options, const char *verb, char *message, size_t message_size);
 void camber_options_free(camber_options *options);
 
-/* The help of the tool (CAMBER_VERB_NONE) or of a verb. */
+/* Prints the help of the tool (CAMBER_VERB_NONE) or of a verb. */
 void camber_options_help(camber_verb verb, FILE *file);
 
 #endif

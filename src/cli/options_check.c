@@ -1,3 +1,5 @@
+/* Checks the options together, once each has a value by itself: which exclude each other, which need another, and that
+ * no file is read and written. The first rule that is broken becomes one line: the option, the reason and the cure. */
 #include "cli/input.h"
 #include "cli/options.h"
 #include "cli/options_files.h"
@@ -7,7 +9,7 @@
 #include <string.h>
 #include <strings.h>
 
-/* What must hold between options, once each has a value. */
+/* The options to check, and where the message goes. */
 typedef struct checked {
     camber_options *options;
     const char *verb; /* its name */
@@ -66,7 +68,7 @@ static int check_view(const checked *p) {
     camber_view_desc *view = &options->view;
     if (options->has_bbox && (options->has_center || !isnan(options->zoom)))
         return usage(p, "--bbox and --center or --zoom: they exclude each other; give the box or the centre");
-    /* A style says the other, where it is drawn from its own sources. */
+    /* A style that is drawn from its own sources gives the missing one. */
     const bool own = options->style && options->input_count == 0;
     if (!own && options->has_center != !isnan(options->zoom))
         return usage(p, "--%s alone: give --center LON,LAT and --zoom Z together",
@@ -143,11 +145,11 @@ static int check_style(const checked *p) {
     return CAMBER_EXIT_DONE;
 }
 
-/* What draws in OpenCL loads no GL: an option that names a part of GL would have no effect. */
+/* With --draw cl no GL is loaded, so an option that names a part of GL would have no effect. */
 static int check_draw(const checked *p) {
     const camber_options *options = p->options;
     const bool named = options->backend != CAMBER_BACKEND_AUTO;
-    if (options->draw != CAMBER_DRAW_CL || (!named && options->sharing == CAMBER_SHARING_AUTO))
+    if (options->draw != CAMBER_RASTERIZER_OPENCL || (!named && options->sharing == CAMBER_SHARING_AUTO))
         return CAMBER_EXIT_DONE;
     return usage(p, "--draw cl and --%s: OpenCL kernels draw without any GL; leave out --%s, or give --draw gl",
                  named ? "backend" : "sharing", named ? "backend" : "sharing");

@@ -1,3 +1,6 @@
+/* Finds files that the command line names twice: to be read and to be written, or to be written by two options. Files
+ * are compared by device and inode, so that links do not hide it. Parts of an input, such as the .dbf of a .shp, count
+ * as inputs. */
 #define _XOPEN_SOURCE 700
 
 #include "cli/options_files.h"
@@ -8,12 +11,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* A file that is there is known by its device and number. One that is not is known by its folder's, and its name. */
+/* A file that exists is identified by its device and inode. One that does not exist is identified by its folder's, and
+ * its name. */
 typedef struct file {
     const char *path, *role;
     dev_t device;
     ino_t number;
-    const char *name; /* NULL: it is there */
+    const char *name; /* NULL: the file exists */
 } file;
 
 enum { MOST_OUTPUTS = 4, LONGEST_PATH = 4096 };
@@ -26,7 +30,7 @@ static bool take_info(file *it, const struct stat *info) {
     return true;
 }
 
-/* Devices and pipes may well be read and written. */
+/* Only regular files count: a device or a pipe may well be read and written. */
 static bool find_stream(file *it, int descriptor, const char *name) {
     struct stat info;
     it->path = name;
@@ -38,7 +42,7 @@ static bool find_existing(file *it) {
     return stat(it->path, &info) == 0 && S_ISREG(info.st_mode) && take_info(it, &info);
 }
 
-/* /vsigzip/FILE, /vsizip/FILE/member and the like: the file. */
+/* Finds the file behind /vsigzip/FILE, /vsizip/FILE/member and the like. */
 static bool find_archive(file *it) {
     char path[LONGEST_PATH];
     const char *rest = it->path, *slash;
@@ -134,7 +138,8 @@ static bool meets_output(const checked *c, const char *path, const char *role) {
 
 /* ---- Formats of several files ---- */
 
-/* What lies beside the file that is named: the same folder and stem, another ending, in small letters or capitals. */
+/* Extensions of formats that keep several files beside each other, with the same stem. Names may be in lower or upper
+ * case. */
 static const char *const families[][12] = {
     {".shp", ".shx", ".dbf", ".prj", ".cpg", ".qpj", ".qix", ".sbn", ".sbx", ".idm", ".ind"},
     {".tab", ".dat", ".map", ".id", ".ind"},

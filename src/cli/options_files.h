@@ -4,7 +4,8 @@
 
 #include "cli/options.h"
 
-/* Whether there is one, with one line in message: by what names lead to, so that links do not hide it. */
+/* Whether there is such a file; message then has one line. Files are compared by identity, so that links do not hide
+ * it. */
 bool camber_options_clash(const camber_options *options, char *message, size_t message_size);
 
 #endif

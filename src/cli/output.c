@@ -1,9 +1,12 @@
+/* Writes files so that they appear whole or not at all: to a temporary file in the same folder, which is synced and
+ * renamed when it is complete. The guard removes it if the process ends before. Also copies standard input to a
+ * temporary file for readers that seek. */
 #define _XOPEN_SOURCE 700 /* realpath */
 
 #include "cli/output.h"
 
 #include "cli/environment.h"
-#include "cli/leftovers.h"
+#include "cli/temp_files.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -12,7 +15,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Beside path, hidden, and short enough wherever path itself is. */
+/* A hidden name beside path. It is short enough for every file system that path fits. */
 static char *temporary_name(const char *path, unsigned attempt, const char *suffix) {
     const char *slash = strrchr(path, '/');
     const size_t folder = slash ? (size_t)(slash - path) + 1 : 0;
@@ -31,7 +34,7 @@ static void remove_temporary(camber_guard *guard, char *path) {
     free(path);
 }
 
-/* Creates a file beside path that the guard knows. Returns its descriptor, or -1 with errno. */
+/* Creates a file beside path and tells the guard of it. Returns its descriptor, or -1 with errno. */
 static int create_beside(camber_guard *guard, const char *path, const char *suffix, mode_t mode, char **made) {
     for (unsigned attempt = 0; attempt < 100; attempt++) {
         char *name = temporary_name(path, attempt, suffix);
@@ -49,7 +52,7 @@ static int create_beside(camber_guard *guard, const char *path, const char *suff
             cause = EMFILE;
         }
         camber_guard_unlock(guard);
-        if (descriptor >= 0 && camber_leftovers_spare(descriptor)) {
+        if (descriptor >= 0 && camber_temp_files_spare(descriptor)) {
             *made = name;
             return descriptor;
         }
@@ -66,7 +69,7 @@ static int create_beside(camber_guard *guard, const char *path, const char *suff
     return -1;
 }
 
-/* No other name would help. */
+/* Whether the error would also hit a file with another name. */
 static bool system_refuses(int cause) {
     return cause == ENOSPC || cause == EDQUOT || cause == EIO || cause == EMFILE || cause == ENFILE || cause == EFBIG;
 }
@@ -92,14 +95,14 @@ static int open_stream(camber_output *output, int descriptor) {
     return cannot_create(output, cause);
 }
 
-/* What stands at path already: nothing of it is touched here, except that a device or a pipe is opened. */
+/* Looks at a file that exists at path. It touches nothing, but opens a device or a pipe. */
 static int look_at_existing(camber_output *output, mode_t *mode, bool *in_place) {
     struct stat info;
     const char *path = output->path;
     if (!output->force)
         return camber_report_fail(output->report, CAMBER_EXIT_CREATE,
                                   "%s: exists; name another file, or replace it with --force", path);
-    if (stat(path, &info) != 0) { /* a link to nowhere: it is replaced */
+    if (stat(path, &info) != 0) { /* a link to no file is replaced */
         output->target = strdup(path);
         return CAMBER_EXIT_DONE;
     }
@@ -140,11 +143,11 @@ int camber_output_open(camber_output *output, camber_report *report, camber_guar
         return cannot_create(output, ENOMEM);
     if (output->target[strlen(output->target) - 1] == '/')
         return camber_report_fail(report, CAMBER_EXIT_CREATE, "%s: names a folder; name a file in it", path);
-    camber_leftovers_remove(output->target);
+    camber_temp_files_remove(output->target);
     const int descriptor = create_beside(guard, output->target, ".tmp", 0666, &output->temporary);
     output->mark = descriptor >= 0 ? fcntl(descriptor, F_DUPFD_CLOEXEC, STDERR_FILENO + 1) : 0;
     if (descriptor >= 0 && mode)
-        fchmod(descriptor, mode); /* best effort: the new file is as readable as the one it replaces */
+        fchmod(descriptor, mode); /* if it fails, the new file is less readable than the one it replaces */
     return open_stream(output, descriptor);
 }
 
@@ -180,7 +183,8 @@ static void close_mark(int *mark) {
     *mark = 0;
 }
 
-/* Gives the temporary file its name. Without force a file that has appeared meanwhile stays: link refuses it. */
+/* Gives the temporary file its final name. Without force, link fails if another file has appeared in the meantime, and
+ * that file stays. */
 static int give_name(camber_output *output) {
     if (output->force)
         return rename(output->temporary, output->target) == 0 ? 0 : errno;
@@ -190,7 +194,7 @@ static int give_name(camber_output *output) {
     }
     if (errno == EEXIST || system_refuses(errno))
         return errno;
-    /* A file system without hard links: the gap between the look and the rename is all that can be had. */
+    /* The file system has no hard links: a file that appears between this look and the rename is lost. */
     if (access(output->target, F_OK) == 0)
         return EEXIST;
     return rename(output->temporary, output->target) == 0 ? 0 : errno;
@@ -199,7 +203,7 @@ static int give_name(camber_output *output) {
 int camber_output_publish(camber_output *output) {
     if (fflush(output->file) != 0 && output->error == 0)
         output->error = errno;
-    /* Pipes and devices have nothing to sync; a file system that cannot says EINVAL. */
+    /* Pipes and devices have nothing to sync; a file system that cannot sync returns EINVAL. */
     if (output->error == 0 && output->temporary && fsync(fileno(output->file)) != 0 && errno != EINVAL)
         output->error = errno;
     const int closed = fclose(output->file);
@@ -239,7 +243,8 @@ void camber_output_discard(camber_output *output) {
 
 /* ---- Standard input ---- */
 
-/* Drivers of OGR that go by the extension: SQLite files are tiles, or a GeoPackage with its mark at 68. */
+/* Some drivers of OGR choose by extension. An SQLite file is a set of tiles, or a GeoPackage if it has GP at byte 68.
+ */
 static const char *suffix_of(const char *head, size_t size) {
     if (size >= 2 && memcmp(head, "\x1f\x8b", 2) == 0)
         return ".in.gz";
@@ -255,7 +260,7 @@ static int cannot_spool(camber_report *report, const char *folder, int cause) {
                                   : camber_report_cure(cause, "set TMPDIR to a folder that you may write to"));
 }
 
-/* Copies what is left of standard input behind the block of its beginning. Errnos, 0: nothing has failed. */
+/* Copies the rest of standard input after the block that has been read. Returns errnos; 0: no failure. */
 static void copy_input(FILE *file, char *block, size_t size, size_t capacity, int *unread, int *unwritten) {
     *unread = *unwritten = 0;
     while (size > 0 && !*unwritten) {
@@ -276,7 +281,7 @@ int camber_spool_input(camber_report *report, camber_guard *guard, camber_spool 
     if (ferror(stdin))
         return camber_report_input(report, errno);
     snprintf(beside, sizeof beside, "%s/", camber_environment_temporary());
-    camber_leftovers_remove(beside);
+    camber_temp_files_remove(beside);
     const int descriptor = create_beside(guard, beside, suffix_of(block, size), 0600, &spool->path);
     FILE *file = descriptor < 0 ? NULL : fdopen(descriptor, "wb");
     int unread = 0, unwritten = file ? 0 : errno;

@@ -11,36 +11,36 @@ typedef struct camber_output {
     const char *path; /* as the user gave it */
     camber_report *report;
     camber_guard *guard;
-    FILE *file;      /* NULL: not open */
-    char *target;    /* path, or what it links to. NULL: written in place (standard output, a device, a pipe) */
+    FILE *file;   /* NULL: not open */
+    char *target; /* path, or the file that it links to. NULL: written in place (standard output, a device, a pipe) */
     char *temporary; /* beside target */
-    int mark;        /* a descriptor of it that stays open until it has its name; 0: none */
+    int mark;        /* a second descriptor of it, which marks it as in use until it has its name; 0: none */
     bool force;
     int error; /* errno of the first write that failed */
     size_t size_bytes;
 } camber_output;
 
-/* Opens path for writing, "-" for standard output, so that what forbids it is known before the work. Regular files
- * are written beside and appear with camber_output_publish. Returns an exit status, its line printed; the output
- * can be discarded in any case. */
+/* Opens path for writing; "-" is standard output. Opening comes before the work, so that an error shows early. A
+ * regular file is written beside and appears with camber_output_publish. Returns an exit status, its line printed.
+ * Discard the output in any case. */
 int camber_output_open(camber_output *output, camber_report *report, camber_guard *guard, const char *path, bool force);
-/* Whether info is of the file that this one is written to or will replace, which must not be read as well. */
+/* Whether info describes the file that the output writes or replaces, which must not be read as well. */
 bool camber_output_is(const camber_output *output, const struct stat *info);
 camber_sink camber_output_sink(camber_output *output);
-/* The story of a failed call that wrote here: the file's, if writing is what failed, else status's. */
+/* Reports a failed call that wrote here: the file's error if writing failed, else status. Returns an exit status. */
 int camber_output_status(camber_output *output, camber_status status);
 int camber_output_publish(camber_output *output);
-/* Removes what was written, unless published; also frees the output. */
+/* Removes the file unless it is published, and frees the output. */
 void camber_output_discard(camber_output *output);
 
-/* A copy of standard input, as OGR wants to seek in what it reads. */
+/* A copy of standard input, because OGR seeks in the files that it reads. */
 typedef struct camber_spool {
     char *path; /* NULL: there is none */
-    int mark;   /* a descriptor of it that stays open as long as it is there; 0: none */
+    int mark;   /* a second descriptor of it, which marks it as in use; 0: none */
 } camber_spool;
 
-/* Makes it, to be removed by the other. Returns an exit status, its line printed; there is no copy where it is not 0.
- */
+/* Makes the copy; camber_spool_remove removes it. Returns an exit status, its line printed; unless it is 0 there is no
+ * copy. */
 int camber_spool_input(camber_report *report, camber_guard *guard, camber_spool *spool);
 void camber_spool_remove(camber_guard *guard, camber_spool *spool);
 

@@ -14,7 +14,7 @@ static bool write_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint
     w->status = camber_png_write_rows(w->png, rgba, row_count);
     w->write_ms += camber_clock_ms() - start_ms;
     camber_report_progress(w->report, "writing", (double)(first_row + row_count) / w->height);
-    /* That the drawing stops for want of a writer is no story of its own. */
+    /* The error that the drawing stops is not reported: the failed write has been. */
     w->report->sealed = w->status != CAMBER_OK;
     return w->status == CAMBER_OK;
 }
@@ -38,7 +38,7 @@ int camber_picture_write(camber_input *input, camber_mesh *mesh, camber_output *
     camber_status status = camber_png_create(session->context, &desc, camber_output_sink(output), &w.png);
     w.write_ms = camber_clock_ms() - start_ms;
     if (status == CAMBER_OK)
-        status = camber_render(session->renderer, &frame, write_rows, &w, &times->frame);
+        status = camber_renderer_render(session->renderer, &frame, write_rows, &w, &times->frame);
     if (w.status != CAMBER_OK)
         status = w.status;
     const double finish_ms = camber_clock_ms();

@@ -9,7 +9,7 @@ typedef struct camber_picture_times {
     double write_ms; /* compression and writing */
 } camber_picture_times;
 
-/* Draws and writes as the rows come. Returns an exit status, its line printed. times may be NULL. */
+/* Draws a frame and writes its rows as they come. Returns an exit status, its line printed. times may be NULL. */
 int camber_picture_write(camber_input *input, camber_mesh *mesh, camber_output *output, camber_picture_times *times);
 
 #endif

@@ -1,3 +1,5 @@
+/* Draws the averages of a comparison as bars: writes a script and runs gnuplot, which writes the SVG or PNG to the
+ * output. Errors of gnuplot become one line of ours. */
 #define _XOPEN_SOURCE 700 /* posix_spawn */
 
 #include "cli/plot.h"
@@ -26,7 +28,7 @@ static bool open_pipe(int ends[2]) {
     return pipe(ends) == 0 && fcntl(ends[0], F_SETFD, FD_CLOEXEC) == 0 && fcntl(ends[1], F_SETFD, FD_CLOEXEC) == 0;
 }
 
-/* Starts gnuplot with signals as a program expects them. Returns 0 or an errno. */
+/* Starts gnuplot with the default handling of signals. Returns 0 or an errno. */
 static int spawn(char *const *arguments, int output, child *made) {
     int input[2] = {-1, -1}, errors[2] = {-1, -1};
     posix_spawn_file_actions_t files;
@@ -65,14 +67,14 @@ static void send(int descriptor, const char *text) {
         if (written < 0 && errno == EINTR)
             continue;
         if (written < 0)
-            return; /* it has gone: its exit status tells */
+            return; /* gnuplot has ended; its exit status tells why */
         text += written;
         left -= (size_t)written;
     }
 }
 
-/* Gives the child its script and waits for its end. A script is shorter than what a pipe holds, so neither waits for
- * the other. line takes the first line that it says in error. Returns its exit status, -1 where a signal ended it. */
+/* Sends the script to the child and waits for its end. The script fits into the pipe, so neither waits for the other.
+ * line receives the first line of its errors. Returns its exit status; -1: a signal ended it. */
 static int finish(const child *made, const char *script, char *line, size_t line_size) {
     send(made->input, script);
     close(made->input);
@@ -116,26 +118,26 @@ int camber_plot_check(camber_report *report) {
 /* ---- The script ---- */
 
 typedef struct panel {
-    int measure;
+    int metric;
     const char *title;
 } panel;
 
 enum { COLUMNS = 4, ROWS = 2 };
 static const panel panels[COLUMNS * ROWS] = {
-    {CAMBER_MEASURE_VERTICES, "vertices"},
-    {CAMBER_MEASURE_BYTES, "bytes"},
-    {CAMBER_MEASURE_DRAW_CALLS_16_BIT, "draw calls, 16-bit indices"},
-    {CAMBER_MEASURE_FRAGMENTS, "fragments shaded"},
-    {CAMBER_MEASURE_REPEATED_PIXELS, "repeated pixels"},
-    {CAMBER_MEASURE_MEAN_ERROR, "mean error, of 255"},
-    {CAMBER_MEASURE_TESSELLATE_MS, "kernels, ms"},
-    {CAMBER_MEASURE_DRAW_MS, "drawing, ms"},
+    {CAMBER_METRIC_VERTICES, "vertices"},
+    {CAMBER_METRIC_BYTES, "bytes"},
+    {CAMBER_METRIC_DRAW_CALLS_16_BIT, "draw calls, 16-bit indices"},
+    {CAMBER_METRIC_FRAGMENTS, "fragments shaded"},
+    {CAMBER_METRIC_REPEATED_PIXELS, "repeated pixels"},
+    {CAMBER_METRIC_MEAN_ERROR, "mean error, of 255"},
+    {CAMBER_METRIC_TESSELLATE_MS, "kernels, ms"},
+    {CAMBER_METRIC_DRAW_MS, "drawing, ms"},
 };
 
-/* Grey, orange, blue: told apart by people who see fewer colours, and in print. */
+/* Grey, orange and blue: distinguishable in print and with colour blindness. */
 static const char *const colors[CAMBER_METHODS] = {"0x98a1ad", "0xe69f00", "0x0072b2"};
 
-/* "1.23 M", "45.6 k", "7.89": three digits, and no decimals of a small whole number. */
+/* Writes "1.23 M", "45.6 k" or "7.89": three digits, and no decimals for a small whole number. */
 static void abbreviate(double value, char *text, size_t size) {
     const char *const units[] = {"", " k", " M", " G"};
     const bool whole = value < 999.5 && value == floor(value);
@@ -151,14 +153,14 @@ static void put_panel(const camber_comparison *c, const panel *p, FILE *script) 
     int bars = 0;
     fputs("$bars << END\n", script);
     for (int i = 0; i < CAMBER_METHODS; i++) {
-        const double measure = c->average.measures[i][p->measure], value = isnan(measure) ? 0 : measure;
+        const double metric = c->average.metrics[i][p->metric], value = isnan(metric) ? 0 : metric;
         char text[32] = "of GL alone";
         if (!c->shown[i])
             continue;
-        if (!isnan(measure))
+        if (!isnan(metric))
             abbreviate(value, text, sizeof text);
         fprintf(script, "%d %.9g %s \"%s\" \"%s\"\n", -bars++, value, colors[i],
-                camber_method_name(camber_methods_shown[i]), text);
+                camber_method_get_name(camber_methods_shown[i]), text);
         most = value > most ? value : most;
     }
     fprintf(script,
@@ -173,7 +175,7 @@ static void put_script(const camber_comparison *c, bool svg, FILE *script) {
         fputs("set terminal svg size 1120,360 dynamic noenhanced font 'Helvetica,Arial,sans-serif,14' "
               "background rgb 'white'\n",
               script);
-    else /* where gnuplot is built without Cairo, its other PNGs do */
+    else /* without Cairo gnuplot has another terminal for PNG */
         fputs("if (strstrt(GPVAL_TERMINALS, 'pngcairo')) {\n"
               "set terminal pngcairo size 2240,720 noenhanced font 'sans,14' fontscale 1.7 background rgb 'white'\n"
               "} else {\nset terminal png size 2240,720 noenhanced font 'sans,24' background rgb 'white'\n}\n",

@@ -1,3 +1,5 @@
+/* One line on standard error for each error and warning, which nothing in a file's name can break; a bar that erases
+ * itself; JSON on standard output. A status of the library becomes an exit status here. */
 #include "cli/report.h"
 
 #include <errno.h>
@@ -151,7 +153,8 @@ int camber_report_status(camber_report *report, camber_status status) {
     }
     if (status == CAMBER_ERROR_DEVICE)
         add_limits(report->error, sizeof report->error);
-    return camber_report_fail(report, exit_status, "%s", report->error[0] ? report->error : camber_status_name(status));
+    return camber_report_fail(report, exit_status, "%s",
+                              report->error[0] ? report->error : camber_status_get_name(status));
 }
 
 void camber_report_warn(camber_report *report, const char *format, ...) {

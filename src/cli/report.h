@@ -1,4 +1,4 @@
-/* What the tool says: errors, warnings, progress bars, JSON. */
+/* Messages of the tool: errors, warnings, progress bars, JSON. */
 #ifndef CAMBER_CLI_REPORT_H
 #define CAMBER_CLI_REPORT_H
 
@@ -21,7 +21,7 @@ typedef struct camber_report {
     double bar_ms;      /* when it was drawn */
     const char *spool;  /* the copy of standard input, which messages name as that; NULL: none */
     bool sealed;        /* the first failure is known; what it causes is not news */
-    char error[4096];   /* the library's last error: the story of the status that a call returns */
+    char error[4096];   /* the library's last error: the message of the status that a call returns */
 } camber_report;
 
 void camber_report_open(camber_report *report, const camber_options *options);
@@ -34,11 +34,11 @@ void camber_report_erase_bar(camber_report *report);
 
 /* Prints one line "camber: ..." on standard error and returns exit_status. */
 int camber_report_fail(camber_report *report, int exit_status, const char *format, ...) CAMBER_PRINTF(3, 4);
-/* Tells the story of a status; returns its exit status, 0 for CAMBER_OK. */
+/* Tells the message of a status; returns its exit status, 0 for CAMBER_OK. */
 int camber_report_status(camber_report *report, camber_status status);
 /* Standard input cannot be read, for the reason that errno gave. Returns the exit status, its line printed. */
 int camber_report_input(camber_report *report, int cause);
-/* What helps against an errno of the system's own limits; otherwise: against any other. */
+/* The cure for an errno that is one of the system's limits; for any other it is otherwise. */
 const char *camber_report_cure(int cause, const char *otherwise);
 void camber_report_warn(camber_report *report, const char *format, ...) CAMBER_PRINTF(2, 3);
 

@@ -1,3 +1,5 @@
+/* Opens the user's way to draw: --draw, --backend, --sharing and --device decide, or else whether GL is hardware. A
+ * renderer may open on a thread beside the reading of files, with a context and a report of its own. */
 #include "cli/session.h"
 
 #ifdef CAMBER_MAP
@@ -46,16 +48,16 @@ static camber_status prepare(camber_session *session) {
     return camber_context_create(&desc, &session->context);
 }
 
-/* ---- What draws ---- */
+/* ---- Drawing ---- */
 
-static void say_draw(camber_session *session, camber_report *report, camber_draw draw, const char *format, ...) {
+static void say_draw(camber_session *session, camber_report *report, camber_rasterizer draw, const char *format, ...) {
     char text[512];
     va_list list;
     va_start(list, format);
     vsnprintf(session->draw_reason, sizeof session->draw_reason, format, list);
     va_end(list);
     session->draw = draw;
-    snprintf(text, sizeof text, "draw: %s: %s", camber_draw_name(draw), session->draw_reason);
+    snprintf(text, sizeof text, "draw: %s: %s", camber_rasterizer_get_name(draw), session->draw_reason);
     camber_report_log(report, CAMBER_LOG_INFO, text);
 }
 
@@ -66,43 +68,43 @@ static camber_status choose_draw(camber_session *session, camber_context *contex
     const camber_surface_desc desc = {.backend = (camber_backend)options->backend};
     const bool counts = options->verb == CAMBER_VERB_COMPARE;
     if (!counts && !camber_surface_may_be_hardware(&desc)) {
-        say_draw(session, report, CAMBER_DRAW_CL, "no GPU is here that GL could draw on");
+        say_draw(session, report, CAMBER_RASTERIZER_OPENCL, "no GPU is here that GL could draw on");
         return CAMBER_OK;
     }
     const camber_status status = camber_surface_create(context, &desc, &session->surface);
     if (status == CAMBER_ERROR_MEMORY)
         return status;
     if (status != CAMBER_OK) {
-        say_draw(session, report, CAMBER_DRAW_CL, "no GL is here");
+        say_draw(session, report, CAMBER_RASTERIZER_OPENCL, "no GL is here");
         report->error[0] = 0; /* it is no failure */
         return CAMBER_OK;
     }
     const camber_surface_info info = camber_surface_get_info(session->surface);
     if (info.software && !counts) {
-        say_draw(session, report, CAMBER_DRAW_CL, "GL is a software rasteriser: %s", info.renderer);
+        say_draw(session, report, CAMBER_RASTERIZER_OPENCL, "GL is a software rasteriser: %s", info.renderer);
         camber_surface_destroy(session->surface);
         session->surface = NULL;
         return CAMBER_OK;
     }
     if (counts)
-        say_draw(session, report, CAMBER_DRAW_GL, "fragments and repeated pixels are counted in GL");
+        say_draw(session, report, CAMBER_RASTERIZER_GL, "fragments and repeated pixels are counted in GL");
     else
-        say_draw(session, report, CAMBER_DRAW_GL, "GL is hardware: %s", info.renderer);
+        say_draw(session, report, CAMBER_RASTERIZER_GL, "GL is hardware: %s", info.renderer);
     return CAMBER_OK;
 }
 
 static camber_status open_gl(camber_session *session, camber_context *context, camber_report *report) {
     const camber_options *options = session->options;
-    const camber_draw wish = (camber_draw)options->draw;
+    const camber_rasterizer wish = (camber_rasterizer)options->draw;
     const camber_surface_desc desc = {.backend = (camber_backend)options->backend};
     const bool named = options->backend != CAMBER_BACKEND_AUTO, shares = options->sharing != CAMBER_SHARING_AUTO;
-    if (wish == CAMBER_DRAW_AUTO && !named && !shares)
+    if (wish == CAMBER_RASTERIZER_AUTO && !named && !shares)
         return choose_draw(session, context, report);
-    if (wish == CAMBER_DRAW_AUTO)
-        say_draw(session, report, CAMBER_DRAW_GL, "--%s asks for GL", named ? "backend" : "sharing");
+    if (wish == CAMBER_RASTERIZER_AUTO)
+        say_draw(session, report, CAMBER_RASTERIZER_GL, "--%s asks for GL", named ? "backend" : "sharing");
     else
         say_draw(session, report, wish, "asked for");
-    return session->draw == CAMBER_DRAW_GL ? camber_surface_create(context, &desc, &session->surface) : CAMBER_OK;
+    return session->draw == CAMBER_RASTERIZER_GL ? camber_surface_create(context, &desc, &session->surface) : CAMBER_OK;
 }
 
 static camber_status open_drawing(camber_session *session, camber_context *context, camber_report *report,
@@ -112,11 +114,13 @@ static camber_status open_drawing(camber_session *session, camber_context *conte
     if (needs >= CAMBER_NEEDS_RENDERER && !session->renderer && !session->surface)
         status = open_gl(session, context, report);
     if (status == CAMBER_OK && needs >= CAMBER_NEEDS_DEVICE && !session->device) {
-        const camber_device_desc desc = {.match = options->device, .memory_bytes = options->memory_bytes};
-        status = camber_device_create(context, &desc, session->surface, &session->device);
+        const camber_device_desc desc = {.match = options->device,
+                                         .memory_bytes = options->memory_bytes,
+                                         .gl = camber_surface_get_handles(session->surface)};
+        status = camber_device_create(context, &desc, &session->device);
     }
     if (status == CAMBER_OK && needs >= CAMBER_NEEDS_RENDERER && !session->renderer) {
-        const camber_renderer_desc desc = {.sharing = (camber_sharing)options->sharing, .draw = session->draw};
+        const camber_renderer_desc desc = {.sharing = (camber_sharing)options->sharing, .rasterizer = session->draw};
         status = camber_renderer_create(session->device, session->surface, &desc, &session->renderer);
     }
     return status;
@@ -142,25 +146,26 @@ static void warm_up(const camber_opener *opener) {
     static const float lengths[] = {1, 1};
     const camber_session *session = opener->session;
     camber_context *context = opener->context;
-    const bool rich = opener->outlook == CAMBER_OUTLOOK_RICH && session->draw == CAMBER_DRAW_CL;
+    const bool rich = opener->outlook == CAMBER_OUTLOOK_RICH && session->draw == CAMBER_RASTERIZER_OPENCL;
     /* Kernels that may not be needed take seconds where the cache lacks them, and milliseconds later where it has them.
      */
-    const bool draws = session->draw == CAMBER_DRAW_GL || opener->outlook != CAMBER_OUTLOOK_OPEN;
+    const bool draws = session->draw == CAMBER_RASTERIZER_GL || opener->outlook != CAMBER_OUTLOOK_OPEN;
     const camber_dash dash = {lengths, 2};
     const double points[] = {2, 2, 14, 2, 14, 14};
     const size_t offsets[] = {0, 3};
-    const camber_network_desc lines = {.points = points, .offsets = offsets, .polyline_count = 1, .measured = rich};
+    const camber_network_desc lines = {
+        .points = points, .offsets = offsets, .polyline_count = 1, .has_arc_length = rich};
     const camber_camera camera = {
         .x = 8, .y = 8, .scale_px = 1, .width = 16, .height = 16, .pitch_deg = opener->pitch_deg};
     const camber_stroke stroke = {.width_px = 3};
     const camber_paint paint = {.width_px = 3, .color = {0, 0, 0, 1}, .dash = rich};
     const camber_tessellation_desc tessellation = {
-        .strokes = &stroke, .stroke_count = 1, .method = camber_session_method(session), .measured = rich};
+        .strokes = &stroke, .stroke_count = 1, .method = camber_session_method(session), .has_arc_length = rich};
     camber_network *network = NULL;
     camber_mesh *mesh = NULL;
     if (camber_network_create(context, &lines, &network) == CAMBER_OK &&
         camber_mesh_create(session->device, session->renderer, &mesh) == CAMBER_OK &&
-        camber_tessellate_network(mesh, network, &camera, &tessellation) == CAMBER_OK && draws) {
+        camber_mesh_tessellate_network(mesh, network, &camera, &tessellation) == CAMBER_OK && draws) {
         const camber_pass pass = {.mesh = mesh, .paints = &paint, .paint_count = 1, .dashes = &dash, .dash_count = 1};
         const camber_frame frame = {.width = 16,
                                     .height = 16,
@@ -168,7 +173,7 @@ static void warm_up(const camber_opener *opener) {
                                     .pass_count = 1,
                                     .coverage = (camber_coverage)session->options->coverage,
                                     .pitch_deg = opener->pitch_deg};
-        (void)camber_render(session->renderer, &frame, NULL, NULL, NULL);
+        (void)camber_renderer_render(session->renderer, &frame, NULL, NULL, NULL);
     }
     camber_mesh_destroy(mesh);
     camber_network_destroy(network);
@@ -293,10 +298,10 @@ void camber_session_describe(const camber_session *session, json_t *object) {
     }
     if (session->renderer) {
         const camber_sharing sharing = camber_renderer_get_sharing(session->renderer);
-        const bool in_gl = session->draw == CAMBER_DRAW_GL;
-        json_object_set_new(object, "draw", camber_json_text(camber_draw_name(session->draw)));
+        const bool in_gl = session->draw == CAMBER_RASTERIZER_GL;
+        json_object_set_new(object, "draw", camber_json_text(camber_rasterizer_get_name(session->draw)));
         json_object_set_new(object, "draw_reason", camber_json_text(session->draw_reason));
-        json_object_set_new(object, "sharing", camber_json_text(in_gl ? camber_sharing_name(sharing) : "none"));
+        json_object_set_new(object, "sharing", camber_json_text(in_gl ? camber_sharing_get_name(sharing) : "none"));
         if (!in_gl)
             json_object_set_new(object, "gl_renderer", json_null());
     }

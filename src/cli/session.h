@@ -1,4 +1,7 @@
-/* What a verb runs on: the context, the device, the surface and the renderer that the options ask for. */
+/* A session is what a verb runs on: the context, device, surface and renderer that the user's options ask for.
+ *
+ * It is no fixture (validate/fixture.h), which opens everything that a machine has: a session opens one of them, which
+ * it chooses from the options and from whether GL is hardware; it says why, and opens on a thread beside reading. */
 #ifndef CAMBER_CLI_SESSION_H
 #define CAMBER_CLI_SESSION_H
 
@@ -11,7 +14,7 @@ typedef enum camber_needs {
     CAMBER_NEEDS_RENDERER,
 } camber_needs;
 
-/* What a picture will need of kernels, as far as is known before its lines are. */
+/* The kernels that a picture will need, as far as is known before its lines are. */
 typedef enum camber_outlook {
     CAMBER_OUTLOOK_PLAIN = 0, /* lines of one colour */
     CAMBER_OUTLOOK_RICH,      /* dashes and the like */
@@ -32,7 +35,7 @@ typedef struct camber_session {
     camber_surface *surface;
     camber_device *device;
     camber_renderer *renderer;
-    camber_draw draw; /* what the renderer draws with, and why: once one was asked for */
+    camber_rasterizer draw; /* what the renderer draws with, and why: once one was asked for */
     char draw_reason[256];
     bool opens_beside;     /* camber_input_open starts a renderer, once it knows the style */
     camber_opener *opener; /* NULL: not started */

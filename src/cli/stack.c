@@ -7,7 +7,8 @@
 #include <stddef.h>
 #include <sys/resource.h>
 
-/* What systems give. PoCL has arrays of 64 KB, and the compilers behind it and behind GL go deeper than that. */
+/* The usual limit of systems. PoCL has arrays of 64 KB on the stack, and the compilers behind it and behind GL need
+ * more. */
 enum { ENOUGH_BYTES = 8 << 20 };
 
 typedef struct job {
@@ -27,7 +28,7 @@ static bool is_small(void) {
     return getrlimit(RLIMIT_STACK, &limit) == 0 && limit.rlim_cur < ENOUGH_BYTES;
 }
 
-/* glibc takes the limit for the threads that drivers start, too. */
+/* glibc also uses this limit for threads that drivers start. */
 static void widen_threads(const pthread_attr_t *attributes) {
 #ifdef __GLIBC__
     pthread_setattr_default_np(attributes);
@@ -51,6 +52,6 @@ int camber_stack_run(int (*work)(void *user), void *user) {
     if (started)
         pthread_join(thread, NULL);
     else
-        do_job(&it); /* where no thread can be had, as it is */
+        do_job(&it); /* no thread could be made: work on this stack */
     return it.result;
 }

@@ -1,3 +1,5 @@
+/* Runs `camber bench`: draws the input several times and prints minimum, median and maximum of every stage, as a table
+ * or JSON. On request it writes the picture and the polylines. */
 #include "cli/picture.h"
 #include "cli/verbs.h"
 #include "validate/statistics.h"
@@ -7,10 +9,10 @@
 
 #define WARM_UPS 3
 
-/* Times of a run; every member is a series. */
+/* The times of a run in ms; every member becomes a series. */
 typedef struct run_times {
-    double tessellate, draw, frame, survey, project, classify, scan, emit;
-    double shape, count, total, fill, cover; /* of kernels that draw */
+    double tessellate, draw, frame, cull_count, project, classify, scan, emit;
+    double shape, count, total, fill, cover; /* kernels that rasterize */
 } run_times;
 
 #define TIMES (sizeof(run_times) / sizeof(double))
@@ -38,7 +40,8 @@ static bool keep_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint3
     return true;
 }
 
-/* A whole frame, from the lines to pixels in memory, and then its parts alone with their input resident. */
+/* Times a whole frame, from the lines to pixels in memory, and then its stages alone with their input already on the
+ * device. */
 static int time_run(job *j, run_times *times) {
     const double start_ms = camber_clock_ms();
     const int projected = camber_input_project(&j->input);
@@ -47,28 +50,28 @@ static int time_run(job *j, run_times *times) {
     camber_status status = camber_input_tessellate(&j->input, j->mesh);
     camber_frame frame = camber_input_frame(&j->input, j->mesh);
     if (status == CAMBER_OK)
-        status = camber_render(j->session->renderer, &frame, keep_rows, j, NULL);
+        status = camber_renderer_render(j->session->renderer, &frame, keep_rows, j, NULL);
     times->frame = camber_clock_ms() - start_ms;
     const double resident_ms = camber_clock_ms();
     if (status == CAMBER_OK)
         status = camber_input_tessellate(&j->input, j->mesh);
     times->tessellate = camber_clock_ms() - resident_ms;
     const camber_mesh_info info = camber_mesh_get_info(j->mesh);
-    times->tessellate -= info.survey_ms + info.project_ms; /* from classify on */
-    times->survey = info.survey_ms;
-    times->project = info.project_ms;
-    times->classify = info.classify_ms;
-    times->scan = info.scan_ms;
-    times->emit = info.emit_ms;
-    frame = camber_input_frame(&j->input, j->mesh); /* a scene's is valid until the next call on it */
+    times->cull_count = camber_stage_times_get_ms(&info.times, "cull_count");
+    times->project = camber_stage_times_get_ms(&info.times, "cull_emit");
+    times->tessellate -= times->cull_count + times->project; /* from classify on */
+    times->classify = camber_stage_times_get_ms(&info.times, "classify");
+    times->scan = camber_stage_times_get_ms(&info.times, "scan");
+    times->emit = camber_stage_times_get_ms(&info.times, "emit");
+    frame = camber_input_frame(&j->input, j->mesh); /* a scene's frame is valid until the next call on the scene */
     if (status == CAMBER_OK)
-        status = camber_render(j->session->renderer, &frame, NULL, NULL, &j->stats);
+        status = camber_renderer_render(j->session->renderer, &frame, NULL, NULL, &j->stats);
     times->draw = j->stats.draw_ms;
-    times->shape = j->stats.shape_ms;
-    times->count = j->stats.count_ms;
-    times->total = j->stats.total_ms;
-    times->fill = j->stats.fill_ms;
-    times->cover = j->stats.cover_ms;
+    times->shape = camber_stage_times_get_ms(&j->stats.times, "setup");
+    times->count = camber_stage_times_get_ms(&j->stats.times, "bin_count");
+    times->total = camber_stage_times_get_ms(&j->stats.times, "bin_scan");
+    times->fill = camber_stage_times_get_ms(&j->stats.times, "bin_scatter");
+    times->cover = camber_stage_times_get_ms(&j->stats.times, "rasterize");
     return camber_report_status(j->session->report, status);
 }
 
@@ -140,7 +143,7 @@ static int run(job *j) {
             camber_report_status(session->report, camber_mesh_create(session->device, session->renderer, &j->mesh));
     if (status == CAMBER_EXIT_DONE)
         status = measure(j);
-    /* A scene that was moved makes them once more. */
+    /* A scene that has moved makes its polylines again. */
     if (status == CAMBER_EXIT_DONE && !camber_input_polylines(&j->input))
         status = camber_report_status(session->report, CAMBER_ERROR_MEMORY);
     if (status == CAMBER_EXIT_DONE && session->options->dump)
@@ -160,7 +163,7 @@ static int print_json(const job *j) {
     const camber_polylines_stats lines = camber_polylines_get_stats(camber_input_polylines(&j->input));
     const camber_mesh_info mesh = camber_mesh_get_info(j->mesh);
     json_t *object =
-        json_pack("{s:s, s:I, s:I, s:I}", "method", camber_method_name(mesh.method), "width", (json_int_t)j->width,
+        json_pack("{s:s, s:I, s:I, s:I}", "method", camber_method_get_name(mesh.method), "width", (json_int_t)j->width,
                   "height", (json_int_t)j->height, "runs", (json_int_t)session->options->runs);
     if (!object)
         return camber_report_json(session->report, NULL);
@@ -187,17 +190,17 @@ static int print_json(const job *j) {
     json_object_set_new(object, "draw_ms", summary_json(&j->summaries[1]));
     json_object_set_new(object, "frame_ms", summary_json(&j->summaries[2]));
     json_t *stages = json_object();
-    /* The kernels that draw are there where they drew. */
-    static const char *const names[] = {"survey", "project", "classify", "scan", "emit",
-                                        "shape",  "count",   "total",    "fill", "cover"};
-    const size_t count = camber_renderer_get_draw(session->renderer) == CAMBER_DRAW_CL ? 10 : 5;
+    /* The last rows are for the kernels that rasterize, if they drew. */
+    static const char *const names[] = {"cull_count", "cull_emit", "classify", "scan",        "emit",
+                                        "setup",      "bin_count", "bin_scan", "bin_scatter", "rasterize"};
+    const size_t count = camber_renderer_get_rasterizer(session->renderer) == CAMBER_RASTERIZER_OPENCL ? 10 : 5;
     for (size_t i = 0; i < count; i++)
         json_object_set_new(stages, names[i], summary_json(&j->summaries[3 + i]));
     json_object_set_new(object, "stage_ms", stages);
     return camber_report_json(session->report, object);
 }
 
-/* The table is what the verb is for: on standard output, unless the picture or the polylines go there. */
+/* The table goes to standard output, unless the picture or the polylines go there. */
 static int print_text(const job *j) {
     camber_session *session = j->session;
     const camber_options *options = session->options;
@@ -209,20 +212,21 @@ static int print_text(const job *j) {
     const camber_device_info device = camber_device_get_info(session->device);
     if (session->surface)
         fprintf(file, "%s; %s; sharing: %s\n", device.name, camber_surface_get_info(session->surface).renderer,
-                camber_sharing_name(camber_renderer_get_sharing(session->renderer)));
+                camber_sharing_get_name(camber_renderer_get_sharing(session->renderer)));
     else
         fprintf(file, "%s; drawn in OpenCL\n", device.name);
     fprintf(file, "%u x %u px, %s, %zu polyline%s, %zu points (%zu read), %zu segments (%zu read)\n", j->width,
-            j->height, camber_method_name(mesh.method), lines.polylines, camber_plural(lines.polylines),
+            j->height, camber_method_get_name(mesh.method), lines.polylines, camber_plural(lines.polylines),
             lines.kept_points, j->input.points_in, lines.kept_segments, j->input.segments_in);
     fprintf(file, "%zu vertices, %zu triangles, %.1f MB, ", mesh.vertex_count, mesh.triangle_count,
             (double)mesh.bytes / 1e6);
     if (session->surface) /* kernels have no draw calls */
         fprintf(file, "%zu draw call%s, ", j->stats.draw_calls, camber_plural(j->stats.draw_calls));
     fprintf(file, "peak memory %.0f MB\n", (double)camber_peak_rss_bytes() / 1e6);
-    static const char *const names[TIMES] = {"tessellate", "draw",  "frame", "survey", "project", "classify", "scan",
-                                             "emit",       "shape", "count", "total",  "fill",    "cover"};
-    const size_t count = camber_renderer_get_draw(session->renderer) == CAMBER_DRAW_CL ? TIMES : 8;
+    static const char *const names[TIMES] = {"tessellate", "draw",        "frame",    "cull_count", "cull_emit",
+                                             "classify",   "scan",        "emit",     "setup",      "bin_count",
+                                             "bin_scan",   "bin_scatter", "rasterize"};
+    const size_t count = camber_renderer_get_rasterizer(session->renderer) == CAMBER_RASTERIZER_OPENCL ? TIMES : 8;
     fprintf(file, "\n%-12s %10s %10s %10s   ms, %u run%s\n", "", "min", "median", "max", options->runs,
             camber_plural(options->runs));
     for (size_t i = 0; i < count; i++)

@@ -1,3 +1,5 @@
+/* Runs `camber compare`: runs the comparison and prints its networks, metrics and averages, as a table or JSON. On
+ * request the averages become a plot. */
 #include "cli/plot.h"
 #include "cli/verbs.h"
 
@@ -14,12 +16,12 @@ static json_t *number_json(double value, int decimals) {
     return decimals == 0 && value == floor(value) ? json_integer((json_int_t)value) : json_real(value);
 }
 
-static json_t *measures_json(const double *measures) {
+static json_t *metrics_json(const double *metrics) {
     json_t *object = json_object();
-    for (int i = 0; i < CAMBER_MEASURE_COUNT; i++) {
-        const bool ms = i == CAMBER_MEASURE_TESSELLATE_MS || i == CAMBER_MEASURE_DRAW_MS;
-        json_object_set_new(object, camber_measures[i].key,
-                            ms ? camber_json_ms(measures[i]) : number_json(measures[i], camber_measures[i].decimals));
+    for (int i = 0; i < CAMBER_METRIC_COUNT; i++) {
+        const bool ms = i == CAMBER_METRIC_TESSELLATE_MS || i == CAMBER_METRIC_DRAW_MS;
+        json_object_set_new(object, camber_metrics[i].key,
+                            ms ? camber_json_ms(metrics[i]) : number_json(metrics[i], camber_metrics[i].decimals));
     }
     return object;
 }
@@ -32,19 +34,20 @@ static json_t *row_json(const camber_comparison *c, const camber_comparison_row 
     }
     for (int i = 0; i < CAMBER_METHODS; i++)
         if (c->shown[i])
-            json_object_set_new(methods, camber_method_name(camber_methods_shown[i]), measures_json(row->measures[i]));
+            json_object_set_new(methods, camber_method_get_name(camber_methods_shown[i]),
+                                metrics_json(row->metrics[i]));
     json_object_set_new(object, "joins_by_turn_deg", turns);
     json_object_set_new(object, "methods", methods);
     return object;
 }
 
-/* Where to look: the pixel of each method's maximum error. */
+/* Adds where to look: the pixel of each method's maximum error. */
 static void put_places(const camber_comparison *c, const camber_comparison_row *row, json_t *methods) {
     for (int i = 0; i < CAMBER_METHODS; i++) {
         const json_int_t at = (json_int_t)row->max_at[i], width = (json_int_t)c->networks.width;
         if (c->shown[i])
-            json_object_set_new(json_object_get(methods, camber_method_name(camber_methods_shown[i])), "max_error_at",
-                                json_pack("[I, I]", at % width, at / width));
+            json_object_set_new(json_object_get(methods, camber_method_get_name(camber_methods_shown[i])),
+                                "max_error_at", json_pack("[I, I]", at % width, at / width));
     }
 }
 
@@ -52,11 +55,11 @@ static json_t *ratios_json(const camber_comparison *c) {
     json_t *object = json_object();
     for (int i = 0; i < CAMBER_METHODS; i++) {
         json_t *ratios = json_object();
-        for (int k = 0; k < CAMBER_MEASURE_COUNT; k++) {
+        for (int k = 0; k < CAMBER_METRIC_COUNT; k++) {
             const double ratio = camber_comparison_ratio(c, i, k);
-            json_object_set_new(ratios, camber_measures[k].key, isnan(ratio) ? json_null() : json_real(ratio));
+            json_object_set_new(ratios, camber_metrics[k].key, isnan(ratio) ? json_null() : json_real(ratio));
         }
-        json_object_set_new(object, camber_method_name(camber_methods_shown[i]), ratios);
+        json_object_set_new(object, camber_method_get_name(camber_methods_shown[i]), ratios);
     }
     return object;
 }
@@ -93,7 +96,7 @@ static int print_json(const camber_comparison *c) {
 
 /* ---- A table ---- */
 
-/* Right-aligned, thousands set apart by commas. */
+/* Prints a number right-aligned, with commas between thousands. */
 static void put_number(double value, int decimals, int width) {
     char digits[64], text[96];
     if (isnan(value)) {
@@ -112,8 +115,8 @@ static void put_number(double value, int decimals, int width) {
     printf("%*s", width, text);
 }
 
-/* A count's average has a decimal where it is small. */
-static int decimals_of(const camber_measure_info *info, double value) {
+/* The average of a count has a decimal if it is small. */
+static int decimals_of(const camber_metric_info *info, double value) {
     return info->decimals == 0 && value != floor(value) && value < 1000 ? 1 : info->decimals;
 }
 
@@ -131,7 +134,7 @@ static int name_width(const camber_comparison *c) {
     return width < NAME_COLUMNS ? (int)width : NAME_COLUMNS;
 }
 
-/* The networks, and their average where there are several. */
+/* Row i: a network, or behind them their average if there are several. */
 static const camber_comparison_row *row_at(const camber_comparison *c, size_t i) {
     return i < c->networks.count ? &c->rows[i] : &c->average;
 }
@@ -156,44 +159,45 @@ static void print_figures(const camber_comparison *c, int width) {
          "degrees");
 }
 
-/* Measures first to end - 1: a row a network and method, and then the ratios. */
-static void print_measures(const camber_comparison *c, int width, int first, int end) {
+/* Prints metrics first to end - 1: a row for each network and method, and then the ratios. */
+static void print_metrics(const camber_comparison *c, int width, int first, int end) {
     printf("\n%-*s  %-7s", width, "network", "method");
     for (int k = first; k < end; k++)
-        printf("%*s", camber_measures[k].width, camber_measures[k].head);
+        printf("%*s", camber_metrics[k].width, camber_metrics[k].head);
     putchar('\n');
     for (size_t i = 0; i < row_count(c); i++)
         for (int method = 0; method < CAMBER_METHODS; method++) {
             if (!c->shown[method])
                 continue;
-            const double *measures = row_at(c, i)->measures[method];
+            const double *metrics = row_at(c, i)->metrics[method];
             put_name(row_at(c, i)->name, width);
-            printf("  %-7s", camber_method_name(camber_methods_shown[method]));
+            printf("  %-7s", camber_method_get_name(camber_methods_shown[method]));
             for (int k = first; k < end; k++)
-                put_number(measures[k], decimals_of(&camber_measures[k], measures[k]), camber_measures[k].width);
+                put_number(metrics[k], decimals_of(&camber_metrics[k], metrics[k]), camber_metrics[k].width);
             putchar('\n');
         }
     for (int method = 0; method < CAMBER_METHODS && c->session->options->method < 0; method++) {
-        printf("%-*s  %-7s", width, method ? "" : "to one of kite's", camber_method_name(camber_methods_shown[method]));
+        printf("%-*s  %-7s", width, method ? "" : "to one of kite's",
+               camber_method_get_name(camber_methods_shown[method]));
         for (int k = first; k < end; k++)
-            put_number(camber_comparison_ratio(c, method, k), 2, camber_measures[k].width);
+            put_number(camber_comparison_ratio(c, method, k), 2, camber_metrics[k].width);
         putchar('\n');
     }
 }
 
 static int print_text(const camber_comparison *c) {
-    const camber_networks *networks = &c->networks;
+    const camber_compared_networks *networks = &c->networks;
     const camber_device_info device = camber_device_get_info(c->session->device);
     int width = name_width(c);
     width = width < 16 ? 16 : width;
-    const bool in_gl = c->session->draw == CAMBER_DRAW_GL;
+    const bool in_gl = c->session->draw == CAMBER_RASTERIZER_GL;
     printf("%s; %s\n", device.name, in_gl ? camber_surface_get_info(c->session->surface).renderer : "drawn in OpenCL");
     printf("%u x %u px", networks->width, networks->height);
     if (networks->features)
         printf(" at zoom %.2f", networks->info.zoom);
     printf(", lines %g px wide, round joins, butt caps; runs: %u\n", networks->width_px, c->session->options->runs);
     print_figures(c, width);
-    print_measures(c, width, 0, CAMBER_MEASURE_OF_PIXELS);
+    print_metrics(c, width, 0, CAMBER_METRIC_OF_PIXELS);
     puts("16-bit: batches of 65,535 vertices; times: medians, tess. is the kernels; error: mean absolute difference "
          "from 256\n"
          "samples a pixel, in 255ths, over the pixels that lines or picture touch; max: the largest");
@@ -203,7 +207,7 @@ static int print_text(const camber_comparison *c) {
              "triangles repeat are GL's alone (--draw gl)");
         return camber_report_flush(c->session->report);
     }
-    print_measures(c, width, CAMBER_MEASURE_OF_PIXELS, CAMBER_MEASURE_COUNT);
+    print_metrics(c, width, CAMBER_METRIC_OF_PIXELS, CAMBER_METRIC_COUNT);
     puts("fragments: shaded; drawn: pixels, once a polyline; repeated: more than once within a polyline; at plain, "
          "tight, split\n"
          "joins: by the two segments that meet, once a join; elsewhere: by no join, where a line comes back to itself");

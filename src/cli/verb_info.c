@@ -1,9 +1,9 @@
+/* Runs `camber info`: prints devices, GL back ends, the path by which buffers are shared, versions and formats, as text
+ * or JSON. A missing part is no failure: the reason is printed in its place. */
 #include "cli/verbs.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-/* Whatever is missing is part of the answer, not a failure: the reason stands where the thing would. */
 
 static json_t *device_json(const camber_device_info *info) {
     const char *type = info->type == CAMBER_DEVICE_TYPE_CPU   ? "cpu"
@@ -16,9 +16,9 @@ static json_t *device_json(const camber_device_info *info) {
                      (json_int_t)info->largest_buffer_bytes, "gl_sharing", info->gl_sharing);
 }
 
-/* The story of the last failure, which must not be told twice. */
+/* Takes the message of the last failure, so that it is not printed again. */
 static json_t *take_error(camber_report *report, camber_status status) {
-    json_t *text = camber_json_text(report->error[0] ? report->error : camber_status_name(status));
+    json_t *text = camber_json_text(report->error[0] ? report->error : camber_status_get_name(status));
     report->error[0] = 0;
     return text;
 }
@@ -26,17 +26,14 @@ static json_t *take_error(camber_report *report, camber_status status) {
 static void add_devices(camber_session *session, json_t *object) {
     json_t *list = json_array();
     json_object_set_new(object, "devices", list);
-    size_t count = 0;
-    camber_status status = camber_device_list(session->context, 0, NULL, &count);
-    camber_device_info *infos = status == CAMBER_OK && count ? calloc(count, sizeof *infos) : NULL;
-    const size_t capacity = infos ? count : 0;
-    if (infos)
-        status = camber_device_list(session->context, capacity, infos, &count);
-    for (size_t i = 0; status == CAMBER_OK && i < count && i < capacity; i++)
-        json_array_append_new(list, device_json(&infos[i]));
+    const camber_device_info *info = NULL;
+    camber_status status = camber_device_list(session->context, 0, &info);
+    for (size_t i = 1; status == CAMBER_OK && info; i++) {
+        json_array_append_new(list, device_json(info));
+        status = camber_device_list(session->context, i, &info);
+    }
     if (status != CAMBER_OK)
         json_object_set_new(object, "devices_error", take_error(session->report, status));
-    free(infos);
 }
 
 static void add_backends(camber_session *session, json_t *object) {
@@ -67,7 +64,7 @@ static void add_backends(camber_session *session, json_t *object) {
     }
 }
 
-/* What a picture would be drawn with, and why. */
+/* Adds what a picture would be drawn with, and why. */
 static void add_choice(camber_session *session, json_t *object) {
     const camber_status status = camber_session_open(session, CAMBER_NEEDS_RENDERER);
     camber_session_describe(session, object);
@@ -79,15 +76,15 @@ static void add_formats(json_t *object) {
     json_t *list = json_array();
     json_object_set_new(object, "formats", list);
 #ifdef CAMBER_MAP
-    const char *version = camber_gdal_version();
+    const char *version = camber_gdal_get_version();
     json_object_set_new(object, "gdal", version ? camber_json_text(version) : json_null());
     const char *name;
     bool has_pmtiles = false;
-    for (size_t i = 0; (name = camber_format_name(i)) != NULL; i++) {
+    for (size_t i = 0; (name = camber_format_list(i)) != NULL; i++) {
         json_array_append_new(list, camber_json_text(name));
         has_pmtiles |= strcmp(name, "PMTiles") == 0;
     }
-    if (!has_pmtiles) /* which camber reads by itself where GDAL does not */
+    if (!has_pmtiles) /* camber reads them by itself if GDAL does not */
         json_array_append_new(list, json_string("PMTiles"));
 #endif
 }

@@ -1,3 +1,5 @@
+/* Runs `camber render`: reads the input, projects and tessellates it, and draws it into a PNG. A summary of counts and
+ * times goes to standard error, or to standard output as JSON. */
 #include "cli/picture.h"
 #include "cli/verbs.h"
 
@@ -14,8 +16,8 @@ typedef struct job {
     size_t written_bytes;
 } job;
 
-/* What is not a stage's: libraries, the device and its kernels, as far as they take longer than what is read beside.
- * The stages and this are the whole. */
+/* The time that belongs to no stage: libraries, the device and its kernels, as far as they take longer than reading,
+ * which goes on beside. Together with the stages it is the whole. */
 static double start_ms(const job *j) {
     const camber_frame_stats *frame = &j->times.frame;
     return j->total_ms - j->input.read_ms - j->input.scene_ms - j->tessellate_ms - frame->draw_ms - frame->read_ms -
@@ -54,15 +56,17 @@ static int draw(job *j) {
 
 static int print_json(const job *j) {
     const camber_session *session = j->session;
+    (void)camber_scene_project(j->input.scene); /* counts are 0 where memory for them ran out */
     const camber_scene_info scene = camber_scene_get_info(j->input.scene);
     const camber_polylines_stats lines = camber_polylines_get_stats(camber_input_polylines(&j->input));
     const camber_mesh_info mesh = camber_mesh_get_info(j->mesh);
-    json_t *object = json_pack("{s:o, s:I, s:I, s:o, s:f, s:f, s:f, s:f, s:f, s:s, s:s}", "output",
-                               camber_json_text(session->options->output), "width", (json_int_t)scene.width, "height",
-                               (json_int_t)scene.height, "output_bytes", camber_json_count(j->written_bytes),
-                               "longitude", scene.longitude, "latitude", scene.latitude, "zoom", scene.zoom, "bearing",
-                               scene.bearing_deg, "pitch", scene.pitch_deg, "method", camber_method_name(mesh.method),
-                               "coverage", session->options->coverage == CAMBER_COVERAGE_EXACT ? "exact" : "linear");
+    json_t *object =
+        json_pack("{s:o, s:I, s:I, s:o, s:f, s:f, s:f, s:f, s:f, s:s, s:s}", "output",
+                  camber_json_text(session->options->output), "width", (json_int_t)scene.width, "height",
+                  (json_int_t)scene.height, "output_bytes", camber_json_count(j->written_bytes), "longitude",
+                  scene.longitude, "latitude", scene.latitude, "zoom", scene.zoom, "bearing", scene.bearing_deg,
+                  "pitch", scene.pitch_deg, "method", camber_method_get_name(mesh.method), "coverage",
+                  session->options->coverage == CAMBER_COVERAGE_EXACT ? "exact" : "linear");
     if (!object)
         return camber_report_json(session->report, NULL);
     camber_session_describe(session, object);
@@ -101,22 +105,23 @@ static int print_json(const job *j) {
     return camber_report_json(session->report, object);
 }
 
-/* Kernels draw without draw calls. */
+/* Prints the counts; kernels have no draw calls. */
 static void print_counts(const job *j, const camber_scene_info *scene) {
     const camber_mesh_info mesh = camber_mesh_get_info(j->mesh);
     const size_t calls = j->times.frame.draw_calls;
     char drawn[64] = "drawn by OpenCL kernels";
-    if (camber_renderer_get_draw(j->session->renderer) == CAMBER_DRAW_GL)
+    if (camber_renderer_get_rasterizer(j->session->renderer) == CAMBER_RASTERIZER_GL)
         snprintf(drawn, sizeof drawn, "%zu draw call%s", calls, camber_plural(calls));
     camber_report_say(j->session->report, "%zu feature%s, %zu polyline%s, %zu point%s, %zu triangle%s (%s), %s",
                       scene->features, camber_plural(scene->features), scene->polylines,
                       camber_plural(scene->polylines), scene->points, camber_plural(scene->points), mesh.triangle_count,
-                      camber_plural(mesh.triangle_count), camber_method_name(mesh.method), drawn);
+                      camber_plural(mesh.triangle_count), camber_method_get_name(mesh.method), drawn);
 }
 
 static void print_text(const job *j) {
     camber_session *session = j->session;
     camber_report *report = session->report;
+    (void)camber_scene_project(j->input.scene); /* counts are 0 where memory for them ran out */
     const camber_scene_info scene = camber_scene_get_info(j->input.scene);
     const char *path = session->options->output;
     camber_report_say(report, "%s: %u x %u px, zoom %.2f at %.5f, %.5f", path[0] == '-' && !path[1] ? "picture" : path,

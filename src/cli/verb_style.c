@@ -33,7 +33,7 @@ static int print_json(camber_report *out, const camber_style_report *report) {
                               json_pack("{s:o, s:o, s:b}", "type", camber_json_text(report->types[i].type), "layers",
                                         camber_json_count(report->types[i].layers), "drawn", report->types[i].drawn));
     for (size_t i = 0; i < report->source_count; i++) {
-        const camber_style_origin *source = report->sources + i;
+        const camber_style_report_source *source = report->sources + i;
         json_array_append_new(sources, json_pack("{s:o, s:o, s:o, s:o}", "name", camber_json_text(source->name), "type",
                                                  camber_json_text(source->type), "line_layers",
                                                  camber_json_count(source->layers), "trouble",
@@ -55,7 +55,7 @@ static void print_text(camber_report *out, const char *name, const camber_style_
                           report->types[i].layers == 1 ? "" : "s", report->types[i].type,
                           report->types[i].drawn ? "drawn" : "not drawn");
     for (size_t i = 0; i < report->source_count; i++) {
-        const camber_style_origin *source = report->sources + i;
+        const camber_style_report_source *source = report->sources + i;
         camber_report_say(out, "source %s of type %s, named by %zu line layer%s: %s", source->name, source->type,
                           source->layers, source->layers == 1 ? "" : "s",
                           source->trouble ? source->trouble : "read when it is drawn");

@@ -1,5 +1,7 @@
-#include "cli/input.h"
+/* Runs `camber tessellate`: reads the input, projects and tessellates it, and writes the mesh with its paints as a
+ * binary glTF. */
 #include "camber_proof.h"
+#include "cli/input.h"
 #include "cli/verbs.h"
 
 #include <stdlib.h>
@@ -17,12 +19,13 @@ typedef struct job {
     size_t written_bytes;
 } job;
 
-/* What is not a stage's: libraries, the device and its kernels. The stages and this are the whole. */
+/* The time that belongs to no stage: libraries, the device and its kernels. Together with the stages it is the whole.
+ */
 static double start_ms(const job *j) {
     return j->total_ms - j->input.read_ms - j->input.scene_ms - j->tessellate_ms - j->write_ms;
 }
 
-/* A row's paint is that of the topmost pass that draws it: the fill where there is a casing. */
+/* A row gets the paint of the topmost pass that draws it: the fill, if there is a casing. */
 static bool gather_paints(job *j, size_t count) {
     j->paints = calloc(count ? count : 1, sizeof *j->paints);
     if (!j->paints)
@@ -82,12 +85,13 @@ static int run(job *j) {
 
 static int print_json(const job *j) {
     const camber_session *session = j->session;
+    (void)camber_scene_project(j->input.scene); /* counts are 0 where memory for them ran out */
     const camber_scene_info scene = camber_scene_get_info(j->input.scene);
     const camber_mesh_info *mesh = &j->data.info;
     json_t *object = json_pack(
         "{s:o, s:o, s:I, s:I, s:s, s:b, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "output",
         camber_json_text(session->options->output), "output_bytes", camber_json_count(j->written_bytes), "width",
-        (json_int_t)scene.width, "height", (json_int_t)scene.height, "method", camber_method_name(mesh->method),
+        (json_int_t)scene.width, "height", (json_int_t)scene.height, "method", camber_method_get_name(mesh->method),
         "strips", mesh->strips, "features", camber_json_count(scene.features), "polylines",
         camber_json_count(scene.polylines), "points", camber_json_count(scene.points), "vertices",
         camber_json_count(mesh->vertex_count), "indices", camber_json_count(mesh->index_count), "triangles",
@@ -110,12 +114,13 @@ static int print_json(const job *j) {
 static void print_text(const job *j) {
     camber_session *session = j->session;
     camber_report *report = session->report;
+    (void)camber_scene_project(j->input.scene); /* counts are 0 where memory for them ran out */
     const camber_scene_info scene = camber_scene_get_info(j->input.scene);
     const char *path = session->options->output;
     const size_t triangles = j->data.info.triangle_count;
     camber_report_say(report, "%s: %zu vertices, %zu triangle%s (%s), %zu bytes",
                       path[0] == '-' && !path[1] ? "mesh" : path, j->data.info.vertex_count, triangles,
-                      camber_plural(triangles), camber_method_name(j->data.info.method), j->written_bytes);
+                      camber_plural(triangles), camber_method_get_name(j->data.info.method), j->written_bytes);
     camber_report_say(report, "%zu feature%s, %zu polyline%s, %zu point%s", scene.features,
                       camber_plural(scene.features), scene.polylines, camber_plural(scene.polylines), scene.points,
                       camber_plural(scene.points));
@@ -136,7 +141,7 @@ int camber_verb_tessellate(camber_session *session) {
         status = print_json(&j);
     else if (status == CAMBER_EXIT_DONE)
         print_text(&j);
-    camber_mesh_data_free(session->context, &j.data);
+    camber_mesh_data_destroy(&j.data);
     free(j.paints);
     camber_mesh_destroy(j.mesh);
     camber_input_close(&j.input);

@@ -11,7 +11,7 @@ int camber_verb_validate(camber_session *session);
 int camber_verb_bench(camber_session *session);
 int camber_verb_info(camber_session *session);
 int camber_verb_style(camber_session *session);
-/* info --warm. There is a context, and no device yet. */
+/* Runs info --warm. The session has a context, and no device yet. */
 int camber_warm(camber_session *session);
 
 #endif

@@ -1,6 +1,6 @@
-/* info --warm: every kernel is compiled and saved before anybody waits for it. PoCL compiles one kernel at a time in a
- * process, so processes do it side by side, each its share; one that fails leaves its share to this one, which goes
- * through all of them at the end and tells what there is. */
+/* Runs info --warm: compiles and saves every kernel before anybody waits for it. PoCL compiles one kernel at a time in
+ * a process, so several processes compile a share each. If one fails, this process compiles its share: it goes through
+ * all kernels at the end, and prints the result. */
 #define _GNU_SOURCE /* sched_getaffinity */
 
 #include "cli/verbs.h"
@@ -11,7 +11,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-/* Each takes a quarter of a gigabyte. */
+/* Each process takes a quarter of a gigabyte. */
 enum { PROCESSES_MAX = 4 };
 
 static unsigned count_processes(const camber_options *options) {
@@ -36,7 +36,7 @@ static pid_t start_share(camber_session *session, unsigned share, unsigned share
     _exit(warm_share(session, share, shares, &warmed) == CAMBER_OK ? 0 : 1);
 }
 
-/* Before this process has a device: its driver's threads would not be there in the others. */
+/* Must run before this process opens a device: a fork would not have the threads of its driver. */
 static void warm_side_by_side(camber_session *session) {
     pid_t processes[PROCESSES_MAX];
     const unsigned shares = count_processes(session->options);

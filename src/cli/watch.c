@@ -1,3 +1,6 @@
+/* Ends a run that takes too much memory, or whose reader works too long without a result. Libraries such as GDAL cannot
+ * be stopped from within a call, so the guard's thread looks now and then and ends the process. Our own memory is
+ * counted by the budget; this looks at the memory of the whole process. */
 #define _GNU_SOURCE /* pthread_getcpuclockid */
 
 #include "cli/watch.h"
@@ -6,12 +9,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* OpenCL's compiler, GDAL and what they keep. */
+/* Memory of OpenCL's compiler, GDAL and their caches. */
 static const uint64_t LIBRARIES_BYTES = 512 << 20;
-/* Parsers make a gigabyte of GeoJSON in half a minute, without a word until they are done. */
+/* A parser takes half a minute for a gigabyte of GeoJSON and reports nothing until it is done. */
 static const double READING_S = 6, READING_S_A_MB = 1, READING_S_UNKNOWN = 600;
 
-/* What both threads look at is theirs in turn by the guard's lock. */
+/* The guard's lock protects the fields that both threads use. */
 static void lock(camber_watch *watch) {
     camber_guard_lock(watch->guard);
 }
@@ -41,7 +44,7 @@ static void look_at_memory(const camber_watch *watch) {
     const uint64_t held = resident_bytes();
     if (held <= LIBRARIES_BYTES)
         return;
-    const uint64_t most = camber_budget_most_bytes(watch->budget);
+    const uint64_t most = camber_budget_get_most_bytes(watch->budget);
     if (held - LIBRARIES_BYTES <= most)
         return;
     camber_guard_end(watch->guard,
@@ -67,7 +70,7 @@ static void look(void *watch) {
     look_at_reading(self);
 }
 
-/* ---- What is watched ---- */
+/* ---- Starting and stopping ---- */
 
 void camber_watch_start(camber_watch *watch, camber_guard *guard, camber_report *report, camber_budget *budget) {
     camber_guard_lock(guard);

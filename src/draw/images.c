@@ -1,6 +1,6 @@
-/* Images that rows and fills are drawn with: each at about the size it is drawn in, with what lies beyond its edges
- * around it, so that no filter reaches into a neighbour. */
-#include "draw/renderer.h"
+/* Images that lines and fills are drawn with. The host averages each to about the size that it is drawn in, and adds a
+ * border of what lies beyond its edges, so that no filter reaches into a neighbour. */
+#include "draw/images.h"
 
 #include <math.h>
 #include <string.h>
@@ -13,29 +13,25 @@ bool camber_image_is_valid(const camber_image *image) {
 
 /* ---- Sizes ---- */
 
-camber_image_use camber_image_use_of_fill(const camber_pass *pass) {
-    const camber_fill *fill = &pass->fill;
-    const camber_image *image = pass->images + fill->pattern - 1;
-    return (camber_image_use){fill->pattern, fill->width_px > 0.0f ? (double)fill->width_px : image->width,
-                              fill->height_px > 0.0f ? (double)fill->height_px : image->height, true};
+camber_image_use camber_image_use_in_fill(const camber_image *image, size_t number, double width_px, double height_px) {
+    return (camber_image_use){image, number, width_px > 0.0 ? width_px : image->width,
+                              height_px > 0.0 ? height_px : image->height, true};
 }
 
-camber_image_use camber_image_mean_of_fill(const camber_pass *pass) {
-    return (camber_image_use){pass->fill.pattern, 0.0, 0.0, true};
+camber_image_use camber_image_use_as_mean(const camber_image *image, size_t number) {
+    return (camber_image_use){image, number, 0.0, 0.0, true};
 }
 
-camber_image_use camber_image_use_of_paint(const camber_pass *pass, const camber_paint *paint) {
-    const camber_image *image = pass->images + paint->pattern - 1;
-    const double whole_px = 2.0 * (double)camber_paint_half_width(paint);
-    const double length_px =
-        paint->pattern_px > 0.0f ? (double)paint->pattern_px : whole_px * image->width / image->height;
-    return (camber_image_use){paint->pattern, fmin(fmax(length_px, 1e-3), 1e9), whole_px, false};
+camber_image_use camber_image_use_on_line(const camber_image *image, size_t number, double stroke_px,
+                                          double length_px) {
+    const double px = length_px > 0.0 ? length_px : stroke_px * image->width / image->height;
+    return (camber_image_use){image, number, fmin(fmax(px, 1e-3), 1e9), stroke_px, false};
 }
 
-/* Texels for a side that is drawn so long: all there are, unless they are finer than pixels by far. Sizes in steps of
- * sqrt(2) keep a zoom from filling the texture. */
+/* The texels of a side that is drawn so long: all pixels of the image, unless they are far finer than those of the
+ * picture. Sizes go in steps of sqrt(2), so that a zoom does not fill the texture. */
 static uint32_t texels_for(uint32_t side_px, double drawn_px) {
-    const double most = (double)(side_px < CAMBER_TEXELS_SIDE_MAX ? side_px : CAMBER_TEXELS_SIDE_MAX),
+    const double most = (double)(side_px < CAMBER_IMAGE_TEXELS_MAX ? side_px : CAMBER_IMAGE_TEXELS_MAX),
                  step = 1.4142135623730951;
     if (!(drawn_px * step < most))
         return (uint32_t)most;
@@ -43,9 +39,9 @@ static uint32_t texels_for(uint32_t side_px, double drawn_px) {
     return (uint32_t)fmax(fmin(ceil(exp2(0.5 * exponent)), most), 1.0);
 }
 
-camber_texels camber_image_texels(const camber_image *image, const camber_image_use *use, double nearest) {
-    return (camber_texels){texels_for(image->width, use->width_px * nearest),
-                           texels_for(image->height, use->height_px * nearest), use->tiled};
+camber_image_size camber_image_texels(const camber_image_use *use, double nearest) {
+    return (camber_image_size){texels_for(use->image->width, use->width_px * nearest),
+                               texels_for(use->image->height, use->height_px * nearest), use->tiled};
 }
 
 /* ---- Texels ---- */
@@ -54,7 +50,7 @@ const uint8_t *camber_image_row(const camber_image *image, uint32_t y) {
     return image->rgba + y * (image->stride_bytes ? image->stride_bytes : 4 * (size_t)image->width);
 }
 
-/* Averages of as many px of a row as fall on each texel, by their share. */
+/* Averages the px of a row that fall on each texel, by their share. */
 static void shrink_row(const camber_image *image, uint32_t y, float *texels, uint32_t count) {
     const uint8_t *row = camber_image_row(image, y);
     const double share = (double)image->width / count;
@@ -69,8 +65,9 @@ static void shrink_row(const camber_image *image, uint32_t y, float *texels, uin
     }
 }
 
-/* The same down the columns, a row of texels after the other. line and sums: a row each. */
-static void shrink(const camber_image *image, const camber_texels *size, float *line, float *sums, uint8_t *texels) {
+/* Averages down the columns as well, one row of texels after the other. line and sums have room for a row each. */
+static void shrink(const camber_image *image, const camber_image_size *size, float *line, float *sums,
+                   uint8_t *texels) {
     const size_t floats = 4 * (size_t)size->width, stride = floats + 8;
     const double share = (double)image->height / size->height;
     uint32_t row = 0;
@@ -92,8 +89,8 @@ static void shrink(const camber_image *image, const camber_texels *size, float *
     }
 }
 
-/* What lies beyond the edges: the other edge; above and below of what is not tiled the same edge. */
-static void add_border(const camber_texels *size, uint8_t *texels) {
+/* Beyond an edge lies the opposite edge; above and below an image that is not tiled, the same edge. */
+static void add_border(const camber_image_size *size, uint8_t *texels) {
     const size_t width = size->width, height = size->height, stride = 4 * (width + 2);
     for (size_t y = 1; y <= height; y++) {
         memcpy(texels + stride * y, texels + stride * y + 4 * width, 4);
@@ -103,7 +100,7 @@ static void add_border(const camber_texels *size, uint8_t *texels) {
     memcpy(texels + stride * (height + 1), texels + stride * (size->tiled ? 1 : height), stride);
 }
 
-camber_status camber_image_shrink(camber_context *context, const camber_image *image, camber_texels size,
+camber_status camber_image_shrink(camber_context *context, const camber_image *image, camber_image_size size,
                                   uint8_t *texels) {
     const size_t width = (size_t)size.width + 2;
     float *rows = camber_alloc(context, 2 * width, 4 * sizeof *rows);

@@ -1,30 +1,18 @@
-/* Renderers, and meshes that they draw. */
+/* Renderers: opening and closing them, and the buffers of the meshes that they draw. */
 #include "draw/renderer.h"
+
 #include "raster/raster.h"
 
 #include <assert.h>
 
 static void close_gl(camber_renderer *renderer) {
-    const camber_gl *gl = &renderer->share.surface->gl;
     const bool is_current = camber_surface_try_current(renderer->share.surface);
-    camber_frames_forget(renderer, is_current);
-    camber_patterns_release(renderer, is_current);
+    camber_renderer_drop_flights(renderer, is_current);
     if (!is_current)
         renderer->pixels.gl_name = 0; /* it goes with its context */
     if (renderer->path)
         renderer->path->ops.release(&renderer->share, &renderer->pixels);
-    if (is_current) {
-        for (int i = 0; i < CAMBER_STROKES_MAX; i++)
-            gl->DeleteProgram(renderer->strokes[i].program);
-        for (int i = 0; i < CAMBER_FLATTEN_KINDS; i++)
-            gl->DeleteProgram(renderer->flatten[i].program);
-        for (int i = 0; i < CAMBER_METHODS; i++)
-            gl->DeleteProgram(renderer->counts[i].program);
-        camber_renderer_release_targets(renderer);
-        gl->DeleteTextures(1, &renderer->row_texture);
-        gl->DeleteTextures(1, &renderer->record_texture);
-        gl->DeleteVertexArrays(1, &renderer->vertex_array);
-    }
+    camber_gl_release(renderer, is_current);
 }
 
 static camber_status open_gl(camber_renderer *made, camber_sharing sharing) {
@@ -34,8 +22,9 @@ static camber_status open_gl(camber_renderer *made, camber_sharing sharing) {
         status = camber_share_choose(&made->share, sharing, &made->path);
     if (status != CAMBER_OK)
         return status;
-    surface->gl.GenVertexArrays(1, &made->vertex_array);
-    surface->gl.GenTextures(1, &made->record_texture);
+    made->gl.shaders.surface = surface;
+    surface->gl.GenVertexArrays(1, &made->gl.vertex_array);
+    surface->gl.GenTextures(1, &made->gl.record_texture);
     status = camber_surface_check(surface, "opening");
     if (status != CAMBER_OK)
         close_gl(made);
@@ -46,17 +35,19 @@ camber_status camber_renderer_create(camber_device *device, camber_surface *surf
                                      camber_renderer **renderer) {
     const camber_renderer_desc full = desc ? *desc : (camber_renderer_desc){0};
     const bool in_hardware = surface && !surface->info.software;
-    const bool in_cl = full.draw == CAMBER_DRAW_CL || (full.draw == CAMBER_DRAW_AUTO && !in_hardware);
+    const bool in_cl =
+        full.rasterizer == CAMBER_RASTERIZER_OPENCL || (full.rasterizer == CAMBER_RASTERIZER_AUTO && !in_hardware);
     assert(surface || in_cl);
     camber_renderer *made = camber_alloc_zero(device->context, 1, sizeof *made);
     if (!made)
         return CAMBER_ERROR_MEMORY;
     made->share = (camber_share){.device = device, .surface = surface};
-    camber_status status = in_cl ? camber_cover_create(device, &made->cover) : CAMBER_OK;
+    made->list.context = made->list.side_table.context = device->context;
+    camber_status status = in_cl ? camber_raster_create(device, &made->raster) : CAMBER_OK;
     if (status == CAMBER_OK && surface)
         status = open_gl(made, full.sharing);
     if (status != CAMBER_OK) {
-        camber_cover_destroy(made->cover);
+        camber_raster_destroy(made->raster);
         camber_free(device->context, made);
         return status;
     }
@@ -71,14 +62,9 @@ void camber_renderer_destroy(camber_renderer *renderer) {
     if (renderer->share.surface)
         close_gl(renderer);
     else
-        camber_frames_forget(renderer, false);
-    camber_cover_destroy(renderer->cover);
-    camber_free(context, renderer->batch.counts);
-    camber_free(context, renderer->batch.firsts);
-    camber_free(context, renderer->batch.ranges);
-    camber_free(context, renderer->ramps);
-    camber_free(context, renderer->tail_texels);
-    camber_free(context, renderer->row_texels);
+        camber_renderer_drop_flights(renderer, false);
+    camber_raster_destroy(renderer->raster);
+    camber_draw_list_free(&renderer->list);
     camber_free(context, renderer);
 }
 
@@ -86,15 +72,15 @@ camber_sharing camber_renderer_get_sharing(const camber_renderer *renderer) {
     return renderer->path ? renderer->path->sharing : CAMBER_SHARING_AUTO;
 }
 
-camber_draw camber_renderer_get_draw(const camber_renderer *renderer) {
-    return renderer->cover ? CAMBER_DRAW_CL : CAMBER_DRAW_GL;
+camber_rasterizer camber_renderer_get_rasterizer(const camber_renderer *renderer) {
+    return renderer->raster ? CAMBER_RASTERIZER_OPENCL : CAMBER_RASTERIZER_GL;
 }
 
-const char *camber_draw_name(camber_draw draw) {
+const char *camber_rasterizer_get_name(camber_rasterizer draw) {
     switch (draw) {
-    case CAMBER_DRAW_AUTO: return "auto";
-    case CAMBER_DRAW_GL: return "gl";
-    case CAMBER_DRAW_CL: return "cl";
+    case CAMBER_RASTERIZER_AUTO: return "auto";
+    case CAMBER_RASTERIZER_GL: return "gl";
+    case CAMBER_RASTERIZER_OPENCL: return "cl";
     }
     return "unknown";
 }
@@ -131,10 +117,10 @@ static const camber_buffer_ops current_ops = {current_reserve, current_begin, cu
 
 camber_status camber_mesh_create(camber_device *device, camber_renderer *renderer, camber_mesh **mesh) {
     assert(!renderer || renderer->share.device == device);
-    const bool in_gl = renderer && !renderer->cover;
+    const bool in_gl = renderer && !renderer->raster;
     const camber_status status = camber_mesh_create_on(device, in_gl ? &current_ops : NULL, renderer, mesh);
     if (status == CAMBER_OK)
-        (*mesh)->renderer = renderer;
+        (*mesh)->owner = renderer;
     if (status == CAMBER_OK && in_gl && renderer->path->sharing == CAMBER_SHARING_COPY)
         (*mesh)->buffer_copies = 2;
     return status;

@@ -1,6 +1,7 @@
-/* Frames into textures of the caller's. What GL draws and nothing lies below goes straight there; what kernels draw
- * comes through a buffer that GL shares. What lies over something, or upside down, is drawn beside and put onto it. */
-#include "raster/raster.h"
+/* Draws frames into textures of the caller's. GL draws straight into the texture. OpenCL draws into a buffer that GL
+ * shares, from which GL copies. A frame that lies over what the texture holds, or upside down, is drawn into a target
+ * first and then put onto the texture. */
+#include "draw/draw_cl.h"
 #include "draw/renderer.h"
 
 #include <assert.h>
@@ -18,7 +19,7 @@ static camber_status check_size(const camber_renderer *renderer, const camber_fr
     return CAMBER_OK;
 }
 
-/* Binds the texture if it is what it has to be. */
+/* Binds the texture, if it has the right size and format. */
 static camber_status check_texture(camber_renderer *renderer, const camber_frame *frame,
                                    const camber_texture *texture) {
     const camber_gl *gl = &renderer->share.surface->gl;
@@ -32,7 +33,7 @@ static camber_status check_texture(camber_renderer *renderer, const camber_frame
     gl->GetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_INTERNAL_FORMAT, &format);
     const bool fits = texture->name && (uint32_t)width == frame->width && (uint32_t)height == frame->height;
     if (fits && (format == GL_RGBA8 || format == GL_RGBA))
-        return camber_renderer_check(renderer, "a texture");
+        return camber_gl_check(renderer, "a texture");
     camber_surface_forget_errors(renderer->share.surface);
     if (renderer->share.surface->lost)
         return camber_surface_make_current(renderer->share.surface);
@@ -43,36 +44,36 @@ static camber_status check_texture(camber_renderer *renderer, const camber_frame
         texture->name, (int)width, (int)height, (unsigned)format, frame->width, frame->height);
 }
 
-/* ---- What kernels draw ---- */
+/* ---- Areas that OpenCL draws ---- */
 
-/* From the buffer into the area's place in the texture that is bound. */
-static camber_status upload(camber_renderer *renderer, const camber_cover_area *area) {
+/* Copies an area from the buffer into the texture that is bound. */
+static camber_status upload(camber_renderer *renderer, const camber_raster_area *area) {
     const camber_gl *gl = &renderer->share.surface->gl;
     gl->BindBuffer(GL_PIXEL_UNPACK_BUFFER, renderer->pixels.gl_name);
-    gl->PixelStorei(GL_UNPACK_ROW_LENGTH, (GLint)camber_cover_stride_px(area));
+    gl->PixelStorei(GL_UNPACK_ROW_LENGTH, (GLint)camber_raster_stride_px(area));
     gl->TexSubImage2D(GL_TEXTURE_2D, 0, (GLint)area->x, (GLint)area->y, (GLsizei)area->width, (GLsizei)area->height,
                       GL_RGBA, GL_UNSIGNED_BYTE, NULL);
     gl->PixelStorei(GL_UNPACK_ROW_LENGTH, 0);
     gl->BindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
     renderer->pixels.drawn_frame = renderer->share.frames_begun;
-    return camber_renderer_check(renderer, "pixels into a texture");
+    return camber_gl_check(renderer, "pixels into a texture");
 }
 
-static camber_status draw_area(camber_renderer *renderer, const camber_cover_scene *scene,
-                               const camber_cover_area *area, void *user) {
+static camber_status draw_area(camber_renderer *renderer, const camber_raster_scene *scene,
+                               const camber_raster_area *area, void *user) {
     const camber_buffer_ops *ops = &renderer->path->ops;
     camber_buffer *pixels = &renderer->pixels;
     (void)user;
-    camber_status status = ops->reserve(&renderer->share, pixels, camber_cover_bytes(area));
+    camber_status status = ops->reserve(&renderer->share, pixels, camber_raster_bytes(area));
     if (status != CAMBER_OK)
         return status;
-    pixels->used_bytes = 4 * camber_cover_stride_px(area) * area->height;
+    pixels->used_bytes = 4 * camber_raster_stride_px(area) * area->height;
     status = ops->begin(&renderer->share, pixels, 1);
     if (status != CAMBER_OK)
         return status;
-    status = camber_cover_draw_into(renderer->cover, scene, area, pixels->mem);
+    status = camber_raster_draw_into(renderer->raster, scene, area, pixels->mem);
     camber_soft_log kept = {0};
-    const bool told = status != CAMBER_OK; /* another error would be a second story */
+    const bool told = status != CAMBER_OK; /* another error would be a second message */
     if (told)
         camber_log_soften(renderer->share.device->context, &kept);
     /* Where memory was short, meshes of another surface may have let buffers go. */
@@ -86,16 +87,15 @@ static camber_status draw_area(camber_renderer *renderer, const camber_cover_sce
     return status == CAMBER_OK ? upload(renderer, area) : status;
 }
 
-/* ---- Putting it onto a texture ---- */
+/* ---- Putting the frame onto a texture ---- */
 
 static camber_status put_onto(camber_renderer *renderer, const camber_frame *frame, const camber_texture *texture) {
     const camber_gl *gl = &renderer->share.surface->gl;
     const camber_shader *shader;
-    camber_status status = camber_renderer_flatten_shader(
-        renderer, texture->bottom_up ? CAMBER_FLATTEN_FLIPPED : CAMBER_FLATTEN_COLORS, &shader);
+    camber_status status = camber_shaders_flatten(
+        &renderer->gl.shaders, texture->bottom_up ? CAMBER_FLATTEN_FLIPPED : CAMBER_FLATTEN_COLORS, &shader);
     if (status == CAMBER_OK)
-        status =
-            camber_renderer_bind_target(renderer, CAMBER_TARGET_GIVEN, (GLsizei)frame->width, (GLsizei)frame->height);
+        status = camber_target_bind(renderer, CAMBER_TARGET_GIVEN, (GLsizei)frame->width, (GLsizei)frame->height);
     if (status != CAMBER_OK)
         return status;
     gl->Disable(GL_CULL_FACE);
@@ -104,11 +104,11 @@ static camber_status put_onto(camber_renderer *renderer, const camber_frame *fra
     gl->BlendFunc(GL_ONE, texture->keep ? GL_ONE_MINUS_SRC_ALPHA : GL_ZERO);
     gl->UseProgram(shader->program);
     gl->Uniform4f(shader->layer_color, 1.0f, 1.0f, 1.0f, 1.0f);
-    gl->BindTexture(GL_TEXTURE_2D, renderer->targets[CAMBER_TARGET_PICTURE].texture);
-    gl->BindVertexArray(renderer->vertex_array);
+    gl->BindTexture(GL_TEXTURE_2D, renderer->gl.targets[CAMBER_TARGET_PICTURE].texture);
+    gl->BindVertexArray(renderer->gl.vertex_array);
     gl->DrawArrays(GL_TRIANGLES, 0, 3);
     gl->BindVertexArray(0);
-    return camber_renderer_check(renderer, "drawing into a texture");
+    return camber_gl_check(renderer, "drawing into a texture");
 }
 
 static camber_status draw(camber_renderer *renderer, const camber_frame *frame, const camber_texture *texture) {
@@ -116,22 +116,22 @@ static camber_status draw(camber_renderer *renderer, const camber_frame *frame, 
     const GLsizei width = (GLsizei)frame->width, height = (GLsizei)frame->height;
     const bool direct = !texture->keep && !texture->bottom_up;
     camber_status status = CAMBER_OK;
-    if (!direct || !renderer->cover)
-        status = camber_renderer_give_target(renderer, texture->name, width, height);
+    if (!direct || !renderer->raster)
+        status = camber_target_give(renderer, texture->name, width, height);
     if (status != CAMBER_OK)
         return status;
-    if (renderer->cover) {
+    if (renderer->raster) {
         if (!direct)
-            status = camber_renderer_bind_target(renderer, CAMBER_TARGET_PICTURE, width, height);
-        gl->BindTexture(GL_TEXTURE_2D, direct ? texture->name : renderer->targets[CAMBER_TARGET_PICTURE].texture);
+            status = camber_target_bind(renderer, CAMBER_TARGET_PICTURE, width, height);
+        gl->BindTexture(GL_TEXTURE_2D, direct ? texture->name : renderer->gl.targets[CAMBER_TARGET_PICTURE].texture);
         if (status == CAMBER_OK)
-            status = camber_covered_each(renderer, frame, draw_area, NULL);
+            status = camber_cl_each_area(renderer, frame, draw_area, NULL);
     } else {
-        status = camber_frame_draw(renderer, frame, direct ? CAMBER_TARGET_GIVEN : CAMBER_TARGET_PICTURE);
+        status = camber_gl_draw_frame(renderer, frame, direct ? CAMBER_TARGET_GIVEN : CAMBER_TARGET_PICTURE);
     }
     if (status == CAMBER_OK && !direct)
         status = put_onto(renderer, frame, texture);
-    camber_renderer_let_go(renderer);
+    camber_target_take_back(renderer);
     return status;
 }
 
@@ -149,10 +149,10 @@ static void end(camber_renderer *renderer, void **drawn) {
         *drawn = (void *)fence;
 }
 
-camber_status camber_render_texture(camber_renderer *renderer, const camber_frame *frame, const camber_texture *texture,
-                                    void **drawn) {
+camber_status camber_renderer_render_texture(camber_renderer *renderer, const camber_frame *frame,
+                                             const camber_texture *texture, void **drawn) {
     assert(renderer->flight_count == 0);
-    camber_status status = camber_frame_check(renderer, frame);
+    camber_status status = camber_renderer_resolve(renderer, frame);
     if (status == CAMBER_OK)
         status = check_size(renderer, frame);
     if (status == CAMBER_OK)

@@ -1,7 +1,7 @@
 /* The GL that camber calls, loaded at run time: EGL's and OSMesa's libraries both export gl* symbols, so none is
  * linked. */
-#ifndef CAMBER_GL_H
-#define CAMBER_GL_H
+#ifndef CAMBER_GL_GL_H
+#define CAMBER_GL_GL_H
 
 #include "base/base.h"
 

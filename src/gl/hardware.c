@@ -1,5 +1,5 @@
-/* Whether GL can be hardware here, told by the files through which drivers reach GPUs: to open GL only to learn that it
- * is a software rasteriser costs more than many a picture. */
+/* Guesses whether GL can be hardware here, from the files through which drivers reach GPUs. Opening GL, only to learn
+ * that it is a software rasterizer, costs more than many a picture does. */
 #include "gl/surface.h"
 
 #include <dirent.h>
@@ -27,7 +27,7 @@ static bool has_render_node(const char *folder) {
 }
 
 bool camber_hardware_in(const char *folder) {
-    /* Of drivers with files of their own: NVIDIA's on PCs and boards, Windows' GPUs in WSL, Mali, Adreno, PowerVR,
+    /* Drivers that have files of their own: NVIDIA's on PCs and boards, Windows' GPUs in WSL, Mali, Adreno, PowerVR,
      * Vivante. */
     static const char *const names[] = {"nvidiactl", "nvhost-gpu", "dxg", "mali0", "kgsl-3d0", "pvrsrvkm", "galcore"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)

@@ -1,27 +1,29 @@
-/* Shader programs, each built when it is first used. */
-#include "draw/renderer.h"
+/* Builds shader programs from the sources that are embedded in the library, or loads them from the cache folder.
+ *
+ * A variant of the stroke shader is the same source behind other #defines. A surface keeps the latest
+ * CAMBER_STROKE_SHADERS_MAX of them, one flatten shader a kind and one count shader a method. */
+#include "gl/shaders.h"
 
 #include "base/embedded.h"
+#include "gl/shader_cache.h"
 
 #include <stdio.h>
 
 enum { LOG_SIZE = 2048 };
 
-/* A step that failed: GL's own error tells more than the step's log, where there is one. */
-static camber_status fail_step(camber_renderer *renderer, const char *step, const char *log) {
-    const camber_status status = camber_renderer_check(renderer, "shaders");
+/* Reports a step that failed. Where GL has an error of its own, that says more than the step's log. */
+static camber_status fail_step(camber_surface *surface, const char *step, const char *log) {
+    const camber_status status = camber_surface_check(surface, "shaders");
     if (status != CAMBER_OK)
         return status;
-    return camber_fail(renderer->share.device->context, CAMBER_ERROR_DEVICE, "%s on %s; update its driver: %s", step,
-                       renderer->share.surface->info.renderer, log[0] ? log : "it does not say why");
+    return camber_fail(surface->context, CAMBER_ERROR_DEVICE, "%s on %s; update its driver: %s", step,
+                       surface->info.renderer, log[0] ? log : "it does not say why");
 }
 
-static camber_status compile(camber_renderer *renderer, GLenum kind, const char *head, const char *source,
-                             GLuint *made) {
-    const camber_gl *gl = &renderer->share.surface->gl;
-    const GLchar *version = renderer->share.surface->es_3_2
-                                ? "#version 320 es\n"
-                                : "#version 310 es\n#extension GL_EXT_texture_buffer : require\n";
+static camber_status compile(camber_surface *surface, GLenum kind, const char *head, const char *source, GLuint *made) {
+    const camber_gl *gl = &surface->gl;
+    const GLchar *version =
+        surface->es_3_2 ? "#version 320 es\n" : "#version 310 es\n#extension GL_EXT_texture_buffer : require\n";
     const GLchar *parts[] = {version, head, camber_edge_glsl, "#line 1\n", source};
     const GLuint shader = gl->CreateShader(kind);
     GLint built = 0;
@@ -33,11 +35,11 @@ static camber_status compile(camber_renderer *renderer, GLenum kind, const char 
         return CAMBER_OK;
     char log[LOG_SIZE] = "";
     gl->GetShaderInfoLog(shader, LOG_SIZE, NULL, log);
-    return fail_step(renderer, "a shader does not compile", log);
+    return fail_step(surface, "a shader does not compile", log);
 }
 
-static camber_status link(camber_renderer *renderer, GLuint program, const GLuint parts[2]) {
-    const camber_gl *gl = &renderer->share.surface->gl;
+static camber_status link(camber_surface *surface, GLuint program, const GLuint parts[2]) {
+    const camber_gl *gl = &surface->gl;
     GLint linked = 0;
     for (int i = 0; i < 2; i++)
         gl->AttachShader(program, parts[i]);
@@ -47,43 +49,43 @@ static camber_status link(camber_renderer *renderer, GLuint program, const GLuin
         return CAMBER_OK;
     char log[LOG_SIZE] = "";
     gl->GetProgramInfoLog(program, LOG_SIZE, NULL, log);
-    return fail_step(renderer, "shaders do not link", log);
+    return fail_step(surface, "shaders do not link", log);
 }
 
-/* From the sources. */
-static camber_status make(camber_renderer *renderer, const char *head, const char *vertex, const char *fragment,
-                          GLuint program) {
-    const camber_gl *gl = &renderer->share.surface->gl;
+static camber_status build_from_sources(camber_surface *surface, const char *head, const char *vertex,
+                                        const char *fragment, GLuint program) {
+    const camber_gl *gl = &surface->gl;
     GLuint parts[2] = {0, 0};
-    camber_status status = compile(renderer, GL_VERTEX_SHADER, head, vertex, parts);
+    camber_status status = compile(surface, GL_VERTEX_SHADER, head, vertex, parts);
     if (status == CAMBER_OK)
-        status = compile(renderer, GL_FRAGMENT_SHADER, head, fragment, parts + 1);
+        status = compile(surface, GL_FRAGMENT_SHADER, head, fragment, parts + 1);
     if (status == CAMBER_OK)
-        status = link(renderer, program, parts);
+        status = link(surface, program, parts);
     for (int i = 0; i < 2; i++)
         gl->DeleteShader(parts[i]); /* 0 is none */
     return status;
 }
 
-static camber_status build(camber_renderer *renderer, const char *head, const char *vertex, const char *fragment,
+/* Fills shader from the cache or from the sources. head: the #defines. */
+static camber_status build(camber_surface *surface, const char *head, const char *vertex, const char *fragment,
                            camber_shader *shader) {
-    const camber_gl *gl = &renderer->share.surface->gl;
+    const camber_gl *gl = &surface->gl;
     const char *const sources[] = {head, camber_edge_glsl, vertex, fragment};
-    const uint64_t key = camber_linked_key(renderer, sources, sizeof sources / sizeof *sources);
+    const uint64_t key = camber_shader_cache_key(surface, sources, sizeof sources / sizeof *sources);
     const double begin = camber_now_ms();
     const GLuint program = gl->CreateProgram();
-    const bool cached = camber_linked_load(renderer, key, program);
+    const bool cached = camber_shader_cache_load(surface, key, program);
     if (!cached) {
         gl->ProgramParameteri(program, GL_PROGRAM_BINARY_RETRIEVABLE_HINT, GL_TRUE);
-        const camber_status status = make(renderer, head, vertex, fragment, program);
+        const camber_status status = build_from_sources(surface, head, vertex, fragment, program);
         if (status != CAMBER_OK) {
             gl->DeleteProgram(program);
             return status;
         }
-        camber_linked_save(renderer, key, program);
+        camber_shader_cache_save(surface, key, program);
     }
-    camber_log(renderer->share.device->context, CAMBER_LOG_INFO, "shaders: %s in %.0f ms",
-               cached ? "from the cache" : "built", camber_now_ms() - begin);
+    camber_log(surface->context, CAMBER_LOG_INFO, "shaders: %s in %.0f ms", cached ? "from the cache" : "built",
+               camber_now_ms() - begin);
     *shader = (camber_shader){program,
                               0,
                               gl->GetUniformLocation(program, "u_origin"),
@@ -93,9 +95,9 @@ static camber_status build(camber_renderer *renderer, const char *head, const ch
                               gl->GetUniformLocation(program, "u_table"),
                               gl->GetUniformLocation(program, "u_table_rows"),
                               gl->GetUniformLocation(program, "u_stride"),
-                              gl->GetUniformLocation(program, "u_tail"),
+                              gl->GetUniformLocation(program, "u_side_table"),
                               gl->GetUniformLocation(program, "u_eye"),
-                              gl->GetUniformLocation(program, "u_place"),
+                              gl->GetUniformLocation(program, "u_image_rect"),
                               gl->GetUniformLocation(program, "u_mean"),
                               gl->GetUniformLocation(program, "u_first"),
                               gl->GetUniformLocation(program, "u_axis_x"),
@@ -103,13 +105,13 @@ static camber_status build(camber_renderer *renderer, const char *head, const ch
     return CAMBER_OK;
 }
 
-camber_status camber_renderer_stroke_shader(camber_renderer *renderer, unsigned variant, const camber_shader **shader) {
-    const camber_gl *gl = &renderer->share.surface->gl;
-    camber_shader *wanted = renderer->strokes;
-    while (wanted < renderer->strokes + CAMBER_STROKES_MAX && wanted->program && wanted->variant != variant)
+camber_status camber_shaders_stroke(camber_shaders *shaders, unsigned variant, const camber_shader **shader) {
+    const camber_gl *gl = &shaders->surface->gl;
+    camber_shader *wanted = shaders->strokes;
+    while (wanted < shaders->strokes + CAMBER_STROKE_SHADERS_MAX && wanted->program && wanted->variant != variant)
         wanted++;
-    if (wanted == renderer->strokes + CAMBER_STROKES_MAX) { /* the oldest goes */
-        wanted = renderer->strokes + renderer->strokes_built % CAMBER_STROKES_MAX;
+    if (wanted == shaders->strokes + CAMBER_STROKE_SHADERS_MAX) { /* the oldest goes */
+        wanted = shaders->strokes + shaders->strokes_built % CAMBER_STROKE_SHADERS_MAX;
         gl->DeleteProgram(wanted->program);
         wanted->program = 0;
     }
@@ -128,19 +130,18 @@ camber_status camber_renderer_stroke_shader(camber_renderer *renderer, unsigned 
             (variant & CAMBER_VARIANT_GAP) != 0, (variant & CAMBER_VARIANT_BLUR) != 0,
             (variant & CAMBER_VARIANT_DASH) != 0, (variant & CAMBER_VARIANT_TRIM) != 0,
             (variant & CAMBER_VARIANT_RAMP) != 0, (variant & CAMBER_VARIANT_MASK) != 0,
-            (variant & CAMBER_VARIANT_PATTERN) != 0, (variant & CAMBER_VARIANT_PITCHED) != 0, (int)CAMBER_TEXELS_A_ROW);
-        const camber_status status = build(renderer, head, camber_stroke_vert, camber_stroke_frag, wanted);
+            (variant & CAMBER_VARIANT_PATTERN) != 0, (variant & CAMBER_VARIANT_PITCHED) != 0, (int)CAMBER_ROW_TEXELS);
+        const camber_status status = build(shaders->surface, head, camber_stroke_vert, camber_stroke_frag, wanted);
         if (status != CAMBER_OK)
             return status;
         wanted->variant = variant;
-        renderer->strokes_built++;
+        shaders->strokes_built++;
     }
     *shader = wanted;
     return CAMBER_OK;
 }
 
-camber_status camber_renderer_flatten_shader(camber_renderer *renderer, camber_flatten_kind kind,
-                                             const camber_shader **shader) {
+camber_status camber_shaders_flatten(camber_shaders *shaders, camber_flatten_kind kind, const camber_shader **shader) {
     static const char *const heads[CAMBER_FLATTEN_KINDS] = {
         "#define COVERAGE 0\n#define UNION 0\n#define MASKED 0\n#define FILL 0\n#define IMAGES 0\n",
         "#define COVERAGE 1\n#define UNION 0\n#define MASKED 0\n#define FILL 0\n#define IMAGES 0\n",
@@ -149,9 +150,10 @@ camber_status camber_renderer_flatten_shader(camber_renderer *renderer, camber_f
         "#define COVERAGE 0\n#define UNION 0\n#define MASKED 0\n#define FILL 1\n#define IMAGES 0\n",
         "#define COVERAGE 0\n#define UNION 0\n#define MASKED 0\n#define FILL 1\n#define IMAGES 1\n",
         "#define COVERAGE 0\n#define UNION 0\n#define MASKED 0\n#define FILL 0\n#define IMAGES 0\n#define FLIPPED\n"};
-    camber_shader *wanted = renderer->flatten + kind;
+    camber_shader *wanted = shaders->flatten + kind;
     if (!wanted->program) {
-        const camber_status status = build(renderer, heads[kind], camber_flatten_vert, camber_flatten_frag, wanted);
+        const camber_status status =
+            build(shaders->surface, heads[kind], camber_flatten_vert, camber_flatten_frag, wanted);
         if (status != CAMBER_OK)
             return status;
     }
@@ -159,20 +161,29 @@ camber_status camber_renderer_flatten_shader(camber_renderer *renderer, camber_f
     return CAMBER_OK;
 }
 
-camber_status camber_renderer_count_shader(camber_renderer *renderer, camber_method method,
-                                           const camber_shader **shader) {
-    camber_shader *wanted = renderer->counts + method;
+camber_status camber_shaders_count(camber_shaders *shaders, camber_method method, const camber_shader **shader) {
+    camber_shader *wanted = shaders->counts + method;
     if (!wanted->program) {
         char head[256];
         snprintf(head, sizeof head,
                  "#define METHOD %d\n#define TIPS 0\n#define SHARP_JOINS 0\n#define GAP 0\n#define BLUR 0\n"
                  "#define DASH 0\n#define TRIM 0\n#define RAMP 0\n#define PATTERN 0\n#define PITCHED 0\n"
                  "#define TEXELS_A_ROW %d\n",
-                 (int)method, (int)CAMBER_TEXELS_A_ROW);
-        const camber_status status = build(renderer, head, camber_stroke_vert, camber_count_frag, wanted);
+                 (int)method, (int)CAMBER_ROW_TEXELS);
+        const camber_status status = build(shaders->surface, head, camber_stroke_vert, camber_count_frag, wanted);
         if (status != CAMBER_OK)
             return status;
     }
     *shader = wanted;
     return CAMBER_OK;
+}
+
+void camber_shaders_release(camber_shaders *shaders) {
+    const camber_gl *gl = &shaders->surface->gl;
+    for (size_t i = 0; i < CAMBER_STROKE_SHADERS_MAX; i++)
+        gl->DeleteProgram(shaders->strokes[i].program);
+    for (size_t i = 0; i < CAMBER_FLATTEN_KINDS; i++)
+        gl->DeleteProgram(shaders->flatten[i].program);
+    for (size_t i = 0; i < CAMBER_METHODS; i++)
+        gl->DeleteProgram(shaders->counts[i].program);
 }

@@ -3,7 +3,7 @@
 
 #include <stdio.h>
 
-const char *camber_sharing_name(camber_sharing sharing) {
+const char *camber_sharing_get_name(camber_sharing sharing) {
     switch (sharing) {
     case CAMBER_SHARING_AUTO: return "auto";
     case CAMBER_SHARING_GL: return "cl_khr_gl_sharing";
@@ -31,7 +31,8 @@ void camber_share_await(camber_share *share, const camber_buffer *buffers, size_
 
 enum { PROBE_BYTES = 4096 };
 
-/* What GL reads from a buffer: a copy of it that GL makes, since a map may be the very memory that OpenCL wrote. */
+/* Whether GL reads this word from a buffer. GL makes a copy first, since a map of the buffer itself may be the very
+ * memory that OpenCL wrote. */
 static bool gl_sees(const camber_gl *gl, GLuint buffer, cl_uint word) {
     GLuint copy = 0;
     gl->GenBuffers(1, &copy);
@@ -102,7 +103,7 @@ camber_status camber_share_choose(camber_share *share, camber_sharing wanted, co
     if (share->surface->lost)
         return camber_surface_make_current(share->surface);
     return camber_fail(context, status, "sharing '%s' does not work between %s and %s%s; use %s",
-                       camber_sharing_name(wanted), share->device->info.name, share->surface->info.renderer,
+                       camber_sharing_get_name(wanted), share->device->info.name, share->surface->info.renderer,
                        status == CAMBER_ERROR_MEMORY ? ": out of memory" : "",
                        wanted == CAMBER_SHARING_AUTO ? "another device or back end" : "auto");
 }

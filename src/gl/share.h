@@ -1,10 +1,10 @@
 /* How OpenCL's output reaches GL: one file a path (share_gl.c, share_zero_copy.c, share_copy.c). */
-#ifndef CAMBER_SHARE_H
-#define CAMBER_SHARE_H
+#ifndef CAMBER_GL_SHARE_H
+#define CAMBER_GL_SHARE_H
 
 #include "gl/surface.h"
 
-/* The user of camber_buffer_ops. */
+/* A device and a surface that share buffers: the user of camber_buffer_ops. */
 typedef struct camber_share {
     camber_device *device;
     camber_surface *surface;
@@ -27,7 +27,7 @@ void camber_share_release(void *user, camber_buffer *buffer);
 /* Waits for GL where a frame in flight reads one of the buffers. */
 void camber_share_await(camber_share *share, const camber_buffer *buffers, size_t count);
 
-/* What GL says to a buffer of this size. */
+/* Whether GL has reported an error for a buffer of this size, as a status. */
 camber_status camber_share_check(const camber_share *share, size_t size_bytes);
 
 /* Chooses a path, the first that works for AUTO, by writing a buffer through it. */

@@ -1,4 +1,4 @@
-/* Choosing a back end, and what all back ends share. */
+/* Surfaces: chooses a back end, loads GL's functions, and reads the errors that GL reports. */
 #include "gl/surface.h"
 
 #include "camber_proof.h"
@@ -131,7 +131,7 @@ static camber_status open_backend(camber_context *context, const camber_surface_
     return CAMBER_OK;
 }
 
-/* A back end that is not there is no error while another may be. */
+/* Tries a back end. It is no error that it is not there, as long as another may be. */
 static camber_status try_backend(camber_context *context, const camber_surface_ops *ops,
                                  const camber_surface_desc *desc, camber_surface **surface) {
     camber_soft_log kept;
@@ -202,7 +202,7 @@ camber_status camber_surface_make_current(camber_surface *surface) {
                        "%s: the GL context cannot be made current; start again with a new surface", surface->name);
 }
 
-/* ---- What GL reports ---- */
+/* ---- Errors that GL reports ---- */
 
 /* The first error since the last look. There may be a flag a part of the driver, and a lost context may report its
  * loss for ever. */
@@ -242,10 +242,12 @@ void camber_surface_release(camber_surface *surface) {
     surface->ops->release(surface);
 }
 
-uint64_t camber_surface_largest_buffer_bytes(const camber_surface *surface) {
-    return (uint64_t)surface->records_max * sizeof(camber_record);
-}
-
-camber_gl_handles camber_surface_handles(const camber_surface *surface) {
-    return surface->ops->handles ? surface->ops->handles(surface) : (camber_gl_handles){0};
+camber_gl_handles camber_surface_get_handles(const camber_surface *surface) {
+    camber_gl_handles handles = {0};
+    if (!surface)
+        return handles;
+    if (surface->ops->handles)
+        handles = surface->ops->handles(surface);
+    handles.largest_buffer_bytes = (uint64_t)surface->records_max * sizeof(camber_record);
+    return handles;
 }

@@ -1,6 +1,6 @@
 /* Surfaces: one file a back end (surface_egl.c, surface_osmesa.c), and nothing else knows that it exists. */
-#ifndef CAMBER_SURFACE_H
-#define CAMBER_SURFACE_H
+#ifndef CAMBER_GL_SURFACE_H
+#define CAMBER_GL_SURFACE_H
 
 #include "cl/buffer.h"
 #include "gl/gl.h"
@@ -9,7 +9,7 @@ typedef struct camber_surface_ops {
     camber_backend backend;
     /* Loads the library and makes a context, current on this thread. Logs on failure. */
     camber_status (*create)(camber_surface *surface);
-    bool (*make_current)(camber_surface *surface); /* false: the surface's lost tells whether for ever */
+    bool (*make_current)(camber_surface *surface); /* false: for ever, where the surface's lost is set */
     void (*release)(camber_surface *surface);      /* no context is current on this thread any more */
     camber_function *(*load)(camber_surface *surface, const char *name);
     camber_gl_handles (*handles)(const camber_surface *surface); /* NULL: none */
@@ -31,21 +31,22 @@ struct camber_surface {
     bool es_3_2;             /* or desktop GL that has as much */
     uint32_t records_max;    /* of a texture buffer */
     GLint largest_viewport[2];
-    bool lost; /* the GL context: nothing that is in it comes back */
+    bool lost; /* the GL context is, and all that was in it */
 };
 
-/* hardware.c: whether a folder, /dev but in tests, has what a GPU's driver is reached through. */
+/* hardware.c: whether a folder has files through which a GPU's driver is reached. It is /dev but in tests. */
 bool camber_hardware_in(const char *folder);
 
-/* Every public call that draws begins with it: the two libraries share one dispatch, and another surface may have
- * been current. */
+/* Makes the surface's GL context current. Every public call that draws begins with it: EGL and OSMesa share one
+ * dispatch table, and another surface may have been current. */
 camber_status camber_surface_make_current(camber_surface *surface);
-/* The same for what frees: nothing is logged. false: GL's objects went with the context, or go with it. */
+/* The same before something is freed, where nothing is logged. false: GL's objects went with the context, or will. */
 bool camber_surface_try_current(camber_surface *surface);
 
-/* What GL has reported since the last look, as a status, its story logged: what failed is named by what. */
+/* Gives the errors that GL has reported since the last look as a status, and logs them. what: a name for the call that
+ * failed. */
 camber_status camber_surface_check(camber_surface *surface, const char *what);
-/* Leaves what GL has reported behind: after a failure that is told already. */
+/* Drops the errors that GL has reported, after a failure that is logged already. */
 void camber_surface_forget_errors(camber_surface *surface);
 
 #endif

@@ -160,8 +160,8 @@ static void release(camber_surface *surface) {
 
 static camber_gl_handles handles(const camber_surface *surface) {
     const egl_state *egl = surface->state;
-    return (camber_gl_handles){(cl_context_properties)egl->context, (cl_context_properties)egl->display,
-                               CL_EGL_DISPLAY_KHR};
+    return (camber_gl_handles){
+        .context = (intptr_t)egl->context, .display = (intptr_t)egl->display, .display_kind = CL_EGL_DISPLAY_KHR};
 }
 
 static void destroy(camber_surface *surface) {

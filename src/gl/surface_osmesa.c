@@ -4,7 +4,7 @@
 #include <dlfcn.h>
 #include <string.h>
 
-/* Of GL/osmesa.h, which goes with the library from newer systems. */
+/* Copied from GL/osmesa.h, which newer systems have no more than the library. */
 #define OSMESA_FORMAT 0x22
 #define OSMESA_RGBA GL_RGBA
 #define OSMESA_PROFILE 0x33

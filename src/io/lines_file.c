@@ -1,4 +1,5 @@
-/* The interchange file: little-endian uint32 magic, n, p; n + 1 uint32 offsets; p pairs of float32. */
+/* Reads and writes the interchange file of polylines in pixels: little-endian uint32 magic, n polylines, p points; n +
+ * 1 uint32 offsets; p pairs of float32. A file is checked as a whole before anything of it is used. */
 #include "lines/lines.h"
 
 #include <string.h>
@@ -44,12 +45,12 @@ camber_status camber_lines_parse(camber_context *context, const void *bytes, siz
     const camber_status status = check_file(context, file, size_bytes, name);
     if (status != CAMBER_OK)
         return status;
-    camber_lines made = {.polyline_count = get_u32(file + 4), .point_count = get_u32(file + 8)};
+    camber_lines made = {.context = context, .polyline_count = get_u32(file + 4), .point_count = get_u32(file + 8)};
     made.offsets = camber_alloc(context, made.polyline_count + 1, sizeof *made.offsets);
     if (made.offsets)
         made.points = camber_alloc(context, made.point_count, 2 * sizeof *made.points);
     if (!made.points) {
-        camber_lines_free(context, &made);
+        camber_lines_destroy(&made);
         return CAMBER_ERROR_MEMORY;
     }
     for (size_t i = 0; i <= made.polyline_count; i++)
@@ -63,7 +64,7 @@ camber_status camber_lines_parse(camber_context *context, const void *bytes, siz
     return CAMBER_OK;
 }
 
-/* Words through a block, little-endian whatever the host is. */
+/* Writes words little-endian, whatever the host's order is, a block at a time. */
 static bool write_words(camber_sink sink, const void *words, size_t count) {
     unsigned char block[4096];
     const char *from = words;

@@ -1,19 +1,27 @@
-/* The step of Douglas and Peucker 1973 that simplification and importance share. */
-#ifndef CAMBER_FARTHEST_H
-#define CAMBER_FARTHEST_H
+/* The step of Douglas and Peucker's method (1973) that simplification and importance share. */
+#ifndef CAMBER_LINES_FARTHEST_H
+#define CAMBER_LINES_FARTHEST_H
 
 #include <stddef.h>
 
-/* Ranges are split at their farthest point; past this depth in the middle, so that a spiral made for the worst
- * case costs n log n too. The result keeps its tolerance either way. */
+/* Ranges of points are split at their farthest point. Past this depth they are split in the middle, so that even a
+ * spiral made for the worst case costs n log n. The result keeps its tolerance either way. */
 #define CAMBER_FARTHEST_SPLITS 48
 
-/* The point strictly between first and last that lies farthest from their segment, and its squared distance; first
- * where all lie on it. Without branches but the last: points lie beside the segment or beyond it as they like. */
+/* Returns the point strictly between first and last that lies farthest from the segment between these two, and its
+ * squared distance. Returns first where all points lie on the segment.
+ *
+ * The distance of a point beside the segment is that from its line; before a or beyond b, that from the end:
+ *
+ *              beside
+ *     before a--------b beyond
+ *
+ * Which case holds varies from point to point, so that a branch would often be guessed wrong. The loop therefore
+ * computes all three and selects. */
 static inline size_t camber_farthest(const double *points, size_t first, size_t last, double *largest) {
     const double *a = points + 2 * first, *b = points + 2 * last;
     const double dx = b[0] - a[0], dy = b[1] - a[1], length_squared = dx * dx + dy * dy;
-    /* Where the segment is a point every point lies beyond it. */
+    /* If the segment has no length, every point counts as beyond its end. */
     const double inverse = length_squared > 0.0 ? 1.0 / length_squared : 0.0;
     size_t found = first;
     double most = 0.0;

@@ -1,3 +1,9 @@
+/* Weighs the points of polylines: importance.h says what the numbers mean.
+ *
+ * Each polyline is weighed by itself, as Douglas and Peucker split it: a range of points is split at the point that
+ * lies farthest from the segment between its ends. That point's importance is its distance, and at most the importance
+ * of the point that split the range before: so a point never stays where one that it depends on has gone. Rounding goes
+ * up. Then points with equal coordinates get the largest importance among them. */
 #include "lines/importance.h"
 
 #include "lines/farthest.h"
@@ -9,11 +15,11 @@
 
 typedef struct range {
     size_t first, last;
-    double limit; /* squared; what lies between goes when what split the range off goes */
+    double limit; /* squared importance of the point that split this range off: no point inside has more */
     unsigned depth;
 } range;
 
-/* Never below the distance, so that a point farther than the tolerance is never dropped. */
+/* The root as a float, never below the distance: so a point farther away than the tolerance is never dropped. */
 static float round_up(double squared) {
     const double distance = sqrt(squared);
     const float nearest = (float)distance;
@@ -21,7 +27,8 @@ static float round_up(double squared) {
 }
 
 static void weigh_range(const double *points, range whole, float *importance) {
-    /* The larger half waits, the smaller is split on: no more than log2(count) ranges wait. */
+    /* A stack instead of recursion. The larger half waits and the smaller is split on, so that at most log2(count)
+     * ranges wait. */
     range waiting[64];
     size_t count = 0;
     range now = whole;
@@ -47,12 +54,13 @@ static void weigh_range(const double *points, range whole, float *importance) {
     }
 }
 
-/* A ring's own base line has no length: it is split at the point farthest from the seam, and the point farthest from
- * that line stays too, so that an area stays one however small. */
+/* A ring begins and ends in one point, so that the segment between its ends has no length. It is split at the point
+ * farthest from the seam. The point farthest from that line always stays as well, so that an area remains one, however
+ * small it is. */
 static void weigh_ring(const double *points, size_t first, size_t last, float *importance) {
     double largest, before, after;
     const size_t far = camber_farthest(points, first, last, &largest);
-    if (far == first) { /* all points are one */
+    if (far == first) { /* all points have one position */
         weigh_range(points, (range){first, last, INFINITY, 0}, importance);
         return;
     }
@@ -79,17 +87,18 @@ static void weigh_polyline(const double *points, size_t first, size_t end, float
 /* ---- Shared nodes ---- */
 
 typedef struct repeat {
-    uint32_t node, point; /* the first point of a node, and a later one */
+    uint32_t node, point; /* the first point of a node, and a later one at the same position */
 } repeat;
 
+/* A hash table from coordinates to the first point that has them, with open addressing; and the repeats so far. */
 typedef struct node_table {
-    uint32_t *slots; /* point + 1; 0: free. A power of two of them, at most half in use */
+    uint32_t *slots; /* point + 1, or 0 for a free slot. Their number is a power of two, and at most half are in use */
     size_t slot_count;
     repeat *repeats;
     size_t repeat_count, repeat_capacity;
 } node_table;
 
-/* The first of the points equal to this one; itself where it is that. */
+/* Returns the first point with these coordinates: the point itself where it is the first, which is then remembered. */
 static size_t find_node(node_table *table, const double *points, size_t point) {
     size_t slot = (size_t)camber_mix_point(0, points + 2 * point) & (table->slot_count - 1);
     for (; table->slots[slot]; slot = (slot + 1) & (table->slot_count - 1)) {
@@ -101,6 +110,7 @@ static size_t find_node(node_table *table, const double *points, size_t point) {
     return point;
 }
 
+/* Gives all points of a node the largest importance among them. The first point collects it, then hands it out. */
 static camber_status share_nodes(camber_context *context, const double *points, size_t count, float *importance) {
     if (count >= (size_t)1 << 31)
         return camber_fail(context, CAMBER_ERROR_LIMIT, "%zu points at once are more than 2^31; read fewer", count);

@@ -1,20 +1,27 @@
-/* Polylines in the form that the kernels read: kernels/layout.h tells the words. */
-#ifndef CAMBER_LINES_H
-#define CAMBER_LINES_H
+/* Polylines as the kernels read them: arrays of padded slots. kernels/layout.h explains the info words. */
+#ifndef CAMBER_LINES_LINES_H
+#define CAMBER_LINES_LINES_H
 
 #include "base/base.h"
 #include "kernels/layout.h"
 
+/* A polyline's points stand in consecutive slots. Sentinels stand between them where neighbours need something to look
+ * at, and fill up the end:
+ *
+ *     slot        0         1 ...                                                       slot_count + 1
+ *     holds   sentinel | open line | sentinel, ring, sentinel | open line | sentinels to a whole block | sentinel
+ */
 struct camber_polylines {
     camber_context *context;
-    size_t holders;  /* meshes, beside who made them */
-    uint64_t serial; /* unique in the context: a mesh knows by it what it has uploaded */
-    /* slot_count + 2 each: a ghost before and after the slots. slot_count is a multiple of CAMBER_BLOCK. */
+    size_t holders;  /* meshes that hold them, beside the creator */
+    uint64_t serial; /* unique in the context: tells a mesh whether it has uploaded these already */
+    /* slot_count + 2 each: a sentinel before and after the slots. slot_count is a multiple of CAMBER_BLOCK. */
     float *x, *y;
     uint32_t *info;
     size_t slot_count;
-    camber_measure *measures; /* of each slot, where a measured network knows it. NULL: it is the sum over the points */
-    /* Slots of polyline i: [first_slots[i], first_slots[i + 1]), counted without the leading ghost. */
+    camber_arc_length
+        *arc_lengths; /* one a slot, where a network knows them. NULL: they are summed up over the points */
+    /* Slots of polyline i: [first_slots[i], first_slots[i + 1]), counted without the leading sentinel. */
     uint32_t *first_slots;
     uint32_t *polyline_rows;
     size_t polyline_count;
@@ -22,18 +29,18 @@ struct camber_polylines {
     camber_polylines_stats stats;
 };
 
-/* Farther away a float's steps are larger than a city block; the view cuts long before. */
+/* Points farther out are invalid: steps of a float are larger than a city block there, px. Views cut long before. */
 #define CAMBER_FARTHEST_PX 1e9f
 
-/* Whether a point is drawn: false for NaN. */
+/* Whether a point can be drawn; false for NaN as well. */
 static inline bool camber_point_is_valid(const float *point) {
     return fabsf(point[0]) <= CAMBER_FARTHEST_PX && fabsf(point[1]) <= CAMBER_FARTHEST_PX;
 }
 
-/* Keeps polylines until another camber_polylines_destroy. */
+/* Adds a holder: the polylines live until each holder has called camber_polylines_destroy. */
 void camber_polylines_hold(camber_polylines *polylines);
 
-/* The polyline whose slots hold slot. */
+/* The polyline that a slot belongs to. */
 size_t camber_polylines_find(const camber_polylines *polylines, size_t slot);
 
 #endif

@@ -1,8 +1,19 @@
+/* Cleans polylines and lays them out in slots, as the kernels read them.
+ *
+ * Input: points in px, where each polyline begins, rows of the style table. Output: camber_polylines (lines.h). Main
+ * idea: everything irregular is settled here, so that kernels need no branch for it. An invalid point (NaN, or too far
+ * away) splits its polyline into stretches. A point that repeats the one before is dropped. A ring, whose first point
+ * is its last, gets sentinels that continue it past its seam:
+ *
+ *     points       A B C D A           the last point is the first again
+ *     slots    (D) A B C D A (B)       in brackets: sentinels, so that neighbours are always i - 1 and i + 1
+ */
 #include "lines/lines.h"
 
 #include <assert.h>
 #include <string.h>
 
+/* Whether b lies within 1e-9 px of a. */
 static bool is_repeated(const float *a, const float *b) {
     const float dx = b[0] - a[0], dy = b[1] - a[1];
     return dx * dx + dy * dy <= 1e-18f;
@@ -30,7 +41,7 @@ static camber_status check_desc(camber_context *context, const camber_polylines_
             return camber_fail(context, CAMBER_ERROR_INPUT,
                                "polyline %zu: its row %u is not below %u; merge equal rows", i, desc->rows[i],
                                1u << 24);
-    /* A ring takes two ghosts, and it has three points or more: 5/3 slots a point at most. */
+    /* A ring has at least three points and takes two sentinels: at most 5/3 slots per point. */
     if (desc->point_count > (UINT32_MAX - 1024u) / 5 * 3 || desc->polyline_count > UINT32_MAX - 1024u)
         return camber_fail(context, CAMBER_ERROR_LIMIT,
                            "%zu points in %zu polylines are more than 32-bit slots hold; draw them in parts",
@@ -39,18 +50,18 @@ static camber_status check_desc(camber_context *context, const camber_polylines_
 }
 
 static void put_slot(camber_polylines *p, const float *point, uint32_t info) {
-    const size_t i = ++p->slot_count; /* the leading ghost is index 0 */
+    const size_t i = ++p->slot_count; /* index 0 is the leading sentinel */
     p->x[i] = point[0];
     p->y[i] = point[1];
     p->info[i] = info;
 }
 
-/* One run of valid points: repeated points go, its ends are marked, a ring gets its ghosts. */
-static void put_run(camber_polylines *p, const float *points, size_t count, uint32_t row, bool may_close) {
+/* Puts one stretch of valid points: drops repeated points, marks the ends, and gives a ring its sentinels. */
+static void put_stretch(camber_polylines *p, const float *points, size_t count, uint32_t row, bool may_close) {
     const uint32_t real = row << CAMBER_POINT_ROW_SHIFT | CAMBER_POINT_REAL;
     const float *last = points + 2 * (count - 1);
     const bool closes = may_close && count > 2 && points[0] == last[0] && points[1] == last[1];
-    const size_t ghost = p->slot_count + 1;
+    const size_t sentinel = p->slot_count + 1;
     if (closes)
         put_slot(p, points, 0);
     const size_t first = p->slot_count + 1;
@@ -70,14 +81,14 @@ static void put_run(camber_polylines *p, const float *points, size_t count, uint
     p->stats.kept_segments += kept_count - 1;
     p->stats.dots += kept_count == 1;
     if (!closes || kept_count < 3)
-        return; /* a ghost that turns out not to be needed stays one */
-    /* The last point may have gone as a repetition of one next to it: close exactly all the same. */
+        return; /* the leading slot was put for a ring that is none: it stays a sentinel, which draws nothing */
+    /* The last point may have been dropped as a repetition of its neighbour. The ring closes exactly all the same. */
     p->x[end] = p->x[first];
     p->y[end] = p->y[first];
     p->info[first] |= CAMBER_POINT_RING;
     p->info[end] |= CAMBER_POINT_RING;
-    p->x[ghost] = p->x[end - 1];
-    p->y[ghost] = p->y[end - 1];
+    p->x[sentinel] = p->x[end - 1];
+    p->y[sentinel] = p->y[end - 1];
     put_slot(p, (const float[2]){p->x[first + 1], p->y[first + 1]}, 0);
     p->stats.rings++;
 }
@@ -94,13 +105,14 @@ static void put_polyline(camber_polylines *p, const camber_polylines_desc *desc,
         if (i < count && camber_point_is_valid(points + 2 * i))
             continue;
         if (i > first)
-            put_run(p, points + 2 * first, i - first, row, !desc->keep_open && first == 0 && i == count);
+            put_stretch(p, points + 2 * first, i - first, row, !desc->keep_open && first == 0 && i == count);
         p->stats.invalid_points += i < count;
         first = i + 1;
     }
 }
 
-/* Ghosts to the end of the last block and one past it. At the origin: no kernel meets a NaN. */
+/* Puts sentinels to the end of the last block, and one behind it. They lie at the origin, so that no kernel meets a
+ * NaN. */
 static void put_padding(camber_polylines *p) {
     const size_t used = p->slot_count + 1;
     p->slot_count = (p->slot_count + CAMBER_BLOCK - 1) / CAMBER_BLOCK * CAMBER_BLOCK;
@@ -161,7 +173,7 @@ void camber_polylines_destroy(camber_polylines *polylines) {
     camber_context *context = polylines->context;
     camber_free(context, polylines->polyline_rows);
     camber_free(context, polylines->first_slots);
-    camber_free(context, polylines->measures);
+    camber_free(context, polylines->arc_lengths);
     camber_free(context, polylines->info);
     camber_free(context, polylines->y);
     camber_free(context, polylines->x);

@@ -1,3 +1,7 @@
+/* Simplifies lines by Douglas and Peucker's method, a line in double coordinates or a set of lines in px.
+ *
+ * Input: points and a tolerance in their unit. Output: the points that are kept, in order. A range of points is split
+ * at the point that lies farthest from the segment between its ends, until all points lie within the tolerance. */
 #include "lines/simplify.h"
 
 #include "base/base.h"
@@ -13,8 +17,10 @@ typedef struct range {
     unsigned depth;
 } range;
 
+/* Marks the points that stay, strictly between the ends of a range. */
 static void mark(const double *points, range whole, double tolerance_squared, unsigned char *keep) {
-    /* The larger half waits, the smaller is split on: no more than log2(count) ranges wait. */
+    /* A stack instead of recursion. The larger half waits and the smaller is split on, so that at most log2(count)
+     * ranges wait. */
     range waiting[64];
     size_t count = 0;
     range now = whole;
@@ -37,13 +43,14 @@ static void mark(const double *points, range whole, double tolerance_squared, un
     }
 }
 
-/* A ring's own base line has no length: it is split at the point farthest from the seam first, and the point
- * farthest from that line stays too, so that an area stays one however small. */
+/* A ring begins and ends in one point, so that the segment between its ends has no length. It is split first at the
+ * point farthest from the seam. If nothing else stays, the point farthest from that line does, so that an area remains
+ * one, however small it is. */
 static void mark_ring(const double *points, size_t count, double tolerance_squared, unsigned char *keep) {
     double largest;
     const size_t far = camber_farthest(points, 0, count - 1, &largest);
     if (far == 0)
-        return; /* all points are one */
+        return; /* all points have one position */
     keep[far] = 1;
     mark(points, (range){0, far, 0}, tolerance_squared, keep);
     mark(points, (range){far, count - 1, 0}, tolerance_squared, keep);
@@ -77,9 +84,10 @@ size_t camber_simplify(double *points, size_t count, double tolerance, unsigned 
     return kept;
 }
 
-/* Valid points, in double; what stays is copied from where it came. Gives how many stay. */
-static size_t simplify_run(const float *from, size_t count, double tolerance_px, double *points, unsigned char *keep,
-                           float *to) {
+/* Simplifies valid points in double. Those that stay are copied from their source, so that no bit changes. Returns how
+ * many stay. */
+static size_t simplify_stretch(const float *from, size_t count, double tolerance_px, double *points,
+                               unsigned char *keep, float *to) {
     for (size_t i = 0; i < 2 * count; i++)
         points[i] = (double)from[i];
     memset(keep, 1, count);
@@ -94,14 +102,14 @@ static size_t simplify_run(const float *from, size_t count, double tolerance_px,
     return kept;
 }
 
-/* One polyline. Points that are not drawn split it and stay, so that cleaning finds and counts them. */
+/* Simplifies one polyline. Invalid points split it into stretches, and stay, so that cleaning counts them. */
 static uint32_t simplify_line(const float *from, size_t count, double tolerance_px, double *points, unsigned char *keep,
                               float *to) {
     size_t kept = 0, first = 0;
     for (size_t i = 0; i <= count; i++) {
         if (i < count && camber_point_is_valid(from + 2 * i))
             continue;
-        kept += simplify_run(from + 2 * first, i - first, tolerance_px, points, keep, to + 2 * kept);
+        kept += simplify_stretch(from + 2 * first, i - first, tolerance_px, points, keep, to + 2 * kept);
         if (i < count) {
             memcpy(to + 2 * kept, from + 2 * i, 2 * sizeof *to);
             kept++;
@@ -121,7 +129,7 @@ camber_status camber_lines_simplify(camber_context *context, const camber_lines 
         longest = count > longest ? count : longest;
     }
     camber_status status = CAMBER_ERROR_MEMORY;
-    camber_lines made = {.polyline_count = lines->polyline_count};
+    camber_lines made = {.context = context, .polyline_count = lines->polyline_count};
     double *points;
     unsigned char *keep = NULL;
     if (!(points = camber_alloc(context, longest, 2 * sizeof *points)) || !(keep = camber_alloc(context, longest, 1)) ||
@@ -139,13 +147,17 @@ camber_status camber_lines_simplify(camber_context *context, const camber_lines 
     made = (camber_lines){0};
     status = CAMBER_OK;
 done:
-    camber_lines_free(context, &made);
+    camber_lines_destroy(&made);
     camber_free(context, keep);
     camber_free(context, points);
     return status;
 }
 
-void camber_lines_free(camber_context *context, camber_lines *lines) {
+void camber_lines_destroy(camber_lines *lines) {
+    camber_context *context = lines->context;
+    if (!context)
+        return;
+    camber_free(context, lines->entries);
     camber_free(context, lines->offsets);
     camber_free(context, lines->points);
     *lines = (camber_lines){0};

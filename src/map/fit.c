@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-/* Where practically every road style draws all of its classes: the first guess at what will be drawn. */
+/* A zoom at which practically every road style draws all of its classes: the first guess at what will be drawn. */
 static const double FIRST_ZOOM = 14.0;
 static const double LARGEST_FIT_ZOOM = 22.0;
 static const double FILL = 0.96; /* a margin of 2 % on each side */
@@ -11,8 +11,8 @@ static bool is_empty(camber_box box) {
     return box.x0 > box.x1;
 }
 
-/* Bounds twice, in the view's turned axes: as the data lies, and with the western half of the world moved behind
- * the eastern one, which is the smaller for data on both sides of the antimeridian. */
+/* Bounds in the view's turned axes, twice: of the data as it is, and with the western half of the world moved behind
+ * the eastern one. The latter are smaller for data on both sides of the antimeridian. */
 typedef struct two_bounds {
     camber_box plain, moved;
 } two_bounds;
@@ -39,7 +39,7 @@ static void add_polyline(const camber_features *features, size_t polyline, const
     camber_box_add(&bounds->moved, box.x1 + du, box.y1 + dv);
 }
 
-/* Bounds of what the plan draws; of all features where plan is NULL. */
+/* The bounds of what the plan draws, or of all features where plan is NULL. */
 static two_bounds bounds_of(const camber_features *features, const camber_view *view, const camber_plan *plan) {
     two_bounds bounds = {CAMBER_BOX_EMPTY, CAMBER_BOX_EMPTY};
     if (!plan) {
@@ -53,7 +53,7 @@ static two_bounds bounds_of(const camber_features *features, const camber_view *
     return bounds;
 }
 
-static void frame(camber_view *view, const two_bounds *bounds) {
+static void frame_bounds(camber_view *view, const two_bounds *bounds) {
     camber_view moved = *view;
     camber_view_frame(view, bounds->plain, FILL, LARGEST_FIT_ZOOM);
     camber_view_frame(&moved, bounds->moved, FILL, LARGEST_FIT_ZOOM);
@@ -75,7 +75,7 @@ camber_status camber_plan_fit(const camber_features *features, camber_view *view
     if (is_empty(bounds.plain))
         bounds = bounds_of(features, view, NULL);
     if (!is_empty(bounds.plain))
-        frame(view, &bounds);
+        frame_bounds(view, &bounds);
     camber_plan_destroy(plan);
     status = camber_plan_create(features, view, plan);
     if (status != CAMBER_OK)
@@ -83,7 +83,7 @@ camber_status camber_plan_fit(const camber_features *features, camber_view *view
     const two_bounds drawn = bounds_of(features, view, plan);
     if (is_empty(drawn.plain) || same_bounds(drawn.plain, bounds.plain))
         return CAMBER_OK;
-    frame(view, &drawn);
+    frame_bounds(view, &drawn);
     camber_plan_destroy(plan);
     return camber_plan_create(features, view, plan);
 }

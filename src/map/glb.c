@@ -34,7 +34,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* glTF's numbers, which are GL's. */
+/* Numbers of glTF, which it takes from GL. */
 enum {
     GLTF_SHORT = 5122,
     GLTF_UNSIGNED_SHORT = 5123,
@@ -93,7 +93,7 @@ static void flush(writer *w) {
         camber_progress(w->context, "writing", (double)w->taken / (double)w->total);
 }
 
-/* Room for so many bytes: at most BLOCK_BYTES. */
+/* Makes room for size_bytes, at most BLOCK_BYTES, in the block. */
 static void want(writer *w, size_t size_bytes) {
     if (w->used + size_bytes > BLOCK_BYTES)
         flush(w);
@@ -117,7 +117,7 @@ static void put_f32(writer *w, float value) {
 
 /* ---- Vertices ---- */
 
-/* Mirrored, and never -0. */
+/* Mirrors y, and returns 0 rather than -0. */
 static float up(float y) {
     return 0.0f - y;
 }
@@ -160,7 +160,7 @@ static uint16_t normalized_of(double c) {
     return (uint16_t)(fmin(fmax(c, 0.0), 1.0) * 65535.0 + 0.5);
 }
 
-/* The paints as COLOR_0; NULL where memory is short. */
+/* Converts the paints to COLOR_0. NULL: out of memory. */
 static uint16_t *make_colors(const writer *w) {
     uint16_t *colors = camber_alloc(w->context, w->desc->stroke_count, 4 * sizeof *colors);
     for (size_t i = 0; colors && i < w->desc->stroke_count; i++) {
@@ -208,7 +208,8 @@ static void put_index(writer *w, uint32_t index, bool count_only) {
     put_u32(w, index);
 }
 
-/* The end of the strip that begins with an index: at a restart, or where a tight join's start follows its end. */
+/* Finds the end of the strip that begins at an index: a restart, or the place where a tight join's start follows its
+ * end. */
 static size_t strip_end(const camber_mesh_data *mesh, size_t first) {
     const size_t count = mesh->info.index_count;
     size_t end = first;
@@ -223,8 +224,8 @@ static size_t strip_end(const camber_mesh_data *mesh, size_t first) {
     return end;
 }
 
-/* Strips a, b with nothing drawn between become one: the last index of a and the first of b again, the latter twice
- * where that keeps b's triangles at even places, so that each keeps its winding. */
+/* Joins two strips a and b into one without drawing between them: it repeats the last index of a and the first of b.
+ * The latter comes twice if b's triangles would otherwise change places from even to odd, and so their winding. */
 static void put_indices(writer *w, bool count_only) {
     const uint32_t *indices = w->mesh->indices;
     const size_t count = w->mesh->info.index_count;
@@ -250,7 +251,7 @@ static void put_indices(writer *w, bool count_only) {
 
 /* ---- JSON ---- */
 
-/* ok turns false where memory is short, for the value as well: jansson passes NULL on. */
+/* Sets ok to false if memory runs out. value may be NULL, because jansson passes NULL on. */
 static void set(json_t *object, const char *key, json_t *value, bool *ok) {
     *ok &= json_object_set_new(object, key, value) == 0;
 }
@@ -289,7 +290,7 @@ static json_t *style_table(const camber_glb_desc *desc, bool *ok) {
     return rows;
 }
 
-/* Unlit, and seen from both sides. */
+/* The material is unlit and seen from both sides. */
 static json_t *material(const camber_glb_desc *desc, bool *ok) {
     json_t *pbr = json_pack("{s:f, s:f}", "metallicFactor", 0.0, "roughnessFactor", 1.0);
     bool translucent = false;
@@ -336,7 +337,7 @@ static void describe_mesh(json_t *root, const writer *w, uint64_t vertex_bytes, 
     set(root, "meshes",
         json_pack("[{s:s, s:[{s:i, s:o, s:i, s:i}], s:{s:s, s:o}}]", "name", "lines", "primitives", "mode",
                   w->mesh->info.strips ? GLTF_TRIANGLE_STRIP : GLTF_TRIANGLES, "attributes", attributes, "indices",
-                  (int)attribute_count, "material", 0, "extras", "method", camber_method_name(w->mesh->info.method),
+                  (int)attribute_count, "material", 0, "extras", "method", camber_method_get_name(w->mesh->info.method),
                   "rows", style_table(w->desc, ok)),
         ok);
     set(root, "accessors", accessors(w, attribute_count, ok), ok);
@@ -349,7 +350,7 @@ static void describe_mesh(json_t *root, const writer *w, uint64_t vertex_bytes, 
     set(root, "buffers", json_pack("[{s:I}]", "byteLength", (json_int_t)(vertex_bytes + index_bytes)), ok);
 }
 
-/* The JSON chunk's text; freed with camber_free. NULL where memory is short, and then nothing is logged. */
+/* Returns the text of the JSON chunk; free it with camber_free. NULL: out of memory, and nothing has been logged. */
 static char *make_json(const writer *w, uint64_t vertex_bytes) {
     bool ok = true;
     char generator[32];
@@ -373,7 +374,7 @@ static char *make_json(const writer *w, uint64_t vertex_bytes) {
     return text;
 }
 
-/* RFC 3629: no longer than needed, no surrogates, up to U+10FFFF. */
+/* Checks text by RFC 3629: shortest form, no surrogates, up to U+10FFFF. */
 static bool is_utf8(const char *text) {
     static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
     for (const unsigned char *c = (const unsigned char *)text; *c;) {
@@ -401,7 +402,7 @@ static void put_chunk_head(writer *w, uint64_t size_bytes, uint32_t type) {
     put_u32(w, type);
 }
 
-/* JSON has numbers that are finite alone. */
+/* Rejects numbers that JSON cannot hold: it has finite ones only. */
 static camber_status check_desc(camber_context *context, const camber_glb_desc *desc) {
     if (desc->copyright && !is_utf8(desc->copyright))
         return camber_fail(context, CAMBER_ERROR_ARGUMENT, "GLB: the copyright is not UTF-8; convert it");

@@ -1,13 +1,21 @@
+/* The plan of a scene: the style evaluated at a view's zoom, for each set of layers and each class of features once.
+ *
+ * Input: features with their style, and a view. Output: camber_plan. Layers that may share polylines are put into sets;
+ * each set evaluates its layers for each class, and equal results become one row; then the polylines are listed by set,
+ * as entries. Rows are few, since a city of 50,000 ways has some hundred classes, so what is evaluated does not grow
+ * with the features.
+ */
 #include "map/plan.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* The widest that a stroke may be: camber.h. */
 static const double WIDEST_PX = 16384.0;
-static const size_t MOST_ROWS = CAMBER_PLAN_ROWS_MAX, MOST_MATCHES = (size_t)1 << 26;
+static const size_t MOST_ROWS = (size_t)1 << 24, MOST_MATCHES = (size_t)1 << 26;
 
-/* The part of camber_style_layer_matches that needs no feature; a limit of 24 stands for none. */
+/* The part of camber_style_layer_matches that needs no feature. A max_zoom of 24 means no limit. */
 static bool is_active(const camber_style_layer *layer, double zoom) {
     return layer->visible && layer->min_zoom <= zoom && (zoom < layer->max_zoom || layer->max_zoom >= 24.0);
 }
@@ -33,7 +41,7 @@ static bool draws_class(const camber_features *features, const camber_style_laye
 
 /* ---- Background ---- */
 
-/* An opaque one hides all layers before it: the first layer to draw. */
+/* Finds the first layer to draw: an opaque background hides all layers before it. */
 static size_t find_first(const camber_style *style, double zoom) {
     for (size_t i = style->layer_count; i-- > 0;) {
         const camber_style_layer *layer = style->layers + i;
@@ -57,8 +65,8 @@ static bool shares_polylines(const camber_layer_look *a, const camber_layer_look
            same_text(a->layer->filter_key, b->layer->filter_key) && camber_layer_look_shares(a, b);
 }
 
-/* Sets by what layers must agree in to share one, and more: a hash, so that many layers take no longer than their
- * number. */
+/* A hash table of sets, by what layers must agree in to share one, so that time grows only with the number of
+ * layers. */
 typedef struct set_table {
     uint32_t *slots;   /* set + 1; 0: free */
     size_t slot_count; /* a power of two */
@@ -71,7 +79,7 @@ static uint64_t set_hash(const camber_style_layer *layer) {
     return camber_hash(hash, layer->filter_key, strlen(layer->filter_key));
 }
 
-/* The set that the layer shares, or the place for a new one's number. */
+/* Finds the slot of the set that the layer shares, or an empty slot for a new one. */
 static uint32_t *find_set(const camber_plan *plan, const set_table *table, const camber_layer_look *look) {
     const uint64_t hash = set_hash(look->layer);
     size_t at = (size_t)(hash ^ hash >> 32) & (table->slot_count - 1);
@@ -81,7 +89,7 @@ static uint32_t *find_set(const camber_plan *plan, const set_table *table, const
     return table->slots + at;
 }
 
-/* A map's translation turns with it. */
+/* Computes the translation: one that is fixed to the map turns with it. */
 static void find_translation(const camber_layer_look *look, const camber_view *view, float translate_px[2]) {
     const bool turns = look->paint.translate_anchor == CAMBER_TRANSLATE_MAP;
     const double cosine = turns ? view->cosine : 1.0, sine = turns ? view->sine : 0.0;
@@ -149,7 +157,8 @@ static camber_status group_layers(camber_plan *plan, const camber_style *style, 
 
 /* ---- Rows ---- */
 
-/* The stroke of one class in a set, its paints in all of the set's layers, and a hash of rows to find equal ones by. */
+/* The stroke of one class in a set, with its paints in all of the set's layers, and a hash table of rows to find
+ * equal ones by. */
 typedef struct row_table {
     camber_stroke stroke;
     camber_paint *tuple;
@@ -158,49 +167,55 @@ typedef struct row_table {
     bool failed;       /* no memory for dashes or patterns */
 } row_table;
 
+/* By set and class: the row, CAMBER_NO_ROW where the set does not draw the class, and the key in a sorted set. */
+typedef struct plan_classes {
+    uint32_t *rows;
+    double *keys;
+} plan_classes;
+
 typedef struct class_rows {
-    camber_plan_classes by_class;
+    plan_classes by_class;
     row_table table;
 } class_rows;
 
-/* What a paint takes of a stroke. */
+/* The width that a paint covers, with its gap. */
 static float whole_width(const camber_paint *paint) {
     return paint->gap_px > 0.0f ? paint->gap_px + 2.0f * paint->width_px : paint->width_px;
 }
 
-/* The paint of a layer without its border, or of the border alone: a wider line below, or, where that would be seen
- * through, two bands beside. */
-static camber_layer_paint part_of(const camber_plan_layer *layer, const camber_layer_paint *whole) {
-    camber_layer_paint part = *whole;
+/* The paint of a layer without its border, or of the border alone. The border is a wider line below, or, where that
+ * would be seen through, two rails beside the line. */
+static camber_layer_paint line_or_border(const camber_plan_layer *layer, const camber_layer_paint *whole) {
+    camber_layer_paint own = *whole;
     const double border = fmin(whole->border_width, 0.5 * whole->width), inside = whole->width - 2.0 * border;
     const float alpha = layer->ramp ? (float)whole->opacity : whole->color.a;
     const bool seen_through = alpha < 1.0f || layer->translucent_ramp || whole->layer_opacity < 1.0 ||
                               layer->look.layer->properties[CAMBER_LINE_PATTERN];
     if (layer->ramp)
-        part.color = (camber_color){1.0f, 1.0f, 1.0f, (float)whole->opacity};
+        own.color = (camber_color){1.0f, 1.0f, 1.0f, (float)whole->opacity};
     if (layer->border) {
-        part.color = layer->ramp ? part.color : whole->border_color;
-        part.width = border > 0.0 ? whole->width : 0.0;
+        own.color = layer->ramp ? own.color : whole->border_color;
+        own.width = border > 0.0 ? whole->width : 0.0;
         if (seen_through && !(whole->gap_width > 0.0) && inside > 0.0 && border > 0.0) {
-            part.width = border;
-            part.gap_width = inside;
+            own.width = border;
+            own.gap_width = inside;
         }
     } else if (border > 0.0) {
-        part.width = inside;
-        part.gap_width = whole->gap_width > 0.0 ? whole->gap_width + 2.0 * border : 0.0;
+        own.width = inside;
+        own.gap_width = whole->gap_width > 0.0 ? whole->gap_width + 2.0 * border : 0.0;
     }
-    return part;
+    return own;
 }
 
 static camber_paint paint_of(const camber_plan_layer *layer, const camber_layer_paint *whole, double ratio) {
-    const camber_layer_paint part = part_of(layer, whole);
-    const double widest_px = part.gap_width > 0.0 ? WIDEST_PX / 3.0 : WIDEST_PX; /* of a band */
-    if (!(part.width * ratio > 0.0 && part.color.a > 0.0f && (float)part.layer_opacity > 0.0f))
+    const camber_layer_paint own = line_or_border(layer, whole);
+    const double widest_px = own.gap_width > 0.0 ? WIDEST_PX / 3.0 : WIDEST_PX; /* the most for one rail */
+    if (!(own.width * ratio > 0.0 && own.color.a > 0.0f && (float)own.layer_opacity > 0.0f))
         return (camber_paint){0};
-    return (camber_paint){.width_px = (float)fmin(part.width * ratio, widest_px),
-                          .color = part.color,
-                          .gap_px = (float)fmin(part.gap_width * ratio, widest_px),
-                          .blur_px = (float)fmin(part.blur * ratio, WIDEST_PX),
+    return (camber_paint){.width_px = (float)fmin(own.width * ratio, widest_px),
+                          .color = own.color,
+                          .gap_px = (float)fmin(own.gap_width * ratio, widest_px),
+                          .blur_px = (float)fmin(own.blur * ratio, WIDEST_PX),
                           .translate_x_px = layer->translate_px[0],
                           .translate_y_px = layer->translate_px[1],
                           .trim_start = (float)whole->trim[0],
@@ -250,7 +265,7 @@ static uint32_t intern_dash(camber_plan *plan, const camber_layer_dashes *dashes
     return *slot = (uint32_t)plan->dash_count;
 }
 
-/* What passes take, once the lengths stay where they are. */
+/* Makes the list of dashes that passes take, now that the lengths do not move any more. */
 static camber_status list_dashes(camber_plan *plan) {
     plan->dashes = camber_alloc(plan->context, plan->dash_count, sizeof *plan->dashes);
     if (!plan->dashes)
@@ -260,8 +275,8 @@ static camber_status list_dashes(camber_plan *plan) {
     return CAMBER_OK;
 }
 
-/* The width at the whole zoom below, grown with the map: other engines draw dashes and patterns of that width up to the
- * next. */
+/* The width at the whole zoom below, scaled with the map: other engines draw dashes and patterns of that width up to
+ * the next whole zoom. */
 static float whole_zoom_px(const camber_plan_layer *layer, const camber_view *view,
                            const camber_feature_view *feature) {
     const double grown = exp2(camber_view_style_zoom(view) - layer->below.zoom);
@@ -275,7 +290,7 @@ typedef struct pattern_choice {
     float one_px;   /* along the line */
 } pattern_choice;
 
-/* A pattern leaves of the colour only the opacity, and of dashes nothing. */
+/* Chooses the pattern. With one, only the opacity of the colour counts, and dashes do not. */
 static pattern_choice choose_pattern(camber_plan *plan, const camber_plan_layer *layer, const camber_view *view,
                                      const camber_feature_view *feature, camber_layer_paint *paint) {
     pattern_choice choice = {0};
@@ -300,7 +315,7 @@ static void put_pattern(const camber_plan_layer *layer, const pattern_choice *ch
     paint->pattern_px = choice->one_px;
 }
 
-/* A limit of 1 bevels every turn, and so do those below; 0 would mean the default. */
+/* A limit of 1 or less bevels every turn; 0 would mean the default. */
 static camber_stroke stroke_of(const camber_layer_paint *paint, double ratio) {
     return (camber_stroke){
         .join = paint->join,
@@ -310,7 +325,7 @@ static camber_stroke stroke_of(const camber_layer_paint *paint, double ratio) {
         .round_limit = paint->join == CAMBER_JOIN_ROUND ? (float)fmin(fmax(paint->round_limit, 0.0), 1e6) : 0.0f};
 }
 
-/* A tip that is no more than a quarter of a pixel is not worth what drawing miters costs: a tenth of a frame. */
+/* Miter tips of up to a quarter of a pixel are not worth what drawing miters costs: a tenth of a frame. */
 static float round_limit_that_shows(const camber_stroke *stroke) {
     const double limit = (double)stroke->round_limit, half_px = 0.5 * (double)stroke->width_px;
     const double turn = limit > 1.0 ? 2.0 * acos(1.0 / limit) : 0.0;
@@ -323,7 +338,7 @@ static bool same_row(const camber_plan *plan, const camber_plan_set *set, const 
            memcmp(paints, table->tuple, set->layer_count * sizeof *table->tuple) == 0;
 }
 
-/* The row of the stroke and the tuple, a new one where no row of the set has them. */
+/* Finds the row of the stroke and its paints, or adds one where no row of the set has them. */
 static uint32_t intern_row(camber_plan *plan, camber_plan_set *set, row_table *table) {
     const size_t size_bytes = set->layer_count * sizeof *table->tuple;
     uint64_t hash = camber_hash(CAMBER_HASH_START, &table->stroke, sizeof table->stroke);
@@ -345,7 +360,7 @@ static uint32_t intern_row(camber_plan *plan, camber_plan_set *set, row_table *t
     return row;
 }
 
-/* The tuple of a class, and its stroke; false where none of the set's layers draws it. */
+/* Fills the paints of a class and its stroke; false where none of the set's layers draws it. */
 static bool fill_tuple(camber_plan *plan, const camber_plan_set *set, const camber_view *view,
                        const camber_feature_view *feature, row_table *table, double *key) {
     bool *failed = &table->failed;
@@ -369,7 +384,7 @@ static bool fill_tuple(camber_plan *plan, const camber_plan_set *set, const camb
         table->stroke.width_px = width_px;
         table->stroke.round_limit = round_limit_that_shows(&table->stroke);
         *key = paint.sort_key;
-        plan->measured |= made->dash || made->ramp || made->pattern || made->trim_end > made->trim_start;
+        plan->has_arc_length |= made->dash || made->ramp || made->pattern || made->trim_end > made->trim_start;
         if (made->width_px > 0.0f)
             plan->translate_px = fmaxf(plan->translate_px, hypotf(made->translate_x_px, made->translate_y_px));
     }
@@ -377,7 +392,7 @@ static bool fill_tuple(camber_plan *plan, const camber_plan_set *set, const camb
     return table->stroke.width_px > 0.0f || *failed;
 }
 
-/* Rows of every class in one set. */
+/* Finds the rows of every class in one set. */
 static camber_status match_set(const camber_features *features, const camber_view *view, camber_plan *plan,
                                camber_plan_set *set, class_rows *rows) {
     const camber_style_layer *first = plan->layers[set->first_layer].look.layer;
@@ -406,6 +421,176 @@ static camber_status match_set(const camber_features *features, const camber_vie
     return CAMBER_OK;
 }
 
+/* ---- Entries: polylines by set, in input order, or in that of their features' keys where a set is sorted ---- */
+
+typedef struct set_pair {
+    uint32_t set, pair;
+} set_pair;
+
+/* The sets that draw a class: [first[class], first[class + 1]) of pairs. */
+typedef struct class_sets {
+    size_t *first;
+    set_pair *pairs;
+} class_sets;
+
+/* Ends the pairs of a set. Where it is sorted, the plan's key includes the sort keys, since other keys mean another
+ * order. */
+static void end_set(camber_plan *plan, camber_plan_set *set) {
+    const double *keys = plan->pair_keys + set->first_pair;
+    set->pair_count = plan->pair_count - set->first_pair;
+    for (size_t i = 1; i < set->pair_count; i++)
+        set->sorted = set->sorted || keys[i] < keys[0] || keys[i] > keys[0];
+    if (set->sorted)
+        plan->key = camber_hash(plan->key, keys, set->pair_count * sizeof *keys);
+}
+
+/* Numbers the pairs of sets and classes, by set. */
+static camber_status number_pairs(const camber_features *features, camber_plan *plan, const plan_classes *by_class) {
+    const size_t class_count = features->class_count;
+    size_t total = 0;
+    for (size_t i = 0; i < plan->set_count * class_count; i++)
+        total += by_class->rows[i] != CAMBER_NO_ROW;
+    if (total >= MOST_ROWS)
+        return camber_fail(plan->context, CAMBER_ERROR_LIMIT,
+                           "style: more than %zu combinations of layers and properties; let filters depend on fewer",
+                           MOST_ROWS);
+    if (!(plan->pair_rows = camber_alloc(plan->context, total, sizeof *plan->pair_rows)) ||
+        !(plan->pair_keys = camber_alloc(plan->context, total, sizeof *plan->pair_keys)))
+        return CAMBER_ERROR_MEMORY;
+    plan->key = camber_hash(CAMBER_HASH_START, &features->polyline_count, sizeof features->polyline_count);
+    for (size_t s = 0; s < plan->set_count; s++) {
+        plan->sets[s].first_pair = plan->pair_count;
+        for (size_t c = 0; c < class_count; c++) {
+            const size_t at = s * class_count + c;
+            if (by_class->rows[at] == CAMBER_NO_ROW)
+                continue;
+            const size_t pair[2] = {s, c};
+            plan->key = camber_hash(plan->key, pair, sizeof pair);
+            plan->pair_keys[plan->pair_count] = by_class->keys[at];
+            plan->pair_rows[plan->pair_count++] = by_class->rows[at];
+        }
+        end_set(plan, plan->sets + s);
+    }
+    return CAMBER_OK;
+}
+
+static camber_status group_by_class(const camber_features *features, const camber_plan *plan, const uint32_t *rows,
+                                    class_sets *by_class) {
+    const size_t class_count = features->class_count;
+    by_class->first = camber_alloc(plan->context, class_count + 1, sizeof *by_class->first);
+    if (!by_class->first)
+        return CAMBER_ERROR_MEMORY;
+    size_t total = 0;
+    for (size_t c = 0; c < class_count; c++) {
+        by_class->first[c] = total;
+        for (size_t s = 0; s < plan->set_count; s++)
+            total += rows[s * class_count + c] != CAMBER_NO_ROW;
+    }
+    by_class->first[class_count] = total;
+    by_class->pairs = camber_alloc(plan->context, total, sizeof *by_class->pairs);
+    if (!by_class->pairs)
+        return CAMBER_ERROR_MEMORY;
+    /* By set: each class takes its pairs in turn, as they are numbered. */
+    uint32_t pair = 0;
+    for (size_t s = 0; s < plan->set_count; s++)
+        for (size_t c = 0; c < class_count; c++)
+            if (rows[s * class_count + c] != CAMBER_NO_ROW)
+                by_class->pairs[by_class->first[c]++] = (set_pair){(uint32_t)s, pair++};
+    for (size_t c = class_count; c > 0; c--)
+        by_class->first[c] = by_class->first[c - 1];
+    by_class->first[0] = 0;
+    return CAMBER_OK;
+}
+
+typedef struct keyed_pair {
+    double key;
+    size_t pair;
+} keyed_pair;
+
+static int compare_keys(const void *left, const void *right) {
+    const keyed_pair *a = left, *b = right;
+    return a->key < b->key ? -1 : a->key > b->key;
+}
+
+/* Sorts the entries of a set by their features' keys; entries of one key stay as they were. */
+static camber_status sort_entries(camber_plan *plan, const camber_plan_set *set) {
+    camber_plan_entry *entries = plan->entries + set->first_entry;
+    keyed_pair *keyed = camber_alloc(plan->context, set->pair_count, sizeof *keyed);
+    size_t *ranks = keyed ? camber_alloc(plan->context, set->pair_count, sizeof *ranks) : NULL;
+    size_t *firsts = ranks ? camber_alloc_zero(plan->context, set->pair_count + 1, sizeof *firsts) : NULL;
+    camber_plan_entry *sorted = firsts ? camber_alloc(plan->context, set->entry_count, sizeof *sorted) : NULL;
+    const bool held = sorted != NULL;
+    if (held) {
+        for (size_t i = 0; i < set->pair_count; i++)
+            keyed[i] = (keyed_pair){plan->pair_keys[set->first_pair + i], i};
+        qsort(keyed, set->pair_count, sizeof *keyed, compare_keys);
+        for (size_t i = 0, rank = 0; i < set->pair_count; i++) {
+            rank += i > 0 && keyed[i].key > keyed[i - 1].key;
+            ranks[keyed[i].pair] = rank;
+        }
+        for (size_t i = 0; i < set->entry_count; i++)
+            firsts[ranks[entries[i].pair - set->first_pair] + 1]++;
+        for (size_t i = 0; i < set->pair_count; i++)
+            firsts[i + 1] += firsts[i];
+        for (size_t i = 0; i < set->entry_count; i++)
+            sorted[firsts[ranks[entries[i].pair - set->first_pair]]++] = entries[i];
+        memcpy(entries, sorted, set->entry_count * sizeof *sorted);
+    }
+    camber_free(plan->context, sorted);
+    camber_free(plan->context, firsts);
+    camber_free(plan->context, ranks);
+    camber_free(plan->context, keyed);
+    return held ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+}
+
+static camber_status list_by_set(const camber_features *features, camber_plan *plan, const class_sets *by_class) {
+    if (features->polyline_count > UINT32_MAX)
+        return camber_fail(plan->context, CAMBER_ERROR_LIMIT, "%zu polylines are more than 2^32; draw them in parts",
+                           features->polyline_count);
+    for (size_t p = 0; p < features->polyline_count; p++) {
+        const uint32_t class = features->feature_class[features->polyline_feature[p]];
+        if (by_class->first[class] == by_class->first[class + 1])
+            plan->undrawn += features->feature_counts[p];
+        for (size_t k = by_class->first[class]; k < by_class->first[class + 1]; k++)
+            plan->sets[by_class->pairs[k].set].entry_count++;
+    }
+    size_t total = 0;
+    for (size_t s = 0; s < plan->set_count; s++) {
+        plan->sets[s].first_entry = total;
+        total += plan->sets[s].entry_count;
+        plan->sets[s].entry_count = 0;
+    }
+    plan->entries = camber_alloc(plan->context, total, sizeof *plan->entries);
+    if (!plan->entries)
+        return CAMBER_ERROR_MEMORY;
+    for (size_t p = 0; p < features->polyline_count; p++) {
+        const uint32_t class = features->feature_class[features->polyline_feature[p]];
+        for (size_t k = by_class->first[class]; k < by_class->first[class + 1]; k++) {
+            camber_plan_set *set = plan->sets + by_class->pairs[k].set;
+            plan->entries[set->first_entry + set->entry_count++] =
+                (camber_plan_entry){(uint32_t)p, by_class->pairs[k].pair};
+        }
+    }
+    camber_status status = CAMBER_OK;
+    for (size_t s = 0; s < plan->set_count && status == CAMBER_OK; s++)
+        if (plan->sets[s].sorted)
+            status = sort_entries(plan, plan->sets + s);
+    return status;
+}
+
+/* Numbers the pairs of sets and classes, and lists the polylines of each set. */
+static camber_status list_entries(const camber_features *features, camber_plan *plan, const plan_classes *by_class) {
+    class_sets sets = {0};
+    camber_status status = number_pairs(features, plan, by_class);
+    if (status == CAMBER_OK)
+        status = group_by_class(features, plan, by_class->rows, &sets);
+    if (status == CAMBER_OK)
+        status = list_by_set(features, plan, &sets);
+    camber_free(plan->context, sets.pairs);
+    camber_free(plan->context, sets.first);
+    return status;
+}
+
 /* ---- The plan ---- */
 
 camber_status camber_plan_create(const camber_features *features, const camber_view *view, camber_plan *plan) {
@@ -425,7 +610,7 @@ camber_status camber_plan_create(const camber_features *features, const camber_v
     while (table->slot_count / 2 < features->class_count)
         table->slot_count *= 2;
     status = CAMBER_ERROR_MEMORY;
-    /* Of rows one more than needed, so that no element is empty; classes are in memory: their count cannot overflow. */
+    /* One row more than needed, so that no element is empty; classes are in memory, so their count cannot overflow. */
     const size_t count = features->class_count + 1;
     if (!(table->tuple = camber_alloc(context, plan->layer_count, sizeof *table->tuple)) ||
         !(table->slots = camber_alloc(context, table->slot_count, sizeof *table->slots)) ||
@@ -438,7 +623,7 @@ camber_status camber_plan_create(const camber_features *features, const camber_v
     if (status == CAMBER_OK)
         status = list_dashes(plan);
     if (status == CAMBER_OK)
-        status = camber_plan_list_entries(features, plan, &rows.by_class);
+        status = list_entries(features, plan, &rows.by_class);
 done:
     camber_free(context, rows.by_class.keys);
     camber_free(context, rows.by_class.rows);

@@ -3,17 +3,17 @@
  *     layers (in drawing order) -> sets (layers that draw the same polylines) -> rows (a stroke and its paints in a
  * set)
  */
-#ifndef CAMBER_PLAN_H
-#define CAMBER_PLAN_H
+#ifndef CAMBER_MAP_PLAN_H
+#define CAMBER_MAP_PLAN_H
 
-#include "map/patterns.h"
+#include "map/plan_patterns.h"
 #include "source/features.h"
 
 #define CAMBER_NO_ROW UINT32_MAX
 
 /* Layers that agree in source, filter, caps and joins: one geometry, cut for the widest of them. */
 typedef struct camber_plan_set {
-    size_t first_layer, last_layer, layer_count; /* of the plan; from one to the next by next */
+    size_t first_layer, last_layer, layer_count; /* layers of the plan, linked by next */
     size_t first_row, row_count;
     size_t first_pair, pair_count;   /* its classes, in order */
     size_t first_paint;              /* into paints: row_count tuples of layer_count */
@@ -49,7 +49,7 @@ typedef struct camber_plan {
     size_t set_count;
     camber_paint *paints;
     size_t paint_count, paint_capacity;
-    camber_stroke *strokes; /* by row: the widest of its paints, a gap's bands together */
+    camber_stroke *strokes; /* by row: the widest of its paints, with both rails and the gap between them */
     size_t row_count, stroke_capacity;
     float translate_px;                /* the farthest */
     camber_layer_dashes *dash_lengths; /* dash_count */
@@ -59,11 +59,12 @@ typedef struct camber_plan {
     size_t dash_slot_count;
     camber_ramp *ramps; /* ramp_count: the style's */
     size_t ramp_count;
-    bool measured;       /* a paint has what lies along its lines */
+    bool has_arc_length; /* a paint has what lies along its lines */
     uint32_t *pair_rows; /* pair_count */
     double *pair_keys;   /* pair_count: their features' places in a sorted set */
     size_t pair_count;
-    uint64_t key; /* of the sets and classes of the pairs: two plans of the same features have equal entries by it */
+    uint64_t
+        key; /* a hash of the pairs' sets and classes: two plans of the same features with one key have equal entries */
     camber_plan_entry *entries;
     size_t undrawn; /* features of which no layer draws anything */
 } camber_plan;
@@ -73,24 +74,9 @@ typedef struct camber_plan {
 camber_status camber_plan_create(const camber_features *features, const camber_view *view, camber_plan *plan);
 void camber_plan_destroy(camber_plan *plan);
 
-/* ---- Between plan.c and plan_entries.c ---- */
+/* ---- Using a plan ---- */
 
-#define CAMBER_PLAN_ROWS_MAX ((size_t)1 << 24)
-
-/* By set and class: the row, CAMBER_NO_ROW where the set does not draw the class, and the place in a sorted set. */
-typedef struct camber_plan_classes {
-    uint32_t *rows;
-    double *keys;
-} camber_plan_classes;
-
-/* Numbers the pairs and lists the entries. Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT (2^24 pairs, 2^32
- * polylines). */
-camber_status camber_plan_list_entries(const camber_features *features, camber_plan *plan,
-                                       const camber_plan_classes *by_class);
-
-/* ---- What uses a plan ---- */
-
-/* The paint of a row of the set in its slot-th layer. */
+/* The paint that a row of the set has in the set's layer number slot. */
 static inline camber_paint camber_plan_paint(const camber_plan *plan, const camber_plan_set *set, size_t row,
                                              size_t slot) {
     return plan->paints[set->first_paint + (row - set->first_row) * set->layer_count + slot];

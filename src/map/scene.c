@@ -1,5 +1,12 @@
-#include "map/geometry.h"
+/* Scenes: a view of features in a style, ready to tessellate and draw.
+ *
+ * Input: features and a view. Output: a network of the lines that the style draws, the strokes and passes that a mesh
+ * of it is drawn with, and the camera. Main idea: the plan says which style layers draw which features; the network is
+ * made once for a plan, and stays while the view moves and the plan does not change. camber_scene_project makes the
+ * same on the host, by the CPU twin. */
+#include "map/plan_network.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -7,12 +14,12 @@
 /* 2.4 GB. */
 static const size_t MOST_PAINTS = (size_t)1 << 26;
 
-/* The passes over the polylines of a mesh: by entries and pairs where a network was tessellated, by pieces and rows
+/* The passes over the polylines of a mesh: by entries and pairs where a network was tessellated, by lines and rows
  * where polylines were. */
 typedef struct pass_list {
     camber_pass *passes;
     size_t count;
-    camber_paint *paints; /* of all passes */
+    camber_paint *paints; /* the paints of all passes */
 } pass_list;
 
 struct camber_scene {
@@ -22,14 +29,14 @@ struct camber_scene {
 
     camber_view view;
     camber_plan plan;
-    camber_geometry geometry;
+    camber_plan_network geometry;
     camber_stroke *pair_strokes;
     pass_list pair_passes;
 
-    /* On the host; nothing until asked for. */
-    bool is_seen;
-    camber_seen seen;
-    size_t layer_count; /* that draw something */
+    /* On the host: nothing until camber_scene_project. */
+    bool is_projected;
+    camber_visible_lines seen;
+    size_t layer_count; /* how many layers draw something */
     camber_polylines *polylines;
     pass_list passes;
 };
@@ -74,7 +81,7 @@ typedef struct layer_run {
     size_t first_layer, end_layer; /* of the plan */
     size_t first_polyline, end_polyline;
     size_t end_paint;
-    float opacity; /* of the layer; 1: of runs of several */
+    float opacity; /* the layer's opacity; 1 where several layers are drawn at once */
     camber_overlap overlap;
     bool opaque;
     const camber_plan_fill *fill; /* NULL: none; else nothing of the above */
@@ -95,8 +102,8 @@ static bool layer_draws(const numbering *n, const camber_plan_layer *layer, bool
     return draws;
 }
 
-/* Opaque layers whose polylines follow each other become one run. A translucent layer is one by itself: it is
- * flattened by itself. Fills come between. */
+/* Opaque layers whose polylines follow each other are drawn by one pass. A translucent layer has a pass of its own,
+ * since it is flattened by itself. Fills come between. */
 static size_t find_runs(const numbering *n, layer_run *runs, size_t *layer_count) {
     const camber_plan *plan = n->plan;
     size_t count = 0, fill = 0;
@@ -127,7 +134,8 @@ static size_t find_runs(const numbering *n, layer_run *runs, size_t *layer_count
     return count;
 }
 
-/* Pieces do not know where their lines begin: a gradient's have the colour of its middle. */
+/* Lines that were cut do not know where their polylines begin, so patterns are dropped, and a gradient becomes the
+ * colour of its middle. */
 static void forget_progress(const camber_plan *plan, camber_paint *paint) {
     if (paint->ramp) {
         const camber_ramp *ramp = plan->ramps + paint->ramp - 1;
@@ -139,7 +147,7 @@ static void forget_progress(const camber_plan *plan, camber_paint *paint) {
     paint->trim_start = paint->trim_end = 0.0f;
 }
 
-/* The paints of a run: those below its end, of width 0 where it does not draw them. */
+/* Writes the paints of a pass: one for each row below its end, of width 0 where the pass does not draw the row. */
 static void put_paints(const numbering *n, const layer_run *run, camber_paint *paints) {
     memset(paints, 0, run->end_paint * sizeof *paints);
     for (size_t i = run->first_layer; i < run->end_layer; i++) {
@@ -188,8 +196,10 @@ static camber_status make_passes(camber_context *context, const numbering *n, si
                                         .ramps = n->plan->ramps,
                                         .ramp_count = n->plan->ramp_count,
                                         .opacity = runs[i].opacity};
-        if (runs[i].fill)
+        if (runs[i].fill) {
+            list->passes[i].kind = CAMBER_PASS_FILL;
             list->passes[i].fill = runs[i].fill->fill;
+        }
         paints += runs[i].end_paint;
     }
     list->count = count;
@@ -204,7 +214,7 @@ static void free_passes(camber_context *context, pass_list *list) {
     camber_free(context, list->paints);
 }
 
-/* Of the network: every pair has an entry somewhere. */
+/* Makes the passes over the network, where every pair has an entry somewhere. */
 static camber_status make_pair_passes(camber_scene *scene) {
     size_t layer_count;
     bool *used = camber_alloc_zero(scene->context, scene->plan.pair_count, sizeof *used);
@@ -238,16 +248,17 @@ static camber_tessellation_desc desc_of(const camber_scene *scene, camber_method
     return (camber_tessellation_desc){.strokes = scene->pair_strokes,
                                       .stroke_count = scene->plan.pair_count,
                                       .method = method,
-                                      .measured = scene->plan.measured};
+                                      .has_arc_length = scene->plan.has_arc_length};
 }
 
 static void forget(camber_scene *scene) {
     free_passes(scene->context, &scene->passes);
     camber_polylines_destroy(scene->polylines);
-    camber_seen_destroy(&scene->seen);
+    camber_visible_lines_destroy(&scene->seen);
     scene->passes = (pass_list){0};
     scene->polylines = NULL;
-    scene->is_seen = false;
+    scene->is_projected = false;
+    scene->layer_count = 0;
 }
 
 static camber_status make_row_passes(camber_scene *scene) {
@@ -262,13 +273,13 @@ static camber_status make_row_passes(camber_scene *scene) {
     return status;
 }
 
-static camber_status see(camber_scene *scene) {
-    if (scene->is_seen)
+camber_status camber_scene_project(camber_scene *scene) {
+    if (scene->is_projected)
         return CAMBER_OK;
     const camber_camera camera = camera_of(scene);
     const camber_tessellation_desc strokes = desc_of(scene, CAMBER_METHOD_STRIP);
     camber_status status =
-        camber_geometry_see(scene->features, &scene->geometry, &scene->plan, &camera, &strokes, &scene->seen);
+        camber_plan_network_project(scene->features, &scene->geometry, &scene->plan, &camera, &strokes, &scene->seen);
     const camber_lines *lines = &scene->seen.lines;
     const camber_polylines_desc desc = {.points = lines->points,
                                         .point_count = lines->point_count,
@@ -280,20 +291,15 @@ static camber_status see(camber_scene *scene) {
     if (status == CAMBER_OK)
         status = make_row_passes(scene);
     if (status == CAMBER_OK)
-        scene->is_seen = true;
+        scene->is_projected = true;
     else
         forget(scene);
     return status;
 }
 
-/* What is made when it is asked for is no change of the scene. */
-static bool is_seen(const camber_scene *scene) {
-    return see((camber_scene *)(uintptr_t)scene) == CAMBER_OK;
-}
-
 /* ---- The scene ---- */
 
-static camber_status look(camber_scene *scene, const camber_view_desc *desc, camber_geometry *geometry) {
+static camber_status look(camber_scene *scene, const camber_view_desc *desc, camber_plan_network *geometry) {
     camber_status status = camber_view_create(scene->context, desc, &scene->view);
     if (status != CAMBER_OK)
         return status;
@@ -301,11 +307,11 @@ static camber_status look(camber_scene *scene, const camber_view_desc *desc, cam
                                            : camber_plan_create(scene->features, &scene->view, &scene->plan);
     if (status != CAMBER_OK)
         return status;
-    if (camber_geometry_serves(geometry, &scene->view, &scene->plan)) {
+    if (camber_plan_network_serves(geometry, &scene->view, &scene->plan)) {
         scene->geometry = *geometry;
-        *geometry = (camber_geometry){0};
+        *geometry = (camber_plan_network){0};
     } else {
-        status = camber_geometry_create(scene->features, &scene->view, &scene->plan, &scene->geometry);
+        status = camber_plan_network_create(scene->features, &scene->view, &scene->plan, &scene->geometry);
     }
     if (status == CAMBER_OK)
         status = make_strokes(scene);
@@ -316,7 +322,7 @@ static void empty(camber_scene *scene) {
     forget(scene);
     free_passes(scene->context, &scene->pair_passes);
     camber_free(scene->context, scene->pair_strokes);
-    camber_geometry_destroy(&scene->geometry);
+    camber_plan_network_destroy(&scene->geometry);
     camber_plan_destroy(&scene->plan);
 }
 
@@ -349,8 +355,8 @@ static bool has_patterns(const camber_plan *plan) {
     return false;
 }
 
-/* What a style leaves out is its business, but not where that is everything. Images of patterns that are not there are
- * told of already. */
+/* Warns where a style draws nothing at all; what else it leaves out is its own business. Images of patterns that are
+ * not there were warned of already. */
 static void tell_undrawn(const camber_scene *scene) {
     const size_t undrawn = scene->plan.undrawn, all = scene->features->feature_count;
     char keys[256];
@@ -375,11 +381,11 @@ camber_status camber_scene_create(const camber_features *features, const camber_
     camber_scene *made = camber_alloc_zero(context, 1, sizeof *made);
     if (!made)
         return CAMBER_ERROR_MEMORY;
-    camber_geometry none = {0};
+    camber_plan_network none = {0};
     *made = bare_scene(features, desc->simplify_px);
     camber_status status = look(made, &desc->view, &none);
     if (status == CAMBER_OK && !desc->on_device)
-        status = see(made);
+        status = camber_scene_project(made);
     if (status != CAMBER_OK) {
         camber_scene_destroy(made);
         return status;
@@ -394,12 +400,12 @@ camber_status camber_scene_create(const camber_features *features, const camber_
 
 camber_status camber_scene_move(camber_scene *scene, const camber_view_desc *view) {
     camber_scene moved = bare_scene(scene->features, scene->simplify_px);
-    /* The geometry is the one or the other's, never both's. */
-    camber_geometry geometry = scene->geometry;
+    /* The network belongs to one of the two, never to both. */
+    camber_plan_network geometry = scene->geometry;
     const camber_status status = look(&moved, view, &geometry);
     if (status != CAMBER_OK) {
         if (!geometry.context)
-            moved.geometry = (camber_geometry){0};
+            moved.geometry = (camber_plan_network){0};
         empty(&moved);
         return status;
     }
@@ -412,10 +418,11 @@ camber_status camber_scene_move(camber_scene *scene, const camber_view_desc *vie
 camber_status camber_scene_tessellate(const camber_scene *scene, camber_mesh *mesh, camber_method method) {
     const camber_camera camera = camera_of(scene);
     const camber_tessellation_desc desc = desc_of(scene, method);
-    return camber_tessellate_network(mesh, scene->geometry.network, &camera, &desc);
+    return camber_mesh_tessellate_network(mesh, scene->geometry.network, &camera, &desc);
 }
 
-camber_network *camber_scene_network(const camber_scene *scene, camber_camera *camera, camber_tessellation_desc *desc) {
+camber_network *camber_scene_get_network(const camber_scene *scene, camber_camera *camera,
+                                         camber_tessellation_desc *desc) {
     *camera = camera_of(scene);
     *desc = desc_of(scene, CAMBER_METHOD_STRIP);
     return scene->geometry.network;
@@ -429,9 +436,9 @@ void camber_scene_destroy(camber_scene *scene) {
     camber_free(context, scene);
 }
 
-/* ---- What is told ---- */
+/* ---- Getters ---- */
 
-camber_scene_info camber_scene_get_view(const camber_scene *scene) {
+camber_scene_info camber_scene_get_info(const camber_scene *scene) {
     camber_scene_info info = {.zoom = scene->view.zoom,
                               .bearing_deg = scene->view.bearing_deg,
                               .pitch_deg = scene->view.pitch_deg,
@@ -440,13 +447,6 @@ camber_scene_info camber_scene_get_view(const camber_scene *scene) {
                               .opaque = scene->plan.background.a >= 1.0f,
                               .undrawn = scene->plan.undrawn};
     camber_view_center(&scene->view, &info.longitude, &info.latitude);
-    return info;
-}
-
-camber_scene_info camber_scene_get_info(const camber_scene *scene) {
-    camber_scene_info info = camber_scene_get_view(scene);
-    if (!is_seen(scene))
-        return info;
     info.layers = scene->layer_count;
     info.features = scene->seen.feature_count;
     info.polylines = scene->seen.lines.polyline_count;
@@ -455,30 +455,32 @@ camber_scene_info camber_scene_get_info(const camber_scene *scene) {
     return info;
 }
 
-const camber_polylines *camber_scene_polylines(const camber_scene *scene) {
-    return is_seen(scene) ? scene->polylines : NULL;
+const camber_polylines *camber_scene_get_polylines(const camber_scene *scene) {
+    assert(scene->is_projected);
+    return scene->polylines;
 }
 
-const uint32_t *camber_scene_rows(const camber_scene *scene) {
-    return is_seen(scene) ? scene->seen.rows : NULL;
+const uint32_t *camber_scene_get_rows(const camber_scene *scene) {
+    assert(scene->is_projected);
+    return scene->seen.rows;
 }
 
-const camber_lines *camber_scene_lines(const camber_scene *scene) {
-    return is_seen(scene) ? &scene->seen.lines : NULL;
+const camber_lines *camber_scene_get_lines(const camber_scene *scene) {
+    assert(scene->is_projected);
+    return &scene->seen.lines;
 }
 
-const camber_stroke *camber_scene_strokes(const camber_scene *scene, size_t *count) {
+const camber_stroke *camber_scene_get_strokes(const camber_scene *scene, size_t *count) {
     *count = scene->plan.row_count;
     return scene->plan.strokes;
 }
 
-camber_frame camber_scene_frame(camber_scene *scene, camber_mesh *mesh) {
-    const bool holds_network = mesh && camber_mesh_holds(mesh, scene->geometry.network);
-    if (!holds_network)
-        (void)is_seen(scene);
+camber_frame camber_scene_get_frame(camber_scene *scene, camber_mesh *mesh) {
+    const bool holds_network = mesh && camber_mesh_holds_network(mesh, scene->geometry.network);
+    assert(holds_network || scene->is_projected);
     const pass_list *list = holds_network ? &scene->pair_passes : &scene->passes;
     for (size_t i = 0; i < list->count; i++)
-        list->passes[i].mesh = list->passes[i].fill.color.a > 0.0f ? NULL : mesh;
+        list->passes[i].mesh = mesh;
     return (camber_frame){.width = scene->view.width,
                           .height = scene->view.height,
                           .background = scene->plan.background,

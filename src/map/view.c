@@ -1,3 +1,7 @@
+/* Views: from what a user names (a centre and a zoom, a bounding box, everything) to the camera that draws it.
+ *
+ * Input: camber_view_desc in degrees and CSS pixels. Output: camber_view in world coordinates and device pixels.
+ */
 #include "map/view.h"
 
 #include "base/perspective.h"
@@ -11,7 +15,7 @@ static const double LARGEST_LATITUDE_DEG = 85.051129;
 static const double LARGEST_ZOOM = 24.0;
 static const double WORLD_CSS_PX = 512.0; /* at zoom 0 */
 
-/* Six digits of the limit lie a little beyond it. */
+/* Projects to world coordinates; a latitude limit that is written with six digits lies a little beyond the world. */
 static void to_world(double longitude, double latitude, double *x, double *y) {
     camber_mercator_project(longitude, latitude, x, y);
     *y = *y < 0.0 ? 0.0 : *y > 1.0 ? 1.0 : *y;

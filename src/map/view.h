@@ -1,6 +1,6 @@
 /* The camera: world coordinates to device pixels, in double until the view's origin is subtracted. */
-#ifndef CAMBER_VIEW_H
-#define CAMBER_VIEW_H
+#ifndef CAMBER_MAP_VIEW_H
+#define CAMBER_MAP_VIEW_H
 
 #include "base/base.h"
 #include "camber_map.h"
@@ -17,7 +17,7 @@ typedef struct camber_view {
     double zoom;     /* MapLibre's; below 0 where a fitted world is smaller than 512 CSS px */
     double scale_px; /* device px that the world is wide */
     double bearing_deg;
-    double cosine, sine; /* of the bearing */
+    double cosine, sine; /* cosine and sine of the bearing */
     double pitch_deg;
     double ratio;           /* device px a CSS px */
     uint32_t width, height; /* device px */

@@ -1,146 +1,138 @@
-/* Drawing in OpenCL: shape -> count -> total -> fill -> cover, of the records of meshes, and the CPU twin.
+/* Drawing in OpenCL: setup -> bin_count -> bin_scan -> bin_scatter -> rasterize, of the records of meshes, and the CPU
+ * twin.
  *
- * The kernels are built in variants, so that a plain frame pays for nothing that it has not; camber_cover_variant says
+ * The kernels are built in variants, so that a plain frame pays for nothing that it has not; camber_raster_variant says
  * which one a scene takes:
  *
- * - 0: inks alone.
- * - CAMBER_COVER_RICH: scene.more says for each ink what kernels/cover_bands.h lists, and the tail has the float4s that
- *   it names. shape writes measures besides; an ink without features gets the same bytes as from the plain variant.
- * - CAMBER_COVER_RICH | CAMBER_COVER_PITCHED: the plane of the lines is seen at an angle.
+ * - 0: brushes alone.
+ * - CAMBER_RASTER_RICH: scene.brush_ext says for each brush what kernels/features.h lists, and the side table has the
+ * float4s that it names. setup writes measures besides; a brush without features gets the same bytes as from the plain
+ * variant.
+ * - CAMBER_RASTER_RICH | CAMBER_RASTER_PITCHED: the plane of the lines is seen at an angle.
  *
- * In kernels a variant is what #if CAMBER_COVER_RICH and #if CAMBER_COVER_PITCHED leave; the twin has all of them and
+ * In kernels a variant is what #if CAMBER_RASTER_RICH and #if CAMBER_RASTER_PITCHED leave; the twin has all of them and
  * goes by the scene. */
-#ifndef CAMBER_COVER_H
-#define CAMBER_COVER_H
+#ifndef CAMBER_RASTER_RASTER_H
+#define CAMBER_RASTER_RASTER_H
 
 #include "tess/mesh.h"
 
 #include "camber_proof.h"
-#include "kernels/cover_pitch_bands.h"
-#include "kernels/cover_pitch_images.h"
+#include "kernels/pitch_features.h"
+#include "kernels/pitch_images.h"
 
 /* Polylines [first, end) of a mesh, drawn by a table of rows. */
-typedef struct camber_cover_run {
-    camber_mesh *mesh; /* NULL: the picture is filled with the ink of the first row, which is CAMBER_FILL_PX wide */
+typedef struct camber_raster_input {
+    camber_mesh *mesh; /* NULL: the picture is filled with the brush of the first row, which is CAMBER_FILL_PX wide */
     size_t first, end;
     size_t first_row; /* of the table, in all rows */
-} camber_cover_run;
+} camber_raster_input;
 
-/* What is drawn, in drawing order. Inks of one layer follow each other, and so do those of a group. */
-typedef struct camber_cover_scene {
-    const float *rows; /* row_count times CAMBER_COVER_ROW_WORDS; the ink's number is a word like the others */
+/* All that is drawn, in drawing order. Brushes of one layer follow each other, and so do those of a group. */
+typedef struct camber_raster_scene {
+    const float *rows; /* row_count times CAMBER_RASTER_ROW_WORDS; the brush's number is a word like the others */
     size_t row_count;
-    const camber_ink *inks; /* at least one */
-    size_t ink_count;
-    const camber_cover_run *runs;
-    size_t run_count;
+    const camber_brush *brushes; /* at least one */
+    size_t brush_count;
+    const camber_raster_input *inputs;
+    size_t input_count;
     float background[4]; /* premultiplied */
     bool linear;
     bool pitched; /* the plane of the lines is seen at an angle: there is more */
     camber_eye eye;
-    uint32_t horizon;            /* rows of the picture, from its top, in which nothing is drawn */
-    float sky[4];                /* what they have, premultiplied */
-    const camber_ink_more *more; /* ink_count. NULL: the frame is plain */
-    const float *tail;           /* tail_count times 4 */
-    size_t tail_count;
-} camber_cover_scene;
+    uint32_t horizon;                  /* rows of the picture, from its top, in which nothing is drawn */
+    float sky[4];                      /* what they have, premultiplied */
+    const camber_brush_ext *brush_ext; /* ink_count. NULL: the frame is plain */
+    const float *side_table;           /* tail_count times 4 */
+    size_t side_table_count;
+} camber_raster_scene;
 
-/* Of the program that draws it. */
-unsigned camber_cover_variant(const camber_cover_scene *scene);
+/* The variant of the program that draws it. */
+unsigned camber_raster_variant(const camber_raster_scene *scene);
 
 /* A part of the picture that is drawn at once, px; a multiple of CAMBER_TILE_PX from its edges, and no side longer than
  * CAMBER_TILES_MAX tiles. */
-typedef struct camber_cover_area {
+typedef struct camber_raster_area {
     uint32_t x, y, width, height;
-} camber_cover_area;
+} camber_raster_area;
 
-typedef struct camber_cover_pixels {
+typedef struct camber_raster_pixels {
     const uint8_t *rgba; /* of the area's first pixel */
     size_t row_bytes;
-} camber_cover_pixels;
+} camber_raster_pixels;
 
 /* Milliseconds of the last area's kernels on the device's queue. */
-typedef struct camber_cover_times {
-    double shape_ms, count_ms, total_ms, fill_ms, cover_ms;
-} camber_cover_times;
+typedef struct camber_raster_times {
+    double setup_ms, bin_count_ms, bin_scan_ms, bin_scatter_ms, rasterize_ms;
+} camber_raster_times;
 
-typedef struct camber_cover camber_cover;
+typedef struct camber_raster camber_raster;
 
-camber_status camber_cover_create(camber_device *device, camber_cover **cover);
-void camber_cover_destroy(camber_cover *cover);
+camber_status camber_raster_create(camber_device *device, camber_raster **raster);
+void camber_raster_destroy(camber_raster *raster);
 /* Draws an area. What it was drawn from may go afterwards. */
-camber_status camber_cover_draw(camber_cover *cover, const camber_cover_scene *scene, const camber_cover_area *area);
-/* The same into a buffer of the caller's, of camber_cover_bytes; there is nothing to map then. */
-camber_status camber_cover_draw_into(camber_cover *cover, const camber_cover_scene *scene,
-                                     const camber_cover_area *area, cl_mem pixels);
+camber_status camber_raster_draw(camber_raster *raster, const camber_raster_scene *scene,
+                                 const camber_raster_area *area);
+/* The same into a buffer of the caller's, of camber_raster_bytes; there is nothing to map then. */
+camber_status camber_raster_draw_into(camber_raster *raster, const camber_raster_scene *scene,
+                                      const camber_raster_area *area, cl_mem pixels);
 /* The pixels of the area that was drawn last, until they are unmapped. */
-camber_status camber_cover_map(camber_cover *cover, camber_cover_pixels *pixels);
-void camber_cover_unmap(camber_cover *cover, camber_cover_pixels pixels);
-camber_cover_times camber_cover_get_times(const camber_cover *cover);
-/* px; of an area, where memory is bounded: a row of its tiles can be kept between slices. */
-uint32_t camber_cover_widest(const camber_cover *cover);
-/* How many slices of shapes, in bands, the area that was drawn last took. */
-uint32_t camber_cover_slices(const camber_cover *cover);
+camber_status camber_raster_map(camber_raster *raster, camber_raster_pixels *pixels);
+void camber_raster_unmap(camber_raster *raster, camber_raster_pixels pixels);
+camber_raster_times camber_raster_get_times(const camber_raster *raster);
+/* px; of an area, where memory is bounded: a row of its tiles can be spilled between slices. */
+uint32_t camber_raster_widest(const camber_raster *raster);
+/* How many slices of segments, in bands, the area that was drawn last took. */
+uint32_t camber_raster_slice_count(const camber_raster *raster);
 
-/* ---- Stages in host memory, for proofs: freed with camber_cover_stages_free ---- */
+/* ---- Stages in host memory, for proofs: freed with camber_raster_stages_free ---- */
 
-typedef struct camber_cover_stages {
-    float *shapes;   /* shape_count times CAMBER_SHAPE_WORDS */
-    uint32_t *boxes; /* shape_count */
-    float *measures; /* shape_count times CAMBER_SHAPE_MEASURES. NULL: of a plain scene */
-    float *planes;   /* shape_count times CAMBER_PLANE_WORDS. NULL: not pitched */
-    size_t shape_count;
+typedef struct camber_raster_stages {
+    float *segments;    /* shape_count times CAMBER_SEGMENT_WORDS */
+    uint32_t *boxes;    /* shape_count */
+    float *arc_lengths; /* shape_count times CAMBER_SEGMENT_MEASURES. NULL: of a plain scene */
+    float *planes;      /* shape_count times CAMBER_PLANE_WORDS. NULL: not pitched */
+    size_t segment_count;
     uint32_t *starts; /* tile_count + 1 */
     size_t tile_count;
     uint32_t *lists; /* starts[tile_count] */
     uint8_t *rgba;   /* of the area */
-} camber_cover_stages;
+} camber_raster_stages;
 
-/* Of the area that was drawn last: the last slice of its last band. */
-camber_status camber_cover_read_stages(camber_cover *cover, camber_cover_stages *stages);
+/* Reads the stages of the area that was drawn last: the last slice of its last band. */
+camber_status camber_raster_read_stages(camber_raster *raster, camber_raster_stages *stages);
 /* The CPU twin, from what the meshes hold. */
-camber_status camber_cover_on_host(camber_context *context, const camber_cover_scene *scene,
-                                   const camber_cover_area *area, camber_cover_stages *stages);
-void camber_cover_stages_free(camber_context *context, camber_cover_stages *stages);
+camber_status camber_raster_on_host(camber_context *context, const camber_raster_scene *scene,
+                                    const camber_raster_area *area, camber_raster_stages *stages);
+void camber_raster_stages_free(camber_context *context, camber_raster_stages *stages);
 
-/* ---- What both need ---- */
+/* ---- Shared by device and twin ---- */
 
-/* As the kernels of that name read them. */
-typedef struct camber_shape_range {
-    uint32_t first, end, record_count;
-    uint32_t stride, strips, linear;
-    uint32_t base, first_row;
-    float left, top;
-    uint32_t columns, rows;
-    float horizon;
-    camber_eye eye;
-} camber_shape_range;
-
-/* Runs of records that are drawn by one table. */
-typedef struct camber_cover_piece {
+/* Records that are drawn by one table. */
+typedef struct camber_record_range {
     camber_mesh *mesh; /* NULL: the records of a fill */
     size_t part;
     size_t first, end; /* records of the part */
-    size_t base;       /* the first shape: a multiple of 16 */
+    size_t base;       /* the first segment: a multiple of 16 */
     size_t first_row;
-} camber_cover_piece;
+} camber_record_range;
 
-/* Lists the pieces of a scene; shape_count is what they take. *pieces is freed with camber_free. */
-camber_status camber_cover_list_pieces(camber_context *context, const camber_cover_scene *scene,
-                                       camber_cover_piece **pieces, size_t *piece_count, size_t *shape_count);
-camber_shape_range camber_cover_range(const camber_cover_scene *scene, const camber_cover_piece *piece,
-                                      const camber_cover_area *area);
+/* Lists the ranges of a scene; segment_count is what they take. *ranges is freed with camber_free. */
+camber_status camber_raster_list_ranges(camber_context *context, const camber_raster_scene *scene,
+                                        camber_record_range **ranges, size_t *range_count, size_t *segment_count);
+camber_setup_args camber_raster_setup_args(const camber_raster_scene *scene, const camber_record_range *range,
+                                           const camber_raster_area *area);
 enum { CAMBER_FILL_RECORDS = 2 };
 extern const camber_record camber_fill_records[CAMBER_FILL_RECORDS];
-static inline uint32_t camber_cover_tiles(uint32_t side_px) {
+static inline uint32_t camber_raster_tiles(uint32_t side_px) {
     return (side_px + CAMBER_TILE_PX - 1) / CAMBER_TILE_PX;
 }
 /* Pixels from row to row of an area, and what all of it takes: whole tiles. */
-static inline size_t camber_cover_stride_px(const camber_cover_area *area) {
-    return (size_t)camber_cover_tiles(area->width) * CAMBER_TILE_PX;
+static inline size_t camber_raster_stride_px(const camber_raster_area *area) {
+    return (size_t)camber_raster_tiles(area->width) * CAMBER_TILE_PX;
 }
-static inline size_t camber_cover_bytes(const camber_cover_area *area) {
-    return 4 * camber_cover_stride_px(area) * camber_cover_tiles(area->height) * CAMBER_TILE_PX;
+static inline size_t camber_raster_bytes(const camber_raster_area *area) {
+    return 4 * camber_raster_stride_px(area) * camber_raster_tiles(area->height) * CAMBER_TILE_PX;
 }
 
 #endif

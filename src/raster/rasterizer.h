@@ -1,64 +1,64 @@
-/* What draws on a device, for the steps of it that lie in files of their own. */
-#ifndef CAMBER_COVER_DEVICE_H
-#define CAMBER_COVER_DEVICE_H
+/* The rasterizer on a device, for the steps that lie in files of their own. */
+#ifndef CAMBER_RASTER_RASTERIZER_H
+#define CAMBER_RASTER_RASTERIZER_H
 
 #include "raster/raster.h"
 
 enum {
     BUFFER_FILL, /* camber_fill_records */
     BUFFER_ROWS,
-    BUFFER_INKS,
-    BUFFER_MORE,
-    BUFFER_TAIL,
-    BUFFER_SHAPES,
+    BUFFER_BRUSHES,
+    BUFFER_BRUSH_EXT,
+    BUFFER_SIDE_TABLE,
+    BUFFER_SEGMENTS,
     BUFFER_BOXES,
-    BUFFER_MEASURES,
+    BUFFER_ARC_LENGTHS,
     BUFFER_PLANES,
     BUFFER_COUNTS,
     BUFFER_TOTALS,
     BUFFER_STARTS,
     BUFFER_LISTS,
-    BUFFER_ITEMS,
+    BUFFER_JOBS,
     BUFFER_PIXELS,
-    BUFFER_KEPT, /* of tiles, between slices */
+    BUFFER_SPILL, /* of tiles, between slices */
     BUFFERS
 };
 
-enum { STAGE_SHAPE, STAGE_COUNT, STAGE_TOTAL, STAGE_FILL, STAGE_COVER, STAGES };
+enum { STAGE_SETUP, STAGE_BIN_COUNT, STAGE_BIN_SCAN, STAGE_BIN_SCATTER, STAGE_RASTERIZE, STAGES };
 
 /* A kernel that was started, and of which stage. */
-typedef struct camber_cover_pending {
+typedef struct camber_raster_pending {
     cl_event event;
     int stage;
-} camber_cover_pending;
-enum { CAMBER_COVER_PENDING = 32 };
+} camber_raster_pending;
+enum { CAMBER_RASTER_PENDING = 32 };
 
-struct camber_cover {
+struct camber_raster {
     camber_device *device;
     camber_program *program; /* of the variant */
     unsigned variant;        /* of what was drawn last */
     cl_mem buffers[BUFFERS];
     size_t capacities[BUFFERS];
-    uint32_t *starts, *items; /* of the host */
-    size_t start_capacity, item_capacity;
-    camber_cover_area area;          /* drawn last */
-    camber_cover_area band;          /* of it: whole rows of tiles, as many as there is room for lists */
-    cl_mem given;                    /* where its pixels are, if not in a buffer of its own */
-    uint32_t columns;                /* tiles */
-    size_t first_shape, shape_count; /* of the slice */
+    uint32_t *starts, *jobs; /* of the host */
+    size_t start_capacity, job_capacity;
+    camber_raster_area area;             /* drawn last */
+    camber_raster_area band;             /* of it: whole rows of tiles, as many as there is room for lists */
+    cl_mem given;                        /* where its pixels are, if not in a buffer of its own */
+    uint32_t columns;                    /* tiles */
+    size_t first_segment, segment_count; /* of the slice */
     size_t tile_count;
     uint32_t slice_count;
     camber_drawing_memory memory;
-    camber_cover_pending pending[CAMBER_COVER_PENDING];
+    camber_raster_pending pending[CAMBER_RASTER_PENDING];
     size_t pending_count;
     double ms[STAGES];
 };
 
-/* Of shapes, of lists, and of what is kept of tiles, each. */
-uint64_t camber_cover_most_bytes(const camber_cover *cover);
+/* The bytes that segments, lists and spills may take, each. */
+uint64_t camber_raster_most_bytes(const camber_raster *raster);
 /* A buffer of that size at least; what it had is lost where it grows. */
-camber_status camber_cover_reserve(camber_cover *cover, int which, size_t size_bytes);
-/* What is put must stay until what is drawn is waited for. */
-camber_status camber_cover_put(camber_cover *cover, int which, const void *bytes, size_t size_bytes);
+camber_status camber_raster_reserve(camber_raster *raster, int which, size_t size_bytes);
+/* The bytes must stay until the drawing has been waited for. */
+camber_status camber_raster_put(camber_raster *raster, int which, const void *bytes, size_t size_bytes);
 
 #endif

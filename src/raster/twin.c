@@ -1,4 +1,4 @@
-/* The CPU twin of what draws: the same shapes, boxes, lists and pixels, a segment, a tile and a pixel at a time, with
+/* The CPU twin of what draws: the same segments, boxes, lists and pixels, a segment, a tile and a pixel at a time, with
  * neither chunks nor sums. */
 #include "raster/twin.h"
 
@@ -10,14 +10,14 @@
 
 /* ---- Shapes ---- */
 
-/* Of a part, as the device has them: padding is ghosts. */
+/* The records of a part, as the device has them: padding is sentinels. */
 typedef struct part_records {
     camber_record *records;
-    camber_measure *measures; /* NULL: not measured */
+    camber_arc_length *arc_lengths; /* NULL: not measured */
 } part_records;
 
 /* A record's number, or that of the nearest there is. */
-static size_t place_of(int64_t i, const camber_shape_range *r) {
+static size_t place_of(int64_t i, const camber_setup_args *r) {
     const int64_t last = (int64_t)r->record_count - 1;
     return (size_t)(i < 0 ? 0 : i > last ? last : i);
 }
@@ -28,37 +28,37 @@ static float as_float(uint32_t word) {
     return value;
 }
 
-static bool ends_segment(const camber_record *b, const camber_shape_range *r) {
+static bool ends_segment(const camber_record *b, const camber_setup_args *r) {
     const uint32_t starts = CAMBER_POINT_FIRST | CAMBER_RECORD_BREAK | CAMBER_RECORD_START;
     const uint32_t kind = camber_join_kind(b->join);
-    if (!(b->last & CAMBER_POINT_REAL) || kind == CAMBER_KIND_GHOST)
+    if (!(b->last & CAMBER_POINT_REAL) || kind == CAMBER_KIND_SENTINEL)
         return false;
     return r->strips ? !(b->last & starts) : !(b->last & CAMBER_POINT_FIRST) || kind == CAMBER_KIND_DOT;
 }
 
 /* How far along its line a segment lies: from one record to another. */
-static void put_measure(const camber_measure *measures, size_t from, size_t to, const camber_shape *s,
-                        float measure[CAMBER_SHAPE_MEASURES]) {
-    memset(measure, 0, CAMBER_SHAPE_MEASURES * sizeof *measure);
-    if (!measures)
+static void put_measure(const camber_arc_length *arc_lengths, size_t from, size_t to, const camber_segment *s,
+                        float measure[CAMBER_SEGMENT_MEASURES]) {
+    memset(measure, 0, CAMBER_SEGMENT_MEASURES * sizeof *measure);
+    if (!arc_lengths)
         return;
-    measure[0] = measures[from].along_px;
-    measure[1] = camber_shape_rate(s, measures[from].along_px, measures[to].along_px);
-    measure[2] = measures[from].total_px;
+    measure[0] = arc_lengths[from].along_px;
+    measure[1] = camber_segment_rate(s, arc_lengths[from].along_px, arc_lengths[to].along_px);
+    measure[2] = arc_lengths[from].total_px;
 }
 
-static void put_words(const camber_shape *s, float ink, float *made) {
-    const float words[CAMBER_SHAPE_WORDS] = {s->ax,    s->ay,    s->bx,  s->by,  s->ux,         s->uy,
-                                             s->nax,   s->nay,   s->nbx, s->nby, s->half_width, s->reach,
-                                             s->slope, s->curve, 0,      ink};
+static void put_words(const camber_segment *s, float brush, float *made) {
+    const float words[CAMBER_SEGMENT_WORDS] = {s->ax,    s->ay,    s->bx,  s->by,  s->ux,         s->uy,
+                                               s->nax,   s->nay,   s->nbx, s->nby, s->half_width, s->reach,
+                                               s->slope, s->curve, 0,      brush};
     memcpy(made, words, sizeof words);
-    made[CAMBER_SHAPE_FLAGS] = as_float(s->flags);
+    made[CAMBER_SEGMENT_FLAGS] = as_float(s->flags);
 }
 
-static void put_plane(const camber_shape *s, const camber_plane *p, float *made) {
+static void put_plane(const camber_segment *s, const camber_plane *p, float *made) {
     const float words[] = {
         s->ax,       s->ay,       s->bx,         s->by,       s->ux,       s->uy,       s->nax,      s->nay,
-        s->nbx,      s->nby,      s->half_width, p->own_a,    p->own_b,    p->cut_a[0], p->cut_a[1], p->cut_a[2],
+        s->nbx,      s->nby,      s->half_width, p->owner_a,  p->owner_b,  p->cut_a[0], p->cut_a[1], p->cut_a[2],
         p->cut_a[3], p->cut_b[0], p->cut_b[1],   p->cut_b[2], p->cut_b[3], p->ends,     p->margin,   p->left[0],
         p->left[1],  p->left[2],  p->right[0],   p->right[1], p->right[2], 0,           0,           0};
     _Static_assert(sizeof words == 4 * CAMBER_PLANE_WORDS, "all words of a plane");
@@ -66,8 +66,8 @@ static void put_plane(const camber_shape *s, const camber_plane *p, float *made)
 }
 
 /* The words of the segment that ends with a record; the box says whether there is one. */
-static void put_shape(const camber_twin *t, const part_records *part, const camber_shape_range *r, int64_t i,
-                      size_t shape) {
+static void put_segment(const camber_twin *t, const part_records *part, const camber_setup_args *r, int64_t i,
+                        size_t segment) {
     const camber_record *records = part->records ? part->records : camber_fill_records;
     const camber_record b = records[place_of(i, r)], before = records[place_of(i - 1, r)];
     const bool is_dot = camber_join_kind(b.join) == CAMBER_KIND_DOT;
@@ -76,30 +76,30 @@ static void put_shape(const camber_twin *t, const part_records *part, const camb
     const bool again = before.last & CAMBER_RECORD_START && camber_join_kind(before.join) == CAMBER_KIND_TIGHT;
     const camber_record p = records[place_of(again ? i - 3 : i - 2, r)];
     const float *row =
-        t->scene->rows + CAMBER_COVER_ROW_WORDS * (r->first_row + (ends ? b.last >> CAMBER_POINT_ROW_SHIFT : 0));
+        t->scene->rows + CAMBER_RASTER_ROW_WORDS * (r->first_row + (ends ? b.last >> CAMBER_POINT_ROW_SHIFT : 0));
     const float x = row[1] - r->eye.x, y = row[2] - r->eye.y; /* 0 where there is no pitch */
-    camber_shape s =
-        camber_shape_of(p.x + x, p.y + y, a.x + x, a.y + y, b.x + x, b.y + y, a.join, b.join, row[0], r->linear);
+    camber_segment s =
+        camber_segment_of(p.x + x, p.y + y, a.x + x, a.y + y, b.x + x, b.y + y, a.join, b.join, row[0], r->linear);
     bool drawn = ends && row[0] >= 0.0f;
-    if (t->stages->measures)
-        put_measure(part->measures, place_of(is_dot ? i : i - 1, r), place_of(i, r), &s,
-                    t->stages->measures + CAMBER_SHAPE_MEASURES * shape);
+    if (t->stages->arc_lengths)
+        put_measure(part->arc_lengths, place_of(is_dot ? i : i - 1, r), place_of(i, r), &s,
+                    t->stages->arc_lengths + CAMBER_SEGMENT_MEASURES * segment);
     if (t->stages->planes) {
-        camber_shape band;
+        camber_segment band;
         camber_plane plane;
         drawn = drawn && camber_pitch_shape_of(r->eye, r->horizon, &s, &band, &plane);
         if (drawn) {
-            put_plane(&s, &plane, t->stages->planes + CAMBER_PLANE_WORDS * shape);
+            put_plane(&s, &plane, t->stages->planes + CAMBER_PLANE_WORDS * segment);
             s = band;
         }
     }
-    put_words(&s, row[3], t->stages->shapes + CAMBER_SHAPE_WORDS * shape);
-    t->stages->boxes[shape] = camber_shape_box(&s, drawn, r->left, r->top, r->columns, r->rows);
+    put_words(&s, row[3], t->stages->segments + CAMBER_SEGMENT_WORDS * segment);
+    t->stages->boxes[segment] = camber_segment_box(&s, drawn, r->left, r->top, r->columns, r->rows);
 }
 
 static void free_part(camber_context *context, part_records *part) {
     camber_free(context, part->records);
-    camber_free(context, part->measures);
+    camber_free(context, part->arc_lengths);
 }
 
 /* The records of a part, read as the device has them. */
@@ -112,27 +112,27 @@ static camber_status read_part(camber_mesh *mesh, size_t which, part_records *pa
     const camber_mesh_part *from = mesh->parts + which;
     const size_t count = mesh->mesh_info.strips ? from->record_count : from->slot_count;
     const size_t kept = from->record_count < count ? from->record_count : count;
-    const bool measured = mesh->mesh_info.measured;
+    const bool has_arc_length = mesh->mesh_info.has_arc_length;
     part_records made = {camber_alloc_zero(context, count, sizeof *made.records),
-                         measured ? camber_alloc_zero(context, count, sizeof *made.measures) : NULL};
+                         has_arc_length ? camber_alloc_zero(context, count, sizeof *made.arc_lengths) : NULL};
     if (made.records)
         memcpy(made.records, data.records + from->first_record, kept * sizeof *made.records);
-    if (made.measures)
-        memcpy(made.measures, data.measures + from->first_record, kept * sizeof *made.measures);
-    camber_mesh_data_free(context, &data);
+    if (made.arc_lengths)
+        memcpy(made.arc_lengths, data.arc_lengths + from->first_record, kept * sizeof *made.arc_lengths);
+    camber_mesh_data_destroy(&data);
     *part = made;
-    return made.records && (made.measures || !measured) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    return made.records && (made.arc_lengths || !has_arc_length) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
 }
 
-static camber_status make_shapes(const camber_twin *t, const camber_cover_piece *pieces, size_t piece_count) {
+static camber_status make_segments(const camber_twin *t, const camber_record_range *ranges, size_t range_count) {
     camber_status status = CAMBER_OK;
-    for (size_t p = 0; p < piece_count && status == CAMBER_OK; p++) {
-        const camber_shape_range r = camber_cover_range(t->scene, pieces + p, t->area);
+    for (size_t p = 0; p < range_count && status == CAMBER_OK; p++) {
+        const camber_setup_args r = camber_raster_setup_args(t->scene, ranges + p, t->area);
         part_records part = {0};
-        status = pieces[p].mesh ? read_part(pieces[p].mesh, pieces[p].part, &part) : CAMBER_OK;
-        const size_t count = (pieces[p].end - pieces[p].first + 15) / 16 * 16;
+        status = ranges[p].mesh ? read_part(ranges[p].mesh, ranges[p].part, &part) : CAMBER_OK;
+        const size_t count = (ranges[p].end - ranges[p].first + 15) / 16 * 16;
         for (size_t i = 0; i < count && status == CAMBER_OK; i++)
-            put_shape(t, &part, &r, (int64_t)(pieces[p].first + i), pieces[p].base + i);
+            put_segment(t, &part, &r, (int64_t)(ranges[p].first + i), ranges[p].base + i);
         free_part(t->context, &part);
     }
     return status;
@@ -140,28 +140,28 @@ static camber_status make_shapes(const camber_twin *t, const camber_cover_piece 
 
 /* ---- Lists ---- */
 
-/* Calls put for each tile that a shape meets, from the first to the last. */
-static void each_tile(const camber_twin *t, size_t shape, uint32_t *counts, bool fill) {
-    const uint32_t box = t->stages->boxes[shape];
+/* Calls put for each tile that a segment meets, from the first to the last. */
+static void each_tile(const camber_twin *t, size_t segment, uint32_t *counts, bool fill) {
+    const uint32_t box = t->stages->boxes[segment];
     const uint32_t x0 = box & 255u, y0 = box >> 8 & 255u, x1 = box >> 16 & 255u, y1 = box >> 24;
-    const camber_tiles of = {(float)t->area->x, (float)t->area->y, t->columns, t->rows};
+    const camber_tile_grid of = {(float)t->area->x, (float)t->area->y, t->columns, t->rows};
     for (uint32_t y = y0; x0 <= x1 && y <= y1; y++) {
-        const uint32_t span = camber_tile_span(t->stages->shapes + CAMBER_SHAPE_WORDS * shape, box, y, &of);
+        const uint32_t span = camber_tile_span(t->stages->segments + CAMBER_SEGMENT_WORDS * segment, box, y, &of);
         for (uint32_t x = span & 255u; x <= span >> 8; x++) {
             uint32_t *count = counts + y * t->columns + x;
             if (fill)
-                t->stages->lists[*count] = (uint32_t)shape;
+                t->stages->lists[*count] = (uint32_t)segment;
             ++*count;
         }
     }
 }
 
 static camber_status make_lists(const camber_twin *t) {
-    camber_cover_stages *stages = t->stages;
+    camber_raster_stages *stages = t->stages;
     uint32_t *next = camber_alloc_zero(t->context, stages->tile_count, sizeof *next);
     if (!next)
         return CAMBER_ERROR_MEMORY;
-    for (size_t i = 0; i < stages->shape_count; i++)
+    for (size_t i = 0; i < stages->segment_count; i++)
         each_tile(t, i, next, false);
     stages->starts[0] = 0;
     for (size_t i = 0; i < stages->tile_count; i++) {
@@ -169,43 +169,44 @@ static camber_status make_lists(const camber_twin *t) {
         next[i] = stages->starts[i];
     }
     stages->lists = camber_alloc(t->context, stages->starts[stages->tile_count], sizeof *stages->lists);
-    for (size_t i = 0; i < stages->shape_count && stages->lists; i++)
+    for (size_t i = 0; i < stages->segment_count && stages->lists; i++)
         each_tile(t, i, next, true);
     camber_free(t->context, next);
     return stages->lists ? CAMBER_OK : CAMBER_ERROR_MEMORY;
 }
 
-camber_status camber_cover_on_host(camber_context *context, const camber_cover_scene *scene,
-                                   const camber_cover_area *area, camber_cover_stages *stages) {
-    camber_cover_stages made = {0};
-    camber_cover_piece *pieces = NULL;
-    size_t piece_count = 0;
+camber_status camber_raster_on_host(camber_context *context, const camber_raster_scene *scene,
+                                    const camber_raster_area *area, camber_raster_stages *stages) {
+    camber_raster_stages made = {0};
+    camber_record_range *ranges = NULL;
+    size_t range_count = 0;
     const camber_twin t = {
-        context, scene, area, &made, camber_cover_tiles(area->width), camber_cover_tiles(area->height)};
+        context, scene, area, &made, camber_raster_tiles(area->width), camber_raster_tiles(area->height)};
     made.tile_count = (size_t)t.columns * t.rows;
-    camber_status status = camber_cover_list_pieces(context, scene, &pieces, &piece_count, &made.shape_count);
+    camber_status status = camber_raster_list_ranges(context, scene, &ranges, &range_count, &made.segment_count);
     if (status != CAMBER_OK)
         return status;
-    made.shapes = camber_alloc(context, made.shape_count, CAMBER_SHAPE_WORDS * sizeof *made.shapes);
-    made.boxes = camber_alloc(context, made.shape_count, sizeof *made.boxes);
-    if (scene->more)
-        made.measures = camber_alloc(context, made.shape_count, CAMBER_SHAPE_MEASURES * sizeof *made.measures);
+    made.segments = camber_alloc(context, made.segment_count, CAMBER_SEGMENT_WORDS * sizeof *made.segments);
+    made.boxes = camber_alloc(context, made.segment_count, sizeof *made.boxes);
+    if (scene->brush_ext)
+        made.arc_lengths =
+            camber_alloc(context, made.segment_count, CAMBER_SEGMENT_MEASURES * sizeof *made.arc_lengths);
     if (scene->pitched)
-        made.planes = camber_alloc(context, made.shape_count, CAMBER_PLANE_WORDS * sizeof *made.planes);
+        made.planes = camber_alloc(context, made.segment_count, CAMBER_PLANE_WORDS * sizeof *made.planes);
     made.starts = camber_alloc(context, made.tile_count + 1, sizeof *made.starts);
     made.rgba = camber_alloc(context, 4 * (size_t)area->width, area->height);
-    if (!made.shapes || !made.boxes || (scene->more && !made.measures) || (scene->pitched && !made.planes) ||
+    if (!made.segments || !made.boxes || (scene->brush_ext && !made.arc_lengths) || (scene->pitched && !made.planes) ||
         !made.starts || !made.rgba)
         status = CAMBER_ERROR_MEMORY;
     if (status == CAMBER_OK)
-        status = make_shapes(&t, pieces, piece_count);
+        status = make_segments(&t, ranges, range_count);
     if (status == CAMBER_OK)
         status = make_lists(&t);
     if (status == CAMBER_OK)
         status = camber_twin_draw(&t);
-    camber_free(context, pieces);
+    camber_free(context, ranges);
     if (status != CAMBER_OK) {
-        camber_cover_stages_free(context, &made);
+        camber_raster_stages_free(context, &made);
         return status;
     }
     *stages = made;

@@ -1,6 +1,6 @@
-/* What the parts of the CPU twin share. */
-#ifndef CAMBER_TWIN_H
-#define CAMBER_TWIN_H
+/* Shared by the files of the CPU twin. */
+#ifndef CAMBER_RASTER_TWIN_H
+#define CAMBER_RASTER_TWIN_H
 
 #include "raster/raster.h"
 
@@ -8,9 +8,9 @@
 
 typedef struct camber_twin {
     camber_context *context;
-    const camber_cover_scene *scene;
-    const camber_cover_area *area;
-    camber_cover_stages *stages;
+    const camber_raster_scene *scene;
+    const camber_raster_area *area;
+    camber_raster_stages *stages;
     uint32_t columns, rows; /* tiles */
 } camber_twin;
 

@@ -1,6 +1,6 @@
-/* Whom a set of features is signed by: what its files say of themselves, each once, as plain text. Nothing is guessed
- * from what the data looks like: a road of anyone's may have a key of OpenStreetMap's. */
-#include "source/fill.h"
+/* The attribution of a set of features: what its files say of themselves, each text once, as plain text. Nothing is
+ * guessed from the data: any road may have a key of OpenStreetMap's. */
+#include "source/features.h"
 
 #include <ctype.h>
 
@@ -20,7 +20,7 @@ static const entity *find_entity(const char *at) {
     return NULL;
 }
 
-/* Past a tag, or NULL: none begins here. Its name tells it from a < that is text. */
+/* Returns the text past a tag, or NULL where none begins. The tag's name tells it from a < that is text. */
 static const char *skip_tag(const char *at) {
     if (*at != '<' || !(isalpha((unsigned char)at[1]) || at[1] == '/' || at[1] == '!'))
         return NULL;
@@ -33,8 +33,8 @@ static const char *skip_tag(const char *at) {
     return NULL;
 }
 
-/* Without tags, entities, control characters and blanks that do not part words. plain has as much room as text. Returns
- * its length. */
+/* Copies the text without tags, entities, control characters and blanks that separate no words. plain has as much
+ * room as text. Returns its length. */
 static size_t make_plain(const char *text, char *plain) {
     size_t size = 0;
     while (*text) {
@@ -71,7 +71,7 @@ static camber_status append(camber_features *features, const char *text, size_t 
     return CAMBER_OK;
 }
 
-camber_status camber_features_sign(camber_features *features, const char *text) {
+camber_status camber_features_add_attribution(camber_features *features, const char *text) {
     if (!text)
         return CAMBER_OK;
     char *plain = camber_alloc(features->context, strlen(text) + 1, 1);
@@ -79,19 +79,19 @@ camber_status camber_features_sign(camber_features *features, const char *text) 
         return CAMBER_ERROR_MEMORY;
     camber_status status = CAMBER_OK;
     const size_t size = make_plain(text, plain);
-    const char *known = camber_features_attribution(features);
+    const char *known = camber_features_get_attribution(features);
     if (size && !(known && strstr(known, plain)))
         status = append(features, plain, size);
     camber_free(features->context, plain);
     return status;
 }
 
-void camber_features_unsign(camber_features *features, size_t size) {
+void camber_features_cut_attribution(camber_features *features, size_t size) {
     features->attribution_size = size;
     if (features->attribution)
         features->attribution[size] = 0;
 }
 
-const char *camber_features_attribution(const camber_features *features) {
+const char *camber_features_get_attribution(const camber_features *features) {
     return features->attribution_size ? features->attribution : NULL;
 }

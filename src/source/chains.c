@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-static camber_chain follow(const camber_chains_desc *desc, uint32_t start) {
+static camber_chain follow_chain(const camber_chains_desc *desc, uint32_t start) {
     camber_chain made = {start, UINT32_MAX};
     uint32_t end = start;
     do {
@@ -14,14 +14,14 @@ static camber_chain follow(const camber_chains_desc *desc, uint32_t start) {
     return made;
 }
 
-/* In rounds, so that chains keep the direction of their pieces where these agree. */
-static size_t find(const camber_chains_desc *desc, camber_chain *chains) {
+/* Works in rounds, so that chains keep the direction of their lines where these agree. */
+static size_t find_chains(const camber_chains_desc *desc, camber_chain *chains) {
     size_t count = 0;
     for (int round = 0; round < 3; round++) {
-        for (uint32_t i = 0; i < desc->piece_count; i++) {
+        for (uint32_t i = 0; i < desc->line_count; i++) {
             const uint32_t start = round == 1 ? 2 * i + 1 : 2 * i;
             if (!desc->visited[i] && (round == 2 || desc->partner[start] == CAMBER_NO_END))
-                chains[count++] = follow(desc, start);
+                chains[count++] = follow_chain(desc, start);
         }
     }
     return count;
@@ -29,15 +29,15 @@ static size_t find(const camber_chains_desc *desc, camber_chain *chains) {
 
 camber_status camber_chains_find(camber_context *context, const camber_chains_desc *desc, camber_chain **chains,
                                  size_t *count) {
-    camber_chain *found = camber_alloc(context, desc->piece_count, sizeof *found);
-    camber_chain *sorted = found ? camber_alloc(context, desc->piece_count, sizeof *sorted) : NULL;
+    camber_chain *found = camber_alloc(context, desc->line_count, sizeof *found);
+    camber_chain *sorted = found ? camber_alloc(context, desc->line_count, sizeof *sorted) : NULL;
     uint32_t *starts = sorted ? camber_alloc_zero(context, desc->key_count + 1, sizeof *starts) : NULL;
     if (!starts) {
         camber_free(context, sorted);
         camber_free(context, found);
         return CAMBER_ERROR_MEMORY;
     }
-    *count = find(desc, found);
+    *count = find_chains(desc, found);
     for (size_t i = 0; i < *count; i++)
         starts[found[i].key + 1]++;
     for (size_t i = 0; i < desc->key_count; i++)

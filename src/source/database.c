@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Whether a file stands beside it, and has something in it. */
+/* Whether a file with this suffix exists beside the database and is not empty. */
 static bool has_beside(const char *path, const char *ending) {
     char name[4096];
     struct stat about;
@@ -15,7 +15,7 @@ static bool has_beside(const char *path, const char *ending) {
            about.st_size > 0;
 }
 
-/* The header's word on how it is written to. */
+/* Whether the header says that writers keep a log. */
 static bool keeps_log(const char *path) {
     unsigned char head[20] = "";
     const int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
@@ -25,7 +25,7 @@ static bool keeps_log(const char *path) {
     return got == sizeof head && memcmp(head, "SQLite format 3", 16) == 0 && head[18] == 2;
 }
 
-camber_database_kind camber_database_look(const char *path) {
+camber_database_kind camber_database_get_kind(const char *path) {
     if (!keeps_log(path))
         return CAMBER_DATABASE_PLAIN;
     if (!has_beside(path, "-wal"))

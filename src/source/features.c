@@ -1,12 +1,17 @@
+/* A set of features in memory: how it grows, and how equal things are kept once.
+ *
+ * Input: the lines and attributes that a reader gives, one feature after the other. Output: camber_features. Texts and
+ * values are interned, so equal ones have one pointer; features that agree in all attributes form one class.
+ */
+#include "source/features.h"
 #include "lines/importance.h"
-#include "source/fill.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 /* Open addressing with linear probing; at most half of the slots are in use, so that probes stay short. */
 typedef struct interned {
-    camber_value value; /* of the text as JSON, once it is asked for: an array or an object */
+    camber_value value; /* the value that the text means as JSON, once it was asked for: an array or an object */
     char text[];
 } interned;
 
@@ -19,7 +24,7 @@ typedef struct interner {
 
 enum { FIRST_SLOTS = 256 };
 
-/* items and members are the set's own blocks. */
+/* Frees a value whose items and members are the set's own memory. */
 static void free_value(camber_context *context, camber_value *value) {
     if (value->type == CAMBER_VALUE_ARRAY) {
         camber_value *items = (camber_value *)(uintptr_t)value->items;
@@ -158,9 +163,9 @@ camber_status camber_features_intern(camber_features *features, const char *text
 
 /* ---- Arrays and objects ---- */
 
-static camber_status build(camber_features *features, const json_t *json, camber_value *value);
+static camber_status copy_json(camber_features *features, const json_t *json, camber_value *value);
 
-static camber_status build_array(camber_features *features, const json_t *json, camber_value *value) {
+static camber_status copy_array(camber_features *features, const json_t *json, camber_value *value) {
     const size_t count = json_array_size(json);
     camber_value *items = camber_alloc_zero(features->context, count, sizeof *items);
     if (!items)
@@ -168,7 +173,7 @@ static camber_status build_array(camber_features *features, const json_t *json, 
     *value = (camber_value){.type = CAMBER_VALUE_ARRAY, .items = items};
     camber_status status = CAMBER_OK;
     for (size_t i = 0; i < count && status == CAMBER_OK; i++, value->count++)
-        status = build(features, json_array_get(json, i), &items[i]);
+        status = copy_json(features, json_array_get(json, i), &items[i]);
     return status;
 }
 
@@ -176,7 +181,7 @@ static int compare_members(const void *a, const void *b) {
     return strcmp(((const camber_member *)a)->key, ((const camber_member *)b)->key);
 }
 
-static camber_status build_object(camber_features *features, const json_t *json, camber_value *value) {
+static camber_status copy_object(camber_features *features, const json_t *json, camber_value *value) {
     camber_member *members = camber_alloc_zero(features->context, json_object_size(json), sizeof *members);
     if (!members)
         return CAMBER_ERROR_MEMORY;
@@ -186,10 +191,10 @@ static camber_status build_object(camber_features *features, const json_t *json,
     json_t *member;
     json_object_foreach((json_t *)(uintptr_t)json, key, member) {
         camber_member *one = &members[value->count];
-        one->place = value->count++;
+        one->position = value->count++;
         status = camber_features_intern(features, key, &one->key);
         if (status == CAMBER_OK)
-            status = build(features, member, &one->value);
+            status = copy_json(features, member, &one->value);
         if (status != CAMBER_OK)
             return status;
     }
@@ -198,11 +203,11 @@ static camber_status build_object(camber_features *features, const json_t *json,
     return CAMBER_OK;
 }
 
-static camber_status build(camber_features *features, const json_t *json, camber_value *value) {
+static camber_status copy_json(camber_features *features, const json_t *json, camber_value *value) {
     *value = (camber_value){0};
     switch (json_typeof(json)) {
-    case JSON_OBJECT: return build_object(features, json, value);
-    case JSON_ARRAY: return build_array(features, json, value);
+    case JSON_OBJECT: return copy_object(features, json, value);
+    case JSON_ARRAY: return copy_array(features, json, value);
     case JSON_STRING:
         value->type = CAMBER_VALUE_STRING;
         return camber_features_intern(features, json_string_value(json), &value->string);
@@ -225,7 +230,7 @@ camber_status camber_features_intern_json(camber_features *features, const json_
     if (status != CAMBER_OK)
         return status;
     if (found->value.type == CAMBER_VALUE_NULL)
-        status = build(features, json, &found->value);
+        status = copy_json(features, json, &found->value);
     if (status != CAMBER_OK)
         free_value(features->context, &found->value);
     else
@@ -253,8 +258,8 @@ camber_status camber_features_find_layer(camber_features *features, const char *
 
 /* ---- Classes ---- */
 
-/* What an interned value is told by is a pointer. */
-static bool points(const camber_value *value) {
+/* Whether the value is interned: it is then known by its pointer. */
+static bool is_pointer(const camber_value *value) {
     return value->type == CAMBER_VALUE_STRING || value->type == CAMBER_VALUE_ARRAY ||
            value->type == CAMBER_VALUE_OBJECT;
 }
@@ -269,7 +274,7 @@ static bool equal_values(const camber_value *a, const camber_value *b, size_t co
             return false;
         if (a[i].type == CAMBER_VALUE_NUMBER && memcmp(&a[i].number, &b[i].number, sizeof a[i].number) != 0)
             return false;
-        if (points(&a[i]) && a[i].string != b[i].string)
+        if (is_pointer(&a[i]) && a[i].string != b[i].string)
             return false;
     }
     return true;
@@ -281,7 +286,7 @@ static uint64_t hash_value(uint64_t hash, const camber_value *value) {
         word = value->boolean;
     else if (value->type == CAMBER_VALUE_NUMBER)
         memcpy(&word, &value->number, sizeof word);
-    else if (points(value))
+    else if (is_pointer(value))
         word = (uintptr_t)value->string;
     return camber_mix(hash, word ^ (uint64_t)value->type << 56);
 }
@@ -385,7 +390,7 @@ camber_status camber_features_add_feature(camber_features *features, uint32_t cl
     return CAMBER_OK;
 }
 
-/* Room for so many polylines; the last of them has all of its line. */
+/* Makes room for this many polylines; the last of them has all of its line. */
 static bool grow_progress(camber_features *features, size_t polylines) {
     if (!camber_grow(features->context, &features->progress, &features->progress_capacity, polylines,
                      2 * sizeof *features->progress))
@@ -400,7 +405,7 @@ camber_status camber_features_set_progress(camber_features *features, double fir
         for (size_t n = 1; n <= features->polyline_count; n++)
             if (!grow_progress(features, n))
                 return CAMBER_ERROR_MEMORY;
-    if (!features->progress) /* of no polyline */
+    if (!features->progress) /* belongs to no polyline */
         return CAMBER_OK;
     features->progress[2 * features->polyline_count - 2] = (float)first;
     features->progress[2 * features->polyline_count - 1] = (float)last;
@@ -436,7 +441,7 @@ camber_status camber_features_add_polyline(camber_features *features, const doub
     return CAMBER_OK;
 }
 
-camber_status camber_features_weigh(camber_features *features, size_t first_polyline) {
+camber_status camber_features_set_importance(camber_features *features, size_t first_polyline) {
     if (first_polyline == features->polyline_count)
         return CAMBER_OK;
     if (!camber_grow(features->context, &features->importance, &features->importance_capacity, features->point_count,

@@ -3,15 +3,15 @@
  * Features that agree in layer, geometry kind and every kept attribute form one class, so that a style's
  * filters are evaluated once a class and not once a feature: a city of 50,000 ways has a few hundred.
  */
-#ifndef CAMBER_FEATURES_H
-#define CAMBER_FEATURES_H
+#ifndef CAMBER_SOURCE_FEATURES_H
+#define CAMBER_SOURCE_FEATURES_H
 
 #include "camber_map.h"
 #include "style/style.h"
 
 typedef enum camber_geometry_kind {
     CAMBER_GEOMETRY_LINE = 0,
-    CAMBER_GEOMETRY_POLYGON, /* its outline */
+    CAMBER_GEOMETRY_POLYGON, /* the outline is drawn */
 } camber_geometry_kind;
 
 typedef struct camber_feature_class {
@@ -30,15 +30,16 @@ struct camber_features {
     /* World coordinates: Web Mercator, x and y in 0 to 1 from the north-west, y down; pairs. */
     double *points;
     size_t point_count, point_capacity;
-    /* point_count: how much each matters, in world coordinates (lines/importance.h), once a file is read. Nodes that
-     * polylines of one file share have one importance. */
+    /* point_count: how much each point matters, in world coordinates (lines/importance.h), set once a file is read.
+     * Nodes that polylines of one file share have one importance. */
     float *importance;
     size_t importance_capacity;
     /* Polyline i has the points [offsets[i], offsets[i + 1]). polyline_count + 1 entries once not empty. */
     size_t *offsets;
     size_t polyline_count, polyline_capacity;
-    uint32_t *polyline_feature; /* polyline_count: the feature that it is a part of, or the first of them; ascending */
-    uint32_t *feature_counts;   /* polyline_count: features whose first line is a part of it; their sum is all */
+    uint32_t *polyline_feature; /* polyline_count: the feature that it belongs to, or the first of them; ascending */
+    uint32_t *feature_counts; /* polyline_count: how many features have their first line in it; the sum is the number of
+                                 features */
     /* 2 * polyline_count: line-progress at a polyline's first and last point; between them it grows with the length in
      * world coordinates. NULL: 0 and 1 for all. */
     float *progress;
@@ -52,19 +53,54 @@ struct camber_features {
     camber_value *values; /* class_count * style->property_count; strings belong to this set */
     size_t value_count, value_capacity;
 
-    char **layer_names; /* source layers, in the order they were met */
+    char **layer_names; /* source layers, in the order in which they were found */
     size_t layer_count, layer_capacity;
 
-    uint32_t source;   /* of the classes found now; CAMBER_NO_SOURCE at first */
+    uint32_t source;   /* the source of classes that are found from now on; CAMBER_NO_SOURCE at first */
     char *attribution; /* attribution_size bytes and a 0; NULL: none yet */
     size_t attribution_size, attribution_capacity;
     camber_features_stats stats;
     camber_features_times times;
 
-    struct camber_sprites *sprites;                       /* what patterns are of. NULL: not read */
-    void (*free_sprites)(struct camber_sprites *sprites); /* the module that reads files does without sprites */
+    struct camber_sprites *sprites; /* the images of patterns. NULL: not read */
+    void (*free_sprites)(
+        struct camber_sprites *sprites); /* a pointer, since the module that reads files has no sprites */
 
-    void *interned; /* features.c: strings and classes, hashed */
+    void *interned; /* hash tables of strings and classes (features.c) */
 };
+
+/* ---- Filling a set, from whatever features are read. Failures are logged. ---- */
+
+/* Gives the set's own copy of the text: the same pointer for equal texts. */
+camber_status camber_features_intern(camber_features *features, const char *text, const char **interned);
+camber_status camber_features_find_layer(camber_features *features, const char *name, uint32_t *layer);
+/* Gives the value as the set's own: the same pointer for values of the same text. */
+camber_status camber_features_intern_json(camber_features *features, const json_t *json, const camber_value **value);
+/* values: style->property_count of them, interned. */
+camber_status camber_features_find_class(camber_features *features, uint32_t layer, camber_geometry_kind geometry,
+                                         const camber_value *values, uint32_t *class_index);
+/* Does the same with an id and all properties; wanted's source and first_value are not read. */
+camber_status camber_features_find_class_of(camber_features *features, const camber_feature_class *wanted,
+                                            const camber_value *values, uint32_t *class_index);
+camber_status camber_features_add_feature(camber_features *features, uint32_t class_index);
+/* Adds a polyline to the feature that was added last. points: pairs of world coordinates. */
+camber_status camber_features_add_polyline(camber_features *features, const double *points, size_t point_count);
+/* Sets line-progress at the ends of the polyline that was added last. */
+camber_status camber_features_set_progress(camber_features *features, double first, double last);
+/* Adds an attribution, plain text or HTML, unless the set has it already. NULL: nothing. */
+camber_status camber_features_add_attribution(camber_features *features, const char *text);
+/* Cuts the attribution back to this many bytes, a former attribution_size. */
+void camber_features_cut_attribution(camber_features *features, size_t size);
+
+typedef enum camber_merge_rule {
+    CAMBER_MERGE_ANY = 0,  /* where exactly two ends of a class meet */
+    CAMBER_MERGE_DIRECTED, /* the same, but only the end of one with the start of another */
+    CAMBER_MERGE_STRAIGHT, /* where two ends go on almost straight, whatever else meets there */
+} camber_merge_rule;
+
+/* Merges lines of first_polyline and after it. */
+camber_status camber_features_merge(camber_features *features, size_t first_polyline, camber_merge_rule rule);
+/* Sets the importance of the points of first_polyline and of those after it. */
+camber_status camber_features_set_importance(camber_features *features, size_t first_polyline);
 
 #endif

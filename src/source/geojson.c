@@ -1,3 +1,8 @@
+/* Reads a GeoJSON source of a style into a set of features.
+ *
+ * Input: a JSON document and the source's filter. Output: lines, outlines, classes, ids. Damage is counted, not fatal:
+ * a line is split where a point is not valid, and what can be read of a feature is kept.
+ */
 #include "source/geojson.h"
 #include "source/mercator.h"
 #include "style/json.h"
@@ -31,7 +36,7 @@ typedef struct reader {
     uint32_t class_index;
 } reader;
 
-static void spoil(reader *self, const char *cause) {
+static void note_damage(reader *self, const char *cause) {
     if (!self->damage)
         self->damage = cause;
 }
@@ -62,7 +67,7 @@ static camber_status read_value(reader *self, const json_t *json, camber_value *
     return CAMBER_OK;
 }
 
-/* Text that is a number is one, as in other engines. */
+/* Reads an id; a text that is a number counts as a number, as in other engines. */
 static camber_status read_id(reader *self, const json_t *feature, const json_t *properties, camber_value *id) {
     const json_t *json = json_object_get(feature, "id");
     if (self->promote_id)
@@ -83,7 +88,7 @@ static camber_status read_id(reader *self, const json_t *feature, const json_t *
     return read_value(self, json, id);
 }
 
-/* The feature's class for lines, or for outlines. *drawn: the source's filter lets it pass. */
+/* Finds the feature's class for lines, or for outlines. *drawn: the source's filter lets it pass. */
 static camber_status find_class(reader *self, const json_t *feature, camber_geometry_kind kind, bool *drawn) {
     const camber_style *style = self->features->style;
     const json_t *properties = json_object_get(feature, "properties");
@@ -111,12 +116,12 @@ static camber_status find_class(reader *self, const json_t *feature, camber_geom
 
 /* ---- Geometry ---- */
 
-/* A number that JSON has no word for: NaN and null, an infinity and what is beyond a double. */
+/* Whether this stands for a number that JSON cannot write: null for NaN, or one beyond a double for an infinity. */
 static bool is_no_number(const json_t *json) {
     return json_is_null(json) || fabs(json_number_value(json)) >= CAMBER_JSON_INFINITE;
 }
 
-/* An invalid point, as in INPUT, is a pair of NaN. false: no position. */
+/* Reads a position; a point that is not valid, as in CAMBER_ERROR_INPUT, becomes a pair of NaN. false: no position. */
 static bool read_position(const json_t *json, double position[2]) {
     const json_t *longitude = json_array_get(json, 0), *latitude = json_array_get(json, 1);
     if (is_no_number(longitude) || is_no_number(latitude)) {
@@ -155,7 +160,7 @@ static camber_status add_line(reader *self, const double *points, size_t count) 
     return status == CAMBER_OK ? camber_features_add_polyline(self->features, points, count) : status;
 }
 
-/* The line read, split where points are invalid. */
+/* Adds the line that was read, split where points are not valid. */
 static camber_status add_parts(reader *self, size_t count) {
     camber_status status = CAMBER_OK;
     size_t first = 0;
@@ -170,8 +175,8 @@ static camber_status add_parts(reader *self, size_t count) {
     return status;
 }
 
-/* An outline goes clockwise as seen, so that what lies to its right is inside, and that of a hole the other way. */
-static void wind(double *points, size_t count, bool hole) {
+/* Turns a ring so that an outline goes clockwise as seen, with its inside to the right, and a hole the other way. */
+static void orient_ring(double *points, size_t count, bool hole) {
     double area = 0.0;
     for (size_t i = 0; i + 1 < count; i++) {
         const double part = (points[2 * i] - points[0]) * (points[2 * i + 3] - points[1]) -
@@ -197,26 +202,26 @@ static camber_status read_line(reader *self, const json_t *json, bool ring, bool
         if (read_position(json_array_get(json, i), self->points + 2 * count))
             count++;
         else
-            spoil(self, "a position that is no longitude and latitude");
+            note_damage(self, "a position that is no longitude and latitude");
     }
     if (count < 2) {
-        spoil(self, "a line of fewer than two positions");
+        note_damage(self, "a line of fewer than two positions");
         return CAMBER_OK;
     }
     const double *last = self->points + 2 * (count - 1);
     if (ring && (fabs(last[0] - self->points[0]) > 0 || fabs(last[1] - self->points[1]) > 0)) { /* both are valid */
-        spoil(self, "a ring that is not closed");
+        note_damage(self, "a ring that is not closed");
         memcpy(self->points + 2 * count++, self->points, 2 * sizeof *self->points);
     }
     if (ring && self->features->style->directed)
-        wind(self->points, count, hole);
+        orient_ring(self->points, count, hole);
     return add_parts(self, count);
 }
 
-/* depth: of lines in the coordinates. hole: of a polygon the lines are not the first. */
+/* depth: how deep the lines are in the coordinates. hole: all lines of a polygon but the first are holes. */
 static camber_status read_lines(reader *self, const json_t *json, int depth, bool ring, bool hole) {
     if (!json_is_array(json)) {
-        spoil(self, "coordinates that are no array");
+        note_damage(self, "coordinates that are no array");
         return CAMBER_OK;
     }
     if (depth == 0)
@@ -247,7 +252,7 @@ static camber_status read_geometry(reader *self, const json_t *geometry, camber_
     while (i < sizeof types / sizeof *types && (!type || strcmp(types[i].name, type) != 0))
         i++;
     if (i == sizeof types / sizeof *types) {
-        spoil(self, "a geometry of an unknown type");
+        note_damage(self, "a geometry of an unknown type");
         return CAMBER_OK;
     }
     self->left_out |= types[i].depth < 0;
@@ -301,7 +306,7 @@ static camber_status read_feature(reader *self, const json_t *feature, const jso
             status = read_geometry(self, geometry, (camber_geometry_kind)kind, 0);
     }
     if (!any)
-        status = read_geometry(self, geometry, CAMBER_GEOMETRY_LINE, 0); /* what else it may be */
+        status = read_geometry(self, geometry, CAMBER_GEOMETRY_LINE, 0); /* the other kind that the geometry may have */
     end_feature(self);
     return status;
 }

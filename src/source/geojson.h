@@ -1,8 +1,8 @@
 /* GeoJSON sources of a style: every property as it stands, ids, nothing of it split or simplified. */
-#ifndef CAMBER_GEOJSON_H
-#define CAMBER_GEOJSON_H
+#ifndef CAMBER_SOURCE_GEOJSON_H
+#define CAMBER_SOURCE_GEOJSON_H
 
-#include "source/fill.h"
+#include "source/features.h"
 
 typedef struct camber_geojson_desc {
     const char *what;                  /* the source, in messages */
@@ -13,12 +13,12 @@ typedef struct camber_geojson_desc {
 typedef struct camber_geojson_stats {
     size_t skipped_features;
     size_t invalid_points;   /* no numbers; their lines are split there */
-    size_t damaged_features; /* what of them reads is kept */
+    size_t damaged_features; /* the readable part of them is kept */
     char damage[160];        /* the first: its JSON pointer and the cause */
     double bounds[4];        /* x0, y0, x1, y1 of the lines, world coordinates; x0 > x1: none */
 } camber_geojson_stats;
 
-/* Adds the lines and outlines to the set, of features->source. Returns CAMBER_ERROR_INPUT (no GeoJSON),
+/* Adds the lines and outlines to the set, as features of features->source. Returns CAMBER_ERROR_INPUT (no GeoJSON),
  * CAMBER_ERROR_MEMORY, CAMBER_ERROR_LIMIT. */
 camber_status camber_geojson_read(camber_features *features, const camber_geojson_desc *desc,
                                   camber_geojson_stats *stats);

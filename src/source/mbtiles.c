@@ -1,5 +1,6 @@
-/* MBTiles: a SQLite database with a table of tiles, rows from the south, and one of metadata. Either may be a view, and
- * a view is a program: only what joins and picks is run, and only so many steps of it. */
+/* MBTiles: a SQLite database with a table of tiles, whose rows count from the south, and a table of metadata. Either
+ * may be a view, and a view is a program: only those that join and select are run, and only for a limited number of
+ * steps. */
 #include "source/database.h"
 #include "source/tile_set.h"
 
@@ -12,7 +13,7 @@ typedef struct database {
     sqlite3 *handle;
     sqlite3_stmt *get;
     camber_context *context;
-    bool computes; /* a view of it wants what is not allowed */
+    bool computes; /* a view of it asked for something that is not allowed */
 } database;
 
 static int count_steps(void *user) {
@@ -20,7 +21,7 @@ static int count_steps(void *user) {
     return !camber_budget_take_steps(self->context, STEPS_A_CALL);
 }
 
-/* Functions take any time over their text, and recursion makes rows of nothing. */
+/* Refuses functions, which may take any time over their text, and recursion, which makes rows out of nothing. */
 static int authorize(void *user, int action, const char *first, const char *second, const char *base,
                      const char *view) {
     static const char *const functions[] = {"abs", "coalesce", "count", "ifnull", "iif",   "length", "max",
@@ -83,7 +84,7 @@ static camber_status prepare(camber_tile_set *set, const char *sql, sqlite3_stmt
     return sqlite3_prepare_v2(self->handle, sql, -1, statement, NULL) == SQLITE_OK ? CAMBER_OK : fail(set);
 }
 
-/* ---- What it tells of itself ---- */
+/* ---- Metadata ---- */
 
 static bool is_wanted(const char *name) {
     static const char *const names[] = {"format", "bounds", "minzoom", "maxzoom", "attribution", "json"};
@@ -93,7 +94,7 @@ static bool is_wanted(const char *name) {
     return false;
 }
 
-static void take_row(json_t *about, sqlite3_stmt *row) {
+static void take_metadata_row(json_t *about, sqlite3_stmt *row) {
     const char *name = (const char *)sqlite3_column_text(row, 0);
     if (!name || !is_wanted(name))
         return;
@@ -110,7 +111,7 @@ static void take_row(json_t *about, sqlite3_stmt *row) {
     json_decref(inner);
 }
 
-/* Sets without the table are read all the same. */
+/* Sets without the table of metadata are read all the same. */
 static camber_status read_metadata(camber_tile_set *set) {
     database *self = set->self;
     sqlite3_stmt *rows = NULL;
@@ -119,7 +120,7 @@ static camber_status read_metadata(camber_tile_set *set) {
     json_t *about = json_object();
     int step;
     while ((step = sqlite3_step(rows)) == SQLITE_ROW)
-        take_row(about, rows);
+        take_metadata_row(about, rows);
     camber_status status = step == SQLITE_DONE ? CAMBER_OK : fail(set);
     sqlite3_finalize(rows);
     if (status == CAMBER_OK)
@@ -154,14 +155,14 @@ static camber_status find_zooms(camber_tile_set *set) {
 
 /* ---- Tiles ---- */
 
-static camber_status get_tile(camber_tile_set *set, int zoom, camber_tile_place place, camber_bytes *bytes,
+static camber_status get_tile(camber_tile_set *set, int zoom, camber_tile_index tile, camber_bytes *bytes,
                               const char **why) {
     (void)why;
     const database *self = set->self;
     bytes->size_bytes = 0;
     sqlite3_bind_int(self->get, 1, zoom);
-    sqlite3_bind_int64(self->get, 2, place.column);
-    sqlite3_bind_int64(self->get, 3, ((sqlite3_int64)1 << zoom) - 1 - place.row);
+    sqlite3_bind_int64(self->get, 2, tile.column);
+    sqlite3_bind_int64(self->get, 3, ((sqlite3_int64)1 << zoom) - 1 - tile.row);
     const int step = sqlite3_step(self->get);
     camber_status status = step == SQLITE_ROW || step == SQLITE_DONE ? CAMBER_OK : fail(set);
     if (step == SQLITE_ROW) {
@@ -178,40 +179,41 @@ static camber_status get_tile(camber_tile_set *set, int zoom, camber_tile_place 
     return status;
 }
 
-static int compare_places(const void *left, const void *right) {
-    const camber_tile_place *a = left, *b = right;
+static int compare_tiles(const void *left, const void *right) {
+    const camber_tile_index *a = left, *b = right;
     if (a->column != b->column)
         return a->column < b->column ? -1 : 1;
     return a->row > b->row ? -1 : a->row < b->row;
 }
 
-/* In the order of the table's own rows, from the south, each once: lines are drawn as they are read. */
-static size_t sort_places(camber_tile_place *places, size_t count) {
+/* Sorts the tiles in the order of the table's own rows, from the south, each once: lines are drawn in the order in
+ * which they are read. */
+static size_t sort_tiles(camber_tile_index *tiles, size_t count) {
     size_t kept = 0;
     if (count)
-        qsort(places, count, sizeof *places, compare_places);
+        qsort(tiles, count, sizeof *tiles, compare_tiles);
     for (size_t i = 0; i < count; i++)
-        if (kept == 0 || compare_places(places + kept - 1, places + i) != 0)
-            places[kept++] = places[i];
+        if (kept == 0 || compare_tiles(tiles + kept - 1, tiles + i) != 0)
+            tiles[kept++] = tiles[i];
     return kept;
 }
 
-static camber_status take_place(camber_tile_set *set, sqlite3_stmt *at, int zoom, camber_tile_place **places,
-                                size_t *count, size_t *capacity) {
+static camber_status take_tile(camber_tile_set *set, sqlite3_stmt *at, int zoom, camber_tile_index **tiles,
+                               size_t *count, size_t *capacity) {
     const int64_t side = INT64_C(1) << zoom;
     const int64_t column = sqlite3_column_int64(at, 0), row = side - 1 - sqlite3_column_int64(at, 1);
     const camber_status status = camber_budget_take_tiles(set->context, set->name, 1);
     if (status != CAMBER_OK || column < 0 || column >= side || row < 0 || row >= side)
         return status;
-    if (!camber_grow(set->context, places, capacity, *count + 1, sizeof **places))
+    if (!camber_grow(set->context, tiles, capacity, *count + 1, sizeof **tiles))
         return CAMBER_ERROR_MEMORY;
-    (*places)[(*count)++] = (camber_tile_place){(uint32_t)column, (uint32_t)row};
+    (*tiles)[(*count)++] = (camber_tile_index){(uint32_t)column, (uint32_t)row};
     return CAMBER_OK;
 }
 
-static camber_status list_tiles(camber_tile_set *set, int zoom, camber_tile_place **places, size_t *count) {
+static camber_status list_tiles(camber_tile_set *set, int zoom, camber_tile_index **tiles, size_t *count) {
     sqlite3_stmt *rows = NULL;
-    camber_tile_place *made = NULL;
+    camber_tile_index *made = NULL;
     size_t found = 0, capacity = 0;
     camber_status status = prepare(set, "SELECT tile_column, tile_row FROM tiles WHERE zoom_level = ?", &rows);
     if (status != CAMBER_OK)
@@ -219,14 +221,14 @@ static camber_status list_tiles(camber_tile_set *set, int zoom, camber_tile_plac
     sqlite3_bind_int(rows, 1, zoom);
     int step;
     while (status == CAMBER_OK && (step = sqlite3_step(rows)) != SQLITE_DONE)
-        status = step == SQLITE_ROW ? take_place(set, rows, zoom, &made, &found, &capacity) : fail(set);
+        status = step == SQLITE_ROW ? take_tile(set, rows, zoom, &made, &found, &capacity) : fail(set);
     sqlite3_finalize(rows);
     if (status != CAMBER_OK) {
         camber_free(set->context, made);
         return status;
     }
-    *count = sort_places(made, found);
-    *places = made;
+    *count = sort_tiles(made, found);
+    *tiles = made;
     return CAMBER_OK;
 }
 
@@ -245,7 +247,7 @@ static const camber_tile_set_calls database_calls = {get_tile, list_tiles, close
 static camber_status open_handle(camber_tile_set *set, const char *path) {
     database *self = set->self;
     const int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_NOMUTEX;
-    const camber_database_kind kind = camber_database_look(path);
+    const camber_database_kind kind = camber_database_get_kind(path);
     if (kind == CAMBER_DATABASE_INTERRUPTED)
         return fail_interrupted(set);
     if (kind != CAMBER_DATABASE_AT_REST)

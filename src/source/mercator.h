@@ -4,8 +4,8 @@
  *     x = lon / 360 + 1/2        y = 1/2 - asinh(tan(lat)) / (2 pi)
  * (Snyder, Map Projections, USGS 1395, eq. 7-1 and 7-2 on the sphere, scaled by 1 / (2 pi R).)
  */
-#ifndef CAMBER_MERCATOR_H
-#define CAMBER_MERCATOR_H
+#ifndef CAMBER_SOURCE_MERCATOR_H
+#define CAMBER_SOURCE_MERCATOR_H
 
 /* The latitude of y = 0: atan(sinh(pi)), degrees. */
 #define CAMBER_MERCATOR_LATITUDE 85.051128779806604

@@ -6,22 +6,22 @@
  * leave a light seam, as each covers a part of the same pixels. Where they bend they end as the style has it.
  */
 #include "source/chains.h"
-#include "source/fill.h"
+#include "source/features.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Of a turn of 40 degrees. */
+/* The cosine of a turn of 40 degrees. */
 static const double STRAIGHT_COSINE = 0.766;
-/* Ends at a node that are looked at for those that go on straight. */
+/* The most ends at a node among which partners are sought that go on straight. */
 enum { NODE_ENDS_MAX = 16 };
 
-/* The lines from first_polyline on, as pieces. */
+/* Merges the lines from first_polyline on. */
 typedef struct merger {
     camber_features *features;
     size_t first_polyline;
-    size_t piece_count;
-    uint32_t *partner; /* of the ends; CAMBER_NO_END */
+    size_t line_count;
+    uint32_t *partner; /* by end: the end that it is joined with; CAMBER_NO_END: none */
     uint32_t *next;    /* by the straight rule: another end at the same node; CAMBER_NO_END */
     uint8_t *met;      /* ends at the node of which this end was the first, up to 3 */
     uint32_t *slots;   /* the first end at a node, + 1; 0: free. A power of two of them, at most half in use */
@@ -31,15 +31,15 @@ typedef struct merger {
     size_t chain_count;
 } merger;
 
-static const double *piece_points(const merger *m, size_t piece, size_t *count) {
-    const size_t *offsets = m->features->offsets + m->first_polyline + piece;
+static const double *line_points(const merger *m, size_t line, size_t *count) {
+    const size_t *offsets = m->features->offsets + m->first_polyline + line;
     *count = offsets[1] - offsets[0];
     return m->features->points + 2 * offsets[0];
 }
 
 static const double *end_point(const merger *m, uint32_t end) {
     size_t count;
-    const double *points = piece_points(m, end / 2, &count);
+    const double *points = line_points(m, end / 2, &count);
     return points + (end & 1 ? 2 * (count - 1) : 0);
 }
 
@@ -47,11 +47,11 @@ static uint32_t class_of(const merger *m, uint32_t end) {
     return m->features->feature_class[m->features->polyline_feature[m->first_polyline + end / 2]];
 }
 
-/* A line that goes nowhere is a dot, and has no ends. */
-static bool has_ends(const merger *m, size_t piece) {
+/* Whether the line has ends that may be joined: a line whose points are all one is a dot and has none. */
+static bool has_ends(const merger *m, size_t line) {
     size_t count;
-    const double *points = piece_points(m, piece, &count);
-    if (m->features->classes[class_of(m, (uint32_t)(2 * piece))].geometry != CAMBER_GEOMETRY_LINE)
+    const double *points = line_points(m, line, &count);
+    if (m->features->classes[class_of(m, (uint32_t)(2 * line))].geometry != CAMBER_GEOMETRY_LINE)
         return false;
     for (size_t i = 1; i < count; i++)
         if (memcmp(points, points + 2 * i, 2 * sizeof *points) != 0)
@@ -59,7 +59,7 @@ static bool has_ends(const merger *m, size_t piece) {
     return false;
 }
 
-/* The first end that met at the end's node; itself where it is that. */
+/* Returns the first end that was found at the end's node: this one where there was none. */
 static uint32_t find_node(merger *m, uint32_t end) {
     const double *at = end_point(m, end);
     const uint32_t class_index = class_of(m, end);
@@ -73,7 +73,7 @@ static uint32_t find_node(merger *m, uint32_t end) {
     return end;
 }
 
-static void part(merger *m, uint32_t end) {
+static void separate(merger *m, uint32_t end) {
     if (m->partner[end] == CAMBER_NO_END)
         return;
     m->partner[m->partner[end]] = CAMBER_NO_END;
@@ -81,7 +81,7 @@ static void part(merger *m, uint32_t end) {
 }
 
 static void find_partners(merger *m, bool directed) {
-    for (size_t i = 0; i < m->piece_count; i++) {
+    for (size_t i = 0; i < m->line_count; i++) {
         if (!has_ends(m, i))
             continue;
         for (uint32_t end = (uint32_t)(2 * i); end <= 2 * i + 1; end++) {
@@ -91,24 +91,24 @@ static void find_partners(merger *m, bool directed) {
                 m->partner[first] = end;
                 m->partner[end] = first;
             } else {
-                part(m, first);
+                separate(m, first);
             }
         }
     }
-    for (uint32_t end = 0; end < 2 * m->piece_count; end++) {
+    for (uint32_t end = 0; end < 2 * m->line_count; end++) {
         const uint32_t other = m->partner[end];
         const bool closes = other == (end ^ 1), turns = ((end ^ other) & 1) == 0;
         if (other != CAMBER_NO_END && (closes || (directed && turns)))
-            part(m, end);
+            separate(m, end);
     }
 }
 
 /* ---- Lines that go on straight ---- */
 
-/* The direction in which a line leaves its end. */
-static void leave(const merger *m, uint32_t end, double direction[2]) {
+/* Computes the direction in which a line leaves its end. */
+static void find_direction(const merger *m, uint32_t end, double direction[2]) {
     size_t count;
-    const double *points = piece_points(m, end / 2, &count), *at = points + (end & 1 ? 2 * (count - 1) : 0);
+    const double *points = line_points(m, end / 2, &count), *at = points + (end & 1 ? 2 * (count - 1) : 0);
     direction[0] = direction[1] = 0.0;
     for (size_t i = 1; i < count && direction[0] == 0.0 && direction[1] == 0.0; i++) {
         const double *other = points + 2 * (end & 1 ? count - 1 - i : i);
@@ -120,7 +120,7 @@ static void leave(const merger *m, uint32_t end, double direction[2]) {
     direction[1] /= length;
 }
 
-/* Makes partners of the ends at a node, of which first is one, those that turn least first. */
+/* Makes partners of the ends at a node, where first is one of them; those that turn least come first. */
 static void pair_straight(merger *m, uint32_t first) {
     uint32_t ends[NODE_ENDS_MAX];
     double directions[NODE_ENDS_MAX][2];
@@ -128,7 +128,7 @@ static void pair_straight(merger *m, uint32_t first) {
     for (uint32_t end = first; end != CAMBER_NO_END && count < NODE_ENDS_MAX; end = m->next[end])
         ends[count++] = end;
     for (size_t i = 0; i < count; i++)
-        leave(m, ends[i], directions[i]);
+        find_direction(m, ends[i], directions[i]);
     for (;;) {
         size_t a = 0, b = 0;
         double best = STRAIGHT_COSINE;
@@ -150,7 +150,7 @@ static void pair_straight(merger *m, uint32_t first) {
 }
 
 static void find_straight_partners(merger *m) {
-    for (size_t i = 0; i < m->piece_count; i++) {
+    for (size_t i = 0; i < m->line_count; i++) {
         if (!has_ends(m, i))
             continue;
         for (uint32_t end = (uint32_t)(2 * i); end <= 2 * i + 1; end++) {
@@ -162,7 +162,7 @@ static void find_straight_partners(merger *m) {
             m->next[first] = end;
         }
     }
-    for (uint32_t end = 0; end < 2 * m->piece_count; end++)
+    for (uint32_t end = 0; end < 2 * m->line_count; end++)
         if (m->met[end] && m->next[end] != CAMBER_NO_END)
             pair_straight(m, end);
 }
@@ -184,7 +184,7 @@ static void append_chain(const merger *m, const camber_chain *chain, merged *mad
     made->feature_counts[line] = 0;
     do {
         size_t count;
-        const double *points = piece_points(m, end / 2, &count);
+        const double *points = line_points(m, end / 2, &count);
         /* Where lines meet one point is left; a ring has its seam twice. */
         for (size_t i = end != chain->start; i < count; i++) {
             const double *from = points + 2 * (end & 1 ? count - 1 - i : i);
@@ -196,7 +196,7 @@ static void append_chain(const merger *m, const camber_chain *chain, merged *mad
     made->offsets[made->polyline_count++] = made->point_count;
 }
 
-static void replace(const merger *m, const merged *made) {
+static void replace_lines(const merger *m, const merged *made) {
     camber_features *features = m->features;
     const size_t first = m->first_polyline, first_point = features->offsets[first];
     memcpy(features->points + 2 * first_point, made->points, 2 * made->point_count * sizeof *made->points);
@@ -207,7 +207,7 @@ static void replace(const merger *m, const merged *made) {
         features->offsets[first + i + 1] = first_point + made->offsets[i];
     features->polyline_count = first + made->polyline_count;
     features->point_count = first_point + made->point_count;
-    features->stats.merged_polylines += m->piece_count - made->polyline_count;
+    features->stats.merged_polylines += m->line_count - made->polyline_count;
 }
 
 static camber_status write_chains(const merger *m) {
@@ -222,7 +222,7 @@ static camber_status write_chains(const merger *m) {
         goto done;
     for (size_t i = 0; i < m->chain_count; i++)
         append_chain(m, &m->chains[i], &made);
-    replace(m, &made);
+    replace_lines(m, &made);
     status = CAMBER_OK;
 done:
     camber_free(context, made.feature_counts);
@@ -236,33 +236,33 @@ camber_status camber_features_merge(camber_features *features, size_t first_poly
     camber_context *context = features->context;
     merger m = {.features = features,
                 .first_polyline = first_polyline,
-                .piece_count = features->polyline_count - first_polyline,
+                .line_count = features->polyline_count - first_polyline,
                 .slot_count = 16};
-    if (m.piece_count < 2)
+    if (m.line_count < 2)
         return CAMBER_OK;
-    if (m.piece_count >= (size_t)1 << 30)
+    if (m.line_count >= (size_t)1 << 30)
         return camber_fail(context, CAMBER_ERROR_LIMIT, "%zu lines at once are more than 2^30; read fewer",
-                           m.piece_count);
-    while (m.slot_count < 4 * m.piece_count)
+                           m.line_count);
+    while (m.slot_count < 4 * m.line_count)
         m.slot_count *= 2;
     camber_status status = CAMBER_ERROR_MEMORY;
-    if (!(m.partner = camber_alloc(context, 2 * m.piece_count, sizeof *m.partner)) ||
-        !(m.met = camber_alloc_zero(context, 2 * m.piece_count, sizeof *m.met)) ||
+    if (!(m.partner = camber_alloc(context, 2 * m.line_count, sizeof *m.partner)) ||
+        !(m.met = camber_alloc_zero(context, 2 * m.line_count, sizeof *m.met)) ||
         !(m.slots = camber_alloc_zero(context, m.slot_count, sizeof *m.slots)) ||
-        !(m.visited = camber_alloc_zero(context, m.piece_count, sizeof *m.visited)) ||
-        !(m.next = camber_alloc(context, rule == CAMBER_MERGE_STRAIGHT ? 2 * m.piece_count : 1, sizeof *m.next)))
+        !(m.visited = camber_alloc_zero(context, m.line_count, sizeof *m.visited)) ||
+        !(m.next = camber_alloc(context, rule == CAMBER_MERGE_STRAIGHT ? 2 * m.line_count : 1, sizeof *m.next)))
         goto done;
-    memset(m.partner, 0xff, 2 * m.piece_count * sizeof *m.partner);
+    memset(m.partner, 0xff, 2 * m.line_count * sizeof *m.partner);
     if (rule == CAMBER_MERGE_STRAIGHT) {
-        memset(m.next, 0xff, 2 * m.piece_count * sizeof *m.next);
+        memset(m.next, 0xff, 2 * m.line_count * sizeof *m.next);
         find_straight_partners(&m);
     } else {
         find_partners(&m, rule == CAMBER_MERGE_DIRECTED);
     }
     const camber_chains_desc chains = {
-        .partner = m.partner, .piece_count = m.piece_count, .key_count = m.piece_count, .visited = m.visited};
+        .partner = m.partner, .line_count = m.line_count, .key_count = m.line_count, .visited = m.visited};
     status = camber_chains_find(context, &chains, &m.chains, &m.chain_count);
-    if (status == CAMBER_OK && m.chain_count < m.piece_count)
+    if (status == CAMBER_OK && m.chain_count < m.line_count)
         status = write_chains(&m);
 done:
     camber_free(context, m.chains);

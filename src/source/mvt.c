@@ -1,3 +1,8 @@
+/* Reads vector tiles (Mapbox Vector Tile 2) into a set of features.
+ *
+ * Input: the decompressed bytes of one tile after the other. Output: features, whose lines go to the stitcher, which
+ * cuts them at the tiles' borders. Messages are unpacked by protobuf-c into a bounded pool. Damage is counted.
+ */
 #include "source/mvt.h"
 #include "source/mvt_geometry.h"
 
@@ -7,17 +12,18 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* A tile's messages unpacked; the largest of real maps take a few megabytes. */
+/* The most memory for the unpacked messages of a tile; the largest of real maps take a few megabytes. */
 static const size_t LARGEST_TILE_BYTES = (size_t)256 << 20;
 
-/* Features looked at to learn whether a layer has lines. */
+/* How many features are examined to learn whether a layer has lines. */
 enum { PEEKED_FEATURES = 32, MOST_LAYERS = 1024 };
 
-/* What tells pieces of one feature in several tiles, besides the format's own id: OSM's, anyone's, TIGER's. */
+/* Names of properties by which one feature is recognised in several tiles, besides the format's own id: OSM's, a
+ * common one, TIGER's. */
 static const char *const id_keys[] = {"osm_id", "id", "TLID"};
 enum { ID_KEYS = 3 };
 
-/* What tiles made of GeoJSON with lineMetrics have. */
+/* Properties of tiles that were made from GeoJSON with lineMetrics: where the line was clipped. */
 static const char *const clip_keys[] = {"mapbox_clip_start", "mapbox_clip_end"};
 
 typedef Camber__Tile__Layer tile_layer;
@@ -35,7 +41,7 @@ struct camber_mvt {
     size_t layer_count, layer_capacity;
 
     /* The layer being read. */
-    camber_mvt_place place;
+    camber_tile_address address;
     const tile_layer *layer;
     char name[256];
     uint32_t layer_index;
@@ -50,11 +56,11 @@ struct camber_mvt {
 
 static void note_damage(camber_mvt *mvt, const char *cause) {
     if (mvt->stats.damaged_features++ == 0)
-        snprintf(mvt->stats.damage, sizeof mvt->stats.damage, "tile %d/%u/%u%s%.64s: %.80s", mvt->place.zoom,
-                 mvt->place.column, mvt->place.row, mvt->name[0] ? ", layer " : "", mvt->name, cause);
+        snprintf(mvt->stats.damage, sizeof mvt->stats.damage, "tile %d/%u/%u%s%.64s: %.80s", mvt->address.zoom,
+                 mvt->address.column, mvt->address.row, mvt->name[0] ? ", layer " : "", mvt->name, cause);
 }
 
-/* After a message that did not unpack. */
+/* Says why a message did not unpack. */
 static camber_status judge_failure(camber_mvt *mvt, const char *cause) {
     if (mvt->pool.out_of_memory)
         return CAMBER_ERROR_MEMORY;
@@ -67,7 +73,7 @@ static bool is_text(ProtobufCBinaryData bytes, const char *text) {
     return bytes.len == length && (length == 0 || memcmp(bytes.data, text, length) == 0);
 }
 
-/* Text with a 0 behind it, in the pool. NULL: refused. */
+/* Copies the text into the pool with a 0 behind it. NULL: refused. */
 static char *to_text(camber_mvt *mvt, ProtobufCBinaryData bytes) {
     char *text = camber_pool_alloc(&mvt->pool, bytes.len + 1);
     if (!text)
@@ -148,7 +154,7 @@ static camber_value number_value(double number) {
     return isnan(number) ? (camber_value){0} : (camber_value){.type = CAMBER_VALUE_NUMBER, .number = number};
 }
 
-/* Text that is no UTF-8 is no value. */
+/* A text that is not UTF-8 counts as no value. */
 static camber_status text_value(camber_mvt *mvt, ProtobufCBinaryData bytes, camber_value *value) {
     json_t *checked = json_stringn((const char *)bytes.data, bytes.len);
     if (bytes.len && !checked)
@@ -203,7 +209,7 @@ static json_t *to_json(const camber_value *value) {
     }
 }
 
-static camber_status read_all(camber_mvt *mvt, const tile_feature *feature, const camber_value **all) {
+static camber_status read_all_properties(camber_mvt *mvt, const tile_feature *feature, const camber_value **all) {
     json_t *object = json_object();
     camber_status status = CAMBER_OK;
     for (size_t i = 0; i + 1 < feature->n_tags && status == CAMBER_OK; i += 2) {
@@ -222,9 +228,9 @@ static camber_status read_all(camber_mvt *mvt, const tile_feature *feature, cons
     return status;
 }
 
-/* The values of the style's properties, and what the feature is known by across tiles. */
+/* Reads the values of the style's properties, and the id by which the feature is recognised in other tiles. */
 static camber_status read_tags(camber_mvt *mvt, const tile_feature *feature, camber_value *id,
-                               camber_tile_feature *piece, const char **damage) {
+                               camber_tile_feature *stitched, const char **damage) {
     const camber_style *style = mvt->desc.features->style;
     int best = ID_KEYS;
     for (size_t i = 0; i < style->property_count; i++)
@@ -245,8 +251,8 @@ static camber_status read_tags(camber_mvt *mvt, const tile_feature *feature, cam
         if (rank < best) {
             const ProtobufCBinaryData bytes = mvt->layer->values[index];
             best = rank;
-            piece->has_id = true;
-            piece->id = camber_hash(camber_mix(CAMBER_HASH_START, (uint64_t)rank + 1), bytes.data, bytes.len);
+            stitched->has_id = true;
+            stitched->id = camber_hash(camber_mix(CAMBER_HASH_START, (uint64_t)rank + 1), bytes.data, bytes.len);
         }
         const uint32_t property = mvt->key_properties[key];
         const bool clips = key == mvt->clips[0] || key == mvt->clips[1];
@@ -261,52 +267,52 @@ static camber_status read_tags(camber_mvt *mvt, const tile_feature *feature, cam
         if (key == mvt->promoted)
             *id = value;
         if (clips && value.type == CAMBER_VALUE_NUMBER && value.number >= 0 && value.number <= 1) {
-            piece->has_progress = true;
-            piece->progress[key == mvt->clips[1]] = value.number;
+            stitched->has_progress = true;
+            stitched->progress[key == mvt->clips[1]] = value.number;
         }
     }
     if (feature->n_tags & 1)
         *damage = "a key without a value";
     if (feature->has_id && feature->id) {
-        piece->has_id = true;
-        piece->id = camber_mix(CAMBER_HASH_START, feature->id);
+        stitched->has_id = true;
+        stitched->id = camber_mix(CAMBER_HASH_START, feature->id);
     }
     return CAMBER_OK;
 }
 
-static camber_status keep(camber_mvt *mvt, const tile_feature *feature, camber_geometry_kind kind,
-                          const char **damage) {
+static camber_status add_to_stitcher(camber_mvt *mvt, const tile_feature *feature, camber_geometry_kind kind,
+                                     const char **damage) {
     const camber_style *style = mvt->desc.features->style;
-    camber_tile_feature piece = {.column = mvt->place.column,
-                                 .row = mvt->place.row,
-                                 .outline = kind == CAMBER_GEOMETRY_POLYGON,
-                                 .progress = {0, 1},
-                                 .open_sides = mvt->place.open_sides};
+    camber_tile_feature stitched = {.column = mvt->address.column,
+                                    .row = mvt->address.row,
+                                    .outline = kind == CAMBER_GEOMETRY_POLYGON,
+                                    .progress = {0, 1},
+                                    .open_sides = mvt->address.open_sides};
     camber_feature_class wanted = {.layer = mvt->layer_index, .geometry = kind};
     camber_value promoted = {0};
-    camber_status status = read_tags(mvt, feature, &promoted, &piece, damage);
+    camber_status status = read_tags(mvt, feature, &promoted, &stitched, damage);
     if (style->wants_id && promoted_name(mvt))
         wanted.id = promoted;
     else if (style->wants_id && feature->has_id)
         wanted.id = number_value((double)feature->id);
     if (status == CAMBER_OK && style->wants_all_properties)
-        status = read_all(mvt, feature, &wanted.all);
+        status = read_all_properties(mvt, feature, &wanted.all);
     if (status == CAMBER_OK)
-        status = camber_features_find_class_of(mvt->desc.features, &wanted, mvt->values, &piece.class_index);
+        status = camber_features_find_class_of(mvt->desc.features, &wanted, mvt->values, &stitched.class_index);
     if (status != CAMBER_OK)
         return status;
-    const camber_tile_parts parts = {mvt->geometry.points, mvt->geometry.ends, mvt->geometry.part_count};
-    return camber_tiles_add(mvt->desc.tiles, &piece, &parts);
+    const camber_tile_lines lines = {mvt->geometry.points, mvt->geometry.ends, mvt->geometry.line_count};
+    return camber_tile_stitcher_add(mvt->desc.stitcher, &stitched, &lines);
 }
 
 static camber_status read_geometry(camber_mvt *mvt, const tile_feature *feature, camber_geometry_kind kind) {
     const camber_mvt_commands commands = {.words = feature->geometry,
                                           .count = feature->n_geometry,
                                           .kind = kind,
-                                          .column = mvt->place.column,
-                                          .row = mvt->place.row,
+                                          .column = mvt->address.column,
+                                          .row = mvt->address.row,
                                           .extent = mvt->layer->extent,
-                                          .side = ldexp(1.0, mvt->place.zoom)};
+                                          .side = ldexp(1.0, mvt->address.zoom)};
     return camber_mvt_geometry_read(&mvt->geometry, &commands);
 }
 
@@ -323,9 +329,9 @@ static camber_status read_feature(camber_mvt *mvt, ProtobufCBinaryData bytes) {
     const camber_geometry_kind kind = polygon ? CAMBER_GEOMETRY_POLYGON : CAMBER_GEOMETRY_LINE;
     camber_status status = read_geometry(mvt, feature, kind);
     const char *damage = mvt->geometry.damage;
-    mvt->stats.kept_features += mvt->geometry.part_count > 0;
-    if (status == CAMBER_OK && mvt->geometry.part_count)
-        status = keep(mvt, feature, kind, &damage);
+    mvt->stats.kept_features += mvt->geometry.line_count > 0;
+    if (status == CAMBER_OK && mvt->geometry.line_count)
+        status = add_to_stitcher(mvt, feature, kind, &damage);
     if (damage)
         note_damage(mvt, damage);
     return status;
@@ -340,8 +346,8 @@ static bool is_wanted(const camber_mvt *mvt) {
     return false;
 }
 
-/* Where no layer is wanted: what there is. */
-static camber_status look_at(camber_mvt *mvt) {
+/* Lists a layer, where none is wanted and the question is which layers there are. */
+static camber_status list_layer(camber_mvt *mvt) {
     size_t i = 0;
     while (i < mvt->layer_count && strcmp(mvt->layers[i].name, mvt->name) != 0)
         i++;
@@ -374,14 +380,14 @@ static camber_status read_layer(camber_mvt *mvt, ProtobufCBinaryData bytes) {
     snprintf(mvt->name, sizeof mvt->name, "%s", name);
     mvt->layer = layer;
     if (!mvt->desc.layers)
-        return look_at(mvt);
+        return list_layer(mvt);
     if (!is_wanted(mvt))
         return CAMBER_OK;
     if (layer->extent == 0 || (layer->has_version && (layer->version < 1 || layer->version > 2))) {
         note_damage(mvt, layer->extent ? "of a version that is neither 1 nor 2" : "its extent is 0");
         return CAMBER_OK;
     }
-    mvt->desc.tiles->grid = fmax(mvt->desc.tiles->grid, CAMBER_TILE_UNITS / layer->extent);
+    mvt->desc.stitcher->grid = fmax(mvt->desc.stitcher->grid, CAMBER_TILE_UNITS / layer->extent);
     camber_status status = camber_features_find_layer(mvt->desc.features, mvt->name, &mvt->layer_index);
     if (status == CAMBER_OK && !find_keys(mvt))
         status = judge_failure(mvt, "a layer's keys");
@@ -397,10 +403,11 @@ static camber_status read_layer(camber_mvt *mvt, ProtobufCBinaryData bytes) {
     return status;
 }
 
-camber_status camber_mvt_read(camber_mvt *mvt, const camber_mvt_place *place, const void *bytes, size_t size_bytes) {
+camber_status camber_mvt_read(camber_mvt *mvt, const camber_tile_address *address, const void *bytes,
+                              size_t size_bytes) {
     const camber_pool_mark start = {0};
     camber_pool_reset(&mvt->pool, start);
-    mvt->place = *place;
+    mvt->address = *address;
     mvt->name[0] = 0;
     const Camber__Tile__Tile *tile = camber__tile__tile__unpack(&mvt->pool.allocator, size_bytes, bytes);
     if (!tile)
@@ -415,8 +422,8 @@ camber_status camber_mvt_read(camber_mvt *mvt, const camber_mvt_place *place, co
     return status;
 }
 
-void camber_mvt_spoil(camber_mvt *mvt, const camber_mvt_place *place, const char *cause) {
-    mvt->place = *place;
+void camber_mvt_spoil(camber_mvt *mvt, const camber_tile_address *address, const char *cause) {
+    mvt->address = *address;
     mvt->name[0] = 0;
     note_damage(mvt, cause);
 }

@@ -1,3 +1,8 @@
+/* Turns the drawing commands of one feature of a vector tile into lines in world coordinates.
+ *
+ * Input: 32-bit words of commands (move, line, close) and zigzag deltas. Output: points and where each line ends.
+ * Commands that make no sense end the reading; the lines before them stay.
+ */
 #include "source/mvt_geometry.h"
 
 enum { MOVE_TO = 1, LINE_TO = 2, CLOSE_PATH = 7 };
@@ -6,7 +11,7 @@ typedef struct pen {
     camber_mvt_geometry *geometry;
     const camber_mvt_commands *commands;
     int64_t x, y; /* 2^26 words of 2^31 each stay in range */
-    size_t first; /* point of the open part */
+    size_t first; /* the first point of the open line */
     bool closed;
 } pen;
 
@@ -27,28 +32,28 @@ static bool add_point(const pen *p) {
                            (c->row + (double)p->y / c->extent) / c->side);
 }
 
-static void spoil(camber_mvt_geometry *geometry, const char *damage) {
+static void note_damage(camber_mvt_geometry *geometry, const char *damage) {
     if (!geometry->damage)
         geometry->damage = damage;
 }
 
-static bool end_part(pen *p) {
+static bool end_line(pen *p) {
     camber_mvt_geometry *geometry = p->geometry;
     const bool ring = p->commands->kind == CAMBER_GEOMETRY_POLYGON;
     const size_t count = geometry->point_count - p->first;
     if (count == 0)
         return true;
     if (ring && !p->closed)
-        spoil(geometry, "a ring that is not closed");
+        note_damage(geometry, "a ring that is not closed");
     if (count < (ring ? 3u : 2u)) {
-        spoil(geometry, ring ? "a ring of one point" : "a line of one point");
+        note_damage(geometry, ring ? "a ring of one point" : "a line of one point");
         geometry->point_count = p->first;
         return true;
     }
-    if (!camber_grow(geometry->context, &geometry->ends, &geometry->part_capacity, geometry->part_count + 1,
+    if (!camber_grow(geometry->context, &geometry->ends, &geometry->line_capacity, geometry->line_count + 1,
                      sizeof *geometry->ends))
         return false;
-    geometry->ends[geometry->part_count++] = p->first = geometry->point_count;
+    geometry->ends[geometry->line_count++] = p->first = geometry->point_count;
     return true;
 }
 
@@ -59,24 +64,24 @@ static int64_t unzigzag(uint32_t word) {
 static bool close_ring(pen *p) {
     camber_mvt_geometry *geometry = p->geometry;
     if (p->commands->kind != CAMBER_GEOMETRY_POLYGON || geometry->point_count == p->first) {
-        spoil(geometry, "it closes what is no ring");
+        note_damage(geometry, "it closes what is no ring");
         return true;
     }
     p->closed = true;
     const double x = geometry->points[2 * p->first], y = geometry->points[2 * p->first + 1];
-    return add_world_point(geometry, x, y) && end_part(p);
+    return add_world_point(geometry, x, y) && end_line(p);
 }
 
-/* So many points from words on. */
-static bool draw(pen *p, uint32_t command, const uint32_t *words, size_t count) {
+/* Reads this many points from words on. */
+static bool run_command(pen *p, uint32_t command, const uint32_t *words, size_t count) {
     for (size_t i = 0; i < count; i++) {
         if (command == MOVE_TO) {
-            if (!end_part(p))
+            if (!end_line(p))
                 return false;
             p->first = p->geometry->point_count;
             p->closed = false;
         } else if (p->geometry->point_count == p->first) {
-            spoil(p->geometry, "a line that starts nowhere");
+            note_damage(p->geometry, "a line that starts nowhere");
             return true;
         }
         p->x += unzigzag(words[2 * i]);
@@ -88,7 +93,7 @@ static bool draw(pen *p, uint32_t command, const uint32_t *words, size_t count) 
 }
 
 camber_status camber_mvt_geometry_read(camber_mvt_geometry *geometry, const camber_mvt_commands *commands) {
-    geometry->point_count = geometry->part_count = 0;
+    geometry->point_count = geometry->line_count = 0;
     geometry->damage = NULL;
     pen p = {.geometry = geometry, .commands = commands};
     bool fits = true;
@@ -100,21 +105,21 @@ camber_status camber_mvt_geometry_read(camber_mvt_geometry *geometry, const camb
             continue;
         }
         if (command != MOVE_TO && command != LINE_TO) {
-            spoil(geometry, "an unknown command");
+            note_damage(geometry, "an unknown command");
             break;
         }
         if (count == 0)
-            spoil(geometry, "a command without points");
+            note_damage(geometry, "a command without points");
         if (count > (commands->count - i) / 2) {
-            spoil(geometry, "fewer points than it announces");
+            note_damage(geometry, "fewer points than it announces");
             count = (commands->count - i) / 2;
-            fits = draw(&p, command, commands->words + i, count);
+            fits = run_command(&p, command, commands->words + i, count);
             break;
         }
-        fits = draw(&p, command, commands->words + i, count);
+        fits = run_command(&p, command, commands->words + i, count);
         i += 2 * count;
     }
-    return fits && end_part(&p) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    return fits && end_line(&p) ? CAMBER_OK : CAMBER_ERROR_MEMORY;
 }
 
 void camber_mvt_geometry_free(camber_mvt_geometry *geometry) {

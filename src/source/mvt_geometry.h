@@ -1,16 +1,16 @@
-/* The geometry of a vector tile's feature: commands to parts. */
-#ifndef CAMBER_MVT_GEOMETRY_H
-#define CAMBER_MVT_GEOMETRY_H
+/* The geometry of a vector tile's feature: drawing commands become lines. */
+#ifndef CAMBER_SOURCE_MVT_GEOMETRY_H
+#define CAMBER_SOURCE_MVT_GEOMETRY_H
 
 #include "source/features.h"
-#include "source/tiles.h"
+#include "source/tile_stitcher.h"
 
 typedef struct camber_mvt_geometry {
     camber_context *context;
     double *points; /* world coordinates */
     size_t *ends;
-    size_t point_count, point_capacity, part_count, part_capacity;
-    const char *damage; /* NULL: none. The parts are what reads */
+    size_t point_count, point_capacity, line_count, line_capacity;
+    const char *damage; /* NULL: none. The lines are those that can be read */
 } camber_mvt_geometry;
 
 typedef struct camber_mvt_commands {
@@ -18,10 +18,10 @@ typedef struct camber_mvt_commands {
     size_t count;
     camber_geometry_kind kind;
     uint32_t column, row, extent;
-    double side; /* tiles that the world is wide */
+    double side; /* the world's width in tiles */
 } camber_mvt_commands;
 
-/* Replaces the parts. Returns CAMBER_ERROR_MEMORY. */
+/* Replaces the lines. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_mvt_geometry_read(camber_mvt_geometry *geometry, const camber_mvt_commands *commands);
 void camber_mvt_geometry_free(camber_mvt_geometry *geometry);
 

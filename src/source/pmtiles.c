@@ -43,7 +43,7 @@ uint64_t camber_pmtiles_number(int zoom, uint32_t column, uint32_t row) {
     for (int z = zoom - 1; z >= 0; z--) {
         const uint32_t half = UINT32_C(1) << (z & 31), right = x & half ? 1 : 0, down = y & half ? 1 : 0;
         along += ((uint64_t)half * half) * ((3 * right) ^ down);
-        /* The curve of a quarter is turned. */
+        /* Turns the curve for a quarter of the square. */
         if (!down) {
             if (right) {
                 x = half - 1 - (x & (half - 1));
@@ -57,7 +57,7 @@ uint64_t camber_pmtiles_number(int zoom, uint32_t column, uint32_t row) {
     return before + along;
 }
 
-void camber_pmtiles_place(uint64_t along, int zoom, uint32_t *column, uint32_t *row) {
+void camber_pmtiles_locate(uint64_t along, int zoom, uint32_t *column, uint32_t *row) {
     uint32_t x = 0, y = 0;
     for (int z = 0; z < zoom; z++, along >>= 2) {
         const uint32_t half = UINT32_C(1) << z, right = (uint32_t)(along >> 1) & 1,
@@ -99,7 +99,7 @@ static uint64_t take_varint(cursor *c) {
     return 0;
 }
 
-/* What is wrong with them, NULL where nothing is. */
+/* Says why the entries are not valid; NULL: they are. */
 static const char *read_entries(cursor *c, camber_pmtiles_entry *made, size_t count) {
     const char *why = NULL;
     uint64_t number = 0;
@@ -110,7 +110,7 @@ static const char *read_entries(cursor *c, camber_pmtiles_entry *made, size_t co
         made[i].number = number += step;
     }
     for (size_t i = 0; i < count; i++)
-        made[i].run = take_varint(c);
+        made[i].run_length = take_varint(c);
     for (size_t i = 0; i < count; i++)
         made[i].size = take_varint(c);
     for (size_t i = 0; i < count; i++) {
@@ -148,7 +148,7 @@ static camber_status fail(const camber_tile_set *set, const char *why) {
                        why);
 }
 
-/* The bytes of a part of the file. *why: it lies past the end. */
+/* Reads a range of the file. *why: it lies past the end. */
 static camber_status read_range(camber_tile_set *set, range at, size_t limit_bytes, camber_bytes *bytes,
                                 const char **why) {
     const archive *self = set->self;
@@ -178,7 +178,7 @@ static camber_status read_range(camber_tile_set *set, range at, size_t limit_byt
     return CAMBER_OK;
 }
 
-/* A part that is compressed as directories are: in *bytes. */
+/* Reads a range that is compressed as directories are, and decompresses it to *bytes. */
 static camber_status read_packed(camber_tile_set *set, range at, const char *what, const camber_bytes **bytes) {
     archive *self = set->self;
     const char *why = NULL;
@@ -214,7 +214,7 @@ static range leaf_of(const archive *self, const camber_pmtiles_entry *entry) {
     return (range){entry->offset <= room ? self->leaves.offset + entry->offset : UINT64_MAX, entry->size};
 }
 
-/* The last entry that does not lie behind the number; NULL: all do. */
+/* Finds the last entry that does not begin behind the number; NULL: all do. */
 static const camber_pmtiles_entry *find_entry(const directory *in, uint64_t number) {
     size_t low = 0, high = in->count;
     while (in->entries && low < high) {
@@ -229,17 +229,17 @@ static const camber_pmtiles_entry *find_entry(const directory *in, uint64_t numb
 
 /* ---- Tiles ---- */
 
-static camber_status get_tile(camber_tile_set *set, int zoom, camber_tile_place place, camber_bytes *bytes,
+static camber_status get_tile(camber_tile_set *set, int zoom, camber_tile_index tile, camber_bytes *bytes,
                               const char **why) {
     archive *self = set->self;
-    const uint64_t number = camber_pmtiles_number(zoom, place.column, place.row);
+    const uint64_t number = camber_pmtiles_number(zoom, tile.column, tile.row);
     const directory *in = &self->parsed_root;
     bytes->size_bytes = 0;
     for (int depth = 0; depth < DEEPEST; depth++) {
         const camber_pmtiles_entry *entry = find_entry(in, number);
-        if (!entry || (entry->run && number - entry->number >= entry->run))
+        if (!entry || (entry->run_length && number - entry->number >= entry->run_length))
             return CAMBER_OK;
-        if (entry->run) {
+        if (entry->run_length) {
             const uint64_t room = UINT64_MAX - self->tiles.offset;
             const range at = {entry->offset <= room ? self->tiles.offset + entry->offset : UINT64_MAX, entry->size};
             return read_range(set, at, LARGEST_BYTES, bytes, why);
@@ -259,13 +259,14 @@ static camber_status get_tile(camber_tile_set *set, int zoom, camber_tile_place 
 typedef struct listing {
     camber_tile_set *set;
     int zoom;
-    uint64_t first, end; /* numbers of the zoom */
-    camber_tile_place *places;
+    uint64_t first, end; /* the tile numbers of the zoom */
+    camber_tile_index *tiles;
     size_t count, capacity;
 } listing;
 
-static camber_status list_run(listing *list, const camber_pmtiles_entry *entry) {
-    const uint64_t last = entry->run - 1 <= UINT64_MAX - entry->number ? entry->number + (entry->run - 1) : UINT64_MAX;
+static camber_status list_entry(listing *list, const camber_pmtiles_entry *entry) {
+    const uint64_t last =
+        entry->run_length - 1 <= UINT64_MAX - entry->number ? entry->number + (entry->run_length - 1) : UINT64_MAX;
     if (last < list->first || entry->number >= list->end)
         return CAMBER_OK;
     const uint64_t from = entry->number > list->first ? entry->number : list->first;
@@ -274,10 +275,10 @@ static camber_status list_run(listing *list, const camber_pmtiles_entry *entry) 
     if (status != CAMBER_OK)
         return status;
     for (uint64_t number = from; number < end; number++) {
-        if (!camber_grow(list->set->context, &list->places, &list->capacity, list->count + 1, sizeof *list->places))
+        if (!camber_grow(list->set->context, &list->tiles, &list->capacity, list->count + 1, sizeof *list->tiles))
             return CAMBER_ERROR_MEMORY;
-        camber_tile_place *place = &list->places[list->count++];
-        camber_pmtiles_place(number - list->first, list->zoom, &place->column, &place->row);
+        camber_tile_index *tile = &list->tiles[list->count++];
+        camber_pmtiles_locate(number - list->first, list->zoom, &tile->column, &tile->row);
     }
     return CAMBER_OK;
 }
@@ -287,8 +288,8 @@ static camber_status list_directory(listing *list, const directory *in, int dept
     camber_status status = CAMBER_OK;
     for (size_t i = 0; i < in->count && status == CAMBER_OK; i++) {
         const camber_pmtiles_entry *entry = &in->entries[i];
-        if (entry->run) {
-            status = list_run(list, entry);
+        if (entry->run_length) {
+            status = list_entry(list, entry);
             continue;
         }
         const bool beyond =
@@ -310,16 +311,16 @@ static camber_status list_directory(listing *list, const directory *in, int dept
     return status;
 }
 
-static camber_status list_tiles(camber_tile_set *set, int zoom, camber_tile_place **places, size_t *count) {
+static camber_status list_tiles(camber_tile_set *set, int zoom, camber_tile_index **tiles, size_t *count) {
     const archive *self = set->self;
     listing list = {.set = set, .zoom = zoom, .first = camber_pmtiles_number(zoom, 0, 0)};
     list.end = list.first + (UINT64_C(1) << 2 * zoom);
     const camber_status status = list_directory(&list, &self->parsed_root, 1);
     if (status != CAMBER_OK) {
-        camber_free(set->context, list.places);
+        camber_free(set->context, list.tiles);
         return status;
     }
-    *places = list.places;
+    *tiles = list.tiles;
     *count = list.count;
     return CAMBER_OK;
 }
@@ -407,7 +408,7 @@ static camber_status read_metadata(camber_tile_set *set) {
         return status;
     json_t *about = json_loadb((const char *)bytes->data, bytes->size_bytes, JSON_DECODE_INT_AS_REAL, NULL);
     if (json_is_object(about)) {
-        /* What the header tells is right. */
+        /* The header's own zooms and bounds come last, since they are right. */
         json_object_del(about, "minzoom");
         json_object_del(about, "maxzoom");
         json_object_del(about, "bounds");

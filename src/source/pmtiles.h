@@ -1,19 +1,19 @@
-/* What a PMTiles file is made of, for its reader and its tests. */
-#ifndef CAMBER_PMTILES_H
-#define CAMBER_PMTILES_H
+/* The parts of a PMTiles file, for its reader and its tests. */
+#ifndef CAMBER_SOURCE_PMTILES_H
+#define CAMBER_SOURCE_PMTILES_H
 
 #include "base/base.h"
 
 typedef struct camber_pmtiles_entry {
-    uint64_t number; /* of the first tile */
-    uint64_t run;    /* tiles with these bytes, in a row; 0: a leaf directory */
+    uint64_t number;     /* the number of its first tile */
+    uint64_t run_length; /* how many tiles one after the other have these bytes; 0: a leaf directory */
     uint64_t offset, size;
 } camber_pmtiles_entry;
 
-/* The number of a tile: those of lower zooms come first, then its place along the Hilbert curve. zoom: 0 to 31. */
+/* The number of a tile: lower zooms come first, then the tile's position along the Hilbert curve. zoom: 0 to 31. */
 uint64_t camber_pmtiles_number(int zoom, uint32_t column, uint32_t row);
-/* along: from the first of its zoom. */
-void camber_pmtiles_place(uint64_t along, int zoom, uint32_t *column, uint32_t *row);
+/* Finds the tile at a position along the curve, counted from the first tile of its zoom. */
+void camber_pmtiles_locate(uint64_t along, int zoom, uint32_t *column, uint32_t *row);
 
 typedef struct camber_pmtiles_directory {
     camber_pmtiles_entry *entries; /* in ascending order; freed with camber_free */

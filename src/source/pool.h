@@ -1,7 +1,7 @@
-/* Memory for messages of vector tiles: given back all at once, and bounded, since a few bytes of a hostile tile can ask
+/* Memory for messages of vector tiles: freed all at once, and limited, since a few bytes of a hostile tile can ask
  * for megabytes. */
-#ifndef CAMBER_POOL_H
-#define CAMBER_POOL_H
+#ifndef CAMBER_SOURCE_POOL_H
+#define CAMBER_SOURCE_POOL_H
 
 #include "base/base.h"
 
@@ -13,14 +13,14 @@ typedef struct camber_pool {
     camber_context *context;
     size_t limit_bytes;
     camber_pool_block *blocks, *current; /* the first, and the one in use */
-    size_t used_bytes;                   /* of the current block */
-    size_t total_bytes;                  /* of all blocks */
+    size_t used_bytes;                   /* used bytes of the current block */
+    size_t total_bytes;                  /* size of all blocks */
     bool exhausted;                      /* something was refused since the last reset: the limit, or memory */
     bool out_of_memory;
-    ProtobufCAllocator allocator; /* of this pool; what it frees stays until a reset */
+    ProtobufCAllocator allocator; /* allocates from this pool; freed memory stays until a reset */
 } camber_pool;
 
-/* A place to go back to. */
+/* A mark to reset the pool to. */
 typedef struct camber_pool_mark {
     camber_pool_block *current;
     size_t used_bytes;
@@ -32,7 +32,7 @@ void camber_pool_free(camber_pool *pool);
 /* NULL where refused; memory that ran out is logged. */
 void *camber_pool_alloc(camber_pool *pool, size_t size_bytes);
 camber_pool_mark camber_pool_here(const camber_pool *pool);
-/* Blocks stay for what comes next. */
+/* Frees all that was allocated since the mark; blocks stay for later use. */
 void camber_pool_reset(camber_pool *pool, camber_pool_mark mark);
 
 #endif

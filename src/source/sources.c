@@ -1,3 +1,8 @@
+/* Opens the sources that a style's line layers name, and reads them.
+ *
+ * Input: the style, the folder that its relative paths start from, and the quadrangle that the view sees. Output:
+ * features. GeoJSON is read when it is opened; tiles are read for the view, at the zoom that it has.
+ */
 #include "source/sources.h"
 #include "source/geojson.h"
 #include "source/mercator.h"
@@ -16,8 +21,8 @@ typedef struct source {
     const camber_style_source *style;
     uint32_t index;
     char what[160];       /* source "name" */
-    char place[1024];     /* STYLE: /sources/name, for what is wrong there */
-    camber_tile_set *set; /* of a vector source */
+    char pointer[1024];   /* STYLE: /sources/name, for messages about the style */
+    camber_tile_set *set; /* set for a vector source */
     bool is_bounded;      /* the document has bounds: no tiles lie outside */
     double bounds[4];     /* world coordinates; x0 > x1: not known */
 } source;
@@ -64,13 +69,13 @@ static camber_status load_json(camber_context *context, const char *what, const 
                                                                           : "get the file again");
 }
 
-/* The style says what to do, or it is a matter of its paths. */
+/* Fails where a file is missing; the style says what to do, or the message tells to check its paths. */
 static camber_status check_there(const camber_sources *sources, const source *one, const char *path) {
     struct stat about;
     if (!camber_file_is_reached(sources->context, path) || stat(path, &about) == 0 ||
         (errno != ENOENT && errno != ENOTDIR))
         return CAMBER_OK;
-    return camber_fail(sources->context, CAMBER_ERROR_NOT_FOUND, "%s: %s: no such file; %s", one->place, path,
+    return camber_fail(sources->context, CAMBER_ERROR_NOT_FOUND, "%s: %s: no such file; %s", one->pointer, path,
                        one->style->missing ? one->style->missing : "check the path in the style");
 }
 
@@ -82,7 +87,8 @@ static void warn_invalid(const camber_sources *sources, const char *what, size_t
                    "%s: %zu points are not numbers and are left out; their lines are split there", what, points);
 }
 
-static void warn(const camber_sources *sources, const char *what, size_t damaged, const char *damage, size_t skipped) {
+static void warn_of_losses(const camber_sources *sources, const char *what, size_t damaged, const char *damage,
+                           size_t skipped) {
     if (damaged)
         camber_log(sources->context, CAMBER_LOG_WARNING,
                    "%s: %zu damaged features (the first: %s); what of them reads is kept", what, damaged, damage);
@@ -103,7 +109,7 @@ static camber_status read_geojson(camber_sources *sources, source *one) {
     camber_status status = CAMBER_OK;
     if (json_is_string(data)) {
         camber_url url = {0};
-        status = camber_url_resolve(context, one->place, json_string_value(data), sources->desc.base_path, &url);
+        status = camber_url_resolve(context, one->pointer, json_string_value(data), sources->desc.base_path, &url);
         if (status == CAMBER_OK)
             status = check_there(sources, one, url.path);
         if (status == CAMBER_OK)
@@ -111,7 +117,7 @@ static camber_status read_geojson(camber_sources *sources, source *one) {
         camber_free(context, url.path);
     } else if (!json_is_object(data)) {
         status = camber_fail(context, CAMBER_ERROR_INPUT, "%s: no \"data\"; write GeoJSON, or the path of a file",
-                             one->place);
+                             one->pointer);
     }
     camber_geojson_stats stats = {0};
     const camber_geojson_desc desc = {.what = one->what, .root = loaded ? loaded : data, .source = one->style};
@@ -126,9 +132,10 @@ static camber_status read_geojson(camber_sources *sources, source *one) {
     sources->features->stats.skipped_features += stats.skipped_features;
     sources->features->stats.damaged_features += stats.damaged_features;
     sources->features->stats.invalid_points += stats.invalid_points;
-    warn(sources, one->what, stats.damaged_features, stats.damage, stats.skipped_features);
+    warn_of_losses(sources, one->what, stats.damaged_features, stats.damage, stats.skipped_features);
     warn_invalid(sources, one->what, stats.invalid_points);
-    return camber_features_sign(sources->features, json_string_value(json_object_get(one->style->json, "attribution")));
+    return camber_features_add_attribution(sources->features,
+                                           json_string_value(json_object_get(one->style->json, "attribution")));
 }
 
 /* ---- Vector tiles: opening ---- */
@@ -143,18 +150,18 @@ static camber_status open_archive(camber_sources *sources, source *one, const ca
                        "%s: %s ends neither in .mbtiles nor in .pmtiles; rename it", one->what, url->path);
 }
 
-/* about: of the style, or of the TileJSON file at base_path. */
+/* about: the style's own object, or the TileJSON file at base_path. */
 static camber_status open_template(camber_sources *sources, source *one, const json_t *about, const char *base_path) {
     const bool is_style = base_path == sources->desc.base_path;
-    const char *place = is_style ? one->place : base_path;
+    const char *pointer = is_style ? one->pointer : base_path;
     const char *text = json_string_value(json_array_get(json_object_get(about, "tiles"), 0));
     const char *scheme = json_string_value(json_object_get(about, "scheme"));
     camber_url url = {0};
     if (!text)
         return camber_fail(sources->context, CAMBER_ERROR_INPUT,
-                           "%s: no %s\"tiles\" that names any; write \"tiles\": [\"tiles/{z}/{x}/{y}.mvt\"]", place,
+                           "%s: no %s\"tiles\" that names any; write \"tiles\": [\"tiles/{z}/{x}/{y}.mvt\"]", pointer,
                            is_style ? "\"url\" and no " : "");
-    camber_status status = camber_url_resolve(sources->context, place, text, base_path, &url);
+    camber_status status = camber_url_resolve(sources->context, pointer, text, base_path, &url);
     if (status == CAMBER_OK && url.kind != CAMBER_URL_FILE) {
         status = open_archive(sources, one, &url);
     } else if (status == CAMBER_OK) {
@@ -168,7 +175,7 @@ static camber_status open_template(camber_sources *sources, source *one, const j
     return status;
 }
 
-/* about: of the style, laid over what the TileJSON file tells. */
+/* about: the style's own object, laid over that of the TileJSON file. */
 static camber_status open_tilejson(camber_sources *sources, source *one, const char *path, json_t *about) {
     json_t *loaded = NULL;
     camber_status status = check_there(sources, one, path);
@@ -176,7 +183,7 @@ static camber_status open_tilejson(camber_sources *sources, source *one, const c
         status = load_json(sources->context, one->what, path, &loaded);
     if (status != CAMBER_OK)
         return status;
-    /* Its own paths start from itself. */
+    /* Paths in the TileJSON file start from its own folder. */
     const char *base_path = json_object_get(about, "tiles") ? sources->desc.base_path : path;
     json_object_update_missing(about, loaded);
     json_decref(loaded);
@@ -201,7 +208,7 @@ static camber_status open_vector(camber_sources *sources, source *one) {
     camber_url url = {0};
     camber_status status = about ? CAMBER_OK : camber_fail(context, CAMBER_ERROR_MEMORY, "out of memory for a source");
     if (status == CAMBER_OK && text)
-        status = camber_url_resolve(context, one->place, text, sources->desc.base_path, &url);
+        status = camber_url_resolve(context, one->pointer, text, sources->desc.base_path, &url);
     if (status != CAMBER_OK)
         goto done;
     if (!text)
@@ -226,16 +233,16 @@ done:
 
 /* ---- All of them ---- */
 
-/* The lines added since, of one source. Dashes and what follows a line's progress begin with each feature, and ends
- * that darken each other are for the style to have. */
-static camber_status finish(camber_features *features, size_t first_polyline) {
+/* Merges and weighs the lines that one source added. They are not merged where dashes or line-progress begin anew
+ * with each feature, or where the style wants overlapping ends to darken each other. */
+static camber_status merge_and_weigh(camber_features *features, size_t first_polyline) {
     const double start_ms = camber_now_ms();
     camber_status status = CAMBER_OK;
     if (!features->style->directed && !features->style->accumulates && !features->progress)
         status = camber_features_merge(features, first_polyline, CAMBER_MERGE_STRAIGHT);
     const double merged_ms = camber_now_ms();
     if (status == CAMBER_OK)
-        status = camber_features_weigh(features, first_polyline);
+        status = camber_features_set_importance(features, first_polyline);
     features->times.merge_ms += merged_ms - start_ms;
     features->times.weigh_ms += camber_now_ms() - merged_ms;
     features->stats.features = features->feature_count;
@@ -253,25 +260,25 @@ static camber_status open_source(camber_sources *sources, source *one) {
         return open_vector(sources, one);
     if (strcmp(type, "geojson") == 0) {
         const camber_status status = read_geojson(sources, one);
-        return status == CAMBER_OK ? finish(features, first_polyline) : status;
+        return status == CAMBER_OK ? merge_and_weigh(features, first_polyline) : status;
     }
     camber_log(sources->context, CAMBER_LOG_WARNING,
                "%s: of type %s, which has no lines; its layers are left out: use vector or geojson", one->what, type);
     return CAMBER_OK;
 }
 
-/* A style that is no file has its own name. */
-static void write_place(source *one, const camber_style *style, const char *base_path) {
+/* Writes where the source stands; a style that is not a file goes by its own name. */
+static void write_pointer(source *one, const camber_style *style, const char *base_path) {
     const char *name = style->name && *style->name ? style->name : "style";
-    snprintf(one->place, sizeof one->place, "%.800s: /sources/", base_path ? base_path : name);
-    size_t used = strlen(one->place);
-    for (const char *c = one->style->name; *c && used + 3 < sizeof one->place; c++) {
+    snprintf(one->pointer, sizeof one->pointer, "%.800s: /sources/", base_path ? base_path : name);
+    size_t used = strlen(one->pointer);
+    for (const char *c = one->style->name; *c && used + 3 < sizeof one->pointer; c++) {
         const bool is_escaped = *c == '~' || *c == '/';
-        one->place[used++] = is_escaped ? '~' : *c;
+        one->pointer[used++] = is_escaped ? '~' : *c;
         if (is_escaped)
-            one->place[used++] = *c == '~' ? '0' : '1';
+            one->pointer[used++] = *c == '~' ? '0' : '1';
     }
-    one->place[used] = 0;
+    one->pointer[used] = 0;
 }
 
 camber_status camber_sources_open(camber_features *features, const camber_sources_desc *desc,
@@ -292,7 +299,7 @@ camber_status camber_sources_open(camber_features *features, const camber_source
         source *one = &made->items[made->count++];
         *one = (source){.style = &style->sources[i], .index = i, .bounds = {1, 1, 0, 0}};
         snprintf(one->what, sizeof one->what, "source \"%s\"", style->sources[i].name);
-        write_place(one, style, desc->base_path);
+        write_pointer(one, style, desc->base_path);
         status = open_source(made, one);
     }
     features->times.file_ms += camber_now_ms() - start_ms;
@@ -337,61 +344,62 @@ static size_t list_layers(const camber_style *style, uint32_t index, const char 
     return count;
 }
 
-static camber_status read_places(camber_sources *sources, const source *one, const camber_tile_reading *reading) {
+static camber_status read_addresses(camber_sources *sources, const source *one, const camber_tile_reading *reading) {
     camber_features *features = sources->features;
     camber_tile_result result;
     const size_t first_polyline = features->polyline_count;
     features->source = one->index;
-    camber_status status = camber_tiles_read(features, reading, &result);
+    camber_status status = camber_features_read_tiles(features, reading, &result);
     if (status == CAMBER_OK && result.found > 0 && result.lost == result.found)
         status = fail_damaged(sources, one->what, result.stats.damage);
     if (status == CAMBER_OK)
-        status = finish(features, first_polyline);
+        status = merge_and_weigh(features, first_polyline);
     if (status == CAMBER_OK)
-        status = camber_features_sign(features, one->set->attribution);
+        status = camber_features_add_attribution(features, one->set->attribution);
     if (status != CAMBER_OK)
         return status;
     features->stats.skipped_features += result.stats.skipped_features;
     features->stats.damaged_features += result.stats.damaged_features;
-    warn(sources, one->what, result.stats.damaged_features, result.stats.damage, result.stats.skipped_features);
-    if (reading->place_count && result.found == 0)
+    warn_of_losses(sources, one->what, result.stats.damaged_features, result.stats.damage,
+                   result.stats.skipped_features);
+    if (reading->address_count && result.found == 0)
         camber_log(sources->context, CAMBER_LOG_WARNING,
                    "%s: %s has none of the %zu tiles of zoom %d that the view sees; check the view, the path and the "
                    "zooms",
-                   one->what, one->set->name, reading->place_count, reading->zoom);
+                   one->what, one->set->name, reading->address_count, reading->zoom);
     return CAMBER_OK;
 }
 
-static camber_status read_tiles(camber_sources *sources, const source *one, const camber_cover *cover) {
+static camber_status read_tiles(camber_sources *sources, const source *one, const camber_tile_cover *cover) {
     const camber_style *style = sources->features->style;
     const int zoom = (int)fmin(floor(fmax(cover->zoom, 0)), one->set->max_zoom);
     if (zoom < one->set->min_zoom)
         return CAMBER_OK;
-    camber_mvt_place *places = NULL;
+    camber_tile_address *addresses = NULL;
     camber_tile_reading reading = {.set = one->set, .zoom = zoom};
     camber_status status = CAMBER_ERROR_MEMORY;
     const char **names = camber_alloc(sources->context, style->layer_count, sizeof *names);
     if (names)
-        status = camber_cover_tiles(sources->context, cover, zoom, one->is_bounded ? one->bounds : NULL, &places,
-                                    &reading.place_count);
+        status = camber_tile_cover_list(sources->context, cover, zoom, one->is_bounded ? one->bounds : NULL, &addresses,
+                                        &reading.address_count);
     if (status == CAMBER_OK)
-        status = camber_budget_take_tiles(sources->context, one->what, reading.place_count);
+        status = camber_budget_take_tiles(sources->context, one->what, reading.address_count);
     if (status == CAMBER_OK) {
-        reading.places = places;
+        reading.addresses = addresses;
         reading.mvt = (camber_mvt_desc){.features = sources->features,
                                         .layers = names,
                                         .layer_count = list_layers(style, one->index, names),
                                         .wants_polygons = true,
                                         .wants_progress = style->directed,
                                         .promote_id = json_object_get(one->style->json, "promoteId")};
-        status = read_places(sources, one, &reading);
+        status = read_addresses(sources, one, &reading);
     }
-    camber_free(sources->context, places);
+    camber_free(sources->context, addresses);
     camber_free(sources->context, names);
     return status;
 }
 
-camber_status camber_sources_read(camber_sources *sources, const camber_cover *cover) {
+camber_status camber_sources_read(camber_sources *sources, const camber_tile_cover *cover) {
     const double start_ms = camber_now_ms(),
                  others_ms = sources->features->times.weigh_ms + sources->features->times.merge_ms;
     camber_status status = CAMBER_OK;

@@ -1,6 +1,6 @@
-/* The sources of a style's line layers: opened, GeoJSON read at once, tiles as a view sees them. */
-#ifndef CAMBER_SOURCES_H
-#define CAMBER_SOURCES_H
+/* The sources that a style's line layers name: GeoJSON is read when it is opened, tiles as a view sees them. */
+#ifndef CAMBER_SOURCE_SOURCES_H
+#define CAMBER_SOURCE_SOURCES_H
 
 #include "source/tile_cover.h"
 
@@ -13,10 +13,10 @@ typedef struct camber_sources_desc {
 
 /* Where it fails, the set is to be reset by the caller. */
 camber_status camber_sources_open(camber_features *features, const camber_sources_desc *desc, camber_sources **sources);
-/* Bounds of all that is known: x0, y0, x1, y1 in world coordinates. false: nothing is. */
+/* The bounds of all that is known: x0, y0, x1, y1 in world coordinates. false: nothing is. */
 bool camber_sources_bounds(const camber_sources *sources, double bounds[4]);
 /* Reads the tiles that the cover sees. */
-camber_status camber_sources_read(camber_sources *sources, const camber_cover *cover);
+camber_status camber_sources_read(camber_sources *sources, const camber_tile_cover *cover);
 void camber_sources_close(camber_sources *sources);
 
 #endif

@@ -1,3 +1,8 @@
+/* Loads the sprites of a style: a sheet of pictures (PNG) and an index (JSON) that says where each picture is.
+ *
+ * Input: the style's sprite URLs and the ratio of device pixels. Output: images by name. A sprite that cannot be read
+ * is warned of and left out, since a map without its patterns is better than no map.
+ */
 #include "source/sprite.h"
 
 #include "source/features.h"
@@ -23,8 +28,9 @@ static void premultiply(camber_sprite_sheet *sheet) {
     }
 }
 
-/* libpng's short form: it says what is wrong and jumps nowhere. */
-static camber_status decode(camber_context *context, const char *path, png_image *image, camber_sprite_sheet *sheet) {
+/* libpng's simplified interface, which returns errors as text and does not longjmp. */
+static camber_status decode_png(camber_context *context, const char *path, png_image *image,
+                                camber_sprite_sheet *sheet) {
     if (image->width > SIDE_MAX_PX || image->height > SIDE_MAX_PX || image->width > AREA_MAX_PX / image->height)
         return camber_fail(context, CAMBER_ERROR_LIMIT, "%s: %u x %u px; cut it to %d px a side and 4096 x 4096 in all",
                            path, image->width, image->height, (int)SIDE_MAX_PX);
@@ -49,7 +55,7 @@ static camber_status load_sheet(camber_context *context, const char *path, cambe
     if (status != CAMBER_OK)
         return status;
     if (png_image_begin_read_from_memory(&image, bytes, size_bytes))
-        status = decode(context, path, &image, sheet);
+        status = decode_png(context, path, &image, sheet);
     else
         status = camber_fail(context, CAMBER_ERROR_INPUT, "%s: no PNG (%s); get the sprite again", path, image.message);
     png_image_free(&image);
@@ -65,7 +71,7 @@ typedef struct index_reader {
     size_t sheet;
 } index_reader;
 
-/* A whole number of px. */
+/* Reads a whole number of px. */
 static bool read_px(const json_t *image, const char *key, double least, uint32_t *px) {
     const json_t *json = json_object_get(image, key);
     const double value = json_number_value(json);
@@ -129,8 +135,8 @@ static camber_status load_index(index_reader *r) {
 
 /* ---- Sprites ---- */
 
-/* path and what comes behind it. */
-static char *with_tail(camber_context *context, const char *path, const char *tail) {
+/* Puts a suffix behind the path. */
+static char *add_suffix(camber_context *context, const char *path, const char *tail) {
     const size_t size = strlen(path) + strlen(tail) + 1;
     char *made = camber_alloc(context, size, 1);
     if (made)
@@ -138,11 +144,12 @@ static char *with_tail(camber_context *context, const char *path, const char *ta
     return made;
 }
 
-static camber_status load_at(camber_sprites *sprites, const camber_style_sprite *sprite, const char *path, bool large) {
+static camber_status load_density(camber_sprites *sprites, const camber_style_sprite *sprite, const char *path,
+                                  bool large) {
     camber_context *context = sprites->context;
     index_reader r = {.sprites = sprites, .id = sprite->id, .sheet = sprites->sheet_count};
-    char *sheet = with_tail(context, path, large ? "@2x.png" : ".png");
-    char *index = sheet ? with_tail(context, path, large ? "@2x.json" : ".json") : NULL;
+    char *sheet = add_suffix(context, path, large ? "@2x.png" : ".png");
+    char *index = sheet ? add_suffix(context, path, large ? "@2x.json" : ".json") : NULL;
     camber_status status = sheet && index ? CAMBER_OK : CAMBER_ERROR_MEMORY;
     if (status == CAMBER_OK)
         status = load_sheet(context, sheet, sprites->sheets + r.sheet);
@@ -157,19 +164,19 @@ static camber_status load_at(camber_sprites *sprites, const camber_style_sprite 
 }
 
 static camber_status find_file(camber_context *context, const char *path, const char *tail, bool *found) {
-    char *whole = with_tail(context, path, tail);
+    char *whole = add_suffix(context, path, tail);
     if (!whole)
         return CAMBER_ERROR_MEMORY;
     struct stat about;
     *found = !camber_file_is_reached(context, whole) || stat(whole, &about) == 0 ||
-             (errno != ENOENT && errno != ENOTDIR); /* what else is wrong is told later */
+             (errno != ENOENT && errno != ENOTDIR); /* other errors are told when the file is read */
     camber_free(context, whole);
     return CAMBER_OK;
 }
 
-/* A sprite without a large form is drawn from its small one. */
-static camber_status load_any(camber_sprites *sprites, const camber_style_sprite *sprite, const char *path,
-                              double ratio) {
+/* Loads the large form of a sprite, or the small one where it has no other. */
+static camber_status load_either_density(camber_sprites *sprites, const camber_style_sprite *sprite, const char *path,
+                                         double ratio) {
     bool large = false, small = false;
     camber_status status = CAMBER_OK;
     if (ratio > 1.0)
@@ -177,32 +184,33 @@ static camber_status load_any(camber_sprites *sprites, const camber_style_sprite
     if (status == CAMBER_OK && !large)
         status = find_file(sprites->context, path, ".png", &small);
     if (status != CAMBER_OK || large || small)
-        return status == CAMBER_OK ? load_at(sprites, sprite, path, large) : status;
+        return status == CAMBER_OK ? load_density(sprites, sprite, path, large) : status;
     return camber_fail(sprites->context, CAMBER_ERROR_NOT_FOUND,
                        "sprite \"%s\": %s.png: no such file; check the path in the style, or take its patterns out",
                        sprite->id, path);
 }
 
-/* A map without its patterns is better than none. */
-static void leave_out(const camber_sprites *sprites, const camber_style_sprite *sprite) {
+/* Warns of a sprite that cannot be read: a map without its patterns is better than none. */
+static void warn_left_out(const camber_sprites *sprites, const camber_style_sprite *sprite) {
     camber_log(sprites->context, CAMBER_LOG_WARNING,
                "sprite \"%s\": %s is on the network, which camber does not use; what is drawn with its images is left "
                "out: download it, and name the file",
                sprite->id, sprite->url);
 }
 
-static camber_status load(camber_sprites *sprites, const camber_style *style, const char *base_path, double ratio) {
+static camber_status load_sprites(camber_sprites *sprites, const camber_style *style, const char *base_path,
+                                  double ratio) {
     for (size_t i = 0; i < style->sprite_count; i++) {
         const camber_style_sprite *sprite = style->sprites + i;
         camber_url url = {0};
         if (camber_url_is_remote(sprite->url)) {
-            leave_out(sprites, sprite);
+            warn_left_out(sprites, sprite);
             continue;
         }
         camber_status status = camber_url_resolve(sprites->context, "sprite", sprite->url, base_path, &url);
         if (status != CAMBER_OK)
             return status;
-        status = load_any(sprites, sprite, url.path, ratio);
+        status = load_either_density(sprites, sprite, url.path, ratio);
         camber_free(sprites->context, url.path);
         if (status != CAMBER_OK)
             return status;
@@ -223,7 +231,7 @@ camber_status camber_sprites_load(camber_context *context, const camber_style *s
         return CAMBER_ERROR_MEMORY;
     made->context = context;
     made->sheets = camber_alloc_zero(context, style->sprite_count, sizeof *made->sheets);
-    const camber_status status = made->sheets ? load(made, style, base_path, ratio) : CAMBER_ERROR_MEMORY;
+    const camber_status status = made->sheets ? load_sprites(made, style, base_path, ratio) : CAMBER_ERROR_MEMORY;
     if (status != CAMBER_OK) {
         camber_sprites_destroy(made);
         return status;
@@ -280,7 +288,7 @@ bool camber_sprites_miss(camber_sprites *sprites, const char *name) {
     return true;
 }
 
-/* ---- Of features ---- */
+/* ---- The sprites of features ---- */
 
 static bool has_patterns(const camber_style *style) {
     for (size_t i = 0; i < style->layer_count; i++) {

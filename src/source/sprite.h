@@ -1,6 +1,6 @@
 /* Sprites of a style: sheets of pictures (PNG) and where each lies on its sheet (JSON). */
-#ifndef CAMBER_SPRITE_H
-#define CAMBER_SPRITE_H
+#ifndef CAMBER_SOURCE_SPRITE_H
+#define CAMBER_SOURCE_SPRITE_H
 
 #include "style/style.h"
 
@@ -23,7 +23,7 @@ typedef struct camber_sprites {
     size_t sheet_count;
     camber_sprite_image *images; /* sorted by name */
     size_t image_count, image_capacity;
-    char **missed; /* names that were asked for and are told of */
+    char **missed; /* names that were asked for and warned of */
     size_t missed_count, missed_capacity;
 } camber_sprites;
 

@@ -4,13 +4,13 @@
 
 static const double MOST_TILES = 65536;
 
-/* A view that ends on a border does not see what lies behind it. */
+/* The tolerance, in tiles, at which a view that ends on a border does not see the tile behind it. */
 static const double SLACK = 1e-6;
 
 typedef struct grid {
-    const camber_cover *cover;
-    double side;                       /* tiles that the world is wide */
-    double west, north, columns, rows; /* the tiles looked at; west may be negative */
+    const camber_tile_cover *cover;
+    double side;                       /* the world's width in tiles */
+    double west, north, columns, rows; /* the tiles that may be seen; west may be negative */
     double wanted[4];                  /* bounds in tiles */
 } grid;
 
@@ -36,7 +36,8 @@ static bool is_beside(const grid *g, double column, double row) {
     return false;
 }
 
-/* Bounds have no worlds: those of a tile of the next one are looked at in the first. */
+/* Whether the view sees the tile. Bounds have no copies of the world: a tile of the next world is compared in the
+ * first. */
 static bool is_seen(const grid *g, double column, double row) {
     const double at = column - floor(column / g->side) * g->side;
     return column >= g->west && column < g->west + g->columns && row >= g->north && row < g->north + g->rows &&
@@ -50,7 +51,7 @@ static unsigned open_sides(const grid *g, double column, double row) {
            (row + 1 < g->side && !is_seen(g, column, row + 1) ? CAMBER_SIDE_SOUTH : 0);
 }
 
-static void look(grid *g) {
+static void find_grid(grid *g) {
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
     for (int i = 0; i < 8; i++) {
         low[i & 1] = fmin(low[i & 1], g->cover->corners[i] * g->side);
@@ -58,7 +59,7 @@ static void look(grid *g) {
     }
     g->west = floor(low[0] + SLACK);
     g->columns = ceil(high[0] - SLACK) - g->west;
-    /* As wide as the world or wider: each tile once, in the world of the middle. */
+    /* The view is as wide as the world or wider: each tile is listed once, in the world of the middle. */
     if (high[0] - low[0] >= g->side) {
         g->west = floor((low[0] + high[0]) / 2 / g->side) * g->side;
         g->columns = g->side;
@@ -67,16 +68,16 @@ static void look(grid *g) {
     g->rows = fmax(fmin(ceil(high[1] - SLACK), g->side) - g->north, 0);
 }
 
-camber_status camber_cover_tiles(camber_context *context, const camber_cover *cover, int zoom, const double *bounds,
-                                 camber_mvt_place **places, size_t *count) {
+camber_status camber_tile_cover_list(camber_context *context, const camber_tile_cover *cover, int zoom,
+                                     const double *bounds, camber_tile_address **addresses, size_t *count) {
     grid g = {.cover = cover, .side = ldexp(1.0, zoom), .wanted = {-INFINITY, -INFINITY, INFINITY, INFINITY}};
     for (int i = 0; bounds && i < 4; i++)
         g.wanted[i] = bounds[i] * g.side;
-    look(&g);
+    find_grid(&g);
     if (g.columns * g.rows > MOST_TILES)
         return camber_fail(context, CAMBER_ERROR_LIMIT,
                            "the view sees more than %.0f tiles of zoom %d; choose a smaller picture", MOST_TILES, zoom);
-    camber_mvt_place *made = camber_alloc(context, (size_t)(g.columns * g.rows) + 1, sizeof *made);
+    camber_tile_address *made = camber_alloc(context, (size_t)(g.columns * g.rows) + 1, sizeof *made);
     if (!made)
         return CAMBER_ERROR_MEMORY;
     /* Columns west of the first world are those of a world further east. */
@@ -85,10 +86,10 @@ camber_status camber_cover_tiles(camber_context *context, const camber_cover *co
     for (double row = g.north; row < g.north + g.rows; row++)
         for (double column = g.west; column < g.west + g.columns; column++)
             if (is_seen(&g, column, row))
-                made[(*count)++] = (camber_mvt_place){.zoom = zoom,
-                                                      .column = (uint32_t)(column + worlds),
-                                                      .row = (uint32_t)row,
-                                                      .open_sides = open_sides(&g, column, row)};
-    *places = made;
+                made[(*count)++] = (camber_tile_address){.zoom = zoom,
+                                                         .column = (uint32_t)(column + worlds),
+                                                         .row = (uint32_t)row,
+                                                         .open_sides = open_sides(&g, column, row)};
+    *addresses = made;
     return CAMBER_OK;
 }

@@ -1,3 +1,9 @@
+/* Reads the tiles of a set into features, and a file of tiles as a whole.
+ *
+ * Input: an open set, and the addresses of the tiles to read. Output: features whose lines are joined across borders,
+ * and counts of what was found, lost and damaged. For a file without a style of its own the layer with roads is
+ * chosen by the names that common schemas give to it.
+ */
 #include "source/tile_reader.h"
 
 #include <stdio.h>
@@ -5,7 +11,7 @@
 
 static const double PROGRESS_MS = 50;
 
-camber_features_mark camber_features_here(const camber_features *features) {
+camber_features_mark camber_features_get_mark(const camber_features *features) {
     return (camber_features_mark){features->point_count,      features->polyline_count, features->feature_count,
                                   features->attribution_size, features->stats,          features->source};
 }
@@ -14,7 +20,7 @@ void camber_features_reset(camber_features *features, const camber_features_mark
     features->point_count = mark->point_count;
     features->polyline_count = mark->polyline_count;
     features->feature_count = mark->feature_count;
-    camber_features_unsign(features, mark->attribution_size);
+    camber_features_cut_attribution(features, mark->attribution_size);
     features->stats = mark->stats;
     features->source = mark->source;
 }
@@ -35,30 +41,30 @@ static void show_progress(reader *self, size_t done) {
     if (now - self->shown_ms < PROGRESS_MS)
         return;
     self->shown_ms = now;
-    camber_progress(self->context, "reading", (double)done / (double)self->reading->place_count);
+    camber_progress(self->context, "reading", (double)done / (double)self->reading->address_count);
 }
 
-static camber_status read_place(reader *self, const camber_mvt_place *place) {
-    const camber_tile_place kept = {place->column & ((UINT32_C(1) << place->zoom) - 1), place->row};
+static camber_status read_tile_at(reader *self, const camber_tile_address *address) {
+    const camber_tile_index kept = {address->column & ((UINT32_C(1) << address->zoom) - 1), address->row};
     const char *why;
-    const camber_status status = camber_tile_set_get(self->reading->set, place->zoom, kept, &self->bytes, &why);
+    const camber_status status = camber_tile_set_get(self->reading->set, address->zoom, kept, &self->bytes, &why);
     if (status != CAMBER_OK)
         return status;
     if (why)
-        camber_mvt_spoil(self->mvt, place, why);
+        camber_mvt_spoil(self->mvt, address, why);
     self->found += why || self->bytes.size_bytes;
-    return why ? CAMBER_OK : camber_mvt_read(self->mvt, place, self->bytes.data, self->bytes.size_bytes);
+    return why ? CAMBER_OK : camber_mvt_read(self->mvt, address, self->bytes.data, self->bytes.size_bytes);
 }
 
 /* restart: CAMBER_PLAIN_PROPERTY was set for features before a tile named another property. */
-static camber_status read_places(reader *self, bool *restart) {
+static camber_status read_addresses(reader *self, bool *restart) {
     const camber_mvt_stats *stats = camber_mvt_get_stats(self->mvt);
     camber_status status = CAMBER_OK;
-    for (size_t i = 0; i < self->reading->place_count && status == CAMBER_OK; i++) {
+    for (size_t i = 0; i < self->reading->address_count && status == CAMBER_OK; i++) {
         const size_t before = stats->features;
         const bool named = stats->names_property;
         const size_t damaged = stats->damaged_features, given = stats->kept_features + stats->skipped_features;
-        status = read_place(self, &self->reading->places[i]);
+        status = read_tile_at(self, &self->reading->addresses[i]);
         self->lost += stats->damaged_features > damaged && stats->kept_features + stats->skipped_features == given;
         if (self->reading->mvt.plain && !named && stats->names_property && before) {
             *restart = true;
@@ -75,23 +81,23 @@ static camber_status read_once(camber_features *features, const camber_tile_read
     reader self = {.context = context, .reading = reading, .bytes.context = context};
     camber_mvt_desc desc = reading->mvt;
     camber_budget_read_again(context);
-    camber_status status = camber_tiles_create(context, reading->zoom, &desc.tiles);
+    camber_status status = camber_tile_stitcher_create(context, reading->zoom, &desc.stitcher);
     if (status == CAMBER_OK)
         status = camber_mvt_create(context, &desc, &self.mvt);
     if (status == CAMBER_OK)
-        status = read_places(&self, restart);
+        status = read_addresses(&self, restart);
     if (status == CAMBER_OK && !*restart)
-        status = camber_tiles_finish(desc.tiles, features);
+        status = camber_tile_stitcher_finish(desc.stitcher, features);
     if (status == CAMBER_OK)
         *result = (camber_tile_result){*camber_mvt_get_stats(self.mvt), self.found, self.lost};
     camber_bytes_free(&self.bytes);
     camber_mvt_destroy(self.mvt);
-    camber_tiles_destroy(desc.tiles);
+    camber_tile_stitcher_destroy(desc.stitcher);
     return status;
 }
 
-camber_status camber_tiles_read(camber_features *features, const camber_tile_reading *reading,
-                                camber_tile_result *result) {
+camber_status camber_features_read_tiles(camber_features *features, const camber_tile_reading *reading,
+                                         camber_tile_result *result) {
     camber_tile_reading again = *reading;
     bool restart = false;
     camber_status status = read_once(features, reading, result, &restart);
@@ -109,32 +115,33 @@ typedef struct input {
     const camber_source_desc *desc;
     camber_tile_set *set;
     int zoom;
-    camber_mvt_place *places;
-    size_t place_count;
-    const char **layers; /* to read */
+    camber_tile_address *addresses;
+    size_t address_count;
+    const char **layers; /* the layers to read */
     size_t layer_count;
     char *layer; /* the one of them that the style does not name. NULL: it names all */
 } input;
 
-/* Every tile of the highest zoom. */
-static camber_status list_places(input *self) {
-    camber_tile_place *places = NULL;
+/* Lists every tile of the highest zoom. */
+static camber_status list_addresses(input *self) {
+    camber_tile_index *addresses = NULL;
     camber_status status = CAMBER_OK;
     self->zoom = self->set->max_zoom;
     for (; self->zoom >= 0 && status == CAMBER_OK; self->zoom--) {
-        status = camber_tile_set_list(self->set, self->zoom, &places, &self->place_count);
-        if (self->place_count || self->zoom == 0)
+        status = camber_tile_set_list(self->set, self->zoom, &addresses, &self->address_count);
+        if (self->address_count || self->zoom == 0)
             break;
-        camber_free(self->context, places);
-        places = NULL;
+        camber_free(self->context, addresses);
+        addresses = NULL;
     }
     if (status != CAMBER_OK)
         return status;
-    if (!(self->places = camber_alloc(self->context, self->place_count, sizeof *self->places)))
+    if (!(self->addresses = camber_alloc(self->context, self->address_count, sizeof *self->addresses)))
         status = CAMBER_ERROR_MEMORY;
-    for (size_t i = 0; status == CAMBER_OK && places && i < self->place_count; i++)
-        self->places[i] = (camber_mvt_place){.zoom = self->zoom, .column = places[i].column, .row = places[i].row};
-    camber_free(self->context, places);
+    for (size_t i = 0; status == CAMBER_OK && addresses && i < self->address_count; i++)
+        self->addresses[i] =
+            (camber_tile_address){.zoom = self->zoom, .column = addresses[i].column, .row = addresses[i].row};
+    camber_free(self->context, addresses);
     return status;
 }
 
@@ -147,19 +154,21 @@ static camber_status fail_damaged(const input *self, const camber_mvt_stats *sta
                        self->desc->path, stats->damage);
 }
 
-/* What tiles do not tell of themselves is looked for in all of them. */
+/* Lists the layers by looking through all tiles, where the set does not tell them. */
 static camber_status look_for_layers(input *self) {
     camber_context *context = self->context;
     reader look = {.context = context, .bytes.context = context};
-    const camber_tile_reading reading = {
-        .set = self->set, .places = self->places, .place_count = self->place_count, .mvt.features = self->features};
+    const camber_tile_reading reading = {.set = self->set,
+                                         .addresses = self->addresses,
+                                         .address_count = self->address_count,
+                                         .mvt.features = self->features};
     bool restart = false;
     camber_budget_read_again(context);
     look.reading = &reading;
     camber_status status = camber_mvt_create(context, &reading.mvt, &look.mvt);
     if (status != CAMBER_OK)
         return status;
-    status = read_places(&look, &restart);
+    status = read_addresses(&look, &restart);
     size_t count;
     const camber_mvt_layer *layers = camber_mvt_layers(look.mvt, &count);
     const camber_mvt_stats *stats = camber_mvt_get_stats(look.mvt);
@@ -245,7 +254,7 @@ static bool names_layers(const camber_style *style) {
     return false;
 }
 
-/* Those of the set that the style's layers name. */
+/* Lists the layers of the set that the style's layers name. */
 static void list_named(input *self) {
     const camber_style *style = self->features->style;
     for (size_t i = 0; i < style->layer_count; i++) {
@@ -281,25 +290,26 @@ static camber_status read_input(input *self, camber_tile_result *result) {
     const camber_style *style = self->features->style;
     camber_status status = camber_tile_set_open(self->context, self->desc->path, CAMBER_NAMED_BY_CALLER, &self->set);
     if (status == CAMBER_OK)
-        status = list_places(self);
+        status = list_addresses(self);
     if (status == CAMBER_OK)
         status = choose_layers(self);
     if (status != CAMBER_OK)
         return status;
     const camber_tile_reading reading = {.set = self->set,
                                          .zoom = self->zoom,
-                                         .places = self->places,
-                                         .place_count = self->place_count,
+                                         .addresses = self->addresses,
+                                         .address_count = self->address_count,
                                          .mvt = {.features = self->features,
                                                  .layers = self->layers,
                                                  .layer_count = self->layer_count,
                                                  .wants_polygons = style->wants_polygons,
                                                  .plain = wants_plain(style)}};
-    return camber_tiles_read(self->features, &reading, result);
+    return camber_features_read_tiles(self->features, &reading, result);
 }
 
-/* What it gave, looked at as a whole. */
-static camber_status judge(const input *self, const camber_mvt_stats *stats, const camber_features_mark *before) {
+/* Fails where the file as a whole gave nothing that can be drawn. */
+static camber_status check_result(const input *self, const camber_mvt_stats *stats,
+                                  const camber_features_mark *before) {
     if (self->features->feature_count > before->feature_count)
         return CAMBER_OK;
     if (stats->damaged_features)
@@ -320,8 +330,8 @@ static void add_stats(camber_features *features, const camber_mvt_stats *stats) 
     features->stats.damaged_features += stats->damaged_features;
 }
 
-/* Points and areas are no news: nobody asked for them. */
-static void warn(const input *self, const camber_mvt_stats *stats) {
+/* Warns of losses. Points and areas are not mentioned as such: nobody asked for them. */
+static void warn_of_losses(const input *self, const camber_mvt_stats *stats) {
     if (stats->damaged_features)
         camber_log(self->context, CAMBER_LOG_WARNING,
                    "%s: %zu damaged features (the first: %s); what of them reads is kept", self->desc->path,
@@ -332,7 +342,7 @@ static void warn(const input *self, const camber_mvt_stats *stats) {
                    stats->skipped_features);
 }
 
-static camber_status finish(const input *self, size_t first_polyline) {
+static camber_status merge_and_weigh(const input *self, size_t first_polyline) {
     camber_features *features = self->features;
     const double start_ms = camber_now_ms();
     camber_status status = CAMBER_OK;
@@ -341,35 +351,35 @@ static camber_status finish(const input *self, size_t first_polyline) {
                                        features->style->directed ? CAMBER_MERGE_DIRECTED : CAMBER_MERGE_ANY);
     const double merged_ms = camber_now_ms();
     if (status == CAMBER_OK)
-        status = camber_features_weigh(features, first_polyline);
+        status = camber_features_set_importance(features, first_polyline);
     features->times.merge_ms += merged_ms - start_ms;
     features->times.weigh_ms += camber_now_ms() - merged_ms;
     return status;
 }
 
-camber_status camber_tiles_read_file(camber_features *features, const camber_source_desc *desc) {
+camber_status camber_features_read_tile_file(camber_features *features, const camber_source_desc *desc) {
     input self = {.context = features->context, .features = features, .desc = desc};
-    const camber_features_mark before = camber_features_here(features);
+    const camber_features_mark before = camber_features_get_mark(features);
     const double start_ms = camber_now_ms();
     camber_tile_result result = {.found = 0};
     camber_status status = read_input(&self, &result);
     if (status == CAMBER_OK)
-        status = judge(&self, &result.stats, &before);
+        status = check_result(&self, &result.stats, &before);
     if (status == CAMBER_OK)
-        status = camber_features_sign(features, self.set->attribution);
+        status = camber_features_add_attribution(features, self.set->attribution);
     camber_tile_set_close(self.set);
     camber_free(self.context, self.layers);
     camber_free(self.context, self.layer);
-    camber_free(self.context, self.places);
+    camber_free(self.context, self.addresses);
     features->times.file_ms += camber_now_ms() - start_ms;
     if (status == CAMBER_OK)
-        status = finish(&self, before.polyline_count);
+        status = merge_and_weigh(&self, before.polyline_count);
     if (status != CAMBER_OK) {
         camber_features_reset(features, &before);
         return status;
     }
     add_stats(features, &result.stats);
-    warn(&self, &result.stats);
+    warn_of_losses(&self, &result.stats);
     camber_progress(features->context, "reading", 1);
     return CAMBER_OK;
 }

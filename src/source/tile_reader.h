@@ -1,6 +1,6 @@
-/* Tiles of a set into features, their pieces joined. */
-#ifndef CAMBER_TILE_READER_H
-#define CAMBER_TILE_READER_H
+/* Reads tiles of a set into features, whose lines are joined across the tiles' borders. */
+#ifndef CAMBER_SOURCE_TILE_READER_H
+#define CAMBER_SOURCE_TILE_READER_H
 
 #include "source/mvt.h"
 #include "source/tile_set.h"
@@ -8,22 +8,22 @@
 typedef struct camber_tile_reading {
     camber_tile_set *set;
     int zoom;
-    const camber_mvt_place *places;
-    size_t place_count;
+    const camber_tile_address *addresses;
+    size_t address_count;
     camber_mvt_desc mvt; /* tiles are filled in here */
 } camber_tile_reading;
 
 typedef struct camber_tile_result {
     camber_mvt_stats stats;
     size_t found; /* tiles that are there */
-    size_t lost;  /* of these, those that are damaged and give nothing */
+    size_t lost;  /* those of them that are damaged and give nothing */
 } camber_tile_result;
 
-/* Adds features and their polylines, of features->source. Where it fails the caller takes them out again. */
-camber_status camber_tiles_read(camber_features *features, const camber_tile_reading *reading,
-                                camber_tile_result *result);
-/* camber_features_read of a file that camber_tile_set_knows. */
-camber_status camber_tiles_read_file(camber_features *features, const camber_source_desc *desc);
+/* Adds features and their polylines to features->source. Where it fails, the caller resets the set. */
+camber_status camber_features_read_tiles(camber_features *features, const camber_tile_reading *reading,
+                                         camber_tile_result *result);
+/* The part of camber_features_read for files that camber_tile_set_knows. */
+camber_status camber_features_read_tile_file(camber_features *features, const camber_source_desc *desc);
 
 /* ---- A set as it was, for what fails half way ---- */
 
@@ -34,8 +34,8 @@ typedef struct camber_features_mark {
     uint32_t source;
 } camber_features_mark;
 
-camber_features_mark camber_features_here(const camber_features *features);
-/* Spare classes stay. */
+camber_features_mark camber_features_get_mark(const camber_features *features);
+/* Takes out all that was added since the mark; classes that nothing uses any more stay. */
 void camber_features_reset(camber_features *features, const camber_features_mark *mark);
 
 #endif

@@ -1,3 +1,8 @@
+/* Sets of vector tiles: what folders of files, MBTiles and PMTiles have in common, and the folders themselves.
+ *
+ * Input: a path or a template of paths. Output: the decompressed bytes of a tile, and what the set says of itself:
+ * zooms, bounds, attribution, layers. How much a tile may take when decompressed is limited by the budget.
+ */
 #include "source/tile_set.h"
 
 #include <errno.h>
@@ -6,7 +11,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
-/* Tiles of real maps stay below a megabyte or few; a bomb does not. */
+/* The most that one tile may take decompressed: real maps stay below a few megabytes, a decompression bomb does not. */
 static const size_t LARGEST_TILE_BYTES = (size_t)64 << 20;
 
 void camber_bytes_free(camber_bytes *bytes) {
@@ -90,7 +95,7 @@ static bool is_compressed(const camber_bytes *bytes) {
     return (b[0] == 0x1f && b[1] == 0x8b) || (b[0] == 0x78 && (b[0] * 256 + b[1]) % 31 == 0);
 }
 
-/* ---- What sets tell of themselves ---- */
+/* ---- Metadata ---- */
 
 static bool read_number(const json_t *json, double *number) {
     /* MBTiles has text only. */
@@ -124,7 +129,7 @@ static bool read_bounds(const json_t *json, double bounds[4]) {
            bounds[1] < bounds[3];
 }
 
-/* What tells more of the set later has the last word. */
+/* A later description of the set replaces an earlier one. */
 static camber_status take_attribution(camber_tile_set *set, const json_t *about) {
     const char *text = json_string_value(json_object_get(about, "attribution"));
     char *copy = text ? camber_copy_string(set->context, text) : NULL;
@@ -160,16 +165,16 @@ typedef struct file_set {
     bool south_first, high_resolution;
 } file_set;
 
-static void put_quadkey(char *out, int zoom, camber_tile_place place) {
+static void put_quadkey(char *out, int zoom, camber_tile_index tile) {
     for (int z = zoom; z > 0; z--)
-        *out++ = (char)('0' + (place.column >> (z - 1) & 1) + 2 * (place.row >> (z - 1) & 1));
+        *out++ = (char)('0' + (tile.column >> (z - 1) & 1) + 2 * (tile.row >> (z - 1) & 1));
     *out = 0;
 }
 
-/* What {...} stands for. false: it is left as it is. */
-static bool expand(const file_set *files, const char *token, size_t length, int zoom, camber_tile_place place,
-                   char out[40]) {
-    const uint32_t turned = (UINT32_C(1) << zoom) - 1 - place.row;
+/* Writes what {...} stands for. false: it is left as it is. */
+static bool expand_token(const file_set *files, const char *token, size_t length, int zoom, camber_tile_index tile,
+                         char out[40]) {
+    const uint32_t turned = (UINT32_C(1) << zoom) - 1 - tile.row;
     static const char *const tokens[] = {"{z}", "{x}", "{y}", "{-y}", "{ratio}", "{quadkey}", "{prefix}"};
     size_t i = 0;
     while (i < sizeof tokens / sizeof *tokens &&
@@ -177,24 +182,24 @@ static bool expand(const file_set *files, const char *token, size_t length, int 
         i++;
     switch (i) {
     case 0: snprintf(out, 40, "%d", zoom); return true;
-    case 1: snprintf(out, 40, "%u", place.column); return true;
-    case 2: snprintf(out, 40, "%u", files->south_first ? turned : place.row); return true;
+    case 1: snprintf(out, 40, "%u", tile.column); return true;
+    case 2: snprintf(out, 40, "%u", files->south_first ? turned : tile.row); return true;
     case 3: snprintf(out, 40, "%u", turned); return true;
     case 4: snprintf(out, 40, "%s", files->high_resolution ? "@2x" : ""); return true;
-    case 5: put_quadkey(out, zoom, place); return true;
-    case 6: snprintf(out, 40, "%x%x", place.column % 16, place.row % 16); return true;
+    case 5: put_quadkey(out, zoom, tile); return true;
+    case 6: snprintf(out, 40, "%x%x", tile.column % 16, tile.row % 16); return true;
     default: return false;
     }
 }
 
-static char *path_of(camber_tile_set *set, int zoom, camber_tile_place place) {
+static char *path_of(camber_tile_set *set, int zoom, camber_tile_index tile) {
     const file_set *files = set->self;
     camber_bytes path = {.context = set->context};
     for (const char *at = files->path; *at;) {
         char text[40];
         const char *end = *at == '{' ? strchr(at, '}') : NULL, *put = at;
         size_t taken = 1, size = 1;
-        if (end && expand(files, at, (size_t)(end + 1 - at), zoom, place, text)) {
+        if (end && expand_token(files, at, (size_t)(end + 1 - at), zoom, tile, text)) {
             taken = (size_t)(end + 1 - at);
             size = strlen(text);
             put = text;
@@ -229,10 +234,10 @@ static camber_status read_tile(int file, camber_bytes *bytes, const char *name) 
 }
 
 /* A tile that is not there is empty. */
-static camber_status get_file(camber_tile_set *set, int zoom, camber_tile_place place, camber_bytes *bytes,
+static camber_status get_file(camber_tile_set *set, int zoom, camber_tile_index tile, camber_bytes *bytes,
                               const char **why) {
     (void)why;
-    char *path = path_of(set, zoom, place);
+    char *path = path_of(set, zoom, tile);
     int file;
     uint64_t size_bytes;
     if (!path)
@@ -262,7 +267,7 @@ static const camber_tile_set_calls file_calls = {get_file, NULL, close_files};
 
 /* ---- All kinds ---- */
 
-static camber_status make(camber_context *context, const char *name, camber_tile_set **set) {
+static camber_status make_set(camber_context *context, const char *name, camber_tile_set **set) {
     camber_tile_set *made = camber_alloc_zero(context, 1, sizeof *made);
     if (!made)
         return CAMBER_ERROR_MEMORY;
@@ -282,7 +287,7 @@ static camber_status make(camber_context *context, const char *name, camber_tile
 camber_status camber_tile_set_of_files(camber_context *context, const camber_tile_template *files,
                                        camber_tile_set **set) {
     camber_tile_set *made;
-    if (make(context, files->name, &made) != CAMBER_OK)
+    if (make_set(context, files->name, &made) != CAMBER_OK)
         return CAMBER_ERROR_MEMORY;
     file_set *self = camber_alloc(context, 1, sizeof *self);
     char *path = self ? camber_copy_string(context, files->path) : NULL;
@@ -311,7 +316,7 @@ bool camber_tile_set_knows(const char *path) {
 camber_status camber_tile_set_open(camber_context *context, const char *path, camber_file_naming naming,
                                    camber_tile_set **set) {
     camber_tile_set *made;
-    if (make(context, path, &made) != CAMBER_OK)
+    if (make_set(context, path, &made) != CAMBER_OK)
         return CAMBER_ERROR_MEMORY;
     made->naming = naming;
     const camber_status status =
@@ -324,11 +329,11 @@ camber_status camber_tile_set_open(camber_context *context, const char *path, ca
     return CAMBER_OK;
 }
 
-camber_status camber_tile_set_get(camber_tile_set *set, int zoom, camber_tile_place place, camber_bytes *bytes,
+camber_status camber_tile_set_get(camber_tile_set *set, int zoom, camber_tile_index tile, camber_bytes *bytes,
                                   const char **why) {
     *why = NULL;
     bytes->size_bytes = 0;
-    const camber_status status = set->calls->get(set, zoom, place, &set->raw, why);
+    const camber_status status = set->calls->get(set, zoom, tile, &set->raw, why);
     if (status != CAMBER_OK || *why)
         return status;
     if (is_compressed(&set->raw))
@@ -343,8 +348,8 @@ camber_status camber_tile_set_get(camber_tile_set *set, int zoom, camber_tile_pl
     return camber_budget_unfold(set->context, set->name, bytes->size_bytes);
 }
 
-camber_status camber_tile_set_list(camber_tile_set *set, int zoom, camber_tile_place **places, size_t *count) {
-    return set->calls->list(set, zoom, places, count);
+camber_status camber_tile_set_list(camber_tile_set *set, int zoom, camber_tile_index **tiles, size_t *count) {
+    return set->calls->list(set, zoom, tiles, count);
 }
 
 void camber_tile_set_close(camber_tile_set *set) {

@@ -1,6 +1,6 @@
 /* An open set of vector tiles: files by a template, MBTiles, PMTiles. */
-#ifndef CAMBER_TILE_SET_H
-#define CAMBER_TILE_SET_H
+#ifndef CAMBER_SOURCE_TILE_SET_H
+#define CAMBER_SOURCE_TILE_SET_H
 
 #include "base/base.h"
 
@@ -8,11 +8,11 @@
 
 enum { CAMBER_LARGEST_TILE_ZOOM = 24 };
 
-typedef struct camber_tile_place {
+typedef struct camber_tile_index {
     uint32_t column, row; /* from the north-west */
-} camber_tile_place;
+} camber_tile_index;
 
-/* A buffer that is used again. */
+/* A buffer that is reused. */
 typedef struct camber_bytes {
     camber_context *context;
     unsigned char *data;
@@ -20,18 +20,17 @@ typedef struct camber_bytes {
 } camber_bytes;
 
 void camber_bytes_free(camber_bytes *bytes);
-/* Room for so many, size_bytes set. */
+/* Makes room for this many bytes, and sets size_bytes. */
 bool camber_bytes_resize(camber_bytes *bytes, size_t size_bytes);
 
 typedef struct camber_tile_set camber_tile_set;
 
-/* What one kind of set does. */
+/* The functions of one kind of set. */
 typedef struct camber_tile_set_calls {
-    /* The tile as it is kept, maybe compressed; size 0 where there is none. why: as camber_tile_set_get. */
-    camber_status (*get)(camber_tile_set *set, int zoom, camber_tile_place place, camber_bytes *bytes,
-                         const char **why);
-    /* NULL: the kind cannot tell. *places is freed with camber_free. */
-    camber_status (*list)(camber_tile_set *set, int zoom, camber_tile_place **places, size_t *count);
+    /* Reads the tile as it is stored, maybe compressed; size 0 where there is none. why: as camber_tile_set_get. */
+    camber_status (*get)(camber_tile_set *set, int zoom, camber_tile_index tile, camber_bytes *bytes, const char **why);
+    /* NULL: the kind cannot list its tiles. *tiles is freed with camber_free. */
+    camber_status (*list)(camber_tile_set *set, int zoom, camber_tile_index **tiles, size_t *count);
     void (*close)(camber_tile_set *set);
 } camber_tile_set_calls;
 
@@ -39,7 +38,7 @@ struct camber_tile_set {
     const camber_tile_set_calls *calls;
     camber_context *context;
     char *name;                /* in messages */
-    camber_file_naming naming; /* of its files */
+    camber_file_naming naming; /* how its files are named by the user or the style */
     int min_zoom, max_zoom;
     double bounds[4]; /* west, south, east, north, degrees; the whole world where nothing is said */
     bool has_bounds;
@@ -49,8 +48,8 @@ struct camber_tile_set {
     camber_bytes raw;
 };
 
-/* A file by its ending, .mbtiles or .pmtiles. Returns what camber_file_open does, CAMBER_ERROR_INPUT (another format,
- * tiles that are pictures), CAMBER_ERROR_MEMORY. */
+/* Opens a file by its ending, .mbtiles or .pmtiles. Returns what camber_file_open does, CAMBER_ERROR_INPUT (another
+ * format, tiles that are pictures), CAMBER_ERROR_MEMORY. */
 camber_status camber_tile_set_open(camber_context *context, const char *path, camber_file_naming naming,
                                    camber_tile_set **set);
 /* Whether the path ends as such a file. */
@@ -66,17 +65,17 @@ typedef struct camber_tile_template {
 camber_status camber_tile_set_of_files(camber_context *context, const camber_tile_template *files,
                                        camber_tile_set **set);
 
-/* Takes what TileJSON and the metadata of the other kinds have in common: minzoom, maxzoom, bounds, attribution,
- * vector_layers. Values that make no sense are left out. Returns CAMBER_ERROR_MEMORY. */
+/* Reads what TileJSON and the metadata of the other kinds have in common: minzoom, maxzoom, bounds, attribution,
+ * vector_layers. Values that make no sense are ignored. Returns CAMBER_ERROR_MEMORY. */
 camber_status camber_tile_set_describe(camber_tile_set *set, const json_t *about);
 
-/* The tile's bytes, decompressed; size 0 where there is none. *why: NULL, or what is wrong with this one tile. Returns
- * CAMBER_ERROR_INPUT where the set itself is damaged, CAMBER_ERROR_IO, CAMBER_ERROR_LIMIT (the budget),
+/* Reads the tile's bytes, decompressed; size 0 where there is none. *why: NULL, or what is wrong with this one tile.
+ * Returns CAMBER_ERROR_INPUT where the set itself is damaged, CAMBER_ERROR_IO, CAMBER_ERROR_LIMIT (the budget),
  * CAMBER_ERROR_MEMORY. */
-camber_status camber_tile_set_get(camber_tile_set *set, int zoom, camber_tile_place place, camber_bytes *bytes,
+camber_status camber_tile_set_get(camber_tile_set *set, int zoom, camber_tile_index tile, camber_bytes *bytes,
                                   const char **why);
-/* Of the budget's tiles, these are taken. */
-camber_status camber_tile_set_list(camber_tile_set *set, int zoom, camber_tile_place **places, size_t *count);
+/* Lists the tiles of a zoom; they count against the budget's tiles. */
+camber_status camber_tile_set_list(camber_tile_set *set, int zoom, camber_tile_index **tiles, size_t *count);
 void camber_tile_set_close(camber_tile_set *set);
 
 /* ---- For the kinds ---- */

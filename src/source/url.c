@@ -17,8 +17,8 @@ static int hex_digit(char c) {
     return isdigit((unsigned char)c) ? c - '0' : isxdigit((unsigned char)c) ? tolower((unsigned char)c) - 'a' + 10 : -1;
 }
 
-/* %20 and its like; a 0 is left as it stands. */
-static void decode(char *text) {
+/* Decodes %20 and its like; %00 is left as it stands. */
+static void decode_escapes(char *text) {
     char *out = text;
     for (; *text; text++) {
         const int high = *text == '%' ? hex_digit(text[1]) : -1, low = high >= 0 ? hex_digit(text[2]) : -1;
@@ -78,7 +78,7 @@ camber_status camber_url_resolve(camber_context *context, const char *what, cons
     if (!made.path)
         return CAMBER_ERROR_MEMORY;
     if (is_file)
-        decode(made.path);
+        decode_escapes(made.path);
     /* Tiles within an archive are named so elsewhere. */
     static const char tail[] = "/{z}/{x}/{y}";
     const size_t length = strlen(made.path), cut = sizeof tail - 1;

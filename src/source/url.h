@@ -1,6 +1,6 @@
-/* Where a style's URLs lead on this machine. */
-#ifndef CAMBER_URL_H
-#define CAMBER_URL_H
+/* Resolves a style's URLs to files on this machine. */
+#ifndef CAMBER_SOURCE_URL_H
+#define CAMBER_SOURCE_URL_H
 
 #include "base/base.h"
 
@@ -15,7 +15,7 @@ typedef struct camber_url {
     char *path; /* freed with camber_free */
 } camber_url;
 
-/* Whether it is on the network, where nothing is read. */
+/* Whether the URL leads to the network, where nothing is read from. */
 bool camber_url_is_remote(const char *text);
 
 /* file://, mbtiles://, pmtiles:// and plain paths; relative ones start from the folder of base_path, a file (NULL: the

@@ -2,7 +2,7 @@
 
 enum { BLOCK_SIZE = 4096, ALIGNMENT = 8 };
 
-/* A block that has at least this much room, and twice as much as all before it, so that blocks stay few. */
+/* Adds a block that has at least this much room, and twice as much as all before it, so that there are few blocks. */
 static bool add_block(camber_arena *arena, size_t size_bytes) {
     size_t room = arena->used > BLOCK_SIZE / 2 ? 2 * arena->used : BLOCK_SIZE;
     if (room < size_bytes)

@@ -1,24 +1,27 @@
-/* What is wrong with a style document, and what is drawn of it: the document is read to its end, and what reading says
- * is collected. */
+/* Checks a style document: lists all that is wrong with it, and says which layers and sources are drawn.
+ *
+ * Input: the document's bytes. Output: a report of findings, each with a JSON pointer. The document is read to its end,
+ * past what is wrong, and the messages of reading are collected instead of logged.
+ */
 #include "style/document.h"
 
 #include <stdio.h>
 
-/* A report, with room for what comes. */
+/* A report and what it is made from. */
 typedef struct checker {
-    camber_style_report report; /* first: what is handed out */
+    camber_style_report report; /* first, since its address is handed out */
     camber_context *context;
     camber_style_finding *findings;
     camber_style_type *types;
-    camber_style_origin *sources;
+    camber_style_report_source *sources;
     size_t finding_capacity, type_capacity, source_capacity;
     char **texts;
     size_t text_count, text_capacity;
     bool out_of_memory;
-    camber_soft_log log; /* kept, once that is said */
+    camber_soft_log log; /* holds back messages once memory ran out */
 } checker;
 
-static void run_out(checker *k) {
+static void fail_memory(checker *k) {
     if (!k->out_of_memory)
         camber_log_soften(k->context, &k->log);
     k->out_of_memory = true;
@@ -31,20 +34,20 @@ static const char *keep(checker *k, const char *text) {
         return copy;
     }
     camber_free(k->context, copy);
-    run_out(k);
+    fail_memory(k);
     return "";
 }
 
 /* ---- Findings ---- */
 
-static void find(void *user, const camber_compiler *c, camber_log_level level, const char *message) {
+static void keep_problem(void *user, const camber_compiler *c, camber_log_level level, const char *message) {
     checker *k = user;
     camber_style_report *report = &k->report;
     char pointer[CAMBER_POINTER_SIZE];
     camber_compiler_write_pointer(c, pointer);
     if (k->out_of_memory ||
         !camber_grow(k->context, &k->findings, &k->finding_capacity, report->finding_count + 1, sizeof *k->findings)) {
-        run_out(k);
+        fail_memory(k);
         return;
     }
     const bool error = level == CAMBER_LOG_ERROR;
@@ -52,7 +55,7 @@ static void find(void *user, const camber_compiler *c, camber_log_level level, c
     report->error_count += error;
 }
 
-/* What reads well but draws otherwise than one may expect, of layers and the sources that they name. */
+/* Finds what is valid but may draw otherwise than expected, in layers and the sources that they name. */
 static void find_in_layer(camber_document *d, const camber_style_layer *layer, const char *type) {
     camber_compiler *c = &d->compiler;
     if (layer->kind != CAMBER_LAYER_LINE)
@@ -146,7 +149,7 @@ static void find_in_tiles(camber_document *d, const json_t *source) {
     }
 }
 
-/* What reading a source would tell, had a line layer named it. */
+/* Finds what reading a source would complain of, had a line layer named it. */
 static void find_in_sources(camber_document *d) {
     static const char *const types[] = {"vector", "raster", "raster-dem", "geojson", "image", "video", "canvas", NULL};
     camber_compiler *c = &d->compiler;
@@ -168,13 +171,13 @@ static void find_in_sources(camber_document *d) {
     camber_compiler_leave(c);
 }
 
-/* ---- What there is ---- */
+/* ---- Contents ---- */
 
 static void list_type(checker *k, const char *type, size_t layers) {
     camber_style_report *report = &k->report;
     if (k->out_of_memory ||
         !camber_grow(k->context, &k->types, &k->type_capacity, report->type_count + 1, sizeof *k->types)) {
-        run_out(k);
+        fail_memory(k);
         return;
     }
     const bool drawn = strcmp(type, "line") == 0 || strcmp(type, "background") == 0;
@@ -191,7 +194,7 @@ static void count_types(checker *k, const camber_document *d) {
         type = json_string_value(json_object_get(ref ? json_object_get(d->by_id, ref) : layer, "type"));
         if (type &&
             json_object_set_new(counts, type, json_integer(json_integer_value(json_object_get(counts, type)) + 1)) != 0)
-            run_out(k);
+            fail_memory(k);
     }
     json_object_foreach(counts, type, count) {
         list_type(k, type, (size_t)json_integer_value(count));
@@ -205,7 +208,7 @@ static bool is_remote(const json_t *json) {
            (strncmp(url, "http://", 7) == 0 || strncmp(url, "https://", 8) == 0 || strncmp(url, "mapbox://", 9) == 0);
 }
 
-static const char *trouble_of(const camber_style_source *source) {
+static const char *find_trouble(const camber_style_source *source) {
     static const char *const remote = "it lies on a network, which is not read; save it as a file and name that";
     const bool geojson = strcmp(source->type, "geojson") == 0;
     if (!geojson && strcmp(source->type, "vector") != 0)
@@ -221,7 +224,7 @@ static const char *trouble_of(const camber_style_source *source) {
 static void list_sources(checker *k, const camber_style *style) {
     if (k->out_of_memory ||
         !camber_grow(k->context, &k->sources, &k->source_capacity, style->source_count, sizeof *k->sources)) {
-        run_out(k);
+        fail_memory(k);
         return;
     }
     for (size_t i = 0; i < style->source_count; i++) {
@@ -229,15 +232,16 @@ static void list_sources(checker *k, const camber_style *style) {
         size_t count = 0;
         for (size_t n = 0; n < style->layer_count; n++)
             count += style->layers[n].kind == CAMBER_LAYER_LINE && style->layers[n].source_index == i;
-        k->sources[i] = (camber_style_origin){keep(k, source->name), keep(k, source->type), count, trouble_of(source)};
+        k->sources[i] =
+            (camber_style_report_source){keep(k, source->name), keep(k, source->type), count, find_trouble(source)};
     }
     k->report.source_count = style->source_count;
 }
 
 /* ---- Reports ---- */
 
-static camber_status check(checker *k, const char *json, size_t size_bytes, const char *name) {
-    camber_document d = {.compiler = {.context = k->context, .name = name, .report = find, .report_user = k},
+static camber_status check_document(checker *k, const char *json, size_t size_bytes, const char *name) {
+    camber_document d = {.compiler = {.context = k->context, .name = name, .report = keep_problem, .report_user = k},
                          .reads_on = true};
     d.compiler.style = camber_alloc_zero(k->context, 1, sizeof *d.compiler.style);
     if (!d.compiler.style)
@@ -263,7 +267,7 @@ camber_status camber_style_check(camber_context *context, const char *json, size
     if (!k)
         return CAMBER_ERROR_MEMORY;
     k->context = context;
-    const camber_status status = check(k, json, size_bytes, name);
+    const camber_status status = check_document(k, json, size_bytes, name);
     if (status != CAMBER_OK) {
         camber_style_report_destroy(&k->report);
         return status;

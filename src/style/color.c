@@ -1,3 +1,7 @@
+/* Parses colours as CSS Color Module Level 4 writes them: hex digits, rgb(), hsl() and names.
+ *
+ * Input: text. Output: straight sRGB components from 0 to 1; false where the text is not a colour.
+ */
 #include "style/color.h"
 
 #include "style/number.h"
@@ -209,7 +213,7 @@ typedef struct component {
     unit unit;
 } component;
 
-/* The text behind word, NULL where text does not begin with it (case ignored; word is in lower case). */
+/* Returns the text behind word, NULL where text does not begin with it. Case is ignored; word is in lower case. */
 static const char *after_word(const char *text, const char *word) {
     while (*word) {
         if (lower(*text++) != *word++)
@@ -242,8 +246,8 @@ static const char *parse_component(const char *text, component *part) {
     return text;
 }
 
-/* "1, 2, 3)", "1, 2, 3, .5)", "1 2 3)" or "1 2 3 / .5)" and nothing behind it. Returns the number of components, 0
- * where it is none of these. */
+/* Parses "1, 2, 3)", "1, 2, 3, .5)", "1 2 3)" or "1 2 3 / .5)" with nothing behind it. Returns the number of
+ * components, 0 where it is none of these. */
 static size_t parse_arguments(const char *text, component parts[4], bool *commas) {
     size_t count = 0;
     *commas = false;

@@ -1,5 +1,5 @@
-#ifndef CAMBER_COLOR_H
-#define CAMBER_COLOR_H
+#ifndef CAMBER_STYLE_COLOR_H
+#define CAMBER_STYLE_COLOR_H
 
 #include "camber.h"
 

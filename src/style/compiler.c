@@ -1,7 +1,9 @@
-/* Places and errors, nodes, types, constants. */
+/* The compiler of expressions: where in the document it is, errors, nodes, types, and constants that are folded.
+ *
+ * Input: JSON. Output: camber_expression. Operands are compiled first and wait on a stack; an operator takes its own
+ * from there. An operator whose operands are all constants is evaluated at once and becomes a constant.
+ */
 #include "style/compiler.h"
-
-#include "style/evaluation.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -35,7 +37,7 @@ void camber_compiler_end(camber_compiler *c) {
     c->operand_capacity = c->binding_capacity = 0;
 }
 
-static void say(camber_compiler *c, camber_log_level level, const char *format, va_list list) {
+static void report(camber_compiler *c, camber_log_level level, const char *format, va_list list) {
     char pointer[CAMBER_POINTER_SIZE], message[512];
     vsnprintf(message, sizeof message, format, list);
     if (c->report) {
@@ -49,7 +51,7 @@ static void say(camber_compiler *c, camber_log_level level, const char *format, 
 bool camber_compiler_fail(camber_compiler *c, const char *format, ...) {
     va_list list;
     va_start(list, format);
-    say(c, CAMBER_LOG_ERROR, format, list);
+    report(c, CAMBER_LOG_ERROR, format, list);
     va_end(list);
     c->status = CAMBER_ERROR_INPUT;
     return false;
@@ -58,11 +60,11 @@ bool camber_compiler_fail(camber_compiler *c, const char *format, ...) {
 void camber_compiler_warn(camber_compiler *c, const char *format, ...) {
     va_list list;
     va_start(list, format);
-    say(c, CAMBER_LOG_WARNING, format, list);
+    report(c, CAMBER_LOG_WARNING, format, list);
     va_end(list);
 }
 
-/* camber_alloc has told of it. */
+/* Sets the status; camber_alloc has logged the message. */
 static bool fail_memory(camber_compiler *c) {
     c->status = CAMBER_ERROR_MEMORY;
     return false;
@@ -126,7 +128,7 @@ bool camber_sort_labels(camber_compiler *c, size_t first, bool unique) {
         const camber_label *one = &labels[i - 1], *other = &labels[i];
         if (compare_labels(one, other) != 0)
             continue;
-        camber_compiler_enter_index(c, one->place > other->place ? one->place : other->place);
+        camber_compiler_enter_index(c, one->position > other->position ? one->position : other->position);
         return one->string ? camber_compiler_fail(c, "the label \"%.64s\" occurs twice; take one out", one->string)
                            : camber_compiler_fail(c, "the label %.17g occurs twice; take one out", one->number);
     }
@@ -161,14 +163,14 @@ bool camber_make_node(camber_compiler *c, const camber_node *prototype, size_t f
     return true;
 }
 
-bool camber_wrap_node(camber_compiler *c, camber_op op, camber_typing type, uint32_t *node) {
+bool camber_wrap_node(camber_compiler *c, camber_evaluate_fn *evaluate, camber_typing type, uint32_t *node) {
     const size_t first_operand = c->operand_count;
     return camber_push_operand(c, *node) &&
-           camber_make_node(c, &(camber_node){.op = op, .type = type}, first_operand, node);
+           camber_make_node(c, &(camber_node){.evaluate = evaluate, .type = type}, first_operand, node);
 }
 
 bool camber_make_constant(camber_compiler *c, const camber_value *value, camber_typing type, uint32_t *node) {
-    return camber_make_node(c, &(camber_node){.op = CAMBER_OP_CONSTANT, .type = type, .value = *value},
+    return camber_make_node(c, &(camber_node){.evaluate = camber_evaluate_constant, .type = type, .value = *value},
                             c->operand_count, node);
 }
 
@@ -179,21 +181,20 @@ bool camber_make_json_constant(camber_compiler *c, const json_t *json, uint32_t 
     return camber_make_constant(c, &value, camber_typing_of_value(&value), node);
 }
 
-bool camber_make_reader(camber_compiler *c, camber_op op, camber_type type, uint32_t *node) {
-    const bool zoom = op == CAMBER_OP_ZOOM, progress = op == CAMBER_OP_LINE_PROGRESS;
-    const camber_node prototype = {.op = op,
+bool camber_make_reader(camber_compiler *c, camber_evaluate_fn *evaluate, camber_type type, uint32_t *node) {
+    const bool zoom = evaluate == camber_evaluate_zoom, progress = evaluate == camber_evaluate_line_progress;
+    const camber_node prototype = {.evaluate = evaluate,
                                    .type = camber_typing_of(type),
                                    .reads_zoom = zoom,
                                    .reads_line_progress = progress,
                                    .reads_feature = !zoom && !progress};
-    c->style->wants_id |= op == CAMBER_OP_ID || op == CAMBER_OP_HAS_ID;
-    c->style->wants_all_properties |= op == CAMBER_OP_PROPERTIES;
+    c->style->wants_id |= evaluate == camber_evaluate_id || evaluate == camber_evaluate_has_id;
     return camber_make_node(c, &prototype, c->operand_count, node);
 }
 
 /* ---- Properties of features ---- */
 
-/* Four slots a property keep probes short. */
+/* Four slots for each property keep probes short. */
 enum { PROPERTY_SLOTS = 4 * CAMBER_PROPERTY_LIMIT };
 
 static size_t property_slot(const camber_compiler *c, const char *name) {
@@ -216,7 +217,7 @@ static bool hash_properties(camber_compiler *c) {
     return true;
 }
 
-bool camber_make_property(camber_compiler *c, camber_op op, const char *name, uint32_t *node) {
+bool camber_make_property(camber_compiler *c, camber_evaluate_fn *evaluate, const char *name, uint32_t *node) {
     camber_style *style = c->style;
     if (!hash_properties(c))
         return false;
@@ -234,10 +235,11 @@ bool camber_make_property(camber_compiler *c, camber_op op, const char *name, ui
         style->properties[style->property_count++] = copy;
         c->property_slots[slot] = (uint32_t)style->property_count;
     }
-    const camber_node prototype = {.op = op,
-                                   .type = camber_typing_of(op == CAMBER_OP_HAS ? CAMBER_TYPE_BOOL : CAMBER_TYPE_VALUE),
-                                   .index = c->property_slots[slot] - 1,
-                                   .reads_feature = true};
+    const camber_node prototype = {
+        .evaluate = evaluate,
+        .type = camber_typing_of(evaluate == camber_evaluate_has ? CAMBER_TYPE_BOOL : CAMBER_TYPE_VALUE),
+        .index = c->property_slots[slot] - 1,
+        .reads_feature = true};
     return camber_make_node(c, &prototype, c->operand_count, node);
 }
 
@@ -283,14 +285,23 @@ const camber_binding *camber_find_binding(const camber_compiler *c, const char *
 
 /* ---- Folding ---- */
 
+/* Whether a node may be replaced by its value now. The state counts as unknown to types. An error is to fail only
+ * where it is reached. A collator's value is not a value of the language. A variable's value belongs to an
+ * evaluation. */
 static bool is_foldable(const camber_expression *e, const camber_node *node) {
-    if (node->op <= CAMBER_OP_HAS_NAMED || node->op == CAMBER_OP_VAR || node->op == CAMBER_OP_ERROR ||
-        node->op == CAMBER_OP_COLLATOR || (node->op >= CAMBER_OP_PROPERTIES && node->op <= CAMBER_OP_LINE_PROGRESS))
+    static camber_evaluate_fn *const kept[] = {camber_evaluate_constant, camber_evaluate_state, camber_evaluate_var,
+                                               camber_evaluate_error, camber_evaluate_collator};
+    if (node->reads_zoom || node->reads_feature || node->reads_line_progress)
         return false;
-    for (uint32_t i = 0; i < node->count; i++)
-        if (e->nodes[e->links[node->first + i]].op != CAMBER_OP_CONSTANT ||
-            (node->op == CAMBER_OP_COALESCE && e->nodes[e->links[node->first + i]].type.type == CAMBER_TYPE_IMAGE))
-            return false; /* which images there are is seen later */
+    for (size_t i = 0; i < sizeof kept / sizeof *kept; i++)
+        if (node->evaluate == kept[i])
+            return false;
+    for (uint32_t i = 0; i < node->count; i++) {
+        const camber_node *operand = &e->nodes[e->links[node->first + i]];
+        if (!camber_is_constant(operand) ||
+            (node->evaluate == camber_evaluate_coalesce && operand->type.type == CAMBER_TYPE_IMAGE))
+            return false; /* which images exist is known later */
+    }
     return true;
 }
 
@@ -338,8 +349,8 @@ bool camber_annotate(camber_compiler *c, camber_typing expected, camber_annotati
             break;
         return omit || (camber_wrap_node(c,
                                          annotation == CAMBER_ANNOTATE_COERCE && expected.type == CAMBER_TYPE_STRING
-                                             ? CAMBER_OP_TO_STRING
-                                             : CAMBER_OP_ASSERT,
+                                             ? camber_evaluate_to_string
+                                             : camber_evaluate_assert,
                                          expected, node) &&
                         fold(c, node));
     case CAMBER_TYPE_COLOR:
@@ -347,8 +358,9 @@ bool camber_annotate(camber_compiler *c, camber_typing expected, camber_annotati
         if (!unknown && actual.type != CAMBER_TYPE_STRING)
             break;
         return omit ||
-               (camber_wrap_node(c, expected.type == CAMBER_TYPE_COLOR ? CAMBER_OP_TO_COLOR : CAMBER_OP_TO_STRING,
-                                 expected, node) &&
+               (camber_wrap_node(
+                    c, expected.type == CAMBER_TYPE_COLOR ? camber_evaluate_to_color : camber_evaluate_to_string,
+                    expected, node) &&
                 fold(c, node));
     case CAMBER_TYPE_VALUE:
     case CAMBER_TYPE_NULL:
@@ -362,11 +374,11 @@ bool camber_annotate(camber_compiler *c, camber_typing expected, camber_annotati
 
 /* ---- Compilation ---- */
 
-/* What a constant was made of is not needed once it is one. */
+/* Drops the nodes that a constant was made from. */
 static bool drop_since(camber_compiler *c, const camber_expression *before, uint32_t *node) {
     camber_expression *e = c->expression;
     const camber_node constant = e->nodes[*node];
-    if (constant.op != CAMBER_OP_CONSTANT)
+    if (!camber_is_constant(&constant))
         return true;
     e->node_count = before->node_count;
     e->link_count = before->link_count;

@@ -1,8 +1,9 @@
-/* JSON to expressions: where in the document we are, types, nodes. Only src/style includes this. */
-#ifndef CAMBER_COMPILER_H
-#define CAMBER_COMPILER_H
+/* The compiler turns JSON into expressions. It knows where in the document it is, for messages. Only src/style
+ * includes this. */
+#ifndef CAMBER_STYLE_COMPILER_H
+#define CAMBER_STYLE_COMPILER_H
 
-#include "style/expression.h"
+#include "style/evaluation.h"
 #include "style/json.h"
 
 /* Deepest nesting of an expression: compilation recurses that far. */
@@ -31,8 +32,8 @@ typedef struct camber_path_step {
 typedef struct camber_property {
     const char *name;
     camber_type type;          /* bool, number, string, color, array or image */
-    camber_type item;          /* of an array */
-    uint32_t length;           /* of an array. 0: any */
+    camber_type item;          /* type of an array's items */
+    uint32_t length;           /* length of an array. 0: any */
     const char *const *values; /* an enum: what a string may be, NULL at the end. NULL: anything */
     const char *fallback;      /* the default as JSON, "1" or "\"butt\"". NULL: none */
     bool interpolated;         /* curves on zoom are allowed, and what older functions are without a type */
@@ -56,7 +57,7 @@ typedef struct camber_compiler camber_compiler;
 struct camber_compiler {
     camber_context *context;
     camber_style *style; /* gets the properties that are read */
-    const char *name;    /* of the document */
+    const char *name;    /* name of the document */
     camber_status status;
     camber_path_step path[CAMBER_PATH_DEPTH];
     size_t path_length;
@@ -74,7 +75,7 @@ struct camber_compiler {
     bool state_defaults; /* its members are {"default": value}, as a style's are */
     unsigned held_count; /* warnings of constants that are held to their range; CAMBER_HELD_LIMIT at most */
     bool strict;         /* what stands for a property is an expression or a function: no list, no enum's names */
-    /* Takes what is wrong instead of the log; the place is in path. NULL: the log */
+    /* Receives messages instead of the log; path tells where. NULL: the log */
     void (*report)(void *user, const camber_compiler *c, camber_log_level level, const char *message);
     void *report_user;
 };
@@ -83,21 +84,21 @@ struct camber_compiler {
 typedef enum camber_annotation {
     CAMBER_ANNOTATE_ASSERT = 0,
     CAMBER_ANNOTATE_COERCE,
-    CAMBER_ANNOTATE_OMIT, /* an operator around it will do it */
+    CAMBER_ANNOTATE_OMIT, /* an operator around it converts it */
 } camber_annotation;
 
-/* The steps of the path that are entered are left again only on success: after a failure nothing follows. */
+/* Enter and leave steps of the path. They are left only on success: after a failure nothing follows. */
 void camber_compiler_enter_key(camber_compiler *c, const char *key);
 void camber_compiler_enter_index(camber_compiler *c, size_t index);
 void camber_compiler_leave(camber_compiler *c);
 /* Frees what the compiler has of its own. */
 void camber_compiler_end(camber_compiler *c);
-/* pointer.c: where that is, by RFC 6901; "..." for the middle of more than 180 bytes. */
+/* pointer.c: writes the path as a JSON pointer (RFC 6901), with "..." for the middle of more than 180 bytes. */
 #define CAMBER_POINTER_SIZE 192
 void camber_compiler_write_pointer(const camber_compiler *c, char pointer[CAMBER_POINTER_SIZE]);
 /* Logs "NAME: /pointer: " and the message, and sets the status. Returns false. */
 bool camber_compiler_fail(camber_compiler *c, const char *format, ...) CAMBER_PRINTF(2, 3);
-/* Where what ran out of memory has not told of it, as jansson. */
+/* Logs that memory ran out, for callees that do not log it themselves, such as jansson. */
 bool camber_compiler_fail_memory(camber_compiler *c);
 void camber_compiler_warn(camber_compiler *c, const char *format, ...) CAMBER_PRINTF(2, 3);
 
@@ -109,7 +110,7 @@ bool camber_compile_filter(camber_compiler *c, json_t *json, camber_expression *
 /* Whether the filter picks polygons by their geometry type. Call it on filters that compile. */
 bool camber_filter_asks_polygons(const json_t *json);
 
-/* ---- For operators*.c, filter.c, function.c and property.c ---- */
+/* ---- For operators_*.c, filter.c, function.c and property.c ---- */
 
 /* An empty expression to compile into; afterwards camber_expression_end hands it over or frees it. */
 bool camber_expression_begin(camber_compiler *c, json_t *json);
@@ -120,12 +121,12 @@ bool camber_expression_keep(camber_compiler *c, json_t *json);
 bool camber_compile_as(camber_compiler *c, json_t *json, camber_typing expected, camber_annotation annotation,
                        uint32_t *node);
 bool camber_compile(camber_compiler *c, json_t *json, camber_typing expected, uint32_t *node);
-/* Element index of array, annotated, with the path in step. */
+/* Compiles element index of array, annotated, and keeps the path in step. */
 bool camber_compile_element(camber_compiler *c, const json_t *array, size_t index, camber_typing expected,
                             uint32_t *node);
-/* The same, pushed as an operand. */
+/* Does the same and pushes the node as an operand. */
 bool camber_compile_operand(camber_compiler *c, const json_t *array, size_t index, camber_typing expected);
-/* The same, but an element of unknown type stays so: an operator around it will see to that. */
+/* Does the same, but an element of unknown type stays unknown: an operator around it converts it. */
 bool camber_compile_loose_operand(camber_compiler *c, const json_t *array, size_t index, camber_typing expected);
 /* Wraps node so that it has the expected type, or fails; constants stay constants. */
 bool camber_annotate(camber_compiler *c, camber_typing expected, camber_annotation annotation, uint32_t *node);
@@ -133,14 +134,14 @@ bool camber_annotate(camber_compiler *c, camber_typing expected, camber_annotati
 bool camber_push_operand(camber_compiler *c, uint32_t node);
 /* Makes a node of the operands past the first_operand-th, and pops them. */
 bool camber_make_node(camber_compiler *c, const camber_node *prototype, size_t first_operand, uint32_t *node);
-/* A node of one operand, node itself. */
-bool camber_wrap_node(camber_compiler *c, camber_op op, camber_typing type, uint32_t *node);
+/* Wraps node into a node that has it as its only operand. */
+bool camber_wrap_node(camber_compiler *c, camber_evaluate_fn *evaluate, camber_typing type, uint32_t *node);
 bool camber_make_constant(camber_compiler *c, const camber_value *value, camber_typing type, uint32_t *node);
 bool camber_make_json_constant(camber_compiler *c, const json_t *json, uint32_t *node);
-/* A node of a property of the feature, which the style then collects. op: get or has. */
-bool camber_make_property(camber_compiler *c, camber_op op, const char *name, uint32_t *node);
-/* A node without operands that reads what reads says. */
-bool camber_make_reader(camber_compiler *c, camber_op op, camber_type type, uint32_t *node);
+/* Makes a node that reads a property of the feature, which the style then collects. evaluate: that of get or has. */
+bool camber_make_property(camber_compiler *c, camber_evaluate_fn *evaluate, const char *name, uint32_t *node);
+/* Makes a node without operands that reads the feature, the zoom or line-progress. */
+bool camber_make_reader(camber_compiler *c, camber_evaluate_fn *evaluate, camber_type type, uint32_t *node);
 bool camber_push_stop(camber_compiler *c, double stop);
 bool camber_push_label(camber_compiler *c, const camber_label *label);
 /* Sorts the labels from the first-th on; fails where one occurs twice and each must be one. */
@@ -152,11 +153,11 @@ bool camber_bind(camber_compiler *c, const char *name, uint32_t node);
 void camber_unbind(camber_compiler *c, size_t count);
 const camber_binding *camber_find_binding(const camber_compiler *c, const char *name);
 
-/* The expression [operator, operand, ...]. */
+/* Compiles the expression [operator, operand, ...]. */
 bool camber_compile_operator(camber_compiler *c, json_t *array, camber_typing expected, uint32_t *node);
 /* function.c: {"stops": ..., "property": ..., "base": ..., "type": ..., "default": ..., "colorSpace": ...}. */
 bool camber_compile_function(camber_compiler *c, json_t *object, const camber_property *property, uint32_t *node);
-/* A string in which {name} stands for the property of that name. */
+/* Compiles a string in which {name} stands for the property of that name. */
 bool camber_compile_tokens(camber_compiler *c, const json_t *json, const camber_property *property, uint32_t *node);
 /* property.c */
 camber_typing camber_property_typing(const camber_property *property);

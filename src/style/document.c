@@ -1,4 +1,7 @@
-/* Style documents: what the specification calls the root. */
+/* Reads a style document: its root, sources, sprites, camera and state; layer.c reads the layers.
+ *
+ * Input: bytes. Output: camber_style. Sources are read before the layers, which name them.
+ */
 #include "style/document.h"
 
 #include "base/embedded.h"
@@ -202,7 +205,7 @@ static bool read_version(camber_document *d) {
            camber_document_goes_on(d, depth);
 }
 
-/* As the map's view has it. */
+/* The same limit as the map's view has. */
 static const double PITCH_MAX_DEG = 85.0;
 
 static bool read_camera(camber_document *d) {
@@ -236,7 +239,7 @@ static bool read_camera(camber_document *d) {
     return true;
 }
 
-/* Of ["global-state", key]. */
+/* Reads the defaults of ["global-state", key]. */
 static bool read_state(camber_document *d) {
     camber_compiler *c = &d->compiler;
     json_t *state = json_object_get(d->root, "state"), *value;
@@ -265,7 +268,7 @@ static void warn_at(camber_document *d, const char *key, const char *message) {
     camber_compiler_leave(&d->compiler);
 }
 
-/* What would change where lines lie. */
+/* Warns of root properties that would change where lines lie. */
 static void warn_of_places(camber_document *d) {
     const json_t *projection = json_object_get(json_object_get(d->root, "projection"), "type");
     if (projection && !(json_is_string(projection) && strcmp(json_string_value(projection), "mercator") == 0))
@@ -275,8 +278,8 @@ static void warn_of_places(camber_document *d) {
 }
 
 static bool read_document(camber_document *d) {
-    /* What needs other kinds of layers, or a picture that changes, is nothing of these; nor is what editors of styles
-     * keep there. */
+    /* Properties that need other kinds of layers, or a picture that changes, do not move lines; nor do those that
+     * style editors keep there. */
     static const char *const known[] = {
         "version", "name",      "metadata", "center",     "centerAltitude", "zoom",   "bearing",    "pitch",
         "roll",    "state",     "light",    "sources",    "sprite",         "glyphs", "font-faces", "transition",
@@ -298,7 +301,7 @@ static bool read_document(camber_document *d) {
 
 static bool fail_json(camber_document *d, const json_error_t *error) {
     camber_compiler *c = &d->compiler;
-    /* jansson takes what it has no memory for to be a wrong character, mostly. */
+    /* jansson mostly reports a wrong character where it ran out of memory. */
     if (json_error_code(error) != json_error_out_of_memory && errno != ENOMEM)
         return camber_compiler_fail(c, "line %d, column %d: %s; %s", error->line, error->column, error->text,
                                     camber_json_cure(error));
@@ -339,7 +342,7 @@ camber_status camber_style_parse(camber_context *context, const char *json, size
     return status;
 }
 
-camber_status camber_style_builtin(camber_context *context, camber_theme theme, camber_style **style) {
+camber_status camber_style_create_builtin(camber_context *context, camber_theme theme, camber_style **style) {
     if (theme == CAMBER_THEME_DARK)
         return camber_style_parse(context, camber_style_dark, camber_style_dark_size, "built-in dark style", style);
     return camber_style_parse(context, camber_style_light, camber_style_light_size, "built-in light style", style);
@@ -373,16 +376,25 @@ void camber_style_destroy(camber_style *style) {
     camber_free(context, style);
 }
 
-bool camber_style_is_plain(const camber_style *style, double zoom) {
-    static const camber_property_id more[] = {
-        CAMBER_LINE_GAP_WIDTH, CAMBER_LINE_BLUR,        CAMBER_LINE_DASHARRAY,    CAMBER_LINE_PATTERN,
-        CAMBER_LINE_GRADIENT,  CAMBER_LINE_TRIM_OFFSET, CAMBER_LINE_BORDER_WIDTH, CAMBER_BACKGROUND_PATTERN};
+uint32_t camber_style_get_effects(const camber_style *style, double zoom) {
+    static const struct {
+        camber_property_id property;
+        camber_style_effect effect;
+    } named[] = {{CAMBER_LINE_GAP_WIDTH, CAMBER_STYLE_EFFECT_GAP},
+                 {CAMBER_LINE_BLUR, CAMBER_STYLE_EFFECT_BLUR},
+                 {CAMBER_LINE_DASHARRAY, CAMBER_STYLE_EFFECT_DASH},
+                 {CAMBER_LINE_TRIM_OFFSET, CAMBER_STYLE_EFFECT_TRIM},
+                 {CAMBER_LINE_GRADIENT, CAMBER_STYLE_EFFECT_GRADIENT},
+                 {CAMBER_LINE_PATTERN, CAMBER_STYLE_EFFECT_PATTERN},
+                 {CAMBER_BACKGROUND_PATTERN, CAMBER_STYLE_EFFECT_PATTERN},
+                 {CAMBER_LINE_BORDER_WIDTH, CAMBER_STYLE_EFFECT_BORDER}};
+    uint32_t effects = 0;
     for (size_t i = 0; i < style->layer_count; i++) {
         const camber_style_layer *layer = style->layers + i;
         const bool out = zoom < layer->min_zoom || (zoom >= layer->max_zoom && layer->max_zoom < 24.0);
-        for (size_t k = 0; k < sizeof more / sizeof *more && layer->visible && !out; k++)
-            if (layer->properties[more[k]])
-                return false;
+        for (size_t k = 0; k < sizeof named / sizeof *named && layer->visible && !out; k++)
+            if (layer->properties[named[k].property])
+                effects |= (uint32_t)named[k].effect;
     }
-    return true;
+    return effects;
 }

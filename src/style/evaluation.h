@@ -1,15 +1,18 @@
-/* What the files that evaluate share. Only expression.c, convert.c, texts.c, curves.c and maths.c include this, and the
- * compiler, to fold constants. */
-#ifndef CAMBER_EVALUATION_H
-#define CAMBER_EVALUATION_H
+/* Evaluation from inside: how operands are evaluated, and the functions that the compiler puts into nodes. Only
+ * src/style includes this. */
+#ifndef CAMBER_STYLE_EVALUATION_H
+#define CAMBER_STYLE_EVALUATION_H
 
 #include "style/expression.h"
 
-/* Heights of nodes are bounded by the compiler, and with them the recursion here. */
-bool camber_evaluate_node(camber_evaluation *e, uint32_t node, camber_value *value);
+/* The compiler bounds how deep nodes are nested, and with that the recursion here. */
+static inline bool camber_evaluate_node(camber_evaluation *e, uint32_t node, camber_value *value) {
+    const camber_node *at = &e->expression->nodes[node];
+    return at->evaluate(e, at, value);
+}
 bool camber_evaluate_fail(camber_evaluation *e, const char *cause);
 bool camber_evaluate_no_memory(camber_evaluation *e);
-/* Counts what is walked over; false past the limit. */
+/* Counts work; false past the limit. */
 bool camber_evaluate_work(camber_evaluation *e, size_t amount);
 
 static inline bool camber_evaluate_operand(camber_evaluation *e, const camber_node *node, uint32_t operand,
@@ -18,6 +21,7 @@ static inline bool camber_evaluate_operand(camber_evaluation *e, const camber_no
 }
 bool camber_evaluate_number(camber_evaluation *e, const camber_node *node, uint32_t operand, double *number);
 bool camber_evaluate_string(camber_evaluation *e, const camber_node *node, uint32_t operand, const char **string);
+bool camber_evaluate_bool(camber_evaluation *e, const camber_node *node, uint32_t operand, bool *boolean);
 
 static inline camber_value camber_value_bool(bool boolean) {
     return (camber_value){.type = CAMBER_VALUE_BOOL, .boolean = boolean};
@@ -32,20 +36,26 @@ static inline camber_value camber_value_string(const char *string) {
 /* Strict equality: no conversions; arrays and objects are only what they are. */
 bool camber_values_equal(const camber_value *a, const camber_value *b);
 
-bool camber_evaluate_conversion(camber_evaluation *e, const camber_node *node, camber_value *value);
-bool camber_evaluate_text(camber_evaluation *e, const camber_node *node, camber_value *value);
-bool camber_evaluate_curve(camber_evaluation *e, const camber_node *node, camber_value *value);
-bool camber_evaluate_maths(camber_evaluation *e, const camber_node *node, camber_value *value);
-/* A text that grows in the evaluation's memory. */
-typedef struct camber_text {
-    camber_evaluation *e;
-    char *bytes;
-    size_t length, capacity;
-} camber_text;
-bool camber_text_add(camber_text *text, const char *bytes, size_t length);
-/* Puts a 0 behind it. */
-bool camber_text_end(camber_text *text, camber_value *value);
-/* convert.c: as "to-string" has it. */
-bool camber_text_add_value(camber_text *text, const camber_value *value);
+/* ---- How nodes are evaluated: those that the compiler makes by itself, in operators_*.c ---- */
+
+camber_evaluate_fn camber_evaluate_constant, camber_evaluate_state, camber_evaluate_let, camber_evaluate_var,
+    camber_evaluate_error;
+/* By index into the style's properties. */
+camber_evaluate_fn camber_evaluate_get, camber_evaluate_has;
+camber_evaluate_fn camber_evaluate_id, camber_evaluate_has_id, camber_evaluate_geometry_type, camber_evaluate_zoom,
+    camber_evaluate_line_progress;
+camber_evaluate_fn camber_evaluate_assert, camber_evaluate_typeof, camber_evaluate_to_string, camber_evaluate_to_color;
+camber_evaluate_fn camber_evaluate_collator, camber_evaluate_comparison, camber_evaluate_not, camber_evaluate_all,
+    camber_evaluate_any, camber_evaluate_case, camber_evaluate_match, camber_evaluate_coalesce;
+/* Whether the input is one of the node's labels. */
+camber_evaluate_fn camber_evaluate_among;
+/* False where the operand fails: comparisons of the older filters. */
+camber_evaluate_fn camber_evaluate_quiet;
+camber_evaluate_fn camber_evaluate_in, camber_evaluate_list, camber_evaluate_concat, camber_evaluate_step,
+    camber_evaluate_interpolate;
+
+static inline bool camber_is_constant(const camber_node *node) {
+    return node->evaluate == camber_evaluate_constant;
+}
 
 #endif

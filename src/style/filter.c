@@ -1,4 +1,7 @@
-/* Filters: expressions, and the older form ["==", "highway", "primary"], told apart as the specification does. */
+/* Compiles filters: expressions, and the older form ["==", "highway", "primary"].
+ *
+ * Input: JSON. Output: an expression that is true or false. The two forms are told apart as the specification does.
+ */
 #include "style/operators.h"
 
 #include <string.h>
@@ -7,25 +10,26 @@ static const camber_typing boolean = {.type = CAMBER_TYPE_BOOL};
 
 static bool compile_filter(camber_compiler *c, json_t *json, size_t depth, uint32_t *node);
 
-static bool is(const char *text, const char *word) {
+static bool is_word(const char *text, const char *word) {
     return text && strcmp(text, word) == 0;
 }
 
 static bool is_comparison(const char *op) {
-    return is(op, "==") || is(op, "!=") || is(op, "<") || is(op, "<=") || is(op, ">") || is(op, ">=");
+    return is_word(op, "==") || is_word(op, "!=") || is_word(op, "<") || is_word(op, "<=") || is_word(op, ">") ||
+           is_word(op, ">=");
 }
 
-/* The specification's isExpressionFilter, of an array. all, any and none are neither: each of their operands is told
- * apart by itself, so that the two forms may stand side by side. */
+/* The specification's isExpressionFilter for arrays. all, any and none are neither form: each of their operands is
+ * told apart by itself, so that both forms may be mixed. */
 static bool is_expression(const json_t *json) {
     const char *op = json_string_value(json_array_get(json, 0));
     const size_t size = json_array_size(json);
     const json_t *second = json_array_get(json, 1), *third = json_array_get(json, 2);
-    if (is(op, "has"))
-        return size >= 2 && !is(json_string_value(second), "$id") && !is(json_string_value(second), "$type");
-    if (is(op, "in"))
+    if (is_word(op, "has"))
+        return size >= 2 && !is_word(json_string_value(second), "$id") && !is_word(json_string_value(second), "$type");
+    if (is_word(op, "in"))
         return size >= 3 && (!json_is_string(second) || json_is_array(third));
-    if (is(op, "!in") || is(op, "!has"))
+    if (is_word(op, "!in") || is_word(op, "!has"))
         return json_is_array(second) || json_is_array(third);
     if (is_comparison(op))
         return size != 3 || json_is_array(second) || json_is_array(third);
@@ -33,7 +37,7 @@ static bool is_expression(const json_t *json) {
 }
 
 /* The key of an older filter: a property's name, $type or $id. */
-static bool compile_key(camber_compiler *c, const json_t *array, camber_op op, uint32_t *node) {
+static bool compile_key(camber_compiler *c, const json_t *array, camber_evaluate_fn *evaluate, uint32_t *node) {
     const char *key = json_string_value(json_array_get(array, 1));
     const camber_value yes = {.type = CAMBER_VALUE_BOOL, .boolean = true};
     if (!key) {
@@ -41,12 +45,13 @@ static bool compile_key(camber_compiler *c, const json_t *array, camber_op op, u
         return camber_compiler_fail(c, "expected a property's name; write e.g. [\"==\", \"highway\", \"primary\"]");
     }
     if (strcmp(key, "$id") == 0)
-        return op == CAMBER_OP_HAS ? camber_make_reader(c, CAMBER_OP_HAS_ID, CAMBER_TYPE_BOOL, node)
-                                   : camber_make_reader(c, CAMBER_OP_ID, CAMBER_TYPE_VALUE, node);
+        return evaluate == camber_evaluate_has ? camber_make_reader(c, camber_evaluate_has_id, CAMBER_TYPE_BOOL, node)
+                                               : camber_make_reader(c, camber_evaluate_id, CAMBER_TYPE_VALUE, node);
     if (strcmp(key, "$type") != 0)
-        return camber_make_property(c, op, key, node);
-    return op == CAMBER_OP_HAS ? camber_make_constant(c, &yes, boolean, node)
-                               : camber_make_reader(c, CAMBER_OP_GEOMETRY_TYPE, CAMBER_TYPE_STRING, node);
+        return camber_make_property(c, evaluate, key, node);
+    return evaluate == camber_evaluate_has
+               ? camber_make_constant(c, &yes, boolean, node)
+               : camber_make_reader(c, camber_evaluate_geometry_type, CAMBER_TYPE_STRING, node);
 }
 
 static bool compile_value(camber_compiler *c, const json_t *array, size_t index, uint32_t *node) {
@@ -65,32 +70,35 @@ static bool compile_value(camber_compiler *c, const json_t *array, size_t index,
 static bool require_key(camber_compiler *c, const json_t *array, uint32_t *node) {
     const size_t first_operand = c->operand_count;
     uint32_t has = 0;
-    if (is(json_string_value(json_array_get(array, 1)), "$id"))
+    if (is_word(json_string_value(json_array_get(array, 1)), "$id"))
         return true;
-    return compile_key(c, array, CAMBER_OP_HAS, &has) && camber_push_operand(c, has) && camber_push_operand(c, *node) &&
-           camber_make_node(c, &(camber_node){.op = CAMBER_OP_ALL, .type = boolean}, first_operand, node);
+    return compile_key(c, array, camber_evaluate_has, &has) && camber_push_operand(c, has) &&
+           camber_push_operand(c, *node) &&
+           camber_make_node(c, &(camber_node){.evaluate = camber_evaluate_all, .type = boolean}, first_operand, node);
 }
 
-/* [op, key, value]; values of different types do not compare, and then it is false. */
+/* Compiles [op, key, value]. Values of different types do not compare; then the filter is false. */
 static bool compile_comparison(camber_compiler *c, const json_t *array, const char *op, uint32_t *node) {
     static const struct {
         const char *name;
-        camber_op op;
-    } ops[] = {{"==", CAMBER_OP_EQUAL},      {"!=", CAMBER_OP_EQUAL},  {"<", CAMBER_OP_LESS},
-               {"<=", CAMBER_OP_LESS_EQUAL}, {">", CAMBER_OP_GREATER}, {">=", CAMBER_OP_GREATER_EQUAL}};
+        uint32_t outcomes;
+    } ops[] = {{"==", CAMBER_OUTCOME_EQUAL},  {"!=", CAMBER_OUTCOME_EQUAL},
+               {"<", CAMBER_OUTCOME_LESS},    {"<=", CAMBER_OUTCOME_LESS | CAMBER_OUTCOME_EQUAL},
+               {">", CAMBER_OUTCOME_GREATER}, {">=", CAMBER_OUTCOME_GREATER | CAMBER_OUTCOME_EQUAL}};
     const size_t first_operand = c->operand_count;
-    if (!compile_key(c, array, CAMBER_OP_GET, node) || !camber_push_operand(c, *node) ||
+    if (!compile_key(c, array, camber_evaluate_get, node) || !camber_push_operand(c, *node) ||
         !compile_value(c, array, 2, node) || !camber_push_operand(c, *node))
         return false;
-    camber_node prototype = {.type = boolean};
+    camber_node prototype = {.evaluate = camber_evaluate_comparison, .type = boolean};
     for (size_t i = 0; i < sizeof ops / sizeof *ops; i++)
         if (strcmp(ops[i].name, op) == 0)
-            prototype.op = ops[i].op;
-    if (!camber_make_node(c, &prototype, first_operand, node) || !camber_wrap_node(c, CAMBER_OP_QUIET, boolean, node))
+            prototype.index = ops[i].outcomes;
+    if (!camber_make_node(c, &prototype, first_operand, node) ||
+        !camber_wrap_node(c, camber_evaluate_quiet, boolean, node))
         return false;
     if (json_is_null(json_array_get(array, 2)) && !require_key(c, array, node))
         return false;
-    return !is(op, "!=") || camber_wrap_node(c, CAMBER_OP_NOT, boolean, node);
+    return !is_word(op, "!=") || camber_wrap_node(c, camber_evaluate_not, boolean, node);
 }
 
 /* Whether all values are strings, or all are integers: labels, then. */
@@ -109,7 +117,7 @@ static bool compile_in(camber_compiler *c, const json_t *array, bool negated, ui
     const size_t first_operand = c->operand_count, first = c->expression->label_count;
     const bool labels = are_labels(array);
     uint32_t value = 0;
-    if (!compile_key(c, array, CAMBER_OP_GET, node) || !camber_push_operand(c, *node))
+    if (!compile_key(c, array, camber_evaluate_get, node) || !camber_push_operand(c, *node))
         return false;
     for (size_t i = 2; i < json_array_size(array); i++) {
         const json_t *json = json_array_get(array, i);
@@ -118,20 +126,21 @@ static bool compile_in(camber_compiler *c, const json_t *array, bool negated, ui
                    : !compile_value(c, array, i, &value) || !camber_push_operand(c, value))
             return false;
     }
-    const camber_node among = {.op = CAMBER_OP_AMONG,
+    const camber_node among = {.evaluate = camber_evaluate_among,
                                .type = boolean,
                                .index = (uint32_t)first,
                                .index_count = (uint32_t)(c->expression->label_count - first)};
-    const camber_node list = {.op = CAMBER_OP_LIST, .type = camber_typing_of(CAMBER_TYPE_ARRAY)};
-    const camber_node in = {.op = CAMBER_OP_IN, .type = boolean};
+    const camber_node list = {.evaluate = camber_evaluate_list, .type = camber_typing_of(CAMBER_TYPE_ARRAY)};
+    const camber_node in = {.evaluate = camber_evaluate_in, .type = boolean};
     const bool made = labels ? camber_sort_labels(c, first, false) && camber_make_node(c, &among, first_operand, node)
                              : camber_make_node(c, &list, first_operand + 1, node) && camber_push_operand(c, *node) &&
                                    camber_make_node(c, &in, first_operand, node);
     bool nulls = false;
     for (size_t i = 2; i < json_array_size(array); i++)
         nulls = nulls || json_is_null(json_array_get(array, i));
-    return made && camber_wrap_node(c, CAMBER_OP_QUIET, boolean, node) && (!nulls || require_key(c, array, node)) &&
-           (!negated || camber_wrap_node(c, CAMBER_OP_NOT, boolean, node));
+    return made && camber_wrap_node(c, camber_evaluate_quiet, boolean, node) &&
+           (!nulls || require_key(c, array, node)) &&
+           (!negated || camber_wrap_node(c, camber_evaluate_not, boolean, node));
 }
 
 /* all, any and none. */
@@ -143,9 +152,10 @@ static bool compile_junction(camber_compiler *c, const json_t *array, const char
             return false;
         camber_compiler_leave(c);
     }
-    const camber_node junction = {.op = is(op, "all") ? CAMBER_OP_ALL : CAMBER_OP_ANY, .type = boolean};
+    const camber_node junction = {.evaluate = is_word(op, "all") ? camber_evaluate_all : camber_evaluate_any,
+                                  .type = boolean};
     return camber_make_node(c, &junction, first_operand, node) &&
-           (!is(op, "none") || camber_wrap_node(c, CAMBER_OP_NOT, boolean, node));
+           (!is_word(op, "none") || camber_wrap_node(c, camber_evaluate_not, boolean, node));
 }
 
 static bool compile_filter(camber_compiler *c, json_t *json, size_t depth, uint32_t *node) {
@@ -156,7 +166,7 @@ static bool compile_filter(camber_compiler *c, json_t *json, size_t depth, uint3
             c, "expected a filter, found %s; write e.g. [\"==\", [\"get\", \"highway\"], \"primary\"]",
             camber_json_name(json));
     const char *op = json_string_value(json_array_get(json, 0));
-    if (is(op, "all") || is(op, "any") || is(op, "none"))
+    if (is_word(op, "all") || is_word(op, "any") || is_word(op, "none"))
         return compile_junction(c, json, op, depth, node);
     if (json_is_array(json) && json_array_size(json) == 0)
         return camber_make_constant(c, &(camber_value){.type = CAMBER_VALUE_BOOL, .boolean = true}, boolean, node);
@@ -167,11 +177,12 @@ static bool compile_filter(camber_compiler *c, json_t *json, size_t depth, uint3
     if (json_array_size(json) < 2)
         return camber_compiler_fail(
             c, "\"%s\" without a property's name; write e.g. [\"==\", \"highway\", \"primary\"]", op);
-    if (is(op, "has"))
-        return compile_key(c, json, CAMBER_OP_HAS, node);
-    if (is(op, "!has"))
-        return compile_key(c, json, CAMBER_OP_HAS, node) && camber_wrap_node(c, CAMBER_OP_NOT, boolean, node);
-    if (is(op, "in") || is(op, "!in"))
+    if (is_word(op, "has"))
+        return compile_key(c, json, camber_evaluate_has, node);
+    if (is_word(op, "!has"))
+        return compile_key(c, json, camber_evaluate_has, node) &&
+               camber_wrap_node(c, camber_evaluate_not, boolean, node);
+    if (is_word(op, "in") || is_word(op, "!in"))
         return compile_in(c, json, op[0] == '!', node);
     return compile_comparison(c, json, op, node);
 }
@@ -188,7 +199,7 @@ bool camber_compile_filter(camber_compiler *c, json_t *json, camber_expression *
 
 static bool names_polygon(const json_t *json) {
     const char *text = json_string_value(json);
-    if (is(text, "Polygon") || is(text, "MultiPolygon"))
+    if (is_word(text, "Polygon") || is_word(text, "MultiPolygon"))
         return true;
     for (size_t i = 0; i < json_array_size(json); i++)
         if (names_polygon(json_array_get(json, i)))
@@ -197,12 +208,13 @@ static bool names_polygon(const json_t *json) {
 }
 
 static bool is_geometry_type(const json_t *json) {
-    return is(json_string_value(json), "$type") || is(json_string_value(json_array_get(json, 0)), "geometry-type");
+    return is_word(json_string_value(json), "$type") ||
+           is_word(json_string_value(json_array_get(json, 0)), "geometry-type");
 }
 
 bool camber_filter_asks_polygons(const json_t *json) {
     const char *op = json_string_value(json_array_get(json, 0));
-    if (!op || op[0] == '!' || is(op, "none"))
+    if (!op || op[0] == '!' || is_word(op, "none"))
         return false;
     bool about_type = false, asks = false;
     for (size_t i = 1; i < json_array_size(json); i++)

@@ -1,8 +1,14 @@
-/* Functions as styles had them before expressions: of zoom, of a feature's property, or of both. What they become is
- * what the specification's own conversion makes of them. */
+/* Compiles functions as styles had them before expressions: of zoom, of a feature's property, or of both.
+ *
+ * Input: {"stops": ...} and the property's row. Output: nodes of an expression, as the specification's own conversion
+ * from functions to expressions makes them.
+ */
 #include "style/operators.h"
 
 #include <math.h>
+
+static const camber_typing number_type = {.type = CAMBER_TYPE_NUMBER}, string_type = {.type = CAMBER_TYPE_STRING},
+                           bool_type = {.type = CAMBER_TYPE_BOOL};
 
 typedef enum shape {
     SHAPE_EXPONENTIAL,
@@ -17,17 +23,14 @@ typedef struct function {
     camber_typing type;
     const json_t *object, *stops;
     json_t *otherwise; /* NULL: none */
-    const char *key;   /* of the feature. NULL: a function of zoom */
-    bool composite;    /* of zoom and key */
+    const char *key;   /* the feature's property. NULL: a function of zoom */
+    bool composite;    /* a function of both zoom and key */
     shape shape;
     double base;
     camber_color_space space;
 } function;
 
-static const camber_typing number = {.type = CAMBER_TYPE_NUMBER}, boolean = {.type = CAMBER_TYPE_BOOL},
-                           string = {.type = CAMBER_TYPE_STRING};
-
-/* ---- What it says ---- */
+/* ---- Reading ---- */
 
 static bool read_shape(function *f) {
     static const char *const names[] = {"exponential", "interval", "categorical", "identity"};
@@ -99,10 +102,10 @@ static bool read_function(function *f) {
 /* ---- Values ---- */
 
 static bool compile_get(function *f, uint32_t *node) {
-    return camber_make_property(f->c, CAMBER_OP_GET, f->key, node);
+    return camber_make_property(f->c, camber_evaluate_get, f->key, node);
 }
 
-/* The text from start on, before the next token; its copy lives as long as the expression. */
+/* Pushes the text from start on, before the next token; its copy lives as long as the expression. */
 static bool push_text(function *f, const char *start, size_t length) {
     uint32_t node = 0;
     if (length == 0)
@@ -111,10 +114,10 @@ static bool push_text(function *f, const char *start, size_t length) {
     const camber_value value = {.type = CAMBER_VALUE_STRING, .string = text};
     if (!text)
         return camber_compiler_fail_memory(f->c);
-    return camber_make_constant(f->c, &value, string, &node) && camber_push_operand(f->c, node);
+    return camber_make_constant(f->c, &value, string_type, &node) && camber_push_operand(f->c, node);
 }
 
-/* "a {name}": the value of the property stands for the token. */
+/* Compiles "a {name}", where the property's value replaces the token. */
 static bool compile_tokens(function *f, const char *text, uint32_t *node) {
     camber_compiler *c = f->c;
     const size_t first_operand = c->operand_count;
@@ -126,13 +129,14 @@ static bool compile_tokens(function *f, const char *text, uint32_t *node) {
         const char *name = camber_arena_text(&c->expression->arena, open + 1, length);
         if (!name)
             return camber_compiler_fail_memory(c);
-        if (!push_text(f, rest, (size_t)(open - rest)) || !camber_make_property(c, CAMBER_OP_GET, name, node) ||
+        if (!push_text(f, rest, (size_t)(open - rest)) || !camber_make_property(c, camber_evaluate_get, name, node) ||
             !camber_push_operand(c, *node))
             return false;
         rest = open + length + 2;
     }
     return push_text(f, rest, strlen(rest)) &&
-           camber_make_node(c, &(camber_node){.op = CAMBER_OP_CONCAT, .type = string}, first_operand, node);
+           camber_make_node(c, &(camber_node){.evaluate = camber_evaluate_concat, .type = string_type}, first_operand,
+                            node);
 }
 
 /* A value of the function, a constant. */
@@ -147,7 +151,7 @@ static bool compile_value(function *f, const json_t *json, uint32_t *node) {
     if (!camber_annotate(c, f->type, CAMBER_ANNOTATE_ASSERT, node))
         return false;
     const camber_node *made = camber_node_at(c, *node);
-    return c->strict || made->op != CAMBER_OP_CONSTANT || camber_property_check(c, f->property, &made->value);
+    return c->strict || !camber_is_constant(made) || camber_property_check(c, f->property, &made->value);
 }
 
 static bool push_value(function *f, const json_t *json) {
@@ -170,14 +174,14 @@ static bool push_otherwise(function *f) {
         return camber_compiler_fail(c, "features that no stop fits have no value; give a \"default\"");
     uint32_t node = 0;
     const camber_value cause = {.type = CAMBER_VALUE_STRING, .string = "no stop fits the feature"};
-    return camber_make_constant(c, &cause, string, &node) &&
-           camber_wrap_node(c, CAMBER_OP_ERROR, camber_typing_of(CAMBER_TYPE_ERROR), &node) &&
+    return camber_make_constant(c, &cause, string_type, &node) &&
+           camber_wrap_node(c, camber_evaluate_error, camber_typing_of(CAMBER_TYPE_ERROR), &node) &&
            camber_push_operand(c, node);
 }
 
 /* ---- Stops ---- */
 
-/* Checks [input, value], and of zoom and property [{"zoom": number, "value": input}, value]. */
+/* Checks a stop: [input, value], or for zoom and property [{"zoom": number, "value": input}, value]. */
 static bool read_stop(function *f, size_t index, const json_t **input, double *zoom) {
     const json_t *stop = json_array_get(f->stops, index);
     *input = json_array_get(stop, 0);
@@ -207,8 +211,8 @@ typedef struct span {
     size_t first, last;
 } span;
 
-/* Pushes the stops and their values. Of stops at the same place the first counts, as ever; below its first stop a step
- * has that stop's value. */
+/* Pushes the stops and their values. Where stops have one input, the first counts; below its first stop a step has
+ * that stop's value. */
 static bool push_stops(function *f, span stops) {
     camber_compiler *c = f->c;
     const bool step = f->shape == SHAPE_INTERVAL;
@@ -242,7 +246,8 @@ static bool push_stops(function *f, span stops) {
 static bool make_curve(function *f, span stops, double base, uint32_t *node) {
     camber_compiler *c = f->c;
     const size_t first_operand = c->operand_count;
-    camber_node prototype = {.op = f->shape == SHAPE_INTERVAL ? CAMBER_OP_STEP : CAMBER_OP_INTERPOLATE,
+    camber_node prototype = {.evaluate =
+                                 f->shape == SHAPE_INTERVAL ? camber_evaluate_step : camber_evaluate_interpolate,
                              .type = f->type,
                              .space = (uint8_t)f->space,
                              .index = (uint32_t)c->expression->stop_count,
@@ -263,21 +268,26 @@ static bool compile_property_curve(function *f, span stops, double base, uint32_
     const camber_value text = {.type = CAMBER_VALUE_STRING, .string = "number"};
     if (f->otherwise) {
         const size_t comparison = c->operand_count;
-        if (!compile_get(f, &type) || !camber_wrap_node(c, CAMBER_OP_TYPEOF, string, &type) ||
-            !camber_make_constant(c, &text, string, &name) || !camber_push_operand(c, type) ||
+        if (!compile_get(f, &type) || !camber_wrap_node(c, camber_evaluate_typeof, string_type, &type) ||
+            !camber_make_constant(c, &text, string_type, &name) || !camber_push_operand(c, type) ||
             !camber_push_operand(c, name) ||
-            !camber_make_node(c, &(camber_node){.op = CAMBER_OP_EQUAL, .type = boolean}, comparison, &type) ||
+            !camber_make_node(c,
+                              &(camber_node){.evaluate = camber_evaluate_comparison,
+                                             .type = bool_type,
+                                             .index = CAMBER_OUTCOME_EQUAL},
+                              comparison, &type) ||
             !camber_push_operand(c, type))
             return false;
     }
-    if (!compile_get(f, node) || !camber_wrap_node(c, CAMBER_OP_ASSERT, number, node) ||
+    if (!compile_get(f, node) || !camber_wrap_node(c, camber_evaluate_assert, number_type, node) ||
         !make_curve(f, stops, base, node))
         return false;
     if (!f->otherwise)
         return true;
     const camber_typing curve_type = camber_node_at(c, *node)->type;
     return camber_push_operand(c, *node) && push_otherwise(f) &&
-           camber_make_node(c, &(camber_node){.op = CAMBER_OP_CASE, .type = curve_type}, first_operand, node);
+           camber_make_node(c, &(camber_node){.evaluate = camber_evaluate_case, .type = curve_type}, first_operand,
+                            node);
 }
 
 /* ---- Categories ---- */
@@ -286,7 +296,7 @@ static bool same_input(const json_t *a, const json_t *b) {
     return a && json_equal(a, b);
 }
 
-/* Pushes a stop's condition, of a boolean, or its label. */
+/* Pushes a stop's condition where inputs are booleans, else its label. */
 static bool push_category(function *f, const json_t *input, camber_label label, camber_type *type) {
     camber_compiler *c = f->c;
     uint32_t node = 0;
@@ -295,7 +305,10 @@ static bool push_category(function *f, const json_t *input, camber_label label, 
     const size_t first_operand = c->operand_count;
     return compile_get(f, &node) && camber_push_operand(c, node) && camber_make_json_constant(c, input, &node) &&
            camber_push_operand(c, node) &&
-           camber_make_node(c, &(camber_node){.op = CAMBER_OP_EQUAL, .type = boolean}, first_operand, &node) &&
+           camber_make_node(
+               c,
+               &(camber_node){.evaluate = camber_evaluate_comparison, .type = bool_type, .index = CAMBER_OUTCOME_EQUAL},
+               first_operand, &node) &&
            camber_push_operand(c, node);
 }
 
@@ -308,15 +321,15 @@ static bool compile_categories(function *f, span stops, uint32_t *node) {
     if (!read_stop(f, stops.first, &input, &zoom))
         return false;
     camber_type type = json_is_boolean(input) ? CAMBER_TYPE_BOOL : CAMBER_TYPE_VALUE;
-    const camber_op op = type == CAMBER_TYPE_BOOL ? CAMBER_OP_CASE : CAMBER_OP_MATCH;
-    if (op == CAMBER_OP_MATCH && (!compile_get(f, node) || !camber_push_operand(c, *node)))
+    camber_evaluate_fn *const evaluate = type == CAMBER_TYPE_BOOL ? camber_evaluate_case : camber_evaluate_match;
+    if (evaluate == camber_evaluate_match && (!compile_get(f, node) || !camber_push_operand(c, *node)))
         return false;
     camber_compiler_enter_key(c, "stops");
     for (size_t i = stops.first; i < stops.last; i++, before = input) {
         camber_compiler_enter_index(c, i);
         if (!read_stop(f, i, &input, &zoom))
             return false;
-        const camber_label label = {.output = (uint32_t)(c->operand_count - first_operand), .place = (uint32_t)i};
+        const camber_label label = {.output = (uint32_t)(c->operand_count - first_operand), .position = (uint32_t)i};
         if (!same_input(before, input) &&
             (!push_category(f, input, label, &type) || !push_value(f, json_array_get(json_array_get(f->stops, i), 1))))
             return false;
@@ -326,7 +339,7 @@ static bool compile_categories(function *f, span stops, uint32_t *node) {
         return false;
     camber_compiler_leave(c);
     const camber_typing found = camber_node_at(c, c->operands[first_operand + 1])->type;
-    const camber_node prototype = {.op = op,
+    const camber_node prototype = {.evaluate = evaluate,
                                    .type = f->type.type == CAMBER_TYPE_VALUE ? found : f->type,
                                    .index = (uint32_t)first_label,
                                    .index_count = (uint32_t)(c->expression->label_count - first_label)};
@@ -335,7 +348,7 @@ static bool compile_categories(function *f, span stops, uint32_t *node) {
 
 /* ---- Kinds ---- */
 
-/* A default stands in for values of another type, or that an enum does not have. */
+/* Compiles an identity function. The default replaces values of another type, or that an enum does not have. */
 static bool compile_identity(function *f, uint32_t *node) {
     camber_compiler *c = f->c;
     const size_t first_operand = c->operand_count, first_label = c->expression->label_count;
@@ -350,18 +363,18 @@ static bool compile_identity(function *f, uint32_t *node) {
         for (size_t i = 0; f->property->values[i]; i++)
             if (!camber_push_label(c, &(camber_label){.string = f->property->values[i], .output = 1}))
                 return false;
-        const camber_node prototype = {.op = CAMBER_OP_MATCH,
-                                       .type = string,
+        const camber_node prototype = {.evaluate = camber_evaluate_match,
+                                       .type = string_type,
                                        .index = (uint32_t)first_label,
                                        .index_count = (uint32_t)(c->expression->label_count - first_label)};
         return camber_sort_labels(c, first_label, true) && compile_get(f, node) &&
-               camber_annotate(c, string, CAMBER_ANNOTATE_ASSERT, node) && camber_push_operand(c, *node) &&
+               camber_annotate(c, string_type, CAMBER_ANNOTATE_ASSERT, node) && camber_push_operand(c, *node) &&
                push_otherwise(f) && camber_make_node(c, &prototype, first_operand, node);
     }
-    const camber_node prototype = {.op = type == CAMBER_TYPE_COLOR   ? CAMBER_OP_TO_COLOR
-                                         : type == CAMBER_TYPE_IMAGE ? CAMBER_OP_TO_STRING
-                                         : type == CAMBER_TYPE_VALUE ? CAMBER_OP_COALESCE
-                                                                     : CAMBER_OP_ASSERT,
+    const camber_node prototype = {.evaluate = type == CAMBER_TYPE_COLOR   ? camber_evaluate_to_color
+                                               : type == CAMBER_TYPE_IMAGE ? camber_evaluate_to_string
+                                               : type == CAMBER_TYPE_VALUE ? camber_evaluate_coalesce
+                                                                           : camber_evaluate_assert,
                                    .type = f->type};
     return push_otherwise(f) && camber_make_node(c, &prototype, first_operand, node);
 }
@@ -376,10 +389,10 @@ static bool compile_composite(function *f, uint32_t *node) {
     camber_compiler *c = f->c;
     const size_t count = json_array_size(f->stops), first_operand = c->operand_count;
     const bool step = !f->property->interpolated;
-    /* The base and the colour space are the zoom's. */
+    /* The base and the colour space apply to the zoom. */
     const camber_color_space space = f->space;
     f->space = CAMBER_SPACE_RGB;
-    if (!camber_make_reader(c, CAMBER_OP_ZOOM, CAMBER_TYPE_NUMBER, node) || !camber_push_operand(c, *node))
+    if (!camber_make_reader(c, camber_evaluate_zoom, CAMBER_TYPE_NUMBER, node) || !camber_push_operand(c, *node))
         return false;
     double *zooms = camber_alloc(c->context, count, sizeof *zooms);
     size_t zoom_count = 0;
@@ -396,7 +409,7 @@ static bool compile_composite(function *f, uint32_t *node) {
         done = done && compile_dimension(f, stops, 1.0, node) && camber_push_operand(c, *node);
         i = stops.last;
     }
-    camber_node prototype = {.op = step ? CAMBER_OP_STEP : CAMBER_OP_INTERPOLATE,
+    camber_node prototype = {.evaluate = step ? camber_evaluate_step : camber_evaluate_interpolate,
                              .type = f->type,
                              .space = (uint8_t)space,
                              .index = (uint32_t)c->expression->stop_count,
@@ -410,19 +423,14 @@ static bool compile_composite(function *f, uint32_t *node) {
     return done && camber_make_node(c, &prototype, first_operand, node);
 }
 
-static bool is_interpolated(const camber_node *node) {
-    const camber_typing type = node->type;
-    return type.type == CAMBER_TYPE_NUMBER || type.type == CAMBER_TYPE_COLOR ||
-           (type.depth == 1 && type.item == CAMBER_TYPE_NUMBER && type.lengths[0] != CAMBER_ANY_LENGTH);
-}
-
 static bool compile_stops(function *f, uint32_t *node) {
     const span all = {0, json_array_size(f->stops)};
     if (f->composite)
         return compile_composite(f, node);
     if (f->key)
         return compile_dimension(f, all, f->base, node);
-    return camber_make_reader(f->c, CAMBER_OP_ZOOM, CAMBER_TYPE_NUMBER, node) && make_curve(f, all, f->base, node);
+    return camber_make_reader(f->c, camber_evaluate_zoom, CAMBER_TYPE_NUMBER, node) &&
+           make_curve(f, all, f->base, node);
 }
 
 bool camber_compile_function(camber_compiler *c, json_t *object, const camber_property *property, uint32_t *node) {
@@ -435,7 +443,8 @@ bool camber_compile_function(camber_compiler *c, json_t *object, const camber_pr
     if (!compile_stops(&f, node))
         return false;
     for (size_t i = first_node; i < c->expression->node_count; i++)
-        if (c->expression->nodes[i].op == CAMBER_OP_INTERPOLATE && !is_interpolated(&c->expression->nodes[i]))
+        if (c->expression->nodes[i].evaluate == camber_evaluate_interpolate &&
+            !camber_is_interpolated(c->expression->nodes[i].type))
             return camber_compiler_fail(c, "%s is not interpolated; write \"type\": \"interval\"", property->name);
     return true;
 }

@@ -1,3 +1,8 @@
+/* Reads JSON with jansson, and turns it into values of expressions.
+ *
+ * Input: bytes, of a style or of data. Output: jansson's document, or values in an arena. Data may hold numbers that
+ * jansson refuses (NaN, infinities, beyond a double): they are replaced in a copy, so that it parses.
+ */
 #include "style/json.h"
 
 #include <errno.h>
@@ -7,14 +12,14 @@
 
 /* ---- Parsing ---- */
 
-/* What GDAL takes for numbers, and jansson does not. */
+/* Words that GDAL reads as numbers, and jansson refuses. */
 static const struct {
     const char *word, *instead;
 } words[] = {{"NaN", "null"}, {"Infinity", "1e308   "}, {"-Infinity", "-1e308   "}};
 
 static bool is_beyond(const char *number, size_t size) {
     json_error_t error;
-    /* Short ones without an exponent are not: most are looked at no further. */
+    /* Whether the number is beyond a double. Short ones without an exponent are not; most are examined no further. */
     if (size < 300 && !memchr(number, 'e', size) && !memchr(number, 'E', size))
         return false;
     json_t *json = json_loadb(number, size, JSON_DECODE_ANY | JSON_DECODE_INT_AS_REAL, &error);
@@ -22,8 +27,8 @@ static bool is_beyond(const char *number, size_t size) {
     return !json && json_error_code(&error) == json_error_numeric_overflow;
 }
 
-/* Copies a token that is no string, or a character of it, as what jansson reads. Returns its size; that of the copy
- * goes to *copied. */
+/* Copies a token that is not a string, or one character of it, in a form that jansson reads. Returns its size; the
+ * copy's size goes to *copied. */
 static size_t copy_token(char *to, const char *from, size_t size, size_t *copied) {
     size_t length = 0;
     for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
@@ -47,8 +52,8 @@ static size_t copy_token(char *to, const char *from, size_t size, size_t *copied
     return length;
 }
 
-/* Copies a document with what jansson refuses replaced; lines and columns stay, but behind a NaN. */
-static size_t mend(char *to, const char *from, size_t size) {
+/* Copies a document and replaces numbers that jansson refuses. Lines and columns stay, except behind a NaN. */
+static size_t replace_refused(char *to, const char *from, size_t size) {
     size_t written = 0, copied;
     bool in_string = false;
     for (size_t at = 0; at < size; written += copied) {
@@ -76,7 +81,7 @@ camber_status camber_json_load(camber_context *context, const char *bytes, size_
         char *mended = camber_alloc(context, size_bytes + size_bytes / 3 + 1, 1); /* null is longer than NaN */
         if (!mended)
             return CAMBER_ERROR_MEMORY;
-        *json = json_loadb(mended, mend(mended, bytes, size_bytes), flags, error);
+        *json = json_loadb(mended, replace_refused(mended, bytes, size_bytes), flags, error);
         camber_free(context, mended);
     }
     return *json ? CAMBER_OK : CAMBER_ERROR_INPUT;
@@ -96,7 +101,7 @@ void camber_json_unquote(json_error_t *error) {
 
 static camber_status fail(camber_context *context, const char *name, json_error_t *error) {
     camber_json_unquote(error);
-    /* jansson takes what it has no memory for to be a wrong character, mostly. */
+    /* jansson mostly reports a wrong character where it ran out of memory. */
     if (json_error_code(error) == json_error_out_of_memory || errno == ENOMEM)
         return camber_fail(context, CAMBER_ERROR_MEMORY, "%s: out of memory; make the document shorter", name);
     return camber_fail(context, CAMBER_ERROR_INPUT, "%s: line %d, column %d: %s; %s", name, error->line, error->column,
@@ -157,7 +162,7 @@ static bool read_object(camber_arena *arena, const json_t *json, unsigned depth,
     const char *key;
     json_t *item;
     json_object_foreach((json_t *)(uintptr_t)json, key, item) {
-        members[place] = (camber_member){.key = key, .place = place};
+        members[place] = (camber_member){.key = key, .position = place};
         if (!read_value(arena, item, depth, &members[place].value))
             return false;
         place++;

@@ -10,7 +10,7 @@
 /* Deepest nesting of a value: jansson reads no deeper documents. */
 #define CAMBER_VALUE_DEPTH 2048
 
-/* JSON has no infinity: of data, what stands for it and for what is beyond a double. */
+/* Stands in data for infinities and numbers beyond a double, which JSON does not have. */
 #define CAMBER_JSON_INFINITE 1e308
 
 /* Parses with jansson's flags, after a byte order mark. is_data: not written for camber, and read as GDAL reads it: NaN
@@ -18,9 +18,10 @@
  * nothing is logged), CAMBER_ERROR_MEMORY. */
 camber_status camber_json_load(camber_context *context, const char *bytes, size_t size_bytes, size_t flags,
                                bool is_data, json_t **json, json_error_t *error);
-/* Leaves out what jansson quotes: a style may name any file, and any file may be named as one. */
+/* Removes quotes of the document from jansson's message: a style may name any file, and any file may be named as
+ * one. */
 void camber_json_unquote(json_error_t *error);
-/* What to do about an error in a document that the user writes. */
+/* The cure for an error in a document that the user writes. */
 const char *camber_json_cure(const json_error_t *error);
 /* Reads a document, all of whose numbers are doubles. Returns CAMBER_ERROR_INPUT (line and column are said),
  * CAMBER_ERROR_MEMORY. */

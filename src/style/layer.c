@@ -1,4 +1,7 @@
-/* Layers of a style document: what any layer has, its filter, and its layout and paint by the table of properties. */
+/* Reads the layers of a style document: source, zooms, filter, and layout and paint by the table of properties.
+ *
+ * Input: JSON of a layer. Output: camber_style_layer. Layers of kinds that are not drawn are left out with a warning.
+ */
 #include "style/document.h"
 #include "style/ramp.h"
 
@@ -13,7 +16,7 @@ static bool ends_with(const char *text, const char *end) {
     return length >= end_length && strcmp(text + length - end_length, end) == 0;
 }
 
-/* An expression, of the style's state alone. */
+/* Evaluates visibility by an expression, which may read only the style's state. */
 static bool evaluate_visibility(camber_document *d, json_t *json, bool *visible) {
     static const char *const values[] = {"visible", "none", NULL};
     static const camber_property property = {
@@ -41,7 +44,7 @@ static bool read_visibility(camber_document *d, json_t *json, bool *visible) {
     return true;
 }
 
-/* Whether it says what the specification says without it. */
+/* Whether the value is the specification's default. */
 static bool is_default(const camber_property_row *row, const json_t *json) {
     json_t *fallback = row->property.fallback
                            ? json_loads(row->property.fallback, JSON_DECODE_ANY | JSON_DECODE_INT_AS_REAL, NULL)
@@ -78,7 +81,7 @@ static bool read_property(camber_document *d, bool layout, const char *key, json
     return true;
 }
 
-/* layout or paint. */
+/* Reads layout or paint. */
 static bool read_properties(camber_document *d, const json_t *json, const char *group, camber_style_layer *layer) {
     camber_compiler *c = &d->compiler;
     json_t *properties = json_object_get(json, group), *value;
@@ -117,7 +120,7 @@ static bool read_layer_visibility(camber_document *d, const json_t *json, camber
     return true;
 }
 
-/* {"camber:overlap": ...} */
+/* Reads the metadata {"camber:overlap": ...}. */
 static bool read_metadata(camber_document *d, const json_t *json, camber_style_layer *layer) {
     static const char *const names[] = {[CAMBER_OVERLAP_FLATTEN] = "flatten",
                                         [CAMBER_OVERLAP_ACCUMULATE] = "accumulate",
@@ -149,7 +152,7 @@ static bool write_filter_key(camber_compiler *c, const json_t *filter, char **ke
         return false;
     }
     (*key)[size] = 0;
-    /* No filter's text is empty: jansson found no memory of its own. */
+    /* A filter's text is never empty: jansson had no memory. */
     if (filter && (size == 0 || json_dumpb(filter, *key, size, JSON_COMPACT | JSON_ENCODE_ANY) != size))
         c->status =
             camber_fail(c->context, CAMBER_ERROR_MEMORY, "%s: out of memory for a filter; make it shorter", c->name);
@@ -249,7 +252,7 @@ void camber_style_layer_free(camber_context *context, camber_style_layer *layer)
     camber_free(context, layer->id);
 }
 
-/* Types whose layers are drawn one day; others are misspelled. */
+/* Whether the specification has this type of layer; others are misspelled. */
 static bool is_known_type(const char *type) {
     static const char *const types[] = {"fill",   "symbol",    "circle",       "heatmap", "fill-extrusion",
                                         "raster", "hillshade", "color-relief", "sky"};
@@ -260,7 +263,7 @@ static bool is_known_type(const char *type) {
 }
 
 /* A layer with a "ref" takes from that layer all that is not paint. *resolved is a new reference. */
-static bool resolve(camber_document *d, json_t *json, json_t **resolved) {
+static bool resolve_reference(camber_document *d, json_t *json, json_t **resolved) {
     static const char *const taken[] = {"type", "source", "source-layer", "minzoom", "maxzoom", "filter", "layout"};
     camber_compiler *c = &d->compiler;
     const json_t *ref = json_object_get(json, "ref");
@@ -315,7 +318,7 @@ static bool read_any_layer(camber_document *d, json_t *json) {
     if (!json_is_string(json_object_get(json, "id")))
         return camber_compiler_fail(c, "the layer has no \"id\" that is a string; name it");
     camber_document_warn_unknown(d, json, known, "layer");
-    const bool done = resolve(d, json, &resolved) && read_resolved(d, resolved);
+    const bool done = resolve_reference(d, json, &resolved) && read_resolved(d, resolved);
     json_decref(resolved);
     return done;
 }

@@ -29,8 +29,8 @@ const char *camber_number_parse(const char *text, double *number) {
         if (is_digit(*exponent))
             end = skip_digits(exponent);
     }
-    /* strtod wants the locale's point. Past 400 characters only zeros and noise can follow for a double that
-     * text of a style means; such a number is refused rather than read wrong. */
+    /* Parses without strtod, which wants the locale's point. Past 400 characters only zeros and noise can follow for
+     * a double that a style means; such a number is refused rather than read wrong. */
     char copy[416];
     const size_t length = (size_t)(end - text), before = (size_t)(point - text);
     const char *separator = localeconv()->decimal_point;

@@ -1,6 +1,6 @@
 /* Numbers to text and back as ECMAScript writes them, whatever the process's locale. */
-#ifndef CAMBER_NUMBER_H
-#define CAMBER_NUMBER_H
+#ifndef CAMBER_STYLE_NUMBER_H
+#define CAMBER_STYLE_NUMBER_H
 
 #include <stdbool.h>
 #include <stddef.h>

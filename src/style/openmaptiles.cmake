@@ -4,7 +4,7 @@
 # sort key puts minor roads below.
 
 set(omt_zooms 4 9 12 14 16 18 22)
-# What a casing adds to the width of its fill, CSS px at these zooms.
+# How much wider a casing is than its fill, CSS px at these zooms.
 set(omt_casing_none 0 0 0 0 0 0 0)
 set(omt_casing_ground 0 0.3 0.5 1.4 2.1 3.2 16)
 set(omt_casing_bridge 0 0.5 0.9 2.1 3.3 5 28)
@@ -102,7 +102,7 @@ function(omt_width out casing)
   set(${out} "${text}]" PARENT_SCOPE)
 endfunction()
 
-# What colours are near and far. Tunnels are halfway to the paper: paler without being translucent.
+# Colours near and far. Tunnels are halfway to the paper: paler without being translucent.
 function(omt_colors theme)
   foreach(index distance IN ZIP_LISTS omt_indices omt_distances)
     set(colors "")

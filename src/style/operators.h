@@ -1,40 +1,61 @@
-/* The operators of expressions: how each is compiled. */
-#ifndef CAMBER_OPERATORS_H
-#define CAMBER_OPERATORS_H
+/* The operators of expressions. Each has one row, in the table of the file that compiles and evaluates it:
+ *
+ *     operators_inputs.c     literals, the feature, zoom, state, variables
+ *     operators_types.c      assertions, conversions, colours
+ *     operators_decisions.c  comparisons, all, case, match, coalesce
+ *     operators_sequences.c  strings and arrays
+ *     operators_curves.c     step, interpolate
+ *     operators_maths.c      arithmetic and functions of a number
+ *
+ * A new operator is a row there, and the functions that it names. Only files of src/style that compile include this.
+ */
+#ifndef CAMBER_STYLE_OPERATORS_H
+#define CAMBER_STYLE_OPERATORS_H
 
 #include "style/compiler.h"
 
-typedef struct camber_operator camber_operator;
-
-/* array is the expression, its operator first; its length has been checked. */
+/* Makes a node of an expression: array, with the operator first. The number of its operands has been checked. */
 typedef bool camber_compile_fn(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
                                uint32_t *node);
 
 struct camber_operator {
     const char *name;
     camber_compile_fn *compile;
-    camber_op op;
-    camber_type operands; /* of all of them, where camber_compile_uniform compiles */
+    camber_evaluate_fn *evaluate; /* NULL: it becomes a constant, or is not supported */
+    camber_type operands;         /* the type of all of them, where camber_compile_uniform compiles */
     camber_type result;
     size_t least, most; /* operands */
+    uint32_t variant;   /* tells operators that share their functions apart: outcomes, or a colour space */
+    double (*unary)(double);
+    double (*binary)(double, double);
+    double constant; /* a constant's value, or the result without operands */
 };
 
-/* Operands of one type, a result of another. */
+typedef struct camber_operator_table {
+    const camber_operator *rows;
+    size_t count;
+} camber_operator_table;
+
+extern const camber_operator_table camber_input_operators, camber_type_operators, camber_decision_operators,
+    camber_sequence_operators, camber_curve_operators, camber_maths_operators;
+
+/* Short words for the rows. */
+#define VALUE CAMBER_TYPE_VALUE
+#define BOOL CAMBER_TYPE_BOOL
+#define NUMBER CAMBER_TYPE_NUMBER
+#define STRING CAMBER_TYPE_STRING
+#define COLOR CAMBER_TYPE_COLOR
+#define OBJECT CAMBER_TYPE_OBJECT
+#define ARRAY CAMBER_TYPE_ARRAY
+#define ANY_COUNT SIZE_MAX
+
+/* Compiles operands of one type into a node of the row's result. */
 camber_compile_fn camber_compile_uniform;
 
-/* operators_data.c: features, arrays, objects and strings. */
-camber_compile_fn camber_compile_reader, camber_compile_get, camber_compile_state, camber_compile_literal,
-    camber_compile_semiliteral, camber_compile_array, camber_compile_at, camber_compile_in, camber_compile_slice,
-    camber_compile_length, camber_compile_split, camber_compile_join;
+/* The outcomes of a comparison; a comparison's variant, and its node's index, are those for which it holds. */
+enum { CAMBER_OUTCOME_LESS = 1, CAMBER_OUTCOME_EQUAL = 2, CAMBER_OUTCOME_GREATER = 4 };
 
-/* operators_decisions.c */
-camber_compile_fn camber_compile_comparison, camber_compile_collator, camber_compile_case, camber_compile_match,
-    camber_compile_coalesce, camber_compile_let, camber_compile_var;
-
-/* operators_curves.c */
-camber_compile_fn camber_compile_step, camber_compile_interpolate;
-
-/* The type of a decision's or a curve's outputs: what is expected around it, else the first output's. */
+/* The type of a decision's or a curve's outputs: the type that is expected around it, else the first output's. */
 typedef struct camber_output_type {
     camber_typing type;
     bool known;
@@ -43,11 +64,12 @@ typedef struct camber_output_type {
 static inline camber_output_type camber_expect_outputs(camber_typing expected) {
     return (camber_output_type){expected, expected.type != CAMBER_TYPE_VALUE};
 }
-/* Pushes the output at index. */
+/* operators_decisions.c: pushes the output at index. */
 bool camber_compile_output(camber_compiler *c, const json_t *array, size_t index, camber_output_type *type);
-
-/* operators_decisions.c: pushes a label with the string or number that json is; all are of one type, unknown at first.
- */
+/* operators_decisions.c: pushes a label with the string or number that json is. All labels are of one type, which is
+ * unknown at first. */
 bool camber_compile_label(camber_compiler *c, const json_t *json, camber_label label, camber_type *type);
+/* operators_curves.c: whether values of the type can be mixed. */
+bool camber_is_interpolated(camber_typing type);
 
 #endif

@@ -1,9 +1,18 @@
-/* step and the interpolations. */
+/* Curves: step and the interpolations.
+ *
+ * A curve's stops are numbers that stand beside each other in the expression, sorted; its outputs are operands. The
+ * input is looked up among the stops by halving. Each operator's row stands in the table at the end.
+ */
+#include "style/evaluation.h"
 #include "style/operators.h"
+#include "style/spaces.h"
 
 #include <math.h>
+#include <string.h>
 
-static const camber_typing number = {.type = CAMBER_TYPE_NUMBER};
+static const camber_typing number_type = {.type = CAMBER_TYPE_NUMBER};
+
+/* ---- When compiled ---- */
 
 /* The stop at index of array, above the one before; stop is the one before and becomes this one. */
 static bool read_stop(camber_compiler *c, const json_t *array, size_t index, double *stop) {
@@ -23,7 +32,7 @@ static bool read_stop(camber_compiler *c, const json_t *array, size_t index, dou
  * outputs may hold curves of their own: they are pushed first, the controls of a curve behind them. */
 static bool compile_curve(camber_compiler *c, const json_t *array, size_t input, camber_node *prototype,
                           const double controls[4], uint32_t *node) {
-    const bool step = prototype->op == CAMBER_OP_STEP;
+    const bool step = prototype->evaluate == camber_evaluate_step;
     const size_t size = json_array_size(array), first_operand = c->operand_count;
     const size_t pairs = step ? input + 2 : input + 1;
     if (size < pairs || (size - pairs) % 2 != 0)
@@ -37,7 +46,7 @@ static bool compile_curve(camber_compiler *c, const json_t *array, size_t input,
     for (size_t i = 0; prototype->bezier && i < 4; i++)
         if (!camber_push_stop(c, controls[i]))
             return false;
-    if (!camber_compile_operand(c, array, input, number))
+    if (!camber_compile_operand(c, array, input, number_type))
         return false;
     camber_output_type type = camber_expect_outputs(prototype->type);
     if (step && !camber_compile_output(c, array, input + 1, &type))
@@ -49,9 +58,9 @@ static bool compile_curve(camber_compiler *c, const json_t *array, size_t input,
     return camber_make_node(c, prototype, first_operand, node);
 }
 
-bool camber_compile_step(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
+static bool compile_step(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
                          uint32_t *node) {
-    camber_node prototype = {.op = row->op, .type = expected};
+    camber_node prototype = {.evaluate = row->evaluate, .type = expected};
     return compile_curve(c, array, 1, &prototype, NULL, node);
 }
 
@@ -88,26 +97,25 @@ static bool read_interpolation(camber_compiler *c, const json_t *json, camber_no
     return true;
 }
 
-static bool is_interpolated(camber_typing type) {
+bool camber_is_interpolated(camber_typing type) {
     return type.type == CAMBER_TYPE_NUMBER || type.type == CAMBER_TYPE_COLOR ||
            (type.depth == 1 && type.item == CAMBER_TYPE_NUMBER && type.lengths[0] != CAMBER_ANY_LENGTH);
 }
 
-/* The three interpolations; their names end with the colour space. */
-bool camber_compile_interpolate(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
+/* The three interpolations; their rows name the colour space. */
+static bool compile_interpolate(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
                                 uint32_t *node) {
-    const bool plain = row->result == CAMBER_TYPE_VALUE;
     double controls[4] = {0.0};
-    camber_node prototype = {.op = row->op, .type = plain ? expected : camber_typing_of(CAMBER_TYPE_COLOR)};
-    if (!plain)
-        prototype.space = strstr(row->name, "hcl") ? CAMBER_SPACE_HCL : CAMBER_SPACE_LAB;
+    camber_node prototype = {.evaluate = row->evaluate,
+                             .type = row->result == CAMBER_TYPE_VALUE ? expected : camber_typing_of(row->result),
+                             .space = (uint8_t)row->variant};
     camber_compiler_enter_index(c, 1);
     if (!read_interpolation(c, json_array_get(array, 1), &prototype, controls))
         return false;
     camber_compiler_leave(c);
     if (!compile_curve(c, array, 2, &prototype, controls, node))
         return false;
-    if (is_interpolated(prototype.type))
+    if (camber_is_interpolated(prototype.type))
         return true;
     char name[CAMBER_TYPING_TEXT_SIZE];
     return camber_compiler_fail(
@@ -116,3 +124,135 @@ bool camber_compile_interpolate(camber_compiler *c, const camber_operator *row, 
         "found %s; use \"step\", or \"to-number\" or \"to-color\" on them",
         camber_typing_name(prototype.type, name));
 }
+
+/* ---- When evaluated ---- */
+
+static bool fail(camber_evaluation *e, const char *cause) {
+    return camber_evaluate_fail(e, cause);
+}
+
+/* How many of the node's stops are at or below input. */
+static uint32_t count_stops(const camber_expression *expression, const camber_node *node, double input) {
+    uint32_t low = 0, high = node->index_count;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (expression->stops[node->index + middle] <= input)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+static bool evaluate_input(camber_evaluation *e, const camber_node *node, double *input) {
+    if (!camber_evaluate_number(e, node, 0, input))
+        return false;
+    return !isnan(*input) || fail(e, "a number is wanted and the value is not one");
+}
+
+bool camber_evaluate_step(camber_evaluation *e, const camber_node *node, camber_value *value) {
+    double input = 0.0;
+    if (!evaluate_input(e, node, &input))
+        return false;
+    return camber_evaluate_operand(e, node, 1 + count_stops(e->expression, node, input), value);
+}
+
+static bool same(double a, double b) {
+    return a >= b && a <= b;
+}
+
+/* How far input is from low to high, as the specification's exponential interpolation has it. */
+static double exponential(double input, double base, double low, double high) {
+    double span = high - low, progress = input - low;
+    if (!isfinite(span)) { /* stops so far apart that only half of it is a number */
+        span = high * 0.5 - low * 0.5;
+        progress = input * 0.5 - low * 0.5;
+    }
+    if (same(base, 1.0))
+        return progress / span;
+    const double factor = (pow(base, progress) - 1.0) / (pow(base, span) - 1.0);
+    return isfinite(factor) ? factor : progress / span;
+}
+
+/* One coordinate of the curve from 0 to 1 with control values a and b. */
+static double bezier(double a, double b, double s) {
+    const double r = 1.0 - s;
+    return 3.0 * r * r * s * a + 3.0 * r * s * s * b + s * s * s;
+}
+
+/* y of the curve from (0, 0) to (1, 1) at x, by halving: x grows along it. */
+static double bezier_at(const double controls[4], double x) {
+    double low = 0.0, high = 1.0;
+    for (int i = 0; i < 48; i++) {
+        const double middle = 0.5 * (low + high);
+        if (bezier(controls[0], controls[2], middle) < x)
+            low = middle;
+        else
+            high = middle;
+    }
+    return bezier(controls[1], controls[3], high);
+}
+
+static bool mix_arrays(camber_evaluation *e, const camber_value *low, const camber_value *high, double t,
+                       camber_value *value) {
+    const uint32_t count = low->count;
+    camber_value *items = camber_arena_alloc(e->arena, count * sizeof *items);
+    if (!items)
+        return camber_evaluate_no_memory(e);
+    if (high->count != count)
+        return fail(e, "two arrays of one length are wanted");
+    for (uint32_t i = 0; i < count; i++) {
+        const camber_value *a = &low->items[i], *b = &high->items[i];
+        if (a->type != CAMBER_VALUE_NUMBER || b->type != CAMBER_VALUE_NUMBER)
+            return fail(e, "arrays of numbers are wanted");
+        items[i] = camber_value_number(a->number + t * (b->number - a->number));
+    }
+    *value = (camber_value){.type = CAMBER_VALUE_ARRAY, .count = count, .items = items};
+    return camber_evaluate_work(e, count);
+}
+
+static bool mix_values(camber_evaluation *e, const camber_node *node, const camber_value *low, const camber_value *high,
+                       double t, camber_value *value) {
+    if (low->type == CAMBER_VALUE_NUMBER && high->type == CAMBER_VALUE_NUMBER) {
+        *value = camber_value_number(low->number * (1.0 - t) + high->number * t);
+        return true;
+    }
+    if (low->type == CAMBER_VALUE_ARRAY && high->type == CAMBER_VALUE_ARRAY)
+        return mix_arrays(e, low, high, t, value);
+    if (low->type != CAMBER_VALUE_COLOR || high->type != CAMBER_VALUE_COLOR)
+        return fail(e, "two numbers, two colours or two arrays of numbers are wanted");
+    *value = (camber_value){.type = CAMBER_VALUE_COLOR,
+                            .color = camber_color_mix(low->color, high->color, t, (camber_color_space)node->space)};
+    return true;
+}
+
+bool camber_evaluate_interpolate(camber_evaluation *e, const camber_node *node, camber_value *value) {
+    double input = 0.0;
+    if (node->index_count > 1 && !evaluate_input(e, node, &input))
+        return false;
+    const double *stops = &e->expression->stops[node->index];
+    const uint32_t passed = node->index_count > 1 ? count_stops(e->expression, node, input) : 0;
+    if (passed == 0)
+        return camber_evaluate_operand(e, node, 1, value);
+    const uint32_t lower = passed - 1;
+    if (passed == node->index_count || same(stops[lower], input))
+        return camber_evaluate_operand(e, node, 1 + lower, value);
+    camber_value low, high;
+    if (!camber_evaluate_operand(e, node, 1 + lower, &low) || !camber_evaluate_operand(e, node, 2 + lower, &high))
+        return false;
+    double t = exponential(input, node->value.number, stops[lower], stops[lower + 1]);
+    if (node->bezier)
+        t = bezier_at(stops + node->index_count, t);
+    return mix_values(e, node, &low, &high, t, value);
+}
+
+static const camber_operator rows[] = {
+    {"step", compile_step, camber_evaluate_step, NUMBER, VALUE, 4, ANY_COUNT},
+    {"interpolate", compile_interpolate, camber_evaluate_interpolate, NUMBER, VALUE, 4, ANY_COUNT},
+    {"interpolate-hcl", compile_interpolate, camber_evaluate_interpolate, NUMBER, COLOR, 4, ANY_COUNT,
+     .variant = CAMBER_SPACE_HCL},
+    {"interpolate-lab", compile_interpolate, camber_evaluate_interpolate, NUMBER, COLOR, 4, ANY_COUNT,
+     .variant = CAMBER_SPACE_LAB},
+};
+
+const camber_operator_table camber_curve_operators = {rows, sizeof rows / sizeof *rows};

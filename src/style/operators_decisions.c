@@ -1,11 +1,25 @@
-/* Comparisons, decisions and variables. */
+/* Comparisons and decisions: ==, all, case, match, coalesce and their like.
+ *
+ * Only the operands that decide are evaluated: "all" stops at the first false, "case" at the first condition that
+ * holds. The labels of "match" are sorted when compiled and searched when evaluated. Each operator's row stands in the
+ * table at the end.
+ */
+#include "style/evaluation.h"
 #include "style/operators.h"
+#include "style/unicode.h"
 
 #include <math.h>
+#include <string.h>
 
-static const camber_typing any = {.type = CAMBER_TYPE_VALUE}, boolean = {.type = CAMBER_TYPE_BOOL};
+static const camber_typing any_type = {.type = CAMBER_TYPE_VALUE}, bool_type = {.type = CAMBER_TYPE_BOOL};
 
-/* ---- Comparisons ---- */
+static const camber_value nothing = {.type = CAMBER_VALUE_NULL};
+
+/* ---- Comparisons, when compiled ---- */
+
+static bool is_order(uint32_t outcomes) {
+    return outcomes != CAMBER_OUTCOME_EQUAL && outcomes != (CAMBER_OUTCOME_LESS | CAMBER_OUTCOME_GREATER);
+}
 
 static bool is_comparable(camber_type type, bool order) {
     switch (type) {
@@ -21,9 +35,9 @@ static bool is_comparable(camber_type type, bool order) {
 /* Compiles one side, still of any type. */
 static bool compile_side(camber_compiler *c, const camber_operator *row, const json_t *array, size_t index,
                          uint32_t *node) {
-    const bool order = row->op != CAMBER_OP_EQUAL && row->op != CAMBER_OP_NOT_EQUAL;
+    const bool order = is_order(row->variant);
     char name[CAMBER_TYPING_TEXT_SIZE];
-    if (!camber_compile_element(c, array, index, any, node))
+    if (!camber_compile_element(c, array, index, any_type, node))
         return false;
     const camber_typing type = camber_node_at(c, *node)->type;
     if (is_comparable(type.type, order))
@@ -42,10 +56,10 @@ static bool compile_collation(camber_compiler *c, const json_t *array, const cam
     return camber_compile_operand(c, array, 3, camber_typing_of(CAMBER_TYPE_COLLATOR));
 }
 
-bool camber_compile_comparison(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
+static bool compile_comparison(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
                                uint32_t *node) {
     (void)expected;
-    const bool order = row->op != CAMBER_OP_EQUAL && row->op != CAMBER_OP_NOT_EQUAL;
+    const bool order = is_order(row->variant);
     const size_t first_operand = c->operand_count;
     uint32_t sides[2] = {0};
     camber_type types[2];
@@ -66,11 +80,12 @@ bool camber_compile_comparison(camber_compiler *c, const camber_operator *row, j
             return false;
     if (json_array_size(array) == 4 && !compile_collation(c, array, types))
         return false;
-    return camber_make_node(c, &(camber_node){.op = row->op, .type = boolean}, first_operand, node);
+    return camber_make_node(c, &(camber_node){.evaluate = row->evaluate, .type = bool_type, .index = row->variant},
+                            first_operand, node);
 }
 
 /* {"case-sensitive": boolean, "diacritic-sensitive": boolean, "locale": string}. */
-bool camber_compile_collator(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
+static bool compile_collator(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
                              uint32_t *node) {
     static const char *const flags[] = {"case-sensitive", "diacritic-sensitive"};
     (void)expected;
@@ -84,7 +99,7 @@ bool camber_compile_collator(camber_compiler *c, const camber_operator *row, jso
         json_t *flag = json_object_get(options, flags[i]);
         const camber_value no = {.type = CAMBER_VALUE_BOOL};
         camber_compiler_enter_key(c, flags[i]);
-        if (!(flag ? camber_compile(c, flag, boolean, node) : camber_make_constant(c, &no, boolean, node)) ||
+        if (!(flag ? camber_compile(c, flag, bool_type, node) : camber_make_constant(c, &no, bool_type, node)) ||
             !camber_push_operand(c, *node))
             return false;
         camber_compiler_leave(c);
@@ -95,11 +110,113 @@ bool camber_compile_collator(camber_compiler *c, const camber_operator *row, jso
         return false;
     camber_compiler_leave(c);
     camber_compiler_leave(c);
-    return camber_make_node(c, &(camber_node){.op = row->op, .type = camber_typing_of(row->result)}, first_operand,
-                            node);
+    return camber_make_node(c, &(camber_node){.evaluate = row->evaluate, .type = camber_typing_of(row->result)},
+                            first_operand, node);
 }
 
-/* ---- Decisions ---- */
+/* ---- Comparisons, when evaluated ---- */
+
+bool camber_values_equal(const camber_value *a, const camber_value *b) {
+    if (a->type != b->type)
+        return false;
+    switch (a->type) {
+    case CAMBER_VALUE_NULL: return true;
+    case CAMBER_VALUE_BOOL: return a->boolean == b->boolean;
+    case CAMBER_VALUE_NUMBER: return a->number >= b->number && a->number <= b->number;
+    case CAMBER_VALUE_STRING: return strcmp(a->string, b->string) == 0;
+    case CAMBER_VALUE_COLOR: return false;
+    case CAMBER_VALUE_ARRAY: return a->items == b->items && a->count == b->count;
+    case CAMBER_VALUE_OBJECT: break;
+    }
+    return a->members == b->members && a->count == b->count;
+}
+
+enum { COLLATE_CASE = 1, COLLATE_DIACRITICS = 2 };
+
+bool camber_evaluate_collator(camber_evaluation *e, const camber_node *node, camber_value *value) {
+    bool by_case, by_diacritics;
+    if (!camber_evaluate_bool(e, node, 0, &by_case) || !camber_evaluate_bool(e, node, 1, &by_diacritics))
+        return false;
+    *value = camber_value_number((by_case ? COLLATE_CASE : 0) + (by_diacritics ? COLLATE_DIACRITICS : 0));
+    return true;
+}
+
+static int compare_strings(const char *a, const char *b, const camber_value *collator) {
+    if (!collator)
+        return strcmp(a, b);
+    const int by = (int)collator->number;
+    return camber_unicode_compare(a, b, by & COLLATE_CASE, by & COLLATE_DIACRITICS);
+}
+
+/* Whether the outcome is one of those for which the comparison holds. */
+static bool holds(uint32_t outcomes, bool less, bool equal) {
+    return outcomes & (less ? CAMBER_OUTCOME_LESS : equal ? CAMBER_OUTCOME_EQUAL : CAMBER_OUTCOME_GREATER);
+}
+
+bool camber_evaluate_comparison(camber_evaluation *e, const camber_node *node, camber_value *value) {
+    camber_value a, b, collator = nothing;
+    if (!camber_evaluate_operand(e, node, 0, &a) || !camber_evaluate_operand(e, node, 1, &b) ||
+        (node->count > 2 && !camber_evaluate_operand(e, node, 2, &collator)))
+        return false;
+    const bool strings = a.type == CAMBER_VALUE_STRING && b.type == CAMBER_VALUE_STRING;
+    const bool numbers = a.type == CAMBER_VALUE_NUMBER && b.type == CAMBER_VALUE_NUMBER;
+    const bool order = is_order(node->index);
+    if (order && !strings && !numbers)
+        return camber_evaluate_fail(e, "two numbers or two strings are wanted");
+    if (strings) {
+        const int sign = compare_strings(a.string, b.string, node->count > 2 ? &collator : NULL);
+        *value = camber_value_bool(holds(node->index, sign < 0, sign == 0));
+    } else if (order && (isnan(a.number) || isnan(b.number))) {
+        *value = camber_value_bool(false);
+    } else {
+        *value = camber_value_bool(holds(node->index, numbers && a.number < b.number, camber_values_equal(&a, &b)));
+    }
+    return true;
+}
+
+/* ---- Booleans ---- */
+
+bool camber_evaluate_not(camber_evaluation *e, const camber_node *node, camber_value *value) {
+    bool boolean;
+    if (!camber_evaluate_bool(e, node, 0, &boolean))
+        return false;
+    *value = camber_value_bool(!boolean);
+    return true;
+}
+
+static bool evaluate_junction(camber_evaluation *e, const camber_node *node, bool all, camber_value *value) {
+    bool result = all;
+    for (uint32_t i = 0; i < node->count && result == all; i++)
+        if (!camber_evaluate_bool(e, node, i, &result))
+            return false;
+    *value = camber_value_bool(result);
+    return true;
+}
+
+/* Stops at the first operand that is false. */
+bool camber_evaluate_all(camber_evaluation *e, const camber_node *node, camber_value *value) {
+    return evaluate_junction(e, node, true, value);
+}
+
+/* Stops at the first operand that is true. */
+bool camber_evaluate_any(camber_evaluation *e, const camber_node *node, camber_value *value) {
+    return evaluate_junction(e, node, false, value);
+}
+
+static bool compile_none(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
+                         uint32_t *node) {
+    return camber_compile_uniform(c, row, array, expected, node) &&
+           camber_wrap_node(c, camber_evaluate_not, camber_typing_of(CAMBER_TYPE_BOOL), node);
+}
+
+/* False where the operand fails, as comparisons of the older filters are. */
+bool camber_evaluate_quiet(camber_evaluation *e, const camber_node *node, camber_value *value) {
+    if (!camber_evaluate_operand(e, node, 0, value))
+        *value = camber_value_bool(false);
+    return true;
+}
+
+/* ---- Outputs ---- */
 
 bool camber_compile_output(camber_compiler *c, const json_t *array, size_t index, camber_output_type *type) {
     if (!camber_compile_operand(c, array, index, type->type))
@@ -109,20 +226,53 @@ bool camber_compile_output(camber_compiler *c, const json_t *array, size_t index
     return true;
 }
 
-bool camber_compile_case(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
+bool camber_evaluate_case(camber_evaluation *e, const camber_node *node, camber_value *value) {
+    for (uint32_t i = 0; i + 1 < node->count; i += 2) {
+        bool condition;
+        if (!camber_evaluate_bool(e, node, i, &condition))
+            return false;
+        if (condition)
+            return camber_evaluate_operand(e, node, i + 1, value);
+    }
+    return camber_evaluate_operand(e, node, node->count - 1, value);
+}
+
+static bool compile_case(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
                          uint32_t *node) {
     const size_t size = json_array_size(array), first_operand = c->operand_count;
     if (size % 2 != 0)
         return camber_compiler_fail(c, "\"case\" has pairs of condition and output, then one output; add the last one");
     camber_output_type type = camber_expect_outputs(expected);
     for (size_t i = 1; i + 1 < size; i += 2)
-        if (!camber_compile_operand(c, array, i, boolean) || !camber_compile_output(c, array, i + 1, &type))
+        if (!camber_compile_operand(c, array, i, bool_type) || !camber_compile_output(c, array, i + 1, &type))
             return false;
     return camber_compile_output(c, array, size - 1, &type) &&
-           camber_make_node(c, &(camber_node){.op = row->op, .type = type.type}, first_operand, node);
+           camber_make_node(c, &(camber_node){.evaluate = row->evaluate, .type = type.type}, first_operand, node);
 }
 
-bool camber_compile_coalesce(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
+static bool is_there(const camber_evaluation *e, const camber_node *operand, const camber_value *value) {
+    if (value->type == CAMBER_VALUE_NULL || !e->images || operand->type.type != CAMBER_TYPE_IMAGE)
+        return value->type != CAMBER_VALUE_NULL;
+    return value->type == CAMBER_VALUE_STRING && e->images->find(e->images->user, value->string) != 0;
+}
+
+/* Where all images are missing, the result is the first of them. */
+bool camber_evaluate_coalesce(camber_evaluation *e, const camber_node *node, camber_value *value) {
+    camber_value first = nothing;
+    *value = nothing;
+    for (uint32_t i = 0; i < node->count; i++) {
+        if (!camber_evaluate_operand(e, node, i, value))
+            return false;
+        if (is_there(e, &e->expression->nodes[e->expression->links[node->first + i]], value))
+            return true;
+        if (first.type == CAMBER_VALUE_NULL)
+            first = *value;
+    }
+    *value = first;
+    return true;
+}
+
+static bool compile_coalesce(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
                              uint32_t *node) {
     const size_t first_operand = c->operand_count;
     camber_output_type type = camber_expect_outputs(expected);
@@ -135,8 +285,11 @@ bool camber_compile_coalesce(camber_compiler *c, const camber_operator *row, jso
         if (!type.known)
             type = (camber_output_type){found, true};
     }
-    return camber_make_node(c, &(camber_node){.op = row->op, .type = fits ? type.type : any}, first_operand, node);
+    return camber_make_node(c, &(camber_node){.evaluate = row->evaluate, .type = fits ? type.type : any_type},
+                            first_operand, node);
 }
+
+/* ---- Match ---- */
 
 /* 2^53 - 1, the largest integer to which all below it are doubles. */
 #define LARGEST_LABEL 9007199254740991.0
@@ -165,7 +318,7 @@ bool camber_compile_label(camber_compiler *c, const json_t *json, camber_label l
 
 /* One label or an array of them. */
 static bool compile_branch(camber_compiler *c, const json_t *json, uint32_t index, camber_type *type) {
-    const camber_label label = {.output = index / 2, .place = index};
+    const camber_label label = {.output = index / 2, .position = index};
     if (!json_is_array(json))
         return camber_compile_label(c, json, label, type);
     if (json_array_size(json) == 0)
@@ -180,12 +333,12 @@ static bool compile_branch(camber_compiler *c, const json_t *json, uint32_t inde
 }
 
 /* Labels are contiguous though outputs may hold matches of their own: they are compiled first. */
-bool camber_compile_match(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
+static bool compile_match(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
                           uint32_t *node) {
     const size_t size = json_array_size(array), first_operand = c->operand_count;
     if (size % 2 == 0)
         return camber_compiler_fail(c, "\"match\" has pairs of label and output, then one output; add the last one");
-    camber_node prototype = {.op = row->op, .index = (uint32_t)c->expression->label_count};
+    camber_node prototype = {.evaluate = row->evaluate, .index = (uint32_t)c->expression->label_count};
     camber_type input = CAMBER_TYPE_VALUE;
     camber_output_type type = camber_expect_outputs(expected);
     for (size_t i = 2; i + 1 < size; i += 2) {
@@ -195,7 +348,7 @@ bool camber_compile_match(camber_compiler *c, const camber_operator *row, json_t
         camber_compiler_leave(c);
     }
     prototype.index_count = (uint32_t)(c->expression->label_count - prototype.index);
-    if (!camber_sort_labels(c, prototype.index, true) || !camber_compile_element(c, array, 1, any, node))
+    if (!camber_sort_labels(c, prototype.index, true) || !camber_compile_element(c, array, 1, any_type, node))
         return false;
     const camber_typing found = camber_node_at(c, *node)->type;
     if (found.type != CAMBER_TYPE_VALUE && !camber_typing_fits(camber_typing_of(input), found)) {
@@ -215,64 +368,71 @@ bool camber_compile_match(camber_compiler *c, const camber_operator *row, json_t
     return camber_make_node(c, &prototype, first_operand, node);
 }
 
-/* ---- Variables ---- */
-
-static bool read_name(camber_compiler *c, const json_t *array, size_t index, const char **name) {
-    const json_t *json = json_array_get(array, index);
-    *name = json_string_value(json);
-    bool fits = *name != NULL;
-    for (const char *at = *name; fits && *at; at++)
-        fits = (*at >= 'a' && *at <= 'z') || (*at >= 'A' && *at <= 'Z') || (*at >= '0' && *at <= '9') || *at == '_';
-    if (fits)
-        return true;
-    camber_compiler_enter_index(c, index);
-    return camber_compiler_fail(c, "expected a variable's name, a string of letters, digits and _; rename it");
+static int compare_label(const camber_value *value, const camber_label *label) {
+    if (label->string)
+        return strcmp(value->string, label->string);
+    return value->number < label->number ? -1 : value->number > label->number;
 }
 
-/* ["let", name, value, ..., result]: values do not see the names beside them, so that there are no cycles. */
-bool camber_compile_let(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
-                        uint32_t *node) {
-    const size_t size = json_array_size(array), first_operand = c->operand_count;
-    size_t bound = 0;
-    for (size_t i = 1; i + 1 < size; i += 2) {
-        const char *name;
-        if (!read_name(c, array, i, &name) || !camber_compile_operand(c, array, i + 1, any))
-            return false;
-        bound++;
+/* The node's label that the value is; NULL: none. */
+static const camber_label *find_label(const camber_expression *expression, const camber_node *node,
+                                      const camber_value *value) {
+    uint32_t low = 0, high = node->index_count;
+    if (high == 0)
+        return NULL;
+    const camber_label *labels = &expression->labels[node->index];
+    const bool strings = labels[0].string != NULL;
+    if (value->type != (strings ? CAMBER_VALUE_STRING : CAMBER_VALUE_NUMBER) || (!strings && isnan(value->number)))
+        return NULL;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        const int order = compare_label(value, &labels[middle]);
+        if (order == 0)
+            return &labels[middle];
+        if (order > 0)
+            low = middle + 1;
+        else
+            high = middle;
     }
-    for (size_t i = 0; i < bound; i++)
-        if (!camber_bind(c, json_string_value(json_array_get(array, 1 + 2 * i)), c->operands[first_operand + i]))
-            return false;
-    if (!camber_compile_operand(c, array, size - 1, expected))
+    return NULL;
+}
+
+bool camber_evaluate_match(camber_evaluation *e, const camber_node *node, camber_value *value) {
+    camber_value input;
+    if (!camber_evaluate_operand(e, node, 0, &input))
         return false;
-    camber_unbind(c, bound);
-    const camber_typing type = camber_node_at(c, c->operands[c->operand_count - 1])->type;
-    return camber_make_node(c, &(camber_node){.op = row->op, .type = type}, first_operand, node);
+    const camber_label *label = find_label(e->expression, node, &input);
+    return camber_evaluate_operand(e, node, label ? label->output : node->count - 1, value);
 }
 
-bool camber_compile_var(camber_compiler *c, const camber_operator *row, json_t *array, camber_typing expected,
-                        uint32_t *node) {
-    (void)expected;
-    const char *name = json_string_value(json_array_get(array, 1));
-    const camber_binding *binding = name ? camber_find_binding(c, name) : NULL;
-    if (!binding) {
-        camber_compiler_enter_index(c, 1);
-        return name ? camber_compiler_fail(c, "no \"let\" around this binds \"%.64s\"; bind it or correct the name",
-                                           name)
-                    : camber_compiler_fail(c, "expected a variable's name, a string; write it out");
-    }
-    const camber_node *from = camber_node_at(c, binding->node);
-    if (from->op == CAMBER_OP_CONSTANT) {
-        const camber_node constant = *from;
-        return camber_make_constant(c, &constant.value, constant.type, node);
-    }
-    const camber_node prototype = {.op = row->op,
-                                   .type = from->type,
-                                   .reads_zoom = from->reads_zoom,
-                                   .reads_feature = from->reads_feature,
-                                   .reads_line_progress = from->reads_line_progress,
-                                   .height = (uint16_t)(from->height + 1),
-                                   .index = binding->slot,
-                                   .index_count = binding->node};
-    return camber_make_node(c, &prototype, c->operand_count, node);
+bool camber_evaluate_among(camber_evaluation *e, const camber_node *node, camber_value *value) {
+    camber_value input;
+    if (!camber_evaluate_operand(e, node, 0, &input))
+        return false;
+    const camber_label *label = find_label(e->expression, node, &input);
+    if (input.type > CAMBER_VALUE_STRING)
+        return camber_evaluate_fail(e, "\"in\" looks for a string, a number, a boolean or null");
+    *value = camber_value_bool(label != NULL);
+    return true;
 }
+
+enum { LESS = CAMBER_OUTCOME_LESS, EQUAL = CAMBER_OUTCOME_EQUAL, GREATER = CAMBER_OUTCOME_GREATER };
+
+static const camber_operator rows[] = {
+    {"==", compile_comparison, camber_evaluate_comparison, VALUE, BOOL, 2, 3, .variant = EQUAL},
+    {"!=", compile_comparison, camber_evaluate_comparison, VALUE, BOOL, 2, 3, .variant = LESS | GREATER},
+    {"<", compile_comparison, camber_evaluate_comparison, VALUE, BOOL, 2, 3, .variant = LESS},
+    {"<=", compile_comparison, camber_evaluate_comparison, VALUE, BOOL, 2, 3, .variant = LESS | EQUAL},
+    {">", compile_comparison, camber_evaluate_comparison, VALUE, BOOL, 2, 3, .variant = GREATER},
+    {">=", compile_comparison, camber_evaluate_comparison, VALUE, BOOL, 2, 3, .variant = GREATER | EQUAL},
+    {"collator", compile_collator, camber_evaluate_collator, OBJECT, CAMBER_TYPE_COLLATOR, 1, 1},
+    {"!", camber_compile_uniform, camber_evaluate_not, BOOL, BOOL, 1, 1},
+    {"all", camber_compile_uniform, camber_evaluate_all, BOOL, BOOL, 0, ANY_COUNT},
+    {"any", camber_compile_uniform, camber_evaluate_any, BOOL, BOOL, 0, ANY_COUNT},
+    {"none", compile_none, camber_evaluate_any, BOOL, BOOL, 0, ANY_COUNT},
+    {"case", compile_case, camber_evaluate_case, VALUE, VALUE, 3, ANY_COUNT},
+    {"match", compile_match, camber_evaluate_match, VALUE, VALUE, 4, ANY_COUNT},
+    {"coalesce", compile_coalesce, camber_evaluate_coalesce, VALUE, VALUE, 1, ANY_COUNT},
+};
+
+const camber_operator_table camber_decision_operators = {rows, sizeof rows / sizeof *rows};

@@ -1,9 +1,12 @@
-/* What a layer draws a feature with: its properties evaluated, those that features do not change once. */
+/* Evaluates how a layer draws a feature: the properties that features do not change are evaluated once.
+ *
+ * Input: a compiled layer, a zoom, a feature. Output: camber_layer_paint.
+ */
 #include "style/properties.h"
 
 #include <math.h>
 
-static bool passes(const camber_expression *filter, double zoom, const camber_feature_view *feature) {
+static bool passes_filter(const camber_expression *filter, double zoom, const camber_feature_view *feature) {
     if (!filter)
         return true;
     camber_evaluation evaluation;
@@ -16,14 +19,14 @@ static bool passes(const camber_expression *filter, double zoom, const camber_fe
 }
 
 bool camber_style_layer_matches(const camber_style_layer *layer, double zoom, const camber_feature_view *feature) {
-    /* 24 is the largest limit that a style can name, and stands for none. */
+    /* A limit of 24, the largest that a style can name, means none. */
     if (!layer->visible || zoom < layer->min_zoom || (zoom >= layer->max_zoom && layer->max_zoom < 24.0))
         return false;
-    return passes(layer->filter, zoom, feature);
+    return passes_filter(layer->filter, zoom, feature);
 }
 
 bool camber_style_source_matches(const camber_style_source *source, const camber_feature_view *feature) {
-    return passes(source->filter, 0.0, feature);
+    return passes_filter(source->filter, 0.0, feature);
 }
 
 static bool store_number(const camber_property_row *row, const camber_value *value, double *number) {
@@ -56,7 +59,8 @@ static bool store_pair(const camber_property_row *row, const camber_value *value
     return true;
 }
 
-/* One without lengths above 0, or with one below, is solid; of more lengths than there is room for, the first ones. */
+/* Stores dashes. Without lengths above 0, or with one below 0, the line is solid; of too many lengths the first are
+ * taken. */
 static bool store_dashes(const camber_property_row *row, const camber_value *value, camber_layer_dashes *dashes) {
     double sum = 0.0;
     if (value->type != CAMBER_VALUE_ARRAY)
@@ -86,9 +90,9 @@ static bool store_value(const camber_property_row *row, const camber_value *valu
     return value->type == CAMBER_VALUE_COLOR;
 }
 
-/* Puts a property where the paint has it, which holds the default. */
-static void store(const camber_style_layer *layer, unsigned id, camber_evaluation *evaluation,
-                  camber_layer_paint *paint) {
+/* Stores a property in its field of the paint, which holds the default so far. */
+static void store_property(const camber_style_layer *layer, unsigned id, camber_evaluation *evaluation,
+                           camber_layer_paint *paint) {
     const camber_property_row *row = camber_property_rows + id;
     camber_value value;
     if (camber_expression_evaluate(layer->properties[id], evaluation, &value))
@@ -106,13 +110,14 @@ camber_layer_look camber_style_layer_look(const camber_style_layer *layer, doubl
         if (expression->reads_feature)
             look.by_feature |= 1u << i;
         else
-            store(layer, i, &evaluation, &look.paint);
+            store_property(layer, i, &evaluation, &look.paint);
     }
     camber_evaluation_end(&evaluation);
     return look;
 }
 
-/* Where a border has no colour of its own: darker than the line, of dark ones brighter. */
+/* Computes the border's colour where it has none of its own: darker than the line, or brighter where the line is
+ * dark. */
 camber_color camber_border_color(camber_color color) {
     const float luminance = 0.2126f * color.r + 0.7152f * color.g + 0.0722f * color.b;
     const bool dark = luminance < 0.25f, black = luminance <= 0.0f;
@@ -128,7 +133,7 @@ camber_layer_paint camber_layer_look_paint(const camber_layer_look *look, const 
         camber_evaluation_begin(&evaluation, look->zoom, feature);
         for (unsigned i = 0; look->by_feature >> i; i++)
             if (look->by_feature >> i & 1)
-                store(look->layer, i, &evaluation, &paint);
+                store_property(look->layer, i, &evaluation, &paint);
         camber_evaluation_end(&evaluation);
     }
     if (paint.border_width > 0.0 && paint.border_color.a <= 0.0f) {
@@ -167,7 +172,7 @@ bool camber_style_layer_pattern(const camber_style_layer *layer, double zoom, co
     return true;
 }
 
-/* Whether limits that differ change nothing of the join that both have. */
+/* Whether the join that both layers have ignores a limit in which they differ. */
 static bool join_ignores(const camber_layer_paint *p, const camber_layer_paint *q) {
     switch (p->join) {
     case CAMBER_JOIN_MITER: return p->miter_limit == q->miter_limit;
@@ -185,7 +190,7 @@ bool camber_layer_look_shares(const camber_layer_look *a, const camber_layer_loo
     for (unsigned i = 0; i < CAMBER_LINE_GEOMETRY; i++)
         if (a->by_feature >> i & 1 && !json_equal(a->layer->properties[i]->document, b->layer->properties[i]->document))
             return false;
-    /* Of what features change, both have nothing yet. */
+    /* Properties that features change have no value yet in either. */
     const camber_layer_paint *p = &a->paint, *q = &b->paint;
     const bool driven = a->by_feature >> CAMBER_LINE_JOIN & 1;
     const bool limits = p->round_limit == q->round_limit && p->miter_limit == q->miter_limit;

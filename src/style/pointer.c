@@ -1,4 +1,5 @@
-/* JSON pointers of messages: where something stands, and short, so that cause and cure stay in sight. */
+/* Writes JSON pointers for messages: where something is in the document, shortened so that cause and cure stay visible.
+ */
 #include "style/compiler.h"
 
 #include <stdio.h>
@@ -7,11 +8,11 @@ enum { HEAD = 120, TAIL = 60 };
 
 typedef struct text {
     char head[HEAD];
-    char tail[TAIL]; /* a ring */
-    size_t length;   /* of what was put */
+    char tail[TAIL]; /* a ring buffer of the last bytes */
+    size_t length;   /* bytes put so far */
 } text;
 
-static void put(text *t, char c) {
+static void put_byte(text *t, char c) {
     if (t->length < HEAD)
         t->head[t->length] = c;
     t->tail[t->length % TAIL] = c;
@@ -19,13 +20,13 @@ static void put(text *t, char c) {
 }
 
 static void put_step(text *t, const char *step) {
-    put(t, '/');
+    put_byte(t, '/');
     for (; *step; step++) {
         if (*step == '~' || *step == '/') {
-            put(t, '~');
-            put(t, *step == '~' ? '0' : '1');
+            put_byte(t, '~');
+            put_byte(t, *step == '~' ? '0' : '1');
         } else {
-            put(t, *step);
+            put_byte(t, *step);
         }
     }
 }
@@ -34,7 +35,7 @@ static bool is_continued(char c) {
     return ((unsigned char)c & 0xc0) == 0x80;
 }
 
-/* Behind a step, or within a long one behind a character. */
+/* Finds where to cut: behind a step, or behind a character of a long step. */
 static size_t cut_head(const char head[HEAD]) {
     for (size_t end = HEAD; end > HEAD / 2; end--)
         if (head[end - 1] == '/')

@@ -1,3 +1,7 @@
+/* The table of all layout and paint properties that layers may have: type, default, range, and what each may depend on.
+ *
+ * A new property is a value of camber_property_id and a row here, and a field of camber_layer_paint that it goes to.
+ */
 #include "style/properties.h"
 
 #include <math.h>

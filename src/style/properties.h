@@ -1,14 +1,14 @@
-/* The table of what a layer may have in its layout and paint. */
-#ifndef CAMBER_PROPERTIES_H
-#define CAMBER_PROPERTIES_H
+/* The table of all layout and paint properties of layers. */
+#ifndef CAMBER_STYLE_PROPERTIES_H
+#define CAMBER_STYLE_PROPERTIES_H
 
 #include "style/compiler.h"
 
 typedef struct camber_property_row {
     camber_layer_kind kind;
-    bool layout;             /* else paint */
+    bool layout;             /* false: of the paint */
     bool directed;           /* follows its line's direction */
-    bool needs_line_metrics; /* of its source */
+    bool needs_line_metrics; /* of its source layer */
     size_t offset;           /* into camber_layer_paint, where it has its type's form. CAMBER_NO_OFFSET: not there */
     camber_property property;
 } camber_property_row;
@@ -17,7 +17,7 @@ typedef struct camber_property_row {
 
 /* By camber_property_id. */
 extern const camber_property_row camber_property_rows[CAMBER_PROPERTIES];
-/* What the specification says where a style says nothing, as property.fallback says in JSON. */
+/* The specification's default, the same as property.fallback in JSON. */
 extern const camber_layer_paint camber_default_paint;
 
 /* NULL: the specification has no such property. */

@@ -1,4 +1,7 @@
-/* What stands for a property: a constant, an expression or a function, and what it may depend on. */
+/* Compiles the value of a property (a constant, an expression or a function) and checks what it may depend on.
+ *
+ * Input: JSON and the property's row. Output: an expression, or an error that says what to write instead.
+ */
 #include "style/compiler.h"
 
 #include <math.h>
@@ -13,7 +16,7 @@ camber_typing camber_property_typing(const camber_property *property) {
 
 /* ---- Zoom ---- */
 
-/* What of a node's zoom curves is known: its curve, none, or that the rule is broken. */
+/* The state of knowledge about a node's zoom curves: one curve, none, or that the rule is broken. */
 typedef struct curve {
     uint32_t node;
     enum { CURVE_NONE, CURVE_ONE, CURVE_NESTED, CURVE_SEVERAL } kind;
@@ -28,20 +31,20 @@ static bool same_curve(curve a, curve b) {
 static curve find_curve(const camber_expression *e, uint32_t index) {
     const camber_node *node = &e->nodes[index];
     const curve own = {index, CURVE_ONE};
-    const bool is_curve = node->op == CAMBER_OP_STEP || node->op == CAMBER_OP_INTERPOLATE;
+    const bool is_curve = node->evaluate == camber_evaluate_step || node->evaluate == camber_evaluate_interpolate;
     curve result = {0, CURVE_NONE};
-    if (is_curve && e->nodes[e->links[node->first]].op == CAMBER_OP_ZOOM)
+    if (is_curve && e->nodes[e->links[node->first]].evaluate == camber_evaluate_zoom)
         result = own;
-    else if (node->op == CAMBER_OP_LET)
+    else if (node->evaluate == camber_evaluate_let)
         result = find_curve(e, e->links[node->first + node->count - 1]);
     for (uint32_t i = 0; i < node->count && result.kind <= CURVE_ONE; i++) {
         const uint32_t operand = e->links[node->first + i];
-        if (!e->nodes[operand].reads_zoom || (node->op == CAMBER_OP_LET && i + 1 == node->count))
+        if (!e->nodes[operand].reads_zoom || (node->evaluate == camber_evaluate_let && i + 1 == node->count))
             continue;
         const curve found = find_curve(e, operand);
         if (found.kind == CURVE_NONE)
             continue;
-        if (found.kind > CURVE_ONE || (result.kind == CURVE_NONE && node->op == CAMBER_OP_COALESCE))
+        if (found.kind > CURVE_ONE || (result.kind == CURVE_NONE && node->evaluate == camber_evaluate_coalesce))
             result = found;
         else if (result.kind == CURVE_NONE)
             result.kind = CURVE_NESTED;
@@ -63,7 +66,7 @@ static bool check_zoom(camber_compiler *c, const camber_property *property, uint
     if (found.kind != CURVE_ONE)
         return camber_compiler_fail(c, "\"zoom\" may only be the input of one \"step\" or \"interpolate\" at the top; "
                                        "move that curve outwards");
-    if (!property->interpolated && e->nodes[found.node].op == CAMBER_OP_INTERPOLATE)
+    if (!property->interpolated && e->nodes[found.node].evaluate == camber_evaluate_interpolate)
         return camber_compiler_fail(c, "%s is not interpolated; use \"step\"", property->name);
     return true;
 }
@@ -125,7 +128,7 @@ static bool check_property(camber_compiler *c, const camber_property *property, 
     if (node->reads_line_progress && !property->line_progress && !c->strict)
         return camber_compiler_fail(c, "%s cannot depend on \"line-progress\"; use it in line-gradient",
                                     property->name);
-    return check_zoom(c, property, root) && (node->op != CAMBER_OP_CONSTANT || c->strict ||
+    return check_zoom(c, property, root) && (!camber_is_constant(node) || c->strict ||
                                              camber_property_check(c, property, &camber_node_at(c, root)->value));
 }
 
@@ -133,7 +136,7 @@ static bool check_property(camber_compiler *c, const camber_property *property, 
 
 static bool check_outputs(camber_compiler *c, const camber_property *property, const json_t *json);
 
-/* Of the operands those that may be the result: from first on each step-th, and the last. */
+/* Checks the operands that may be the result: from first on each step-th, and the last. */
 static bool check_operands(camber_compiler *c, const camber_property *property, const json_t *array, size_t first,
                            size_t step) {
     const size_t count = json_array_size(array);
@@ -148,7 +151,7 @@ static bool check_operands(camber_compiler *c, const camber_property *property, 
     return true;
 }
 
-/* What is out of range is held to it when it is evaluated, and a name that is none is the default. */
+/* Warns of an output: when evaluated, a number out of range is clamped, and an unknown name becomes the default. */
 static void warn_of_output(camber_compiler *c, const camber_property *property, const json_t *json) {
     const bool ranged = property->low < 0.0 || property->high > 0.0;
     const double number = json_number_value(json);
@@ -258,7 +261,7 @@ bool camber_compile_property(camber_compiler *c, json_t *json, const camber_prop
     if (!camber_expression_begin(c, json))
         return false;
     const bool done = compile_value(c, json, property, &root) && check_property(c, property, root) &&
-                      (c->strict || is_list(json) || camber_node_at(c, root)->op == CAMBER_OP_CONSTANT ||
+                      (c->strict || is_list(json) || camber_is_constant(camber_node_at(c, root)) ||
                        !json_is_array(json) || check_outputs(c, property, json));
     return camber_expression_end(c, done, root, expression);
 }

@@ -1,29 +1,33 @@
-/* A line-gradient as a ramp of stops: at the stops of its steps and interpolations, and between them where it bends, so
- * that straight pieces between the stops are as good as the expression. */
+/* Turns a line-gradient into a ramp of colour stops.
+ *
+ * Input: an expression of line-progress. Output: sorted stops. Stops stand where the expression's own curves have them,
+ * and between these where it bends, so that straight colours between stops are as good as the expression.
+ */
 #include "style/ramp.h"
 
-#include "style/expression.h"
+#include "style/evaluation.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* A piece is straight where samples inside it lie this close to the line between its ends, premultiplied. */
+/* A span between two stops is straight where samples inside it lie this close to the line between its ends,
+ * premultiplied. */
 static const double TOLERANCE = 1.0 / 512.0;
-/* Shorter pieces are as good as steps. */
+/* Shorter spans are as good as steps. */
 static const double SHORTEST = 1e-6;
-/* Nodes that are looked at, and bytes that texts take, in all: some hundred milliseconds at most. */
+/* The most nodes that are evaluated and bytes that texts take, in all: some hundred milliseconds at most. */
 static const double MOST_WORK = 2e7;
 enum { INSIDE = 15, GRID = 64, KNOWN_MAX = 1000, ENDS_MAX = KNOWN_MAX + 4 };
-/* Stops that pieces may take besides their own: twice as many as one is halved. */
+/* The most stops that spans may take besides their own; a span that is halved takes twice as many. */
 enum { ROOM = 64 };
 
 typedef struct sampler {
     const camber_expression *expression;
     camber_layer_ramp *ramp;
-    size_t capacity;   /* of its stops */
+    size_t capacity;   /* of its own stops */
     bool failed;       /* no memory */
-    double cost, work; /* of an evaluation; that may still be done */
-    size_t pieces;     /* that come: each wants two stops */
+    double cost, work; /* work of evaluations that may still be done */
+    size_t spans;      /* spans that still come: each needs two stops */
     const char **cause;
     double *failed_at;
 } sampler;
@@ -88,21 +92,21 @@ static void put_stop(sampler *s, const sample *at) {
     ramp->stops[ramp->count++] = stop;
 }
 
-/* From a place to just before another one; the room that the pieces behind it need stays. */
-static void put_piece(sampler *s, double from, double to) {
+/* Adds the stops from one position to just before another; the room that later spans need stays free. */
+static void put_span(sampler *s, double from, double to) {
     const sample first = sample_at(s, from), last = sample_at(s, to - 1e-7 * (to - from));
-    const bool room = s->ramp->count + 2 * s->pieces + ROOM <= CAMBER_RAMP_STOPS_MAX;
+    const bool room = s->ramp->count + 2 * s->spans + ROOM <= CAMBER_RAMP_STOPS_MAX;
     if (room && !s->failed && s->work > 0.0 && to - from > SHORTEST && !is_straight(s, &first, &last)) {
         const double middle = 0.5 * (from + to);
-        put_piece(s, from, middle);
-        put_piece(s, middle, to);
+        put_span(s, from, middle);
+        put_span(s, middle, to);
         return;
     }
     put_stop(s, &first);
     put_stop(s, &(sample){to, last.color});
 }
 
-/* ---- Where pieces end ---- */
+/* ---- Where spans end ---- */
 
 static int compare_numbers(const void *left, const void *right) {
     const double a = *(const double *)left, b = *(const double *)right;
@@ -110,15 +114,17 @@ static int compare_numbers(const void *left, const void *right) {
 }
 
 static bool is_curve(const camber_node *node) {
-    return (node->op == CAMBER_OP_STEP || node->op == CAMBER_OP_INTERPOLATE) && node->reads_line_progress;
+    return (node->evaluate == camber_evaluate_step || node->evaluate == camber_evaluate_interpolate) &&
+           node->reads_line_progress;
 }
 
 /* Whether the progress is read by curves alone, so that nothing happens between their stops. */
 static bool is_plain(const camber_expression *e) {
     for (size_t i = 0; i < e->node_count; i++) {
         const camber_node *node = e->nodes + i;
-        const bool follows = is_curve(node) && e->nodes[e->links[node->first]].op == CAMBER_OP_LINE_PROGRESS;
-        if (node->reads_line_progress && node->op != CAMBER_OP_LINE_PROGRESS && !follows)
+        const bool follows =
+            is_curve(node) && e->nodes[e->links[node->first]].evaluate == camber_evaluate_line_progress;
+        if (node->reads_line_progress && node->evaluate != camber_evaluate_line_progress && !follows)
             return false;
     }
     return true;
@@ -171,9 +177,9 @@ camber_status camber_layer_ramp_create(const camber_expression *expression, camb
                  .cause = cause,
                  .failed_at = failed_at};
     for (size_t i = 0; i + 1 < end_count && !s.failed; i++) {
-        s.pieces = end_count - 2 - i;
+        s.spans = end_count - 2 - i;
         if (i == 0 || s.work > -MOST_WORK) /* past that the last colour stays */
-            put_piece(&s, ends[i], ends[i + 1]);
+            put_span(&s, ends[i], ends[i + 1]);
     }
     if (s.failed) {
         camber_free(context, made.stops);

@@ -1,6 +1,6 @@
 /* A line-gradient as stops. */
-#ifndef CAMBER_RAMP_H
-#define CAMBER_RAMP_H
+#ifndef CAMBER_STYLE_RAMP_H
+#define CAMBER_STYLE_RAMP_H
 
 #include "style/style.h"
 
@@ -8,7 +8,7 @@
  * and NULL where it can everywhere. Returns CAMBER_ERROR_MEMORY. Cost: bounded, whatever the expression. */
 camber_status camber_layer_ramp_create(const camber_expression *expression, camber_layer_ramp *ramp, const char **cause,
                                        double *failed_at);
-/* The same places in other colours. */
+/* Makes a ramp with the same stops in other colours. */
 camber_status camber_layer_ramp_copy(camber_context *context, const camber_layer_ramp *ramp,
                                      camber_color (*change)(camber_color color), camber_layer_ramp *copy);
 

@@ -4,7 +4,7 @@
 # casing and the fill of a class have the same filter, cap and join, so that they are tessellated once.
 
 set(road_zooms 4 9 12 14 16 18 22)
-# What a casing adds to the width of its fill, CSS px at these zooms.
+# How much wider a casing is than its fill, CSS px at these zooms.
 set(road_casing_ground 0.15 0.4 0.8 1.4 2.2 3.4 20)
 set(road_casing_tunnel 0.1 0.2 0.5 0.9 1.4 2 14)
 set(road_casing_bridge 0.2 0.5 1.1 2 3.2 5 32)

@@ -23,11 +23,11 @@ static const shipped_style styles[] = {
 
 enum { STYLES = sizeof styles / sizeof *styles };
 
-const char *camber_style_name(size_t n) {
+const char *camber_style_list(size_t n) {
     return n < STYLES ? styles[n].name : NULL;
 }
 
-const char *camber_style_text(const char *name, camber_theme theme, size_t *size_bytes) {
+const char *camber_style_get_text(const char *name, camber_theme theme, size_t *size_bytes) {
     const int which = theme == CAMBER_THEME_DARK;
     for (size_t i = 0; i < STYLES; i++) {
         if (strcmp(styles[i].name, name) != 0)

@@ -1,3 +1,7 @@
+/* Mixes two colours: in sRGB, in CIELAB, or in CIELAB's cylinder LCh, which the specification calls hcl.
+ *
+ * CIELAB is over the white point D50, with sRGB's primaries adapted to D50 by Bradford. Lightness goes from 0 to 100.
+ */
 #include "style/spaces.h"
 
 #include <math.h>
@@ -9,7 +13,7 @@ typedef struct lab {
 } lab;
 
 typedef struct hcl {
-    double h, c, l; /* h in degrees; NAN: a grey has none */
+    double h, c, l; /* h in degrees; NAN for a grey, which has no hue */
 } hcl;
 
 static const double white_x = 0.96422, white_z = 0.82521;
@@ -37,7 +41,7 @@ static lab to_lab(camber_color color) {
     const double r = to_linear((double)color.r), g = to_linear((double)color.g), b = to_linear((double)color.b);
     const double y = to_lightness(0.2225045 * r + 0.7168786 * g + 0.0606169 * b);
     double x = y, z = y;
-    /* A grey has no colour, whatever the digits of the matrix add up to. */
+    /* A grey has no hue, whatever the digits of the matrix add up to. */
     if (color.r < color.g || color.r > color.g || color.g < color.b || color.g > color.b) {
         x = to_lightness((0.4360747 * r + 0.3850649 * g + 0.1430804 * b) / white_x);
         z = to_lightness((0.0139322 * r + 0.0971045 * g + 0.7141733 * b) / white_z);
@@ -65,14 +69,14 @@ static hcl to_hcl(camber_color color) {
     return (hcl){h, c, from.l};
 }
 
-static double mix(double a, double b, double t) {
+static double mix_channel(double a, double b, double t) {
     return a + t * (b - a);
 }
 
-/* The shorter way round; a grey takes the other's hue, and black its chroma too. */
+/* Mixes hues the shorter way round; a grey takes the other's hue, and black its chroma too. */
 static camber_color mix_hcl(camber_color low, camber_color high, double t) {
     const hcl a = to_hcl(low), b = to_hcl(high);
-    double h = isnan(a.h) ? b.h : a.h, c = mix(a.c, b.c, t);
+    double h = isnan(a.h) ? b.h : a.h, c = mix_channel(a.c, b.c, t);
     if (!isnan(a.h) && !isnan(b.h)) {
         const double turn = b.h - a.h;
         h = a.h + t * (turn > 180.0 ? turn - 360.0 : turn < -180.0 ? turn + 360.0 : turn);
@@ -82,7 +86,7 @@ static camber_color mix_hcl(camber_color low, camber_color high, double t) {
         c = b.c;
     }
     h = isnan(h) ? 0.0 : h * degree;
-    return from_lab((lab){mix(a.l, b.l, t), cos(h) * c, sin(h) * c});
+    return from_lab((lab){mix_channel(a.l, b.l, t), cos(h) * c, sin(h) * c});
 }
 
 camber_color camber_color_mix(camber_color a, camber_color b, double t, camber_color_space space) {
@@ -91,13 +95,14 @@ camber_color camber_color_mix(camber_color a, camber_color b, double t, camber_c
         made = mix_hcl(a, b, t);
     } else if (space == CAMBER_SPACE_LAB) {
         const lab low = to_lab(a), high = to_lab(b);
-        made = from_lab((lab){mix(low.l, high.l, t), mix(low.a, high.a, t), mix(low.b, high.b, t)});
+        made = from_lab(
+            (lab){mix_channel(low.l, high.l, t), mix_channel(low.a, high.a, t), mix_channel(low.b, high.b, t)});
     } else {
-        /* Straight components are mixed, not premultiplied ones: so do the specification's own tests. */
-        made.r = (float)mix((double)a.r, (double)b.r, t);
-        made.g = (float)mix((double)a.g, (double)b.g, t);
-        made.b = (float)mix((double)a.b, (double)b.b, t);
+        /* Mixes straight components, not premultiplied ones, as the specification's own tests do. */
+        made.r = (float)mix_channel((double)a.r, (double)b.r, t);
+        made.g = (float)mix_channel((double)a.g, (double)b.g, t);
+        made.b = (float)mix_channel((double)a.b, (double)b.b, t);
     }
-    made.a = (float)mix((double)a.a, (double)b.a, t);
+    made.a = (float)mix_channel((double)a.a, (double)b.a, t);
     return made;
 }

@@ -1,6 +1,6 @@
 /* Colours between two, in the spaces that people see as even. */
-#ifndef CAMBER_SPACES_H
-#define CAMBER_SPACES_H
+#ifndef CAMBER_STYLE_SPACES_H
+#define CAMBER_STYLE_SPACES_H
 
 #include "style/expression.h"
 

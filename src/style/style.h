@@ -1,6 +1,6 @@
-/* The compiled style: what the map layer asks of it. */
-#ifndef CAMBER_STYLE_H
-#define CAMBER_STYLE_H
+/* The compiled style, as the map layer uses it. */
+#ifndef CAMBER_STYLE_STYLE_H
+#define CAMBER_STYLE_STYLE_H
 
 #include "base/base.h"
 #include "camber_map.h"
@@ -12,7 +12,7 @@
  * the other properties that the style names, and leaves null elsewhere: such lines cannot be classified. */
 #define CAMBER_PLAIN_PROPERTY "camber:plain"
 
-/* What an expression is evaluated over. */
+/* A feature as an expression reads it. */
 typedef struct camber_feature_view {
     const camber_value *values; /* style->property_count, in the order of style->properties */
     const char *geometry_type;  /* "LineString" or "Polygon" */
@@ -34,7 +34,7 @@ typedef enum camber_layer_kind {
     CAMBER_LAYER_LINE,
 } camber_layer_kind;
 
-/* What a layer may have in its layout and paint, visibility apart; properties.c says what each is. */
+/* Layout and paint properties of a layer, visibility apart; properties.c describes each. */
 typedef enum camber_property_id {
     CAMBER_LINE_CAP,
     CAMBER_LINE_JOIN,
@@ -65,9 +65,9 @@ typedef enum camber_property_id {
 
 /* The colours of a line-gradient. */
 typedef struct camber_layer_ramp {
-    camber_ramp_stop *stops; /* count. None: no gradient */
+    camber_ramp_stop *stops; /* count. 0: no gradient */
     size_t count;
-    bool translucent; /* a stop is */
+    bool translucent; /* a stop is translucent */
 } camber_layer_ramp;
 
 typedef struct camber_style_layer {
@@ -79,21 +79,22 @@ typedef struct camber_style_layer {
     char *filter_key;          /* the filter as compact JSON, "" for none: equal keys draw equal features */
     double min_zoom, max_zoom; /* drawn where min <= zoom < max; 0 and 24 by default; 24: no end */
     bool visible;
-    camber_overlap overlap;                           /* of its metadata: no property of the specification says it */
-    camber_expression *filter;                        /* NULL: everything */
+    camber_overlap overlap;    /* from its metadata, since no property of the specification says it */
+    camber_expression *filter; /* NULL: everything */
     camber_expression *properties[CAMBER_PROPERTIES]; /* NULL: the specification's default */
-    camber_layer_ramp ramp, border_ramp;              /* of line-gradient, and of its border where that has no colour */
+    camber_layer_ramp ramp, border_ramp; /* for line-gradient, and for its border where that has no colour */
 } camber_style_layer;
 
-/* What no layer names: any input. */
+/* Stands for a source that no layer names: any input. */
 #define CAMBER_NO_SOURCE UINT32_MAX
 
 typedef struct camber_style_source {
     char *name;
     char *type;    /* "geojson", "vector", ... */
     json_t *json;  /* a reference to the source as it stands in the document */
-    char *missing; /* what to do where its file is not there, of the style's metadata camber:missing. NULL: not told */
-    camber_expression *filter; /* GeoJSON: of the features that there are at all. NULL: everything */
+    char *missing; /* tells what to do where its file is missing, from the style's metadata camber:missing. NULL: not
+                      told */
+    camber_expression *filter; /* GeoJSON: selects the features that exist at all. NULL: everything */
 } camber_style_source;
 
 /* A sprite of the style: pictures for patterns. */
@@ -111,7 +112,7 @@ struct camber_style {
     camber_context *context;
     char *name; /* the document's own; NULL: none */
     camber_style_camera camera;
-    json_t *state; /* of ["global-state", key]: objects with a default. NULL: none */
+    json_t *state; /* for ["global-state", key]: objects with a default. NULL: none */
     camber_style_sprite *sprites;
     size_t sprite_count;
     camber_style_layer *layers; /* in drawing order */
@@ -157,14 +158,14 @@ typedef struct camber_layer_paint {
     double border_width;       /* of the line's own width, on each side */
     camber_color border_color; /* the alpha includes the opacity */
     camber_layer_dashes dashes;
-    /* The same for all features. */
+    /* These are the same for all features. */
     double layer_opacity;
     double translate[2];
-    double trim[2]; /* from where to where the line is not drawn, shares of its length */
+    double trim[2]; /* the line is not drawn from one to the other: shares of its length */
     camber_translate_anchor translate_anchor;
 } camber_layer_paint;
 
-/* A layer at a zoom, with all evaluated that features do not change. */
+/* A layer at a zoom, with all properties evaluated that do not depend on features. */
 typedef struct camber_layer_look {
     const camber_style_layer *layer;
     double zoom;
@@ -178,11 +179,11 @@ camber_layer_paint camber_layer_look_paint(const camber_layer_look *look, const 
 /* Both at once. */
 camber_layer_paint camber_style_layer_paint(const camber_style_layer *layer, double zoom,
                                             const camber_feature_view *feature);
-/* Of a line without a colour for its border. */
+/* The border's colour for a line that gives none. */
 camber_color camber_border_color(camber_color color);
-/* The image that a layer's line-pattern or background-pattern names at a zoom, of those that find counts from 1; 0: it
- * names none, or one that is not there, of which missing is told. false: the layer has no pattern. feature may be NULL
- * for a background. */
+/* Finds the image that a layer's line-pattern or background-pattern names at a zoom: a number from 1, as
+ * images->find gives it. 0: it names none, or one that is missing, which images->missing is told. false: the layer
+ * has no pattern. feature may be NULL for a background. */
 bool camber_style_layer_pattern(const camber_style_layer *layer, double zoom, const camber_feature_view *feature,
                                 const camber_style_images *images, uint32_t *image);
 /* Whether two layers give each feature the same geometry: caps, joins, limits, offset, order. */

@@ -1,3 +1,7 @@
+/* Types of expressions: making them, comparing them and naming them.
+ *
+ * Arrays carry the type of their items and their length, up to three levels deep; deeper ones hold any value.
+ */
 #include "style/typing.h"
 
 #include <stdio.h>
@@ -28,7 +32,8 @@ camber_typing camber_typing_merge(camber_typing a, camber_typing b) {
     return camber_typing_of(a.type == b.type && a.type != CAMBER_TYPE_ARRAY ? a.type : CAMBER_TYPE_VALUE);
 }
 
-/* Two items tell the type of all but where all are alike: the walk ends at the first that differs. */
+/* The type of an array. The walk ends at the first item whose type differs, since the items then have no common
+ * type. */
 static camber_typing typing_of_items(const camber_value *array, unsigned depth) {
     camber_typing item = camber_typing_of(CAMBER_TYPE_VALUE);
     for (uint32_t i = 0; i < array->count; i++) {
@@ -107,7 +112,7 @@ const char *camber_typing_write(camber_typing typing, char text[CAMBER_TYPING_TE
     }
     char item[CAMBER_TYPING_TEXT_SIZE];
     const camber_typing inner = camber_typing_item(typing);
-    /* An item's text is shorter by its brackets: three arrays in each other have room. */
+    /* An item's text is shorter by its brackets, so three nested arrays fit. */
     camber_typing_write(inner, item);
     if (typing.lengths[0] != CAMBER_ANY_LENGTH)
         snprintf(text, CAMBER_TYPING_TEXT_SIZE, "array<%.70s, %u>", item, typing.lengths[0]);

@@ -1,6 +1,6 @@
 /* The types that expressions have before they are evaluated. */
-#ifndef CAMBER_TYPING_H
-#define CAMBER_TYPING_H
+#ifndef CAMBER_STYLE_TYPING_H
+#define CAMBER_STYLE_TYPING_H
 
 #include "style/value.h"
 
@@ -24,8 +24,8 @@ typedef enum camber_type {
 
 typedef struct camber_typing {
     camber_type type;                     /* an array where depth is not 0 */
-    camber_type item;                     /* of the innermost array */
-    uint32_t depth;                       /* of arrays in arrays */
+    camber_type item;                     /* item type of the innermost array */
+    uint32_t depth;                       /* how deep arrays are nested; 0: no array */
     uint32_t lengths[CAMBER_ARRAY_DEPTH]; /* the outermost first */
 } camber_typing;
 
@@ -33,14 +33,14 @@ static inline camber_typing camber_typing_of(camber_type type) {
     return (camber_typing){.type = type};
 }
 camber_typing camber_typing_array(camber_typing item, uint32_t length);
-/* Of an array's items. */
+/* The type of an array's items. */
 camber_typing camber_typing_item(camber_typing array);
-/* What an evaluated value is. */
+/* The type of an evaluated value. */
 camber_typing camber_typing_of_value(const camber_value *value);
 
-/* The type of items of these two types, seen one after the other: one type, or any value. Two arrays are never one. */
+/* The common type of two items: their type where it is one, else any value. Two arrays have none. */
 camber_typing camber_typing_merge(camber_typing a, camber_typing b);
-/* Whether what is actual may stand where expected is wanted. */
+/* Whether a value of type actual may stand where expected is wanted. */
 bool camber_typing_fits(camber_typing expected, camber_typing actual);
 
 /* "array<number, 2>": the specification's name. */

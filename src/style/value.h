@@ -1,6 +1,6 @@
 /* Values of expressions and of features' properties. */
-#ifndef CAMBER_VALUE_H
-#define CAMBER_VALUE_H
+#ifndef CAMBER_STYLE_VALUE_H
+#define CAMBER_STYLE_VALUE_H
 
 #include "base/base.h"
 
@@ -17,11 +17,11 @@ typedef enum camber_value_type {
 typedef struct camber_value camber_value;
 typedef struct camber_member camber_member;
 
-/* What it points to is owned by whoever made the value. */
+/* A value of an expression or of a property. It does not own the memory that it points to: its maker does. */
 struct camber_value {
     camber_value_type type;
-    uint32_t count; /* of an array's items or an object's members */
-    bool boolean;   /* of a null: the feature has the property, as null */
+    uint32_t count; /* number of an array's items or an object's members */
+    bool boolean;   /* for a null: the feature has the property, and it is null */
     double number;
     union {
         const char *string; /* UTF-8 */
@@ -33,7 +33,7 @@ struct camber_value {
 
 struct camber_member {
     const char *key;
-    uint32_t place; /* in the document, which text of the object follows */
+    uint32_t position; /* position in the document, for the order in texts */
     camber_value value;
 };
 

@@ -1,6 +1,24 @@
-/* What the vertex shader makes of records, on the host: each vertex by itself, and indices that number them.
- * stroke.vert says the same in GLSL. What a device leaves is not trusted: records and corners that contradict each
- * other make a wrong mesh, which a proof finds, and read nothing that is not there. */
+/* Expands records into vertices and indices on the host, as shaders/stroke.vert does it on the fly.
+ *
+ * Input: the records of a mesh, and corners (record | which corner) for kite and fan. Output: one camber_vertex for
+ * each distinct vertex, and indices that number them. Whatever a device left is not trusted: records and corners that
+ * contradict each other give a wrong mesh, which a check finds, but never a read outside of an array.
+ *
+ * Strips: a record is a pair of vertices, left and right of its point. A strip begins with a break, and its first
+ * record repeats the point for the segment that goes out:
+ *
+ *     records     break  start  end   end   break  start  end
+ *     vertices           0 1    2 3   4 5          6 7    8 9
+ *     indices     R R    0 1    2 3   4 5   R R    6 7    8 9        R: CAMBER_RESTART_INDEX
+ *
+ * At a tight join the start shares its outer vertex with the end before it: its index is repeated there.
+ *
+ * Kite and fan: a record is a point, and triangles name its corners. Only corners that are named become vertices:
+ *
+ *        in                     out        1 IN_LEFT, 2 IN_RIGHT: of the segment into the point
+ *     ---------1        3---------         3 OUT_LEFT, 4 OUT_RIGHT: of that out of it
+ *              |   0    |                  0 CENTRE: the point
+ *     ---------2        4---------         5 and more: a join's own, on its outer side */
 #include "tess/mesh.h"
 
 #include "kernels/join.h"
@@ -10,7 +28,8 @@
 
 #define CORNER_MASK ((1u << CAMBER_CORNER_BITS) - 1u)
 
-/* A vertex of the segment into or out of a point, whose other end is the record other. */
+/* Makes a vertex of record `at`. Its segment goes out of the point if out is set, else into it; other is the record at
+ * the segment's other end. */
 static camber_vertex make_vertex(const camber_record *records, size_t at, size_t other, bool out) {
     const camber_record *p = records + at, *a = records + (out ? at : other), *b = records + (out ? other : at);
     const uint32_t first = a->join & CAMBER_JOIN_AFTER_FIRST ? 128u : 0u;
@@ -28,11 +47,13 @@ static camber_vertex make_vertex(const camber_record *records, size_t at, size_t
     };
 }
 
+/* Moves a vertex off its point: along its segment, and across it to the left, in units of the reach. */
 static void set_extrusion(camber_vertex *vertex, float along, float across) {
     vertex->along = along;
     vertex->across = (int16_t)(across * 16384.0f);
 }
 
+/* Makes a vertex on an edge of the segment's body. side: 1 left, -1 right. */
 static camber_vertex make_edge(const camber_record *records, size_t at, size_t other, bool out, float side,
                                camber_u32 method) {
     camber_vertex vertex = make_vertex(records, at, other, out);
@@ -43,8 +64,8 @@ static camber_vertex make_edge(const camber_record *records, size_t at, size_t o
 
 /* ---- Strips ---- */
 
-/* The record beside another, which is itself where there is none. */
-static size_t beside(size_t record, size_t count, bool behind) {
+/* The record behind or before another; the record itself at the ends of the list. */
+static size_t neighbour(size_t record, size_t count, bool behind) {
     if (behind)
         return record + 1 < count ? record + 1 : record;
     return record > 0 ? record - 1 : record;
@@ -54,11 +75,11 @@ static camber_vertex strip_vertex(const camber_record *records, size_t count, si
     const camber_record *r = records + record;
     const float side = right ? -1.0f : 1.0f;
     const bool out = camber_record_starts(r->last) && !camber_edge_is_shared(r->join, r->last, side);
-    return make_edge(records, record, beside(record, count, out), out, side, CAMBER_STRIP);
+    return make_edge(records, record, neighbour(record, count, out), out, side, CAMBER_STRIP);
 }
 
-/* Two indices a record: of breaks restarts, of others its vertices in the order of records. A start at a tight join has
- * one vertex of its own: the outer one is that of the end before. */
+/* Gives each record two indices: restarts for a break, else its two vertices. A start shares a vertex with the end
+ * before it where camber_edge_is_shared says so. */
 static void expand_strip(camber_mesh_data *data) {
     const size_t room = data->info.vertex_count;
     uint32_t count = 0;
@@ -80,10 +101,20 @@ static void expand_strip(camber_mesh_data *data) {
 
 /* ---- Corners ---- */
 
-/* Along and across of a join's own vertices, in units of the reach; outer: the side. */
+/* Places a join's own vertices, relative to the point P in units of the reach. q is tan(turn / 4).
+ *
+ *              TIP                IN_TIP -- BISECTOR -- OUT_TIP            FAN+1 .. FAN+2
+ *            /     \                /                       \             .               .
+ *     ----- L       L' -----   --- L                         L' ---      L                 L'
+ *            \     /                 \                     /               \             /
+ *               P                               P                                 P
+ *
+ *     kite                     two kites, past 120 degrees              fan: steps on the arc
+ *
+ * L and L' are the outer edge vertices of the segments in and out. */
 static void set_join_corner(camber_vertex *vertex, camber_u32 corner, float q, const camber_row *row) {
     const float outer = q > 0.0f ? -1.0f : 1.0f, a = fabsf(q), scale = 1.0f / (1.0f + a * a);
-    /* Chords touch the padded arc instead of cutting it. */
+    /* The chords touch the padded arc from outside instead of cutting it, hence 1 / cos. */
     const float angle = row->fan_step * (float)((int)corner - (int)CAMBER_CORNER_FAN),
                 arc = 1.0f / cosf(0.5f * row->fan_step);
     switch (corner) {
@@ -96,6 +127,7 @@ static void set_join_corner(camber_vertex *vertex, camber_u32 corner, float q, c
     }
 }
 
+/* Makes the vertex that an index into records and corners names. */
 static camber_vertex corner_vertex(const camber_mesh_data *data, uint32_t index, const camber_row *rows) {
     const camber_record *records = data->records;
     const size_t at = index >> CAMBER_CORNER_BITS;
@@ -103,7 +135,7 @@ static camber_vertex corner_vertex(const camber_mesh_data *data, uint32_t index,
     const bool out = corner == CAMBER_CORNER_CENTRE || corner == CAMBER_CORNER_OUT_LEFT ||
                      corner == CAMBER_CORNER_OUT_RIGHT || corner == CAMBER_CORNER_OUT_TIP;
     const bool dot = camber_join_kind(join) == CAMBER_KIND_DOT;
-    const size_t other = dot ? at : beside(at, data->info.record_count, out);
+    const size_t other = dot ? at : neighbour(at, data->info.record_count, out);
     if (corner >= CAMBER_CORNER_IN_LEFT && corner <= CAMBER_CORNER_OUT_RIGHT)
         return make_edge(records, at, other, out, (corner & 1u) ? 1.0f : -1.0f, (camber_u32)data->info.method);
     camber_vertex vertex = make_vertex(records, at, other, out);
@@ -111,18 +143,20 @@ static camber_vertex corner_vertex(const camber_mesh_data *data, uint32_t index,
     return vertex;
 }
 
-/* The corners of a record that indices name, as bits. */
+/* Which corners of a record are named by indices, as 128 bits. */
 typedef struct corner_set {
     uint64_t bits[2];
 } corner_set;
 
+/* How many corners of a set have a smaller number. */
 static unsigned count_below(const corner_set *set, camber_u32 corner) {
     const uint64_t below = (1ull << (corner & 63u)) - 1u;
     const unsigned low = (unsigned)__builtin_popcountll(set->bits[0] & (corner < 64 ? below : ~0ull));
     return corner < 64 ? low : low + (unsigned)__builtin_popcountll(set->bits[1] & below);
 }
 
-/* Which corners each record has, and how many vertices the records before have. */
+/* Finds which corners each record has, and the number of each record's first vertex. An index that names no record is
+ * set to 0. */
 static camber_status find_corners(camber_context *context, camber_mesh_data *data, corner_set **sets,
                                   uint32_t **first_vertices) {
     const size_t records = data->info.record_count;
@@ -147,7 +181,8 @@ static camber_status find_corners(camber_context *context, camber_mesh_data *dat
     return CAMBER_OK;
 }
 
-camber_status camber_corners_count(camber_context *context, camber_mesh_data *data, uint32_t **first_vertices) {
+camber_status camber_mesh_data_find_first_vertices(camber_context *context, camber_mesh_data *data,
+                                                   uint32_t **first_vertices) {
     corner_set *sets;
     const camber_status status = find_corners(context, data, &sets, first_vertices);
     if (status == CAMBER_OK)
@@ -155,7 +190,7 @@ camber_status camber_corners_count(camber_context *context, camber_mesh_data *da
     return status;
 }
 
-/* Vertices in the order of records, and of corners within a record. */
+/* Numbers the vertices in the order of records, and of corners within a record; then makes them. */
 static camber_status expand_corners(camber_context *context, const camber_row *rows, camber_mesh_data *data) {
     corner_set *sets;
     uint32_t *first;

@@ -1,4 +1,7 @@
-/* Meshes: making them, what is told about them, reading them back. */
+/* Meshes: creating them, their counts, where polylines begin in their output, and reading them back to the host.
+ *
+ * Input: a mesh that tessellate.c has filled. Output: camber_mesh_info and camber_mesh_data. Parts that have lost their
+ * buffers are made again as they are needed, one at a time. */
 #include "tess/mesh.h"
 
 #include "kernels/join.h"
@@ -26,27 +29,28 @@ void camber_mesh_destroy(camber_mesh *mesh) {
         return;
     camber_context *context = mesh->device->context;
     camber_mesh_release_parts(mesh);
-    camber_mesh_let_go(mesh);
+    camber_mesh_release_source(mesh);
     camber_release_buffer(mesh->device, &mesh->rows);
-    camber_release_buffer(mesh->device, &mesh->shifts);
+    camber_release_buffer(mesh->device, &mesh->offset_rows);
     camber_mesh **link = &mesh->device->meshes;
     while (*link != mesh)
         link = &(*link)->next;
     *link = mesh->next;
     camber_free(context, mesh->host_rows);
-    mesh->row_capacity = mesh->host_row_capacity = mesh->shift_capacity = 0;
-    camber_mesh_count(mesh);
+    mesh->row_capacity = mesh->host_row_capacity = mesh->offset_row_capacity = 0;
+    camber_mesh_count_bytes(mesh);
     camber_free(context, mesh->polyline_rows);
     camber_free(context, mesh->first_slots);
     camber_free(context, mesh);
 }
 
-/* ---- What is told ---- */
+/* ---- Counts ---- */
 
+/* Adds up the joins and segments of slots, from their join and info words. */
 static void count_words(const cl_uint *joins, const cl_uint *info, size_t slot_count, camber_mesh_info *counts,
                         size_t *segments) {
     for (size_t i = 1; i <= slot_count; i++) {
-        camber_mesh_info_count(counts, joins[i], info[i]);
+        camber_mesh_info_add_join(counts, joins[i], info[i]);
         *segments += info[i] & CAMBER_POINT_REAL && !(info[i] & CAMBER_POINT_FIRST);
         *segments += camber_join_kind(joins[i]) == CAMBER_KIND_DOT;
     }
@@ -78,13 +82,14 @@ void camber_mesh_set_counts(camber_mesh *mesh, camber_mesh_info counts, size_t s
     mesh->joins_counted = true;
 }
 
-/* Kinds of joins and triangles, from the join words. */
+/* Counts joins and triangles from the join words on the device, unless that has been done. Few callers want them, so
+ * that this waits until one asks. */
 static camber_status count_joins(camber_mesh *mesh) {
     camber_mesh_info counts = mesh->mesh_info;
     camber_status status = CAMBER_OK;
     size_t segments = 0;
     for (size_t i = 0; i < mesh->part_count && !mesh->joins_counted && status == CAMBER_OK; i++) {
-        status = camber_part_use(mesh, mesh->parts + i);
+        status = camber_part_ensure_made(mesh, mesh->parts + i);
         if (status == CAMBER_OK)
             status = camber_part_count_joins(mesh, mesh->parts + i, &counts, &segments);
     }
@@ -94,7 +99,7 @@ static camber_status count_joins(camber_mesh *mesh) {
 }
 
 camber_mesh_info camber_mesh_get_info(camber_mesh *mesh) {
-    (void)count_joins(mesh); /* on failure the log tells, and the counts stay 0 */
+    (void)count_joins(mesh); /* a failure is logged, and the counts stay 0 */
     return mesh->mesh_info;
 }
 
@@ -107,12 +112,12 @@ camber_status camber_part_first_index(const camber_mesh *mesh, const camber_mesh
     const size_t block = slot / mesh->device->block;
     uint32_t packed = 0;
     if (slot < part->slot_count && slot % mesh->device->block != 0) {
-        camber_offsets offsets;
-        const camber_status status = camber_offsets_map(mesh, part, slot, slot + 1, &offsets);
+        camber_slot_starts starts;
+        const camber_status status = camber_slot_starts_map(mesh, part, slot, slot + 1, &starts);
         if (status != CAMBER_OK)
             return status;
-        packed = camber_offset_before(&offsets, slot);
-        camber_offsets_unmap(&offsets);
+        packed = camber_slot_starts_before(&starts, slot);
+        camber_slot_starts_unmap(&starts);
     }
     *first_index = part->slot_count ? part->host_bases[2 * block + 1] + (packed >> 16) : 0;
     return CAMBER_OK;
@@ -123,7 +128,7 @@ camber_status camber_mesh_first_index(camber_mesh *mesh, size_t polyline, uint64
     while (i + 1 < mesh->part_count && mesh->parts[i + 1].first_polyline <= polyline)
         i++;
     uint64_t first = 0;
-    camber_status status = mesh->part_count ? camber_part_use(mesh, mesh->parts + i) : CAMBER_OK;
+    camber_status status = mesh->part_count ? camber_part_ensure_made(mesh, mesh->parts + i) : CAMBER_OK;
     if (status == CAMBER_OK && mesh->part_count)
         status = camber_part_first_index(mesh, mesh->parts + i, polyline, &first);
     if (status == CAMBER_OK)
@@ -151,7 +156,7 @@ static camber_status read_buffer(const camber_mesh *mesh, const camber_buffer *b
     return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(mesh->device->context, "clEnqueueReadBuffer", code);
 }
 
-/* Of a measured mesh: size_bytes of each record's 32, from offset_bytes on. */
+/* Reads size_bytes of each record, from its byte offset_bytes on. A record with an arc length has 32 bytes. */
 static camber_status read_words(const camber_mesh *mesh, const camber_mesh_part *part, size_t offset_bytes,
                                 size_t size_bytes, void *bytes) {
     const size_t from[3] = {offset_bytes, 0, 0}, to[3] = {0, 0, 0}, region[3] = {size_bytes, part->record_count, 1};
@@ -163,17 +168,18 @@ static camber_status read_words(const camber_mesh *mesh, const camber_mesh_part 
 
 static camber_status read_records(const camber_mesh *mesh, const camber_mesh_part *part, camber_mesh_data *data) {
     camber_record *records = data->records + part->first_record;
-    if (!mesh->mesh_info.measured)
+    if (!mesh->mesh_info.has_arc_length)
         return read_buffer(mesh, part->buffers + CAMBER_BUFFER_RECORDS, part->record_count * sizeof *records, records);
     const camber_status status = read_words(mesh, part, 0, sizeof *records, records);
-    return status == CAMBER_OK
-               ? read_words(mesh, part, sizeof *records, sizeof *data->measures, data->measures + part->first_record)
-               : status;
+    return status == CAMBER_OK ? read_words(mesh, part, sizeof *records, sizeof *data->arc_lengths,
+                                            data->arc_lengths + part->first_record)
+                               : status;
 }
 
+/* Reads a part's records and corners behind those of the parts before, and numbers the corners' records on. */
 static camber_status read_part(camber_mesh *mesh, camber_mesh_part *part, camber_mesh_data *data) {
     const size_t buffer_count = camber_buffer_count(mesh);
-    camber_status status = camber_part_use(mesh, part);
+    camber_status status = camber_part_ensure_made(mesh, part);
     if (status == CAMBER_OK)
         status = mesh->ops->begin(mesh->ops_user, part->buffers, buffer_count);
     if (status != CAMBER_OK)
@@ -192,15 +198,15 @@ static camber_status read_part(camber_mesh *mesh, camber_mesh_part *part, camber
 camber_status camber_mesh_read(camber_mesh *mesh, camber_mesh_data *data) {
     camber_context *context = mesh->device->context;
     camber_status status = count_joins(mesh);
-    camber_mesh_data made = {.info = mesh->mesh_info};
+    camber_mesh_data made = {.context = context, .info = mesh->mesh_info};
     if (status != CAMBER_OK)
         return status;
     made.records = camber_alloc(context, made.info.record_count, sizeof *made.records);
     if (made.records && !made.info.strips)
         made.corners = camber_alloc(context, made.info.index_count, sizeof *made.corners);
-    if (made.records && made.info.measured)
-        made.measures = camber_alloc(context, made.info.record_count, sizeof *made.measures);
-    if (!made.records || (!made.info.strips && !made.corners) || (made.info.measured && !made.measures))
+    if (made.records && made.info.has_arc_length)
+        made.arc_lengths = camber_alloc(context, made.info.record_count, sizeof *made.arc_lengths);
+    if (!made.records || (!made.info.strips && !made.corners) || (made.info.has_arc_length && !made.arc_lengths))
         status = CAMBER_ERROR_MEMORY;
     for (size_t i = 0; i < mesh->part_count && mesh->done && status == CAMBER_OK; i++)
         if (mesh->parts[i].record_count > 0)
@@ -208,7 +214,7 @@ camber_status camber_mesh_read(camber_mesh *mesh, camber_mesh_data *data) {
     if (status == CAMBER_OK)
         status = camber_mesh_expand(context, mesh->host_rows, &made);
     if (status != CAMBER_OK) {
-        camber_mesh_data_free(context, &made);
+        camber_mesh_data_destroy(&made);
         return status;
     }
     *data = made;

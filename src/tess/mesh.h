@@ -1,7 +1,17 @@
-/* Meshes: their parts, how these are made, and what tessellation's files share. */
+/* Meshes, and what the files of tessellation share. camber_mesh and its parts come first, then the functions of each
+ * file.
+ *
+ *     polylines ------------- camber_part_upload ---+
+ *                                                   +-> slots --[offset]--> classify -> scan -> emit -> output buffers
+ *     network -- sections -- camber_part_project ---+
+ *
+ * A mesh is a list of parts, tessellated one after the other (tessellate.c). A part has input buffers (slots and what
+ * stages find out about them) and output buffers (records, and indices unless it is strips). Where memory is bounded, a
+ * part may lose its buffers at any time (memory.c), and is made again when somebody needs it. */
 #ifndef CAMBER_TESS_MESH_H
 #define CAMBER_TESS_MESH_H
 
+#include "base/stages.h"
 #include "cl/buffer.h"
 #include "cl/memory.h"
 #include "cl/program.h"
@@ -11,226 +21,239 @@
 
 /* ---- Meshes ---- */
 
-/* Of lines with an offset: the slots of the lines that they lie beside, and what becomes of each. */
-typedef struct camber_part_course {
-    cl_mem x, y, info, spans, counts, places;
-    cl_mem lengths, measures; /* of what is measured */
+/* Buffers of a part whose lines have an offset: the slots of the source lines beside which they lie, and what the
+ * offset stages find out about each. The part's own buffers then hold the offset lines. */
+typedef struct camber_source_line_buffers {
+    cl_mem x, y, info, clips, counts, places;
+    cl_mem lengths, arc_lengths; /* only with arc lengths */
     size_t slot_capacity;
-    size_t made_count; /* slots beside, without padding */
-} camber_part_course;
+    size_t made_count; /* slots of the offset lines, without padding */
+} camber_source_line_buffers;
 
-/* A run of polylines that is tessellated by itself, its vertices numbered from 0. Most meshes are one part; where
- * the device makes no buffer that is large enough, several in the order of their polylines. */
+/* Consecutive polylines that are tessellated by themselves, with vertices numbered from 0. Most meshes have one part.
+ * Where buffers would be too large for the device or for its bound on memory, there are several, in the order of their
+ * polylines. */
 typedef struct camber_mesh_part {
-    camber_buffer buffers[2]; /* records, indices: of strips none */
+    camber_buffer buffers[2]; /* records; indices, which strips do not have */
     size_t first_polyline, polyline_count;
-    size_t first_slot, given_count; /* slots of the polylines; given_count is padded to whole blocks */
-    size_t slot_count;              /* that are classified: those given, or of lines beside them */
-    /* Of a network: which of its sections, the points of it, and the slots before each of their chunks. */
+    size_t first_slot, given_count; /* slots before the offset stages; given_count is padded to whole blocks */
+    size_t slot_count;              /* slots that classify reads: those given, or those of the offset lines */
+    /* For a network: the part's section, its points, and how many slots come before each chunk of these. */
     size_t section, first_point, end_point;
-    uint32_t *chunk_bases; /* the chunks and one behind them */
+    uint32_t *chunk_bases; /* one for each chunk, and one behind the last */
     size_t chunk_capacity;
     bool uploaded;
     cl_mem x, y, info, joins, offsets, sums, bases;
-    cl_mem lengths, measures; /* of what is measured: sums of chunks, and a camber_measure a slot */
+    cl_mem lengths, arc_lengths; /* only with arc lengths: sums of chunks; a camber_arc_length a slot */
     size_t slot_capacity;
-    camber_part_course course;
-    uint64_t *host_bases; /* first vertex and first index of each block, and the totals behind the last */
+    camber_source_line_buffers source_line;
+    uint64_t *host_bases; /* first vertex and first index of each block, then the totals */
     size_t base_capacity;
-    bool made; /* its buffers hold what the last tessellation made of it */
+    bool made; /* its buffers hold the output of the last tessellation */
     uint64_t held_bytes;
     size_t record_count, vertex_count, index_count;
-    size_t first_record, first_vertex, first_index; /* of the mesh: what the parts before have */
+    /* How many the parts before have: where this one begins in the mesh. */
+    size_t first_record, first_vertex, first_index;
 } camber_mesh_part;
 
 struct camber_mesh {
     camber_device *device;
-    camber_renderer *renderer; /* NULL: cannot be drawn */
+    const void *owner; /* the renderer that may draw it, compared and never read here; NULL: nobody */
     const camber_buffer_ops *ops;
     void *ops_user;
-    unsigned buffer_copies; /* of each output buffer in memory */
-    camber_mesh *next;      /* of the device */
-    uint64_t held_bytes;    /* beside its parts and sections */
-    size_t remade_parts;
-    bool is_full; /* a part had to go since the last tessellation, or was never made */
+    unsigned buffer_copies; /* how often each output buffer lies in memory: 2 where GL gets a copy */
+    camber_mesh *next;      /* in the device's list */
+    uint64_t held_bytes;    /* without its parts and sections */
+    size_t remade_parts;    /* since the last tessellation */
+    bool is_full; /* since the last tessellation a part was evicted, or could not be made for lack of memory */
 
-    /* What parts are made of; NULL: of a network. Held where parts may have to be made again. */
+    /* The source of the parts; NULL for a network. The mesh holds it where parts may have to be made again. */
     const camber_polylines *polylines;
     bool holds_polylines;
-    /* Of the polylines last tessellated: polyline_count + 1 slots, where a polyline begins; polyline_count rows. */
-    uint64_t serial;                  /* 0: of none */
-    struct camber_held_network *held; /* NULL: not of a network, whose polylines have no first_slots */
+    /* About the source that was last tessellated. first_slots has polyline_count + 1 entries, where each polyline
+     * begins; polyline_rows has polyline_count. */
+    uint64_t serial;                  /* of polylines or network; 0: none */
+    struct camber_held_network *held; /* NULL unless the source is a network, which has no first_slots */
     uint32_t *first_slots, *polyline_rows;
     size_t polyline_count, polyline_capacity, row_list_capacity;
-    size_t row_count;        /* every polyline's row is below it */
-    camber_mesh_part *parts; /* part_capacity, of which part_count are the mesh */
+    size_t row_count;        /* all polylines' rows are below it */
+    camber_mesh_part *parts; /* part_capacity, of which the first part_count are in use */
     size_t part_count, part_capacity;
 
     cl_mem rows;
-    camber_row *host_rows; /* the same */
+    camber_row *host_rows; /* the host's copy of rows */
     size_t row_capacity, host_row_capacity;
-    bool offsets;  /* a row has an offset: parts have a course */
-    cl_mem shifts; /* what of each row offsets need */
-    size_t shift_capacity;
+    bool has_offsets;   /* a row has an offset: parts have buffers for source lines */
+    cl_mem offset_rows; /* each row's values for the offset stages */
+    size_t offset_row_capacity;
     camber_mesh_info mesh_info;
-    bool joins_counted; /* mesh_info's counts of joins and triangles are there */
+    bool joins_counted; /* mesh_info's counts of joins and triangles are valid */
     bool round_limits;  /* a row has round joins with a limit */
     bool sharp_joins;   /* a row has miter or bevel joins, or round ones with a limit */
     bool flat_caps;     /* a row has butt or square caps */
     bool round_caps;    /* a row has round caps */
     bool done;          /* the last tessellation succeeded */
-    bool empty;         /* nothing to draw: nothing tessellated yet, it failed, or nothing came of it */
+    bool has_camera;    /* the last tessellation was of a network; pitch_deg is its camera's */
+    double pitch_deg;
+    bool empty; /* nothing to draw: not tessellated yet, failed, or no vertex came out */
 };
 
 enum { CAMBER_BUFFER_RECORDS, CAMBER_BUFFER_INDICES };
 
 camber_status camber_mesh_create_on(camber_device *device, const camber_buffer_ops *ops, void *ops_user,
                                     camber_mesh **mesh);
-/* Makes a part, a pointer into mesh->parts, again unless its buffers hold it. Others may go. */
-camber_status camber_part_use(camber_mesh *mesh, camber_mesh_part *part);
-/* First slot of a polyline in its part, which lies in its buffers; the part's first polyline + polyline_count gives the
- * end. */
+/* Makes a part again unless its buffers hold its output. part points into mesh->parts. Other parts may be evicted. */
+camber_status camber_part_ensure_made(camber_mesh *mesh, camber_mesh_part *part);
+/* Finds the first slot of a polyline in its part, whose slots must be in its buffers: the device may have to be asked.
+ * A polyline just behind the part's last gives the end of its slots. */
 camber_status camber_part_slot(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline, size_t *slot);
-/* The same of the slots that are given. */
+/* The same among the given slots, before the offset stages. */
 size_t camber_part_given_slot(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline);
-/* How many of a part's output buffers there are. */
+/* How many output buffers each part has. */
 static inline size_t camber_buffer_count(const camber_mesh *mesh) {
     return mesh->mesh_info.strips ? 1 : 2;
 }
-/* Of a record as the device has it: a measured one's words and its measure, rounded up to what a texel is. */
+/* The size of a record on the device. One with an arc length is twice as large: its words, its camber_arc_length, and
+ * padding to a whole texel. */
 static inline size_t camber_record_bytes(const camber_mesh_info *info) {
-    return (info->measured ? 2 : 1) * sizeof(camber_record);
+    return (info->has_arc_length ? 2 : 1) * sizeof(camber_record);
 }
-/* First index of a polyline in its part, of strips its first vertex; the part's first polyline + polyline_count gives
- * the end. */
+/* Finds the first index of a polyline in its part; for strips, two for each record before it. A polyline just behind
+ * the part's last gives the end. */
 camber_status camber_part_first_index(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline,
                                       uint64_t *first_index);
-/* The same in the indices of the mesh, as camber_mesh_read gives them. */
+/* The same among the indices of the whole mesh, as camber_mesh_read gives them. Makes the polyline's part if it is
+ * gone. */
 camber_status camber_mesh_first_index(camber_mesh *mesh, size_t polyline, uint64_t *first_index);
 
-/* offsets.c: where slots begin within their blocks, as classify and scan left it. */
-typedef struct camber_offsets {
+/* slot_starts.c: where the output of slots begins within their blocks, from what classify and scan left. */
+typedef struct camber_slot_starts {
     const camber_mesh *mesh;
     const camber_mesh_part *part;
-    cl_uint *joins, *info, *offsets; /* mapped, from a run's first slot on */
-    size_t first, first_run;
-    size_t at; /* the slot that was asked for last, and what it has before it */
+    cl_uint *joins, *info, *offsets; /* mapped, from the first slot of a chunk on */
+    size_t first, first_chunk;
+    size_t at; /* the slot that was asked for last, and sum for it */
     uint32_t sum;
-} camber_offsets;
+} camber_slot_starts;
 
-/* Of the slots [first, end) of a part; end is above first. */
-camber_status camber_offsets_map(const camber_mesh *mesh, const camber_mesh_part *part, size_t first, size_t end,
-                                 camber_offsets *offsets);
-void camber_offsets_unmap(camber_offsets *offsets);
-/* Vertices | indices << 16 that the slot's block has before it. */
-uint32_t camber_offset_before(camber_offsets *offsets, size_t slot);
+/* Maps what the slots [first, end) of a part need; end is above first. */
+camber_status camber_slot_starts_map(const camber_mesh *mesh, const camber_mesh_part *part, size_t first, size_t end,
+                                     camber_slot_starts *starts);
+void camber_slot_starts_unmap(camber_slot_starts *starts);
+/* Returns vertices | indices << 16: how many the slot's block has before it. Asking in ascending order is cheap. */
+uint32_t camber_slot_starts_before(camber_slot_starts *starts, size_t slot);
 
-/* parts.c: lays out the parts of a mesh, each small enough for the device to upload; keeps them, and what is uploaded,
- * where the polylines are those of last time. CAMBER_ERROR_LIMIT names a polyline that fits no part. */
+/* Adds the time that a command took to the stage's time in the mesh's info, and releases its event. */
+void camber_mesh_add_time(camber_mesh *mesh, camber_stage_id stage, cl_event event);
+
+/* parts.c: divides polylines into parts whose input the device can hold. Parts, and what is uploaded to them, stay
+ * where the polylines are those of last time. CAMBER_ERROR_LIMIT names a polyline that fits into no part. */
 camber_status camber_mesh_plan(camber_mesh *mesh, const camber_polylines *polylines);
-/* Cuts a part that has been scanned, and whose output is too large, into parts whose output fits. The part's place is
- * taken by the first of them. */
+/* Cuts a part, which has been scanned and whose output is too large, into parts whose output fits. The first of them
+ * takes the part's index, the others follow. */
 camber_status camber_mesh_split(camber_mesh *mesh, size_t which);
-camber_status camber_part_records(const camber_mesh *mesh, const camber_mesh_part *part, size_t *count);
+/* How many records a scanned part will have. */
+camber_status camber_part_count_records(const camber_mesh *mesh, const camber_mesh_part *part, size_t *count);
+/* Whether a scanned part's output fits the device and the part's share of memory. */
 bool camber_part_fits(const camber_mesh *mesh, const camber_mesh_part *part);
+/* Uploads the part's slots, unless they have been. */
 camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part);
 void camber_mesh_release_parts(camber_mesh *mesh);
-/* Lets go of a part's buffers. */
-void camber_part_empty(camber_mesh *mesh, camber_mesh_part *part);
-/* Gives an empty part the buffers of another. */
-void camber_part_take(camber_mesh_part *part, camber_mesh_part *from);
-/* Room for slots in the buffers of a part's input and its host_bases. */
+/* Releases all buffers of a part, on device and host. It keeps its polylines. */
+void camber_part_release_buffers(camber_mesh *mesh, camber_mesh_part *part);
+/* Moves the buffers of one part to another that has none. */
+void camber_part_move_buffers(camber_mesh_part *part, camber_mesh_part *from);
+/* Makes a part's input buffers and its host_bases large enough for so many slots. */
 camber_status camber_part_reserve(camber_mesh *mesh, camber_mesh_part *part, size_t slots);
-/* The bytes that a part takes: input and output. */
-uint64_t camber_part_need(const camber_mesh *mesh, const camber_mesh_part *part);
-/* What its output buffers lack for its output. */
-uint64_t camber_part_output_lacks(const camber_mesh *mesh, const camber_mesh_part *part);
-/* Whether a part of several polylines may have so many slots in its share of memory. */
+/* The same for a part whose slots a kernel makes, and sets its slot_count. Of a network it reserves a quarter more
+ * where the device has plenty: the next frame may need it. */
+camber_status camber_part_reserve_with_spare(camber_mesh *mesh, camber_mesh_part *part, size_t slots);
+/* How many bytes a scanned part needs, input and output. */
+uint64_t camber_part_needed_bytes(const camber_mesh *mesh, const camber_mesh_part *part);
+/* How many bytes its output buffers are too small for its output. */
+uint64_t camber_part_missing_output_bytes(const camber_mesh *mesh, const camber_mesh_part *part);
+/* Whether so many slots are in the part's share of memory; always true for a single polyline, as it cannot be cut. */
 bool camber_part_may_hold(const camber_mesh *mesh, const camber_mesh_part *part, uint64_t slots);
-/* Makes room in an output buffer and counts it. */
+/* Sets *fits: whether the device makes a part's buffers for so many slots, and its share of memory takes them. A part
+ * of a single polyline, which cannot be cut, fails with CAMBER_ERROR_LIMIT instead. */
+camber_status camber_part_check_slots(const camber_mesh *mesh, const camber_mesh_part *part, uint64_t slots,
+                                      bool *fits);
+/* Makes one of the output buffers large enough, evicting others if need be, and counts it. */
 camber_status camber_part_reserve_output(camber_mesh *mesh, camber_mesh_part *part, size_t which, size_t size_bytes);
-/* Frees what parts past the mesh's hold, but for the first. */
+/* Releases the buffers of parts past part_count, but keeps those of the very first part for the next polylines. */
 void camber_mesh_trim_parts(camber_mesh *mesh);
-/* Adds an empty part, or cuts one in two at the middle of its polylines. */
+/* Adds a part without buffers at the end of the list. */
 camber_status camber_mesh_add_part(camber_mesh *mesh, size_t first_polyline, size_t end_polyline);
-/* After another frame of the same network: where memory was full, lets go of buffers that were far too large for it,
- * and joins parts by twos that took little of their share. */
-void camber_mesh_tidy(camber_mesh *mesh);
+/* Called before another frame of the same network. Where memory was full, releases buffers that were far too large for
+ * the last frame. Merges pairs of parts that needed little of their share. */
+void camber_mesh_compact_parts(camber_mesh *mesh);
+/* Cuts a part in two at the middle of its polylines. */
 camber_status camber_mesh_halve(camber_mesh *mesh, size_t which);
+/* Fail with CAMBER_ERROR_LIMIT: a polyline alone is too large for its share of memory, or for the device's buffers. */
 camber_status camber_fail_memory(const camber_mesh *mesh, size_t polyline, uint64_t size_bytes);
 camber_status camber_fail_polyline(const camber_mesh *mesh, size_t polyline, uint64_t size_bytes);
 
-/* network_parts.c: the same for a network, which is uploaded here. */
+/* sections.c: plans the parts of a network, which the mesh holds from then on. */
 camber_status camber_mesh_plan_network(camber_mesh *mesh, camber_network *network);
-/* Aims the network that a mesh holds. */
+/* Aims a camera at the network that the mesh holds, and gets the kernels for that. */
 camber_status camber_mesh_aim(camber_mesh *mesh, const camber_camera *camera, const camber_tessellation_desc *desc);
-void camber_mesh_let_go(camber_mesh *mesh);
-/* Which of a network's points a part has. */
+/* Releases the polylines or the network that the mesh holds, and the network's sections. */
+void camber_mesh_release_source(camber_mesh *mesh);
+/* Sets which section and which points of a network a part has, from its polylines. */
 void camber_part_set_points(const camber_mesh *mesh, camber_mesh_part *part);
-/* survey and project: makes the part's slots. *fits is false, and there are none, where the device makes no buffer that
- * is large enough. */
+/* cull.c: makes a part's slots of a network (stages cull_count and cull_emit). Sets *fits to false, and makes
+ * none, where they are too many for the device's buffers or the part's share of memory. */
 camber_status camber_part_project(camber_mesh *mesh, camber_mesh_part *part, bool *fits);
+/* camber_part_given_slot for a network. The host walks the polyline's chunk to count the slots before it. */
 size_t camber_part_network_slot(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline);
-/* A stage: a kernel, its arguments, how many points a work-item takes, and of how many. */
-typedef struct camber_stage {
-    const char *name;
-    cl_kernel kernel;
-    const cl_mem *mems;
-    cl_uint mem_count;
-    size_t points;
-    size_t slots;
-} camber_stage;
-
-/* Runs a stage over slots, a work-group a block. */
-camber_status camber_stage_run(const camber_device *device, camber_stage stage, cl_event *event);
-/* Adds the time of a command to ms and releases the event, which may be NULL. */
-void camber_add_ms(cl_event event, double *ms);
-camber_status camber_fail_stage(const camber_device *device, const char *call, const char *name, cl_int code);
-
-/* Counts what is held anew, after buffers have been made or let go. */
-void camber_part_count(const camber_mesh *mesh, camber_mesh_part *part);
-void camber_mesh_count(camber_mesh *mesh);
-/* Of a part's input for so many slots. */
-uint64_t camber_input_bytes(const camber_device *device, bool measured, size_t slots);
-/* Of the course of a part for so many slots. */
-uint64_t camber_course_bytes(bool measured, size_t slots);
-/* Lets parts and sections go, those of other meshes before the mesh's own, until so many more bytes can be held. keep
- * and its section stay, and with spare_made all parts of the mesh that are made. */
-bool camber_mesh_has_room(camber_mesh *mesh, const camber_mesh_part *keep, uint64_t more_bytes, bool spare_made);
-/* The same, sparing none; CAMBER_ERROR_LIMIT where it does not help. */
+/* memory.c: count anew what a part or a mesh holds, after buffers have been made or released. */
+void camber_part_count_bytes(const camber_mesh *mesh, camber_mesh_part *part);
+void camber_mesh_count_bytes(camber_mesh *mesh);
+/* How many bytes a part's input takes for so many slots. */
+uint64_t camber_input_bytes(const camber_device *device, bool has_arc_length, size_t slots);
+/* How many bytes the source lines of a part take for so many slots. */
+uint64_t camber_source_line_bytes(bool has_arc_length, size_t slots);
+/* Evicts parts and sections until more_bytes can be held in addition, and returns whether they now can. Never evicts
+ * keep (NULL: none) and its section, and with spare_made no part of this mesh that is made. memory.c has the order. */
+bool camber_mesh_evict_for(camber_mesh *mesh, const camber_mesh_part *keep, uint64_t more_bytes, bool spare_made);
+/* Evicts, made parts of this mesh too. Fails with CAMBER_ERROR_LIMIT where that is not enough. */
 camber_status camber_mesh_make_room(camber_mesh *mesh, const camber_mesh_part *keep, uint64_t more_bytes);
-/* Where no room is left for so many bytes, gives a part without buffers those of the part that would have to go. */
-void camber_part_adopt(camber_mesh *mesh, camber_mesh_part *part, uint64_t wanted_bytes);
+/* Gives a part without buffers those of the part that would be evicted for it, where so many bytes are not free.
+ * Cheaper than to release them and make new ones. */
+void camber_part_recycle_buffers(camber_mesh *mesh, camber_mesh_part *part, uint64_t wanted_bytes);
 
-/* Ends what ops->begin began on a part's output. Gives status where that is a failure, whose story is told. */
+/* Calls ops->finish after ops->begin on a part's output. Returns status where that is a failure, which has been logged;
+ * then a failure of finish is not. */
 camber_status camber_part_finish(const camber_mesh *mesh, camber_mesh_part *part, bool written, camber_status status);
 
 /* ---- Rows ---- */
 
-/* Checks a desc against the polylines, whose rows are below row_count, and makes the kernels' style table; freed with
- * camber_free. */
+/* rows.c: checks a desc for polylines whose rows are below row_count, and makes the kernels' style table, which is
+ * freed with camber_free. */
 camber_status camber_rows_create(camber_context *context, uint32_t row_count, const camber_tessellation_desc *desc,
                                  camber_row **rows);
 
-/* The host's part of the scan: adds up the blocks' sums, vertices | indices << 16, in 64 bits. bases takes
- * 2 * (block_count + 1): each block's first vertex and first index, and the totals behind the last. */
+/* The host's part of the scan: adds up the blocks' sums (vertices | indices << 16) in 64 bits. bases has room for
+ * 2 * (block_count + 1) numbers: each block's first vertex and first index, then the totals. */
 void camber_scan_blocks(const uint32_t *sums, size_t block_count, uint64_t *bases);
-/* Vertices of a strip are numbered by 32 bits; a corner's record by what its index leaves. */
+/* The most records that a mesh may have. Strips number two vertices a record with 32 bits; the other methods number a
+ * record with the bits that CAMBER_CORNER_BITS leave. */
 size_t camber_records_max(camber_method method);
 camber_status camber_fail_records(camber_context *context, camber_method method);
 
-/* expand.c: makes vertices and indices of a mesh's records and corners. */
+/* expand.c: makes the vertices and indices of a mesh from its records and corners. */
 camber_status camber_mesh_expand(camber_context *context, const camber_row *rows, camber_mesh_data *data);
-/* How many vertices the records before each have, of kite and fan: record_count + 1, freed with camber_free. */
-camber_status camber_corners_count(camber_context *context, camber_mesh_data *data, uint32_t **first_vertices);
+/* For kite and fan: gives each record's first vertex by number, record_count + 1 of them, freed with camber_free. */
+camber_status camber_mesh_data_find_first_vertices(camber_context *context, camber_mesh_data *data,
+                                                   uint32_t **first_vertices);
 
-/* Adds the kinds of joins that a part has, which lies in its buffers, and its segments; then takes the sums over all
- * parts. */
+/* Adds the joins of a part, whose join words must be in its buffers, to counts, and its segments to *segments.
+ * camber_mesh_set_counts stores the sums over all parts. */
 camber_status camber_part_count_joins(const camber_mesh *mesh, const camber_mesh_part *part, camber_mesh_info *counts,
                                       size_t *segments);
 void camber_mesh_set_counts(camber_mesh *mesh, camber_mesh_info counts, size_t segments);
 
-/* Adds a point's join word to the counts of a mesh's info. */
-void camber_mesh_info_count(camber_mesh_info *info, uint32_t join, uint32_t point);
+/* Counts the join of a point, given its join word and its info word. */
+void camber_mesh_info_add_join(camber_mesh_info *info, uint32_t join, uint32_t point);
 
 #endif

@@ -1,27 +1,31 @@
-/* Lines that lie beside others. */
-#ifndef CAMBER_OFFSET_H
-#define CAMBER_OFFSET_H
+/* Lines with an offset, which lie beside others. kernels/offset.h has the geometry. */
+#ifndef CAMBER_TESS_OFFSET_H
+#define CAMBER_TESS_OFFSET_H
 
 #include "tess/mesh.h"
 
-#include "kernels/offset_pieces.h"
+#include "kernels/offset_emit.h"
 
-/* Whether a stroke has an offset. */
+/* Whether any stroke of the desc has an offset. */
 bool camber_desc_has_offsets(const camber_tessellation_desc *desc);
-/* Uploads what offsets need of the rows of a mesh that has some; else its parts let go what they had for them. */
+/* Sets whether a mesh has offsets. If so, uploads the values that its rows need for them; where this changes, its parts
+ * lose their buffers. */
 camber_status camber_mesh_set_offsets(camber_mesh *mesh, const camber_tessellation_desc *desc);
 
-/* Whether the device makes buffers for the course of so many slots; *fits is false where it does not, and there are
- * several polylines. */
-camber_status camber_part_check_course(const camber_mesh *mesh, const camber_mesh_part *part, uint64_t slots,
-                                       bool *fits);
-camber_status camber_part_reserve_course(camber_mesh *mesh, camber_mesh_part *part, size_t slots);
-void camber_course_release(const camber_device *device, camber_part_course *course);
-/* span, tell and shift: the part's slots from those of its course. *fits as that of camber_part_project. */
+/* Checks that the buffers of so many source slots fit the device; does nothing for a mesh without offsets. Where they
+ * do not fit, sets *fits to false, or fails for a part of a single polyline. */
+camber_status camber_part_check_source_lines(const camber_mesh *mesh, const camber_mesh_part *part, uint64_t slots,
+                                             bool *fits);
+/* Makes the buffers of a part's source lines large enough for so many slots. */
+camber_status camber_part_reserve_source_lines(camber_mesh *mesh, camber_mesh_part *part, size_t slots);
+void camber_source_line_release(const camber_device *device, camber_source_line_buffers *source_line);
+/* Runs offset_clip, offset_count and offset_emit: makes the part's slots from those of its source lines. *fits is as
+ * that of camber_part_project. */
 camber_status camber_part_offset(camber_mesh *mesh, camber_mesh_part *part, bool *fits);
 
-/* The twin: polylines beside others, whose measures are given where they are wanted; the polylines' own then. */
+/* The CPU twin: makes the offset lines of polylines. measures, one a slot, are the polylines' arc lengths, or NULL
+ * where none are wanted. */
 camber_status camber_polylines_offset(const camber_polylines *polylines, const camber_tessellation_desc *desc,
-                                      const camber_measure *measures, camber_polylines **beside);
+                                      const camber_arc_length *arc_lengths, camber_polylines **beside);
 
 #endif

@@ -1,5 +1,13 @@
-/* The parts of a mesh: which polylines each has, its buffers, and what is uploaded to them. */
-#include "kernels/measure.h"
+/* The parts of a mesh: which polylines each has, its buffers, and their upload.
+ *
+ * Input: polylines in slots, and the limits of the device: its largest buffer, and shares of the bound on memory.
+ * Output: mesh->parts, each with buffers of its own. Main idea: polylines are divided twice.
+ *
+ *     before  camber_mesh_plan   by slots, which are known, so that a part's input fits
+ *     after   camber_mesh_split  by the output that classify and scan have counted, where that does not fit
+ *
+ * A part is cut between polylines only. A single polyline that does not fit is an error that names it. */
+#include "kernels/arc_length.h"
 #include "tess/network.h"
 #include "tess/offset.h"
 
@@ -7,12 +15,14 @@
 
 enum { INPUTS = 9 };
 
+/* Lists a part's input buffers; the last two are there only with arc lengths. */
 static void list_input(camber_mesh_part *part, cl_mem *mems[INPUTS]) {
-    cl_mem *const list[INPUTS] = {&part->x,    &part->y,     &part->info,    &part->joins,   &part->offsets,
-                                  &part->sums, &part->bases, &part->lengths, &part->measures};
+    cl_mem *const list[INPUTS] = {&part->x,    &part->y,     &part->info,    &part->joins,      &part->offsets,
+                                  &part->sums, &part->bases, &part->lengths, &part->arc_lengths};
     memcpy(mems, list, sizeof list);
 }
 
+/* Releases the input buffers that classify reads or writes, and leaves those of source lines. */
 static void release_slots(const camber_device *device, camber_mesh_part *part) {
     cl_mem *mems[INPUTS];
     list_input(part, mems);
@@ -24,10 +34,10 @@ static void release_slots(const camber_device *device, camber_mesh_part *part) {
 
 static void release_input(const camber_device *device, camber_mesh_part *part) {
     release_slots(device, part);
-    camber_course_release(device, &part->course);
+    camber_source_line_release(device, &part->source_line);
 }
 
-void camber_part_take(camber_mesh_part *part, camber_mesh_part *from) {
+void camber_part_move_buffers(camber_mesh_part *part, camber_mesh_part *from) {
     cl_mem *to[INPUTS], *mems[INPUTS];
     list_input(part, to);
     list_input(from, mems);
@@ -40,8 +50,8 @@ void camber_part_take(camber_mesh_part *part, camber_mesh_part *from) {
         from->buffers[i] = (camber_buffer){0};
     }
     part->slot_capacity = from->slot_capacity;
-    part->course = from->course;
-    from->course = (camber_part_course){0};
+    part->source_line = from->source_line;
+    from->source_line = (camber_source_line_buffers){0};
     part->host_bases = from->host_bases;
     part->base_capacity = from->base_capacity;
     part->chunk_bases = from->chunk_bases;
@@ -52,14 +62,17 @@ void camber_part_take(camber_mesh_part *part, camber_mesh_part *from) {
     from->uploaded = from->made = false;
 }
 
-static bool has_input(const camber_mesh_part *part, bool measured, size_t slots) {
-    return slots <= part->slot_capacity && (!measured || part->measures);
+/* Whether the input buffers are large enough, and those of arc lengths are there where they are wanted. */
+static bool has_input(const camber_mesh_part *part, bool has_arc_length, size_t slots) {
+    return slots <= part->slot_capacity && (!has_arc_length || part->arc_lengths);
 }
 
-static camber_status reserve_input(const camber_device *device, bool measured, camber_mesh_part *part, size_t slots) {
-    if (has_input(part, measured, slots))
+static camber_status reserve_input(const camber_device *device, bool has_arc_length, camber_mesh_part *part,
+                                   size_t slots) {
+    if (has_input(part, has_arc_length, slots))
         return CAMBER_OK;
-    const bool uploaded = part->uploaded && part->course.x; /* to the course, which stays */
+    const bool uploaded =
+        part->uploaded && part->source_line.x; /* slots were uploaded to the source lines' buffers, which stay */
     release_slots(device, part);
     part->uploaded = uploaded;
     const size_t blocks = slots / device->block, words = slots + 2;
@@ -72,13 +85,13 @@ static camber_status reserve_input(const camber_device *device, bool measured, c
         {&part->y, 4 * words},
         {&part->info, 4 * words},
         {&part->joins, 4 * words},
-        {&part->offsets, 4 * (slots / device->item)},
+        {&part->offsets, 4 * (slots / device->point_chunk)},
         {&part->sums, 4 * blocks},
         {&part->bases, 16 * blocks},
-        {&part->lengths, 16 * slots / CAMBER_MEASURE_CHUNK},
-        {&part->measures, sizeof(camber_measure) * slots},
+        {&part->lengths, 16 * slots / CAMBER_ARC_LENGTH_CHUNK},
+        {&part->arc_lengths, sizeof(camber_arc_length) * slots},
     };
-    const size_t count = measured ? INPUTS : INPUTS - 2;
+    const size_t count = has_arc_length ? INPUTS : INPUTS - 2;
     for (size_t i = 0; i < count && status == CAMBER_OK; i++)
         status = camber_make_buffer(device, CL_MEM_READ_WRITE, wanted[i].size_bytes, NULL, wanted[i].mem);
     if (status != CAMBER_OK) {
@@ -89,32 +102,43 @@ static camber_status reserve_input(const camber_device *device, bool measured, c
     return CAMBER_OK;
 }
 
-/* Of a part's input, and of what the host keeps beside it: camber_grow may double that, and gives some at least. */
+/* The bytes of a part's input, and of the arrays that the host keeps for it. The arrays count double and a little more:
+ * camber_grow makes them larger than asked, and never tiny. */
 static uint64_t bytes_of_slots(const camber_mesh *mesh, const camber_mesh_part *part, size_t slots) {
-    const uint64_t chunks = mesh->held ? (part->end_point - part->first_point) / CAMBER_CHUNK + 3 : 0;
+    const uint64_t chunks = mesh->held ? (part->end_point - part->first_point) / CAMBER_CULL_CHUNK + 3 : 0;
     const uint64_t blocks = slots / mesh->device->block;
-    return camber_input_bytes(mesh->device, mesh->mesh_info.measured, slots) + 2 * (16 * (blocks + 1) + 4 * chunks) +
-           256;
+    return camber_input_bytes(mesh->device, mesh->mesh_info.has_arc_length, slots) +
+           2 * (16 * (blocks + 1) + 4 * chunks) + 256;
 }
 
 camber_status camber_part_reserve(camber_mesh *mesh, camber_mesh_part *part, size_t slots) {
     const camber_device *device = mesh->device;
-    const bool measured = mesh->mesh_info.measured;
+    const bool has_arc_length = mesh->mesh_info.has_arc_length;
     const uint64_t wanted = bytes_of_slots(mesh, part, slots);
     if (wanted > camber_device_share(device, 4))
         return camber_fail_memory(mesh, part->first_polyline, wanted);
     camber_status status = CAMBER_OK;
-    if (!has_input(part, measured, slots))
+    if (!has_input(part, has_arc_length, slots))
         status = camber_mesh_make_room(
             mesh, part,
             wanted - camber_input_bytes(device, false, slots > part->slot_capacity ? part->slot_capacity : 0));
     if (status == CAMBER_OK)
-        status = reserve_input(device, measured, part, slots);
+        status = reserve_input(device, has_arc_length, part, slots);
     if (status == CAMBER_OK && !camber_grow(device->context, &part->host_bases, &part->base_capacity,
                                             2 * (part->slot_capacity / device->block + 1), sizeof *part->host_bases))
         status = CAMBER_ERROR_MEMORY;
-    camber_part_count(mesh, part);
+    camber_part_count_bytes(mesh, part);
     return status;
+}
+
+camber_status camber_part_reserve_with_spare(camber_mesh *mesh, camber_mesh_part *part, size_t slots) {
+    const size_t block = mesh->device->block, more = slots + slots / 4 / block * block;
+    const bool enough =
+        slots <= part->slot_capacity || !mesh->held ||
+        4 * ((uint64_t)more + 2) > mesh->device->info.largest_buffer_bytes ||
+        !camber_device_is_roomy(mesh->device, camber_input_bytes(mesh->device, mesh->mesh_info.has_arc_length, more));
+    part->slot_count = slots;
+    return camber_part_reserve(mesh, part, enough ? slots : more);
 }
 
 camber_status camber_part_reserve_output(camber_mesh *mesh, camber_mesh_part *part, size_t which, size_t size_bytes) {
@@ -124,11 +148,11 @@ camber_status camber_part_reserve_output(camber_mesh *mesh, camber_mesh_part *pa
         status = camber_mesh_make_room(mesh, part, mesh->buffer_copies * (size_bytes - buffer->capacity_bytes));
     if (status == CAMBER_OK)
         status = mesh->ops->reserve(mesh->ops_user, buffer, size_bytes);
-    camber_part_count(mesh, part);
+    camber_part_count_bytes(mesh, part);
     return status;
 }
 
-void camber_part_empty(camber_mesh *mesh, camber_mesh_part *part) {
+void camber_part_release_buffers(camber_mesh *mesh, camber_mesh_part *part) {
     for (int i = 0; i < 2; i++)
         mesh->ops->release(mesh->ops_user, part->buffers + i);
     release_input(mesh->device, part);
@@ -137,11 +161,11 @@ void camber_part_empty(camber_mesh *mesh, camber_mesh_part *part) {
     part->host_bases = NULL;
     part->chunk_bases = NULL;
     part->base_capacity = part->chunk_capacity = 0;
-    camber_part_count(mesh, part);
+    camber_part_count_bytes(mesh, part);
 }
 
 static void release_part(camber_mesh *mesh, camber_mesh_part *part) {
-    camber_part_empty(mesh, part);
+    camber_part_release_buffers(mesh, part);
     *part = (camber_mesh_part){0};
 }
 
@@ -155,8 +179,9 @@ void camber_mesh_release_parts(camber_mesh *mesh) {
 
 /* ---- Layout ---- */
 
-/* Parts past part_count are zero, but for the first, which keeps its buffers for the polylines that come next. */
-static bool hold_parts(camber_mesh *mesh, size_t count) {
+/* Makes room for so many parts. Parts past part_count are zero, but for the very first, which keeps its buffers for the
+ * next polylines. */
+static bool reserve_parts(camber_mesh *mesh, size_t count) {
     const size_t before = mesh->part_capacity;
     if (!camber_grow(mesh->device->context, &mesh->parts, &mesh->part_capacity, count, sizeof *mesh->parts))
         return false;
@@ -164,6 +189,7 @@ static bool hold_parts(camber_mesh *mesh, size_t count) {
     return true;
 }
 
+/* Gives a part the polylines [first, end). Whatever its buffers hold is invalid from then on. */
 static void set_polylines(const camber_mesh *mesh, camber_mesh_part *part, size_t first, size_t end) {
     const size_t block = mesh->device->block;
     const size_t slots = mesh->held ? 0 : mesh->first_slots[end] - mesh->first_slots[first];
@@ -186,11 +212,12 @@ camber_status camber_part_slot(const camber_mesh *mesh, const camber_mesh_part *
     const camber_device *device = mesh->device;
     cl_uint place = 0;
     cl_int code = CL_SUCCESS;
-    if (mesh->offsets && (given >= part->given_count || polyline >= part->first_polyline + part->polyline_count))
-        place = (cl_uint)part->course.made_count;
-    else if (mesh->offsets && part->slot_count > 0)
-        code = clEnqueueReadBuffer(device->queue, part->course.places, CL_TRUE, 4 * given, 4, &place, 0, NULL, NULL);
-    *slot = mesh->offsets ? place : given;
+    if (mesh->has_offsets && (given >= part->given_count || polyline >= part->first_polyline + part->polyline_count))
+        place = (cl_uint)part->source_line.made_count;
+    else if (mesh->has_offsets && part->slot_count > 0)
+        code =
+            clEnqueueReadBuffer(device->queue, part->source_line.places, CL_TRUE, 4 * given, 4, &place, 0, NULL, NULL);
+    *slot = mesh->has_offsets ? place : given;
     return code == CL_SUCCESS ? CAMBER_OK : camber_fail_cl(device->context, "clEnqueueReadBuffer", code);
 }
 
@@ -211,8 +238,8 @@ camber_status camber_fail_memory(const camber_mesh *mesh, size_t polyline, uint6
                        polyline, (unsigned long long)size_bytes, (unsigned long long)device->memory_bytes);
 }
 
-/* The polyline behind the last that fits a part of so many slots beginning with first. */
-static size_t find_end(const camber_mesh *mesh, size_t first, size_t slots_max) {
+/* Returns the polyline behind the last that fits into a part of so many slots that begins with first. */
+static size_t find_part_end(const camber_mesh *mesh, size_t first, size_t slots_max) {
     const uint32_t *slots = mesh->first_slots;
     size_t low = first, high = mesh->polyline_count;
     if (slots[high] - slots[first] <= slots_max)
@@ -232,31 +259,31 @@ void camber_mesh_trim_parts(camber_mesh *mesh) {
         release_part(mesh, mesh->parts + i);
 }
 
-/* Slots of a part that its share of memory takes, with a record each or a little more: a block at least. */
+/* How many slots fit into a part's share of memory, if each makes a record or a little more; at least a block. */
 static uint64_t shared_slots(const camber_mesh *mesh) {
     const size_t block = mesh->device->block;
-    const uint64_t block_bytes = camber_input_bytes(mesh->device, mesh->mesh_info.measured, block) +
-                                 20 * mesh->buffer_copies * block +
-                                 (mesh->offsets ? camber_course_bytes(mesh->mesh_info.measured, block) : 0);
+    const uint64_t block_bytes =
+        camber_input_bytes(mesh->device, mesh->mesh_info.has_arc_length, block) + 20 * mesh->buffer_copies * block +
+        (mesh->has_offsets ? camber_source_line_bytes(mesh->mesh_info.has_arc_length, block) : 0);
     const uint64_t blocks = camber_device_share(mesh->device, 1) / block_bytes;
     return (blocks ? blocks : 1) * block;
 }
 
-static camber_status lay_out(camber_mesh *mesh) {
-    const size_t block = mesh->device->block, ghosts = 2;
+static camber_status lay_out_parts(camber_mesh *mesh) {
+    const size_t block = mesh->device->block, sentinels = 2;
     const uint64_t words = mesh->device->info.largest_buffer_bytes / 4, shared = shared_slots(mesh);
-    const uint64_t room = words > ghosts ? (words - ghosts) / block * block : 0;
+    const uint64_t room = words > sentinels ? (words - sentinels) / block * block : 0;
     const size_t slots_max = room < UINT32_MAX ? (size_t)room : UINT32_MAX;
     const size_t slots = shared < slots_max ? (size_t)shared : slots_max;
     const size_t polyline_count = mesh->first_slots[mesh->polyline_count] ? mesh->polyline_count : 0;
     for (size_t first = 0; first < polyline_count; mesh->part_count++) {
-        size_t end = find_end(mesh, first, slots);
+        size_t end = find_part_end(mesh, first, slots);
         if (end == first && mesh->first_slots[first + 1] - mesh->first_slots[first] <= slots_max)
             end = first + 1;
         if (end == first)
             return camber_fail_polyline(
-                mesh, first, 4 * ((uint64_t)mesh->first_slots[first + 1] - mesh->first_slots[first] + ghosts));
-        if (!hold_parts(mesh, mesh->part_count + 1))
+                mesh, first, 4 * ((uint64_t)mesh->first_slots[first + 1] - mesh->first_slots[first] + sentinels));
+        if (!reserve_parts(mesh, mesh->part_count + 1))
             return CAMBER_ERROR_MEMORY;
         set_polylines(mesh, mesh->parts + mesh->part_count, first, end);
         first = end;
@@ -268,7 +295,7 @@ static camber_status lay_out(camber_mesh *mesh) {
 static void hold_polylines(camber_mesh *mesh, const camber_polylines *polylines) {
     mesh->holds_polylines = mesh->device->memory_bytes > 0;
     mesh->polylines = polylines;
-    if (mesh->holds_polylines) /* what is counted is not what they are */
+    if (mesh->holds_polylines) /* only the count of holders changes, not the polylines */
         camber_polylines_hold((camber_polylines *)(uintptr_t)polylines);
 }
 
@@ -279,7 +306,7 @@ camber_status camber_mesh_plan(camber_mesh *mesh, const camber_polylines *polyli
         mesh->polylines = polylines;
         return CAMBER_OK;
     }
-    camber_mesh_let_go(mesh);
+    camber_mesh_release_source(mesh);
     mesh->serial = mesh->part_count = mesh->polyline_count = 0;
     hold_polylines(mesh, polylines);
     if (!camber_grow(context, &mesh->first_slots, &mesh->polyline_capacity, count + 1, sizeof *mesh->first_slots) ||
@@ -290,15 +317,15 @@ camber_status camber_mesh_plan(camber_mesh *mesh, const camber_polylines *polyli
         memcpy(mesh->polyline_rows, polylines->polyline_rows, count * sizeof *mesh->polyline_rows);
     mesh->polyline_count = count;
     mesh->row_count = polylines->row_count;
-    const camber_status status = lay_out(mesh);
+    const camber_status status = lay_out_parts(mesh);
     if (status == CAMBER_OK)
         mesh->serial = polylines->serial;
     return status;
 }
 
-/* Whether the buffers that are uploaded to have those of measures beside them, if these are wanted now. */
-static bool has_uploaded(const camber_mesh *mesh, const camber_mesh_part *part) {
-    return !mesh->mesh_info.measured || (mesh->offsets ? part->course.measures : part->measures);
+/* Whether the buffers for the upload are complete: with those of arc lengths where these are wanted now. */
+static bool has_upload_buffers(const camber_mesh *mesh, const camber_mesh_part *part) {
+    return !mesh->mesh_info.has_arc_length || (mesh->has_offsets ? part->source_line.arc_lengths : part->arc_lengths);
 }
 
 camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part) {
@@ -306,32 +333,33 @@ camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part) {
     const camber_device *device = mesh->device;
     const camber_polylines *polylines = mesh->polylines;
     part->slot_count = part->given_count;
-    if (part->given_count == 0 || (part->uploaded && has_uploaded(mesh, part)))
+    if (part->given_count == 0 || (part->uploaded && has_upload_buffers(mesh, part)))
         return CAMBER_OK;
-    camber_status status = mesh->offsets ? camber_part_reserve_course(mesh, part, part->given_count)
-                                         : camber_part_reserve(mesh, part, part->given_count);
-    const camber_part_course *course = &part->course;
+    camber_status status = mesh->has_offsets ? camber_part_reserve_source_lines(mesh, part, part->given_count)
+                                             : camber_part_reserve(mesh, part, part->given_count);
+    const camber_source_line_buffers *source_line = &part->source_line;
     const size_t words = part->given_count + 2, first = part->first_slot;
     const size_t end = part->first_polyline + part->polyline_count;
-    /* The neighbour before, the part's slots, and ghosts: the polylines' own padding, or zeros. */
+    /* The words of a part are the one before its first slot, its slots, and sentinels. The last part takes sentinels
+     * from the polylines' own padding; other parts, and what is still missing, get zeros. */
     size_t given = end < mesh->polyline_count ? mesh->first_slots[end] - first + 1 : polylines->slot_count + 2 - first;
     given = given < words ? given : words;
     const struct {
         cl_mem mem;
         const void *bytes;
-    } arrays[] = {{mesh->offsets ? course->x : part->x, polylines->x + first},
-                  {mesh->offsets ? course->y : part->y, polylines->y + first},
-                  {mesh->offsets ? course->info : part->info, polylines->info + first}};
+    } arrays[] = {{mesh->has_offsets ? source_line->x : part->x, polylines->x + first},
+                  {mesh->has_offsets ? source_line->y : part->y, polylines->y + first},
+                  {mesh->has_offsets ? source_line->info : part->info, polylines->info + first}};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         if (status == CAMBER_OK)
             status = camber_write_buffer(device, arrays[i].mem, 0, 4 * given, arrays[i].bytes);
         if (status == CAMBER_OK && given < words)
             status = camber_write_buffer(device, arrays[i].mem, 4 * given, 4 * (words - given), zeros);
     }
-    /* The words before and behind the points' are read by neighbours and written by nobody. */
-    if (status == CAMBER_OK && !mesh->offsets)
+    /* classify writes a join word for each slot. Those of the sentinels around them are read by neighbours, too. */
+    if (status == CAMBER_OK && !mesh->has_offsets)
         status = camber_write_buffer(device, part->joins, 0, 4, zeros);
-    if (status == CAMBER_OK && !mesh->offsets)
+    if (status == CAMBER_OK && !mesh->has_offsets)
         status = camber_write_buffer(device, part->joins, 4 * (words - 1), 4, zeros);
     part->uploaded = status == CAMBER_OK;
     return status;
@@ -339,17 +367,19 @@ camber_status camber_part_upload(camber_mesh *mesh, camber_mesh_part *part) {
 
 /* ---- Splitting ---- */
 
+/* How much a part, or a range of its polylines, has. */
 typedef struct part_size {
     uint64_t slots, records, indices;
-    uint64_t given; /* slots that those are made of, where lines lie beside others */
+    uint64_t given; /* source slots, where lines have an offset */
 } part_size;
 
+/* Rounds up to whole blocks. */
 static uint64_t whole_blocks(const camber_mesh *mesh, uint64_t slots) {
     const uint64_t block = mesh->device->block;
     return (slots + block - 1) / block * block;
 }
 
-/* Where a record is a slot, the kernel writes whole blocks of them. */
+/* kite and fan have a record for each slot, and their kernel writes whole blocks. */
 static uint64_t record_bytes(const camber_mesh *mesh, part_size size) {
     return (mesh->mesh_info.strips ? size.records : whole_blocks(mesh, size.records)) *
            camber_record_bytes(&mesh->mesh_info);
@@ -359,18 +389,20 @@ static uint64_t index_bytes(const camber_mesh *mesh, part_size size) {
     return mesh->mesh_info.strips ? 0 : 4 * (size.indices ? size.indices : 1); /* no buffer is empty */
 }
 
-static uint64_t need(const camber_mesh *mesh, const camber_mesh_part *part, part_size size) {
+/* The bytes that a part of this size needs, input and output. */
+static uint64_t needed_bytes(const camber_mesh *mesh, const camber_mesh_part *part, part_size size) {
     const size_t given = (size_t)whole_blocks(mesh, size.given);
-    return (mesh->offsets ? camber_course_bytes(mesh->mesh_info.measured, given) : 0) +
+    return (mesh->has_offsets ? camber_source_line_bytes(mesh->mesh_info.has_arc_length, given) : 0) +
            bytes_of_slots(mesh, part, (size_t)whole_blocks(mesh, size.slots)) +
            mesh->buffer_copies * (record_bytes(mesh, size) + index_bytes(mesh, size));
 }
 
-uint64_t camber_part_need(const camber_mesh *mesh, const camber_mesh_part *part) {
-    return need(mesh, part, (part_size){part->slot_count, part->record_count, part->index_count, part->given_count});
+uint64_t camber_part_needed_bytes(const camber_mesh *mesh, const camber_mesh_part *part) {
+    return needed_bytes(mesh, part,
+                        (part_size){part->slot_count, part->record_count, part->index_count, part->given_count});
 }
 
-uint64_t camber_part_output_lacks(const camber_mesh *mesh, const camber_mesh_part *part) {
+uint64_t camber_part_missing_output_bytes(const camber_mesh *mesh, const camber_mesh_part *part) {
     const part_size size = {part->slot_count, part->record_count, part->index_count, part->given_count};
     const uint64_t sizes[2] = {record_bytes(mesh, size), index_bytes(mesh, size)};
     uint64_t lacks = 0;
@@ -380,31 +412,42 @@ uint64_t camber_part_output_lacks(const camber_mesh *mesh, const camber_mesh_par
     return mesh->buffer_copies * lacks;
 }
 
-/* Whether a part of this size is too large for the device, or for so many eighths of what meshes may hold. */
+/* Whether a part of this size is too large for the device's buffers, or for so many eighths of the bound on meshes. */
 static bool is_too_large(const camber_mesh *mesh, const camber_mesh_part *part, part_size size, unsigned eighths) {
     const uint64_t records = record_bytes(mesh, size), indices = index_bytes(mesh, size);
     return (records > indices ? records : indices) > mesh->device->info.largest_buffer_bytes ||
-           need(mesh, part, size) > camber_device_share(mesh->device, eighths);
+           needed_bytes(mesh, part, size) > camber_device_share(mesh->device, eighths);
 }
 
-/* Of a part of one polyline and of several: see memory.c. */
+/* Eighths of the bound for a part of a single polyline, and of several: cl/memory.h. */
 enum { ALONE = 4, TOGETHER = 1 };
 
 bool camber_part_may_hold(const camber_mesh *mesh, const camber_mesh_part *part, uint64_t slots) {
-    return part->polyline_count == 1 || need(mesh, part, (part_size){slots, slots, 0, part->given_count}) <=
+    return part->polyline_count == 1 || needed_bytes(mesh, part, (part_size){slots, slots, 0, part->given_count}) <=
                                             camber_device_share(mesh->device, TOGETHER);
 }
 
+camber_status camber_part_check_slots(const camber_mesh *mesh, const camber_mesh_part *part, uint64_t slots,
+                                      bool *fits) {
+    const uint64_t size_bytes = 4 * (slots + 2);
+    *fits = size_bytes <= mesh->device->info.largest_buffer_bytes && slots <= UINT32_MAX - 1024u;
+    if (!*fits && part->polyline_count == 1)
+        return camber_fail_polyline(mesh, part->first_polyline, size_bytes);
+    *fits = *fits && camber_part_may_hold(mesh, part, slots);
+    return CAMBER_OK;
+}
+
+/* Fails because a polyline alone is too large, and says for which limit. */
 static camber_status fail_alone(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline,
                                 part_size size) {
     const uint64_t records = record_bytes(mesh, size), indices = index_bytes(mesh, size);
     const uint64_t larger = records > indices ? records : indices;
     return larger > mesh->device->info.largest_buffer_bytes
                ? camber_fail_polyline(mesh, polyline, larger)
-               : camber_fail_memory(mesh, polyline, need(mesh, part, size));
+               : camber_fail_memory(mesh, polyline, needed_bytes(mesh, part, size));
 }
 
-camber_status camber_part_records(const camber_mesh *mesh, const camber_mesh_part *part, size_t *count) {
+camber_status camber_part_count_records(const camber_mesh *mesh, const camber_mesh_part *part, size_t *count) {
     *count = part->index_count / 2;
     return mesh->mesh_info.strips ? CAMBER_OK
                                   : camber_part_slot(mesh, part, part->first_polyline + part->polyline_count, count);
@@ -415,39 +458,44 @@ bool camber_part_fits(const camber_mesh *mesh, const camber_mesh_part *part) {
     return !is_too_large(mesh, part, size, part->polyline_count > 1 ? TOGETHER : ALONE);
 }
 
-/* What the part has before a polyline. */
-static camber_status size_before(const camber_mesh *mesh, const camber_mesh_part *part, camber_offsets *offsets,
+/* Finds how much a part has before a polyline, from what the scan left. */
+static camber_status size_before(const camber_mesh *mesh, const camber_mesh_part *part, camber_slot_starts *starts,
                                  size_t polyline, part_size *size) {
     size_t slot = 0;
     const camber_status status = camber_part_slot(mesh, part, polyline, &slot);
     if (status != CAMBER_OK)
         return status;
     const size_t block = slot / mesh->device->block;
-    const uint32_t packed = slot < part->slot_count ? camber_offset_before(offsets, slot) : 0;
+    const uint32_t packed = slot < part->slot_count ? camber_slot_starts_before(starts, slot) : 0;
     const uint64_t indices = part->host_bases[2 * block + 1] + (packed >> 16);
-    const size_t given = mesh->offsets ? camber_part_given_slot(mesh, part, polyline) : 0;
+    const size_t given = mesh->has_offsets ? camber_part_given_slot(mesh, part, polyline) : 0;
     *size = (part_size){slot, mesh->mesh_info.strips ? indices / 2 : slot, indices, given};
     return CAMBER_OK;
 }
 
-static part_size less(part_size a, part_size b) {
+static part_size subtract(part_size a, part_size b) {
     return (part_size){a.slots - b.slots, a.records - b.records, a.indices - b.indices, a.given - b.given};
 }
 
-/* The polylines that parts after the first begin with: as many in each part as its output buffers take. */
-static camber_status find_cuts(const camber_mesh *mesh, const camber_mesh_part *part, camber_offsets *offsets,
+/* Finds where to cut: the polylines with which the new parts begin, but for the first. Each part takes polylines until
+ * its output would be too large.
+ *
+ *     polylines   | a | b | c | d | e |     start: what lies before the part that is being filled
+ *                     cut ^       ^         before, after: what lies before and after polyline i
+ */
+static camber_status find_cuts(const camber_mesh *mesh, const camber_mesh_part *part, camber_slot_starts *starts,
                                size_t **cuts, size_t *cut_count) {
     const size_t end = part->first_polyline + part->polyline_count;
     size_t capacity = 0, first = part->first_polyline;
     part_size start = {0, 0, 0, 0}, before = start, after = start;
     for (size_t i = first; i < end; i++) {
-        const camber_status status = size_before(mesh, part, offsets, i + 1, &after);
+        const camber_status status = size_before(mesh, part, starts, i + 1, &after);
         if (status != CAMBER_OK)
             return status;
-        const part_size alone = less(after, before);
+        const part_size alone = subtract(after, before);
         if (is_too_large(mesh, part, alone, ALONE))
             return fail_alone(mesh, part, i, alone);
-        if (i > first && is_too_large(mesh, part, less(after, start), TOGETHER)) {
+        if (i > first && is_too_large(mesh, part, subtract(after, start), TOGETHER)) {
             if (!camber_grow(mesh->device->context, cuts, &capacity, *cut_count + 1, sizeof **cuts))
                 return CAMBER_ERROR_MEMORY;
             (*cuts)[(*cut_count)++] = i;
@@ -459,8 +507,9 @@ static camber_status find_cuts(const camber_mesh *mesh, const camber_mesh_part *
     return CAMBER_OK;
 }
 
+/* Cuts a part before each of the polylines in cuts. Buffers stay with the first of the new parts. */
 static camber_status insert_parts(camber_mesh *mesh, size_t which, const size_t *cuts, size_t cut_count) {
-    if (!hold_parts(mesh, mesh->part_count + cut_count))
+    if (!reserve_parts(mesh, mesh->part_count + cut_count))
         return CAMBER_ERROR_MEMORY;
     camber_mesh_part *part = mesh->parts + which;
     const size_t first = part->first_polyline, end = first + part->polyline_count;
@@ -473,38 +522,38 @@ static camber_status insert_parts(camber_mesh *mesh, size_t which, const size_t 
 }
 
 camber_status camber_mesh_add_part(camber_mesh *mesh, size_t first_polyline, size_t end_polyline) {
-    if (!hold_parts(mesh, mesh->part_count + 1))
+    if (!reserve_parts(mesh, mesh->part_count + 1))
         return CAMBER_ERROR_MEMORY;
     set_polylines(mesh, mesh->parts + mesh->part_count++, first_polyline, end_polyline);
     return CAMBER_OK;
 }
 
-/* Takes up the part behind, whose slots can be made anew with its own. */
-static void join_next(camber_mesh *mesh, size_t which) {
+/* Merges a part with the one behind it, which loses its buffers. The slots of both are made anew. */
+static void merge_with_next(camber_mesh *mesh, size_t which) {
     camber_mesh_part *part = mesh->parts + which;
     const size_t end = part[1].first_polyline + part[1].polyline_count;
-    camber_part_empty(mesh, part + 1);
+    camber_part_release_buffers(mesh, part + 1);
     memmove(part + 1, part + 2, (mesh->part_count - which - 2) * sizeof *part);
     mesh->part_count--;
     memset(mesh->parts + mesh->part_count, 0, sizeof *part);
     set_polylines(mesh, part, part->first_polyline, end);
 }
 
-void camber_mesh_tidy(camber_mesh *mesh) {
+void camber_mesh_compact_parts(camber_mesh *mesh) {
     const uint64_t most = camber_device_share(mesh->device, 1) / 2;
     if (!mesh->device->memory_bytes)
         return;
     for (size_t i = 0; i < mesh->part_count && mesh->is_full; i++)
-        if (mesh->parts[i].held_bytes / 2 > camber_part_need(mesh, mesh->parts + i))
-            camber_part_empty(mesh, mesh->parts + i);
+        if (mesh->parts[i].held_bytes / 2 > camber_part_needed_bytes(mesh, mesh->parts + i))
+            camber_part_release_buffers(mesh, mesh->parts + i);
     for (size_t i = 0; i + 1 < mesh->part_count; i++) {
         const camber_mesh_part *part = mesh->parts + i;
         const part_size both = {part[0].slot_count + part[1].slot_count, part[0].record_count + part[1].record_count,
                                 part[0].index_count + part[1].index_count, part[0].given_count + part[1].given_count};
         const camber_mesh_part joint = {.first_point = part[0].first_point, .end_point = part[1].end_point};
-        /* What it then has is not known before the next frame: it waits for that before it takes up more. */
-        if (part[0].section == part[1].section && need(mesh, &joint, both) <= most)
-            join_next(mesh, i);
+        /* How much the merged part will have is known after the next frame. Only then may it merge again. */
+        if (part[0].section == part[1].section && needed_bytes(mesh, &joint, both) <= most)
+            merge_with_next(mesh, i);
     }
 }
 
@@ -518,12 +567,12 @@ camber_status camber_mesh_split(camber_mesh *mesh, size_t which) {
     const camber_device *device = mesh->device;
     const camber_mesh_part *part = mesh->parts + which;
     size_t *cuts = NULL, cut_count = 0;
-    camber_offsets offsets;
-    camber_status status = camber_offsets_map(mesh, part, 0, part->slot_count, &offsets);
+    camber_slot_starts starts;
+    camber_status status = camber_slot_starts_map(mesh, part, 0, part->slot_count, &starts);
     if (status != CAMBER_OK)
         return status;
-    status = find_cuts(mesh, part, &offsets, &cuts, &cut_count);
-    camber_offsets_unmap(&offsets);
+    status = find_cuts(mesh, part, &starts, &cuts, &cut_count);
+    camber_slot_starts_unmap(&starts);
     if (status == CAMBER_OK && cut_count == 0)
         status = camber_fail(device->context, CAMBER_ERROR_DEVICE,
                              "%s: the scan's offsets contradict its sums; update the driver or try another device",

@@ -1,4 +1,4 @@
-/* The style table of the kernels, and what both tessellations count. */
+/* The style table that kernels and twin read, made from strokes; and the count of joins that both share. */
 #include "tess/mesh.h"
 
 #include "kernels/join.h"
@@ -27,9 +27,10 @@ static camber_status check_stroke(camber_context *context, const camber_stroke *
     return CAMBER_OK;
 }
 
+/* Makes a stroke's row: its reach, and the step of a fan whose chords stay within the tolerance. */
 static camber_row make_row(const camber_stroke *stroke, float tolerance_px) {
     const double reach = (double)stroke->width_px / 2 + (double)CAMBER_PAD_PX;
-    /* A chord over the angle a lies reach * (1 - cos(a / 2)) inside its arc. */
+    /* A chord over the angle a lies up to reach * (1 - cos(a / 2)) inside its arc. */
     const double below = 1 - (double)tolerance_px / reach;
     const double least = 3.14159265358979 / CAMBER_JOIN_TRIANGLES_MAX;
     double step = 2 * acos(below > 0 ? below : 0);
@@ -73,10 +74,10 @@ camber_status camber_rows_create(camber_context *context, uint32_t row_count, co
     return CAMBER_OK;
 }
 
-void camber_mesh_info_count(camber_mesh_info *info, uint32_t join, uint32_t point) {
+void camber_mesh_info_add_join(camber_mesh_info *info, uint32_t join, uint32_t point) {
     const uint32_t kind = camber_join_kind(join);
-    info->undrawn_dots += kind == CAMBER_KIND_GHOST && point & CAMBER_POINT_REAL;
-    /* A ring's seam is one join, told at its last point. */
+    info->undrawn_dots += kind == CAMBER_KIND_SENTINEL && point & CAMBER_POINT_REAL;
+    /* A ring's seam is one join, though two points have its word: the last point counts it. */
     if (kind < CAMBER_KIND_CUT || kind > CAMBER_KIND_SPLIT || point & CAMBER_POINT_FIRST)
         return;
     info->joins++;

@@ -1,14 +1,18 @@
-/* What classify and scan left on the device, a point at a time, for proofs. */
+/* Reads back what classify and scan left on the device, a record a point, for checks against the CPU twin.
+ *
+ * Input: a tessellated mesh. Output: camber_stages, its points in the order of the polylines. Nothing that the device
+ * left is trusted: a broken kernel must show up as a difference, never as a read outside of a buffer. */
 #include "tess/mesh.h"
 
-/* A part's arrays as the host sees them. */
+/* A part's arrays, mapped into host memory. */
 typedef struct arrays {
     float *x, *y;
     cl_uint *info, *joins;
     cl_uint *places; /* NULL where the mesh has no offsets */
-    camber_offsets offsets;
+    camber_slot_starts starts;
 } arrays;
 
+/* Maps a buffer for reading. Does nothing after an earlier failure, so that calls can follow each other. */
 static void *map(const camber_mesh *mesh, cl_mem mem, size_t words, camber_status *status) {
     if (*status != CAMBER_OK)
         return NULL;
@@ -26,17 +30,17 @@ static void unmap(const camber_mesh *mesh, cl_mem mem, void *bytes) {
         clEnqueueUnmapMemObject(mesh->device->queue, mem, bytes, 0, NULL, NULL);
 }
 
-/* camber_part_slot, of which each call asks the device. */
+/* The same as camber_part_slot, but from mapped arrays: that function asks the device at each call. */
 static size_t slot_of(const camber_mesh *mesh, const camber_mesh_part *part, const arrays *a, size_t polyline) {
     const size_t given = camber_part_given_slot(mesh, part, polyline);
     if (!a->places)
         return given;
     const bool is_behind = given >= part->given_count || polyline >= part->first_polyline + part->polyline_count;
-    return is_behind ? part->course.made_count : a->places[given];
+    return is_behind ? part->source_line.made_count : a->places[given];
 }
 
-/* The points of a part, behind those that stages holds. Where a device has counted wrongly, slots of polylines may lie
- * past the part's or before those of others: none is read twice. */
+/* Appends the points of a part to stages. Where a device has counted wrongly, a polyline's slots may lie past the
+ * part's end or overlap another's: slots only ever go forward, so that none is read twice. */
 static camber_status append_points(const camber_mesh *mesh, const camber_mesh_part *part, arrays *a,
                                    camber_stages *stages) {
     size_t count = 0;
@@ -56,7 +60,7 @@ static camber_status append_points(const camber_mesh *mesh, const camber_mesh_pa
             if (!(a->info[word] & CAMBER_POINT_REAL))
                 continue;
             const uint64_t *base = part->host_bases + 2 * block;
-            const uint32_t packed = camber_offset_before(&a->offsets, slot);
+            const uint32_t packed = camber_slot_starts_before(&a->starts, slot);
             stages->points[stages->point_count++] = (camber_point_stages){
                 .polyline = (uint32_t)polyline,
                 .point = point++,
@@ -72,13 +76,13 @@ static camber_status append_points(const camber_mesh *mesh, const camber_mesh_pa
 }
 
 camber_status camber_mesh_read_stages(camber_mesh *mesh, camber_stages *stages) {
-    camber_stages made = {0};
+    camber_stages made = {.context = mesh->device->context};
     camber_status status = CAMBER_OK;
     for (size_t i = 0; i < mesh->part_count && mesh->done && status == CAMBER_OK; i++) {
         camber_mesh_part *part = mesh->parts + i;
         if (part->slot_count == 0)
             continue;
-        status = camber_part_use(mesh, part);
+        status = camber_part_ensure_made(mesh, part);
         const size_t words = part->slot_count + 2;
         arrays seen = {
             .x = map(mesh, part->x, words, &status),
@@ -86,29 +90,30 @@ camber_status camber_mesh_read_stages(camber_mesh *mesh, camber_stages *stages) 
             .info = map(mesh, part->info, words, &status),
             .joins = map(mesh, part->joins, words, &status),
         };
-        if (mesh->offsets)
-            seen.places = map(mesh, part->course.places, part->given_count, &status);
+        if (mesh->has_offsets)
+            seen.places = map(mesh, part->source_line.places, part->given_count, &status);
         if (status == CAMBER_OK)
-            status = camber_offsets_map(mesh, part, 0, part->slot_count, &seen.offsets);
-        if (seen.offsets.offsets) {
+            status = camber_slot_starts_map(mesh, part, 0, part->slot_count, &seen.starts);
+        if (seen.starts.offsets) {
             status = append_points(mesh, part, &seen, &made);
-            camber_offsets_unmap(&seen.offsets);
+            camber_slot_starts_unmap(&seen.starts);
         }
         unmap(mesh, part->x, seen.x);
         unmap(mesh, part->y, seen.y);
         unmap(mesh, part->info, seen.info);
         unmap(mesh, part->joins, seen.joins);
-        unmap(mesh, part->course.places, seen.places);
+        unmap(mesh, part->source_line.places, seen.places);
     }
     if (status != CAMBER_OK) {
-        camber_stages_free(mesh->device->context, &made);
+        camber_stages_destroy(&made);
         return status;
     }
     *stages = made;
     return CAMBER_OK;
 }
 
-void camber_stages_free(camber_context *context, camber_stages *stages) {
-    camber_free(context, stages->points);
+void camber_stages_destroy(camber_stages *stages) {
+    if (stages->context)
+        camber_free(stages->context, stages->points);
     *stages = (camber_stages){0};
 }

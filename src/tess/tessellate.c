@@ -1,6 +1,21 @@
-/* classify -> scan -> emit on a device, a part of the mesh at a time. */
+/* Tessellates a mesh on a device, a part at a time.
+ *
+ * Input: polylines, or a network and a camera; and strokes. Output: each part's records and indices in its buffers, and
+ * the mesh's counts. Main idea: first the sizes, then the output. So buffers are exact, no kernel needs an atomic, and
+ * the same input gives the same bytes.
+ *
+ *     slots of the part   uploaded; or projected from a network; or made beside source lines
+ *        |  classify      a slot: its join word, from its neighbours and its row
+ *        |  scan          a chunk: vertices and indices before it in its block; a block: its sum
+ *        |  the host adds the blocks' sums up, and checks that the part fits: else it is cut, and done again
+ *        v  emit          a slot: its records and indices, where the sums say
+ *     output buffers
+ *
+ * Where memory is bounded and full, the parts that come last are counted but not emitted; camber_part_ensure_made emits
+ * them when they are needed. */
+#include "cl/launch.h"
 #include "kernels/layout.h"
-#include "tess/measures.h"
+#include "tess/arc_length.h"
 #include "tess/network.h"
 #include "tess/offset.h"
 
@@ -9,23 +24,6 @@
 
 /* ---- Stages ---- */
 
-camber_status camber_fail_stage(const camber_device *device, const char *call, const char *name, cl_int code) {
-    char what[64];
-    snprintf(what, sizeof what, "%s of %s", call, name);
-    return camber_fail_cl(device->context, what, code);
-}
-
-camber_status camber_stage_run(const camber_device *device, camber_stage s, cl_event *event) {
-    const size_t global = s.slots / s.points, local = device->block / s.points;
-    for (cl_uint i = 0; i < s.mem_count; i++) {
-        const cl_int code = clSetKernelArg(s.kernel, i, sizeof *s.mems, s.mems + i);
-        if (code != CL_SUCCESS)
-            return camber_fail_stage(device, "clSetKernelArg", s.name, code);
-    }
-    const cl_int code = clEnqueueNDRangeKernel(device->queue, s.kernel, 1, NULL, &global, &local, 0, NULL, event);
-    return code == CL_SUCCESS ? CAMBER_OK : camber_fail_stage(device, "clEnqueueNDRangeKernel", s.name, code);
-}
-
 size_t camber_records_max(camber_method method) {
     return method == CAMBER_METHOD_STRIP ? (size_t)1 << 30 : (size_t)1 << (32 - CAMBER_CORNER_BITS);
 }
@@ -33,7 +31,7 @@ size_t camber_records_max(camber_method method) {
 camber_status camber_fail_records(camber_context *context, camber_method method) {
     return camber_fail(context, CAMBER_ERROR_LIMIT,
                        "more than the %zu records that 32 bits number for method %s; tessellate in parts",
-                       camber_records_max(method), camber_method_name(method));
+                       camber_records_max(method), camber_method_get_name(method));
 }
 
 void camber_scan_blocks(const uint32_t *sums, size_t block_count, uint64_t *bases) {
@@ -48,6 +46,7 @@ void camber_scan_blocks(const uint32_t *sums, size_t block_count, uint64_t *base
     }
 }
 
+/* Adds up the blocks' sums, and sets how much output the part has. */
 static camber_status scan_blocks(const camber_mesh *mesh, camber_mesh_part *part) {
     const camber_device *device = mesh->device;
     const size_t blocks = part->slot_count / device->block;
@@ -60,39 +59,43 @@ static camber_status scan_blocks(const camber_mesh *mesh, camber_mesh_part *part
     clEnqueueUnmapMemObject(device->queue, part->sums, sums, 0, NULL, NULL);
     part->vertex_count = (size_t)part->host_bases[2 * blocks];
     part->index_count = (size_t)part->host_bases[2 * blocks + 1];
-    return camber_part_records(mesh, part, &part->record_count);
+    return camber_part_count_records(mesh, part, &part->record_count);
 }
 
-void camber_add_ms(cl_event event, double *ms) {
-    cl_ulong begin = 0, end = 0;
-    if (!event)
-        return;
-    clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_START, sizeof begin, &begin, NULL);
-    clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_END, sizeof end, &end, NULL);
-    clReleaseEvent(event);
-    *ms += (double)(end - begin) * 1e-6;
+void camber_mesh_add_time(camber_mesh *mesh, camber_stage_id stage, cl_event event) {
+    double ms = 0.0;
+    camber_add_ms(event, &ms);
+    if (event)
+        camber_stage_times_add(&mesh->mesh_info.times, stage, ms);
 }
 
-/* classify and scan: what the part's output takes. */
-static camber_status measure(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program) {
+/* Runs classify and scan: finds how much output the part has. */
+static camber_status classify_and_scan(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program) {
     const camber_device *device = mesh->device;
     cl_event events[2] = {NULL, NULL};
-    const cl_mem classify[] = {part->x,    part->y,    part->x,    part->y,    part->x,    part->y,
-                               part->info, part->info, part->info, mesh->rows, part->joins};
-    const cl_mem scan[] = {part->joins, part->joins, part->info, part->offsets, part->sums};
-    const size_t item = device->item, slots = part->slot_count;
-    camber_status status =
-        camber_stage_run(device, (camber_stage){"classify", program->classify, classify, 11, item, slots}, events);
+    const camber_kernel_arg classify[] = {
+        CAMBER_ARG_BUFFER(part->x),    CAMBER_ARG_BUFFER(part->y),    CAMBER_ARG_BUFFER(part->x),
+        CAMBER_ARG_BUFFER(part->y),    CAMBER_ARG_BUFFER(part->x),    CAMBER_ARG_BUFFER(part->y),
+        CAMBER_ARG_BUFFER(part->info), CAMBER_ARG_BUFFER(part->info), CAMBER_ARG_BUFFER(part->info),
+        CAMBER_ARG_BUFFER(mesh->rows), CAMBER_ARG_BUFFER(part->joins)};
+    const camber_kernel_arg scan[] = {CAMBER_ARG_BUFFER(part->joins), CAMBER_ARG_BUFFER(part->joins),
+                                      CAMBER_ARG_BUFFER(part->info), CAMBER_ARG_BUFFER(part->offsets),
+                                      CAMBER_ARG_BUFFER(part->sums)};
+    const size_t work_items = part->slot_count / device->point_chunk, group = device->block / device->point_chunk;
+    const camber_launch launches[] = {{"classify", program->classify, classify, 11, work_items, group},
+                                      {"scan", program->scan, scan, 5, work_items, group}};
+    camber_status status = camber_launch_kernel(device, launches, events);
     if (status == CAMBER_OK)
-        status = camber_stage_run(device, (camber_stage){"scan", program->scan, scan, 5, item, slots}, events + 1);
+        status = camber_launch_kernel(device, launches + 1, events + 1);
     if (status == CAMBER_OK)
         status = scan_blocks(mesh, part);
-    camber_add_ms(events[0], &mesh->mesh_info.classify_ms);
-    camber_add_ms(events[1], &mesh->mesh_info.scan_ms);
+    camber_mesh_add_time(mesh, CAMBER_STAGE_CLASSIFY, events[0]);
+    camber_mesh_add_time(mesh, CAMBER_STAGE_SCAN, events[1]);
     return status;
 }
 
-/* Room in an output buffer, and some more where there is plenty: the next frame of a network may take it. */
+/* Makes room in an output buffer. For a network a quarter more, where the device has plenty: the next frame may need
+ * it. */
 static camber_status reserve_buffer(camber_mesh *mesh, camber_mesh_part *part, size_t which, size_t size_bytes) {
     camber_buffer *buffer = part->buffers + which;
     const size_t room = size_bytes + (mesh->held ? size_bytes / 4 : 0);
@@ -115,6 +118,7 @@ static camber_status reserve_output(camber_mesh *mesh, camber_mesh_part *part) {
     return status == CAMBER_OK ? mesh->ops->begin(mesh->ops_user, part->buffers, camber_buffer_count(mesh)) : status;
 }
 
+/* Runs emit and waits for it. */
 static camber_status emit(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program) {
     const camber_device *device = mesh->device;
     camber_status status =
@@ -124,24 +128,25 @@ static camber_status emit(camber_mesh *mesh, camber_mesh_part *part, const cambe
     if (status != CAMBER_OK)
         return status;
     cl_event event = NULL;
-    const cl_mem mems[] = {part->x,
-                           part->y,
-                           part->info,
-                           mesh->rows,
-                           part->joins,
-                           part->offsets,
-                           part->bases,
-                           part->buffers[CAMBER_BUFFER_RECORDS].mem,
-                           part->buffers[mesh->mesh_info.strips ? CAMBER_BUFFER_RECORDS : CAMBER_BUFFER_INDICES].mem,
-                           part->measures};
-    const cl_uint mem_count = mesh->mesh_info.measured ? 10 : 9;
-    status = camber_stage_run(
-        device, (camber_stage){"emit", program->emit, mems, mem_count, device->item, part->slot_count}, &event);
+    const size_t second = mesh->mesh_info.strips ? CAMBER_BUFFER_RECORDS : CAMBER_BUFFER_INDICES; /* no indices */
+    const camber_kernel_arg args[] = {CAMBER_ARG_BUFFER(part->x),
+                                      CAMBER_ARG_BUFFER(part->y),
+                                      CAMBER_ARG_BUFFER(part->info),
+                                      CAMBER_ARG_BUFFER(mesh->rows),
+                                      CAMBER_ARG_BUFFER(part->joins),
+                                      CAMBER_ARG_BUFFER(part->offsets),
+                                      CAMBER_ARG_BUFFER(part->bases),
+                                      CAMBER_ARG_BUFFER(part->buffers[CAMBER_BUFFER_RECORDS].mem),
+                                      CAMBER_ARG_BUFFER(part->buffers[second].mem),
+                                      CAMBER_ARG_BUFFER(mesh->mesh_info.has_arc_length ? part->arc_lengths : NULL)};
+    const camber_launch launch = {
+        "emit", program->emit, args, 10, part->slot_count / device->point_chunk, device->block / device->point_chunk};
+    status = camber_launch_kernel(device, &launch, &event);
     const cl_int code = clFinish(device->queue);
     if (status == CAMBER_OK && code != CL_SUCCESS)
         status = camber_fail_cl(device->context, "clFinish", code);
     status = camber_part_finish(mesh, part, true, status);
-    camber_add_ms(event, &mesh->mesh_info.emit_ms);
+    camber_mesh_add_time(mesh, CAMBER_STAGE_EMIT, event);
     return status;
 }
 
@@ -170,7 +175,7 @@ static camber_status upload_rows(camber_mesh *mesh, const camber_row *rows, size
                            "%zu strokes take a buffer of %zu bytes, and %s makes none above %llu; merge equal ones",
                            row_count, count * sizeof *rows, device->info.name,
                            (unsigned long long)device->info.largest_buffer_bytes);
-    /* Here and on the device, and half as many again where more come than last time. */
+    /* Rows lie on the host and on the device, and camber_grow may make the host's array half as large again. */
     const uint64_t size_bytes = count * sizeof *rows * 5 / 2;
     if (size_bytes > camber_device_share(device, 1))
         return camber_fail(device->context, CAMBER_ERROR_LIMIT,
@@ -180,40 +185,48 @@ static camber_status upload_rows(camber_mesh *mesh, const camber_row *rows, size
     camber_status status = camber_mesh_make_room(mesh, NULL, count > mesh->row_capacity ? size_bytes : 0);
     if (status == CAMBER_OK)
         status = reserve_rows(mesh, count);
-    camber_mesh_count(mesh);
+    camber_mesh_count_bytes(mesh);
     if (status != CAMBER_OK)
         return status;
     memcpy(mesh->host_rows, rows, count * sizeof *rows);
     return camber_write_buffer(device, mesh->rows, 0, count * sizeof *rows, rows);
 }
 
-/* A part's slots, and what its output takes. *fits is false where the slots are too many. */
-static camber_status prepare(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program, bool *fits) {
+/* Makes a part's slots, then finds how much output it has. *fits is false, and there are no slots, where they are too
+ * many. The steps, each only where the mesh has such a thing:
+ *
+ *     1  slots: project them from the network, or upload them
+ *     2  arc lengths of polylines; a network's slots come with theirs
+ *     3  offset lines in place of their source lines
+ *     4  classify and scan */
+static camber_status make_slots_and_scan(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program,
+                                         bool *fits) {
     camber_status status = mesh->held ? camber_part_project(mesh, part, fits)
-                                      : camber_part_check_course(mesh, part, part->given_count, fits);
+                                      : camber_part_check_source_lines(mesh, part, part->given_count, fits);
     if (status == CAMBER_OK && *fits && !mesh->held)
         status = camber_part_upload(mesh, part);
-    if (status == CAMBER_OK && *fits && mesh->mesh_info.measured && !mesh->held && part->given_count > 0)
-        status = camber_part_measure(mesh, part);
-    if (status == CAMBER_OK && *fits && mesh->offsets && part->given_count > 0)
+    if (status == CAMBER_OK && *fits && mesh->mesh_info.has_arc_length && !mesh->held && part->given_count > 0)
+        status = camber_part_sum_arc_lengths(mesh, part);
+    if (status == CAMBER_OK && *fits && mesh->has_offsets && part->given_count > 0)
         status = camber_part_offset(mesh, part, fits);
     if (status == CAMBER_OK && *fits && part->slot_count > 0)
-        status = measure(mesh, part, program);
+        status = classify_and_scan(mesh, part, program);
     if (mesh->held) {
-        camber_add_ms(mesh->held->projected, &mesh->mesh_info.project_ms);
+        camber_mesh_add_time(mesh, CAMBER_STAGE_CULL_EMIT, mesh->held->projected);
         mesh->held->projected = NULL;
     }
     return status;
 }
 
-static camber_status make(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program) {
+/* Emits a part that has been counted; from then on it is made. */
+static camber_status emit_unless_empty(camber_mesh *mesh, camber_mesh_part *part, const camber_program *program) {
     const camber_status status = part->record_count > 0 ? emit(mesh, part, program) : CAMBER_OK;
     part->made = status == CAMBER_OK;
     return status;
 }
 
-/* Numbers a part's output behind that of the parts before. */
-static camber_status number(camber_mesh *mesh, camber_mesh_part *part) {
+/* Numbers a part's output behind that of the parts before it. */
+static camber_status number_part(camber_mesh *mesh, camber_mesh_part *part) {
     camber_mesh_info *info = &mesh->mesh_info;
     part->first_record = info->record_count;
     part->first_vertex = info->vertex_count;
@@ -226,18 +239,23 @@ static camber_status number(camber_mesh *mesh, camber_mesh_part *part) {
                : CAMBER_OK;
 }
 
-/* Part after part; one whose output turns out too large is split, and what takes its place is done anew. Once memory is
- * full, parts are measured only: the first ones stay, and are what is drawn first. Where parts may have to go, joins
- * are counted while they are there. */
-static camber_status run_parts(camber_mesh *mesh, const camber_program *program) {
+/* Goes through the parts. i stays where a part is cut, so that the first of the new parts is next.
+ *
+ *     slots do not fit    -> cut the part in two at the middle of its polylines
+ *     output does not fit -> cut it where the scan says that the output fits
+ *     else                -> number it; emit it unless memory is full
+ *
+ * Once memory is full, parts are only counted. The first ones stay, as they are drawn first. Joins are counted while
+ * each part is there, if parts may be evicted later. */
+static camber_status tessellate_parts(camber_mesh *mesh, const camber_program *program) {
     camber_status status = CAMBER_OK;
     size_t segments = 0;
     mesh->is_full = false;
     for (size_t i = 0; i < mesh->part_count && status == CAMBER_OK;) {
         camber_mesh_part *part = mesh->parts + i;
         bool fits = true;
-        camber_part_adopt(mesh, part, camber_device_share(mesh->device, 1));
-        status = prepare(mesh, part, program, &fits);
+        camber_part_recycle_buffers(mesh, part, camber_device_share(mesh->device, 1));
+        status = make_slots_and_scan(mesh, part, program, &fits);
         if (status == CAMBER_OK && !fits) {
             status = camber_mesh_halve(mesh, i);
             continue;
@@ -247,13 +265,13 @@ static camber_status run_parts(camber_mesh *mesh, const camber_program *program)
             continue;
         }
         if (status == CAMBER_OK)
-            status = number(mesh, part);
+            status = number_part(mesh, part);
         if (status == CAMBER_OK && mesh->part_count > 1 && mesh->device->memory_bytes)
             status = camber_part_count_joins(mesh, part, &mesh->mesh_info, &segments);
-        if (!mesh->is_full && !camber_mesh_has_room(mesh, part, camber_part_output_lacks(mesh, part), true))
+        if (!mesh->is_full && !camber_mesh_evict_for(mesh, part, camber_part_missing_output_bytes(mesh, part), true))
             mesh->is_full = true;
         if (status == CAMBER_OK && !mesh->is_full)
-            status = make(mesh, part, program);
+            status = emit_unless_empty(mesh, part, program);
         i++;
     }
     if (status == CAMBER_OK && mesh->part_count > 1 && mesh->device->memory_bytes)
@@ -262,10 +280,10 @@ static camber_status run_parts(camber_mesh *mesh, const camber_program *program)
 }
 
 static camber_program_desc program_of(const camber_mesh *mesh) {
-    return (camber_program_desc){mesh->mesh_info.method, mesh->mesh_info.measured, mesh->round_limits};
+    return (camber_program_desc){mesh->mesh_info.method, mesh->mesh_info.has_arc_length, mesh->round_limits};
 }
 
-camber_status camber_part_use(camber_mesh *mesh, camber_mesh_part *part) {
+camber_status camber_part_ensure_made(camber_mesh *mesh, camber_mesh_part *part) {
     const camber_device *device = mesh->device;
     const camber_mesh_info told = mesh->mesh_info;
     const size_t slots = part->slot_count, records = part->record_count, vertices = part->vertex_count,
@@ -276,8 +294,8 @@ camber_status camber_part_use(camber_mesh *mesh, camber_mesh_part *part) {
         return CAMBER_OK;
     camber_status status = camber_device_program(mesh->device, program_of(mesh), &program);
     if (status == CAMBER_OK) {
-        camber_part_adopt(mesh, part, camber_part_need(mesh, part));
-        status = prepare(mesh, part, program, &fits);
+        camber_part_recycle_buffers(mesh, part, camber_part_needed_bytes(mesh, part));
+        status = make_slots_and_scan(mesh, part, program, &fits);
     }
     if (status == CAMBER_OK && (!fits || part->record_count != records || part->index_count != indices))
         status = camber_fail(device->context, CAMBER_ERROR_DEVICE,
@@ -285,7 +303,7 @@ camber_status camber_part_use(camber_mesh *mesh, camber_mesh_part *part) {
                              "device",
                              device->info.name, records, part->record_count);
     if (status == CAMBER_OK)
-        status = make(mesh, part, program);
+        status = emit_unless_empty(mesh, part, program);
     part->slot_count = slots;
     part->record_count = records;
     part->vertex_count = vertices;
@@ -295,7 +313,7 @@ camber_status camber_part_use(camber_mesh *mesh, camber_mesh_part *part) {
     return status;
 }
 
-/* What is tessellated: polylines, or else a network as a camera sees it. */
+/* The source of a tessellation: polylines, or else a network as a camera sees it. */
 typedef struct source {
     const camber_polylines *polylines;
     camber_network *network;
@@ -303,16 +321,19 @@ typedef struct source {
     uint32_t row_count;
 } source;
 
-static camber_status plan(camber_mesh *mesh, const source *from, const camber_tessellation_desc *desc) {
+/* Divides the source into parts, and aims the camera at a network. */
+static camber_status plan_parts(camber_mesh *mesh, const source *from, const camber_tessellation_desc *desc) {
     if (from->polylines)
         return camber_mesh_plan(mesh, from->polylines);
     const camber_status status = camber_mesh_plan_network(mesh, from->network);
     return status == CAMBER_OK ? camber_mesh_aim(mesh, from->camera, desc) : status;
 }
 
+/* Resets the mesh, notes which kinds of joins and caps its rows have, plans its parts and tessellates them. On failure
+ * the mesh is empty. */
 static camber_status tessellate(camber_mesh *mesh, const source *from, const camber_tessellation_desc *desc) {
     const camber_mesh_info nothing = {
-        .method = desc->method, .strips = desc->method == CAMBER_METHOD_STRIP, .measured = desc->measured};
+        .method = desc->method, .strips = desc->method == CAMBER_METHOD_STRIP, .has_arc_length = desc->has_arc_length};
     camber_context *context = mesh->device->context;
     camber_row *rows = NULL;
     camber_program *program = NULL;
@@ -326,6 +347,8 @@ static camber_status tessellate(camber_mesh *mesh, const source *from, const cam
         mesh->round_caps |= desc->strokes[i].cap == CAMBER_CAP_ROUND;
     }
     mesh->mesh_info = nothing;
+    mesh->has_camera = from->camera != NULL;
+    mesh->pitch_deg = from->camera ? from->camera->pitch_deg : 0.0;
     mesh->remade_parts = 0;
     for (size_t i = 0; i < mesh->part_capacity; i++)
         mesh->parts[i].made = false;
@@ -333,14 +356,14 @@ static camber_status tessellate(camber_mesh *mesh, const source *from, const cam
     if (status == CAMBER_OK)
         status = camber_mesh_set_offsets(mesh, desc);
     if (status == CAMBER_OK)
-        status = plan(mesh, from, desc);
+        status = plan_parts(mesh, from, desc);
     if (status == CAMBER_OK && mesh->part_count > 0) {
         mesh->joins_counted = false;
         status = camber_device_program(mesh->device, program_of(mesh), &program);
         if (status == CAMBER_OK)
             status = upload_rows(mesh, rows, desc->stroke_count);
         if (status == CAMBER_OK)
-            status = run_parts(mesh, program);
+            status = tessellate_parts(mesh, program);
         camber_mesh_info *info = &mesh->mesh_info;
         info->bytes = info->record_count * camber_record_bytes(info) + (info->strips ? 0 : 4 * info->index_count);
         mesh->joins_counted |= status != CAMBER_OK;
@@ -355,14 +378,14 @@ static camber_status tessellate(camber_mesh *mesh, const source *from, const cam
     return status;
 }
 
-camber_status camber_tessellate(camber_mesh *mesh, const camber_polylines *polylines,
-                                const camber_tessellation_desc *desc) {
+camber_status camber_mesh_tessellate(camber_mesh *mesh, const camber_polylines *polylines,
+                                     const camber_tessellation_desc *desc) {
     const source from = {.polylines = polylines, .row_count = polylines->row_count};
     return tessellate(mesh, &from, desc);
 }
 
-camber_status camber_tessellate_network(camber_mesh *mesh, camber_network *network, const camber_camera *camera,
-                                        const camber_tessellation_desc *desc) {
+camber_status camber_mesh_tessellate_network(camber_mesh *mesh, camber_network *network, const camber_camera *camera,
+                                             const camber_tessellation_desc *desc) {
     const source from = {.network = network, .camera = camera, .row_count = network->row_count};
     return tessellate(mesh, &from, desc);
 }

@@ -1,46 +1,60 @@
-/* The CPU twin: what the kernels are held against. It walks each polyline from its first point to its last and appends,
- * with no counts, scans or offsets, and shares only the formulas of kernels/join.h with the device. */
-#include "tess/measures.h"
+/* The CPU twin of classify, scan and emit: the specification that the kernels are compared with.
+ *
+ * Input: polylines and strokes. Output: camber_mesh_data, and where wanted camber_stages. Main idea: it walks each
+ * polyline from its first point to its last and appends records and triangles. It needs no counts and no scan, and
+ * shares only the formulas of kernels/join.h with the device. So a mistake in the kernels' bookkeeping cannot hide in a
+ * copy of it.
+ *
+ * A strip's records, for an open line A B C D that has a tight join at B and a split join at C:
+ *
+ *     point        A             B           C                   D
+ *     record   break start    end start   end break start       end
+ *
+ * A plain join has a single end, with which the strip goes on. For kite and fan there is one record a slot, and the
+ * walk appends triangles: the body of each segment when it reaches the segment's end, then that point's join. */
+#include "tess/arc_length.h"
 #include "tess/offset.h"
 
 #include "kernels/join.h"
 
 #include <string.h>
 
+/* The walk's state: what it reads, and what it appends to. */
 typedef struct twin {
     const camber_polylines *polylines;
     const camber_row *rows;
     camber_u32 method;
     camber_mesh_data *data;
-    const camber_measure *measures; /* of each slot. NULL: not measured */
-    camber_stages *stages;          /* NULL: not wanted */
-    uint32_t polyline, point;       /* of its next point */
+    const camber_arc_length *arc_lengths; /* one a slot. NULL: without arc lengths */
+    camber_stages *stages;                /* NULL: not wanted */
+    uint32_t polyline, point;             /* of the next point in stages */
     size_t record_capacity, measure_capacity, index_capacity, stage_capacity;
-    bool failed; /* out of memory, or of 32-bit indices */
+    bool failed; /* out of memory, or out of 32-bit indices: nothing is appended any more */
 } twin;
 
-/* What is known of a point when the walk comes to it: its join word and that before it. */
-typedef struct place {
+/* The point that the walk has reached: its slot, info and join word, and the join word of the slot before. */
+typedef struct visited_point {
     size_t slot;
     camber_u32 info, before, join;
-} place;
+} visited_point;
 
 static bool grow_records(twin *t) {
     camber_context *context = t->polylines->context;
     const size_t count = t->data->info.record_count + 1;
     return camber_grow(context, &t->data->records, &t->record_capacity, count, sizeof *t->data->records) &&
-           (!t->measures || camber_grow(context, &t->data->measures, &t->measure_capacity, count, sizeof *t->measures));
+           (!t->arc_lengths ||
+            camber_grow(context, &t->data->arc_lengths, &t->measure_capacity, count, sizeof *t->arc_lengths));
 }
 
-/* A record of a slot, whose place may be another's. */
+/* Appends a record that belongs to a slot. Its coordinates may be another slot's. */
 static void push_record(twin *t, size_t slot, camber_record record) {
     camber_mesh_info *info = &t->data->info;
     if (t->failed || info->record_count >= camber_records_max(t->data->info.method) || !grow_records(t)) {
         t->failed = true;
         return;
     }
-    if (t->measures)
-        t->data->measures[info->record_count] = t->measures[slot - 1];
+    if (t->arc_lengths)
+        t->data->arc_lengths[info->record_count] = t->arc_lengths[slot - 1];
     t->data->records[info->record_count++] = record;
 }
 
@@ -61,12 +75,12 @@ static void push_triangle(twin *t, uint32_t a, uint32_t b, uint32_t c) {
     t->data->info.triangle_count++;
 }
 
-/* A record of the point itself. */
-static void push_point(twin *t, const place *p, camber_u32 join, camber_u32 last) {
+/* Appends a record at the point itself. */
+static void push_point(twin *t, const visited_point *p, camber_u32 join, camber_u32 last) {
     push_record(t, p->slot, (camber_record){t->polylines->x[p->slot], t->polylines->y[p->slot], join, last});
 }
 
-/* Rings and open ends are told apart by the flags of the point. */
+/* Makes the join word of a slot: 0 for a sentinel, a cap at the end of an open line, else a join. */
 static camber_u32 join_word(const twin *t, size_t slot, float *half_shorter) {
     const camber_polylines *p = t->polylines;
     const camber_u32 info = p->info[slot];
@@ -83,8 +97,8 @@ static camber_u32 join_word(const twin *t, size_t slot, float *half_shorter) {
 
 /* ---- strip ---- */
 
-/* A strip begins: where the segment before it comes in from, then the point. */
-static void push_start(twin *t, const place *p, size_t from, camber_u32 last) {
+/* Begins a strip: a break at the slot `from`, where the segment before the point comes from, then the point. */
+static void push_start(twin *t, const visited_point *p, size_t from, camber_u32 last) {
     push_record(t, p->slot,
                 (camber_record){t->polylines->x[from], t->polylines->y[from], 0,
                                 (p->info & CAMBER_ROW_BITS) | CAMBER_RECORD_BREAK});
@@ -92,13 +106,14 @@ static void push_start(twin *t, const place *p, size_t from, camber_u32 last) {
     t->data->info.vertex_count += 2;
 }
 
-/* The point again, for the segment behind it, whose inner vertex is another one. */
-static void push_tight_start(twin *t, const place *p) {
+/* Repeats the point at a tight join for the segment that goes out, which has an inner vertex of its own. */
+static void push_tight_start(twin *t, const visited_point *p) {
     push_point(t, p, p->join, p->info | CAMBER_RECORD_START);
     t->data->info.vertex_count++;
 }
 
-static void walk_strip_point(twin *t, const place *p) {
+/* Appends the records of a point: the table is above camber_strip_records in kernels/join.h. */
+static void walk_strip_point(twin *t, const visited_point *p) {
     const bool first = p->info & CAMBER_POINT_FIRST, last = p->info & CAMBER_POINT_LAST;
     if (first)
         push_start(t, p, p->info & CAMBER_POINT_RING ? p->slot - 1 : p->slot, p->info);
@@ -119,7 +134,15 @@ static uint32_t corner_at(size_t slot, camber_u32 corner) {
     return (uint32_t)(slot - 1) << CAMBER_CORNER_BITS | corner;
 }
 
-static void push_body(twin *t, const place *p) {
+/* Appends the triangles of a segment's body, which ends at the point. At a join the body has the point as a vertex (a,
+ * b), so that the join's triangles can meet it there; at a cap it is a plain quad's side.
+ *
+ *     left ----------------- end_left          both ends joined: four triangles around a and b
+ *       |                        |             one joined: three
+ *       a                        b             none: two
+ *       |                        |
+ *     right ---------------- end_right */
+static void push_body(twin *t, const visited_point *p) {
     const uint32_t left = corner_at(p->slot - 1, camber_start_corner(p->before, 1.0f, t->method));
     const uint32_t right = corner_at(p->slot - 1, camber_start_corner(p->before, -1.0f, t->method));
     const uint32_t end_left = corner_at(p->slot, CAMBER_CORNER_IN_LEFT), end_right = end_left + 1;
@@ -145,9 +168,10 @@ static void push_body(twin *t, const place *p) {
     }
 }
 
-/* Triangles about the centre from the outer edge of the segment in to that of the segment out, each ending with a
- * vertex that carries the right segment; the winding is that of the bodies. */
-static void push_join(twin *t, const place *p) {
+/* Appends a join's triangles. They turn around the centre on the outer side, from the outer edge of the segment in to
+ * that of the segment out. A triangle's last vertex tells the shader its segment, so that its order depends on which
+ * vertex carries the right one. The winding is that of the bodies. */
+static void push_join(twin *t, const visited_point *p) {
     const uint32_t triangles = camber_join_triangles(p->join), centre = corner_at(p->slot, CAMBER_CORNER_CENTRE);
     const bool left_is_outer = !(camber_turn_unpack(p->join) > 0.0f);
     const bool is_fan = t->method == CAMBER_FAN && camber_join_end(p->join) == CAMBER_END_ROUND;
@@ -169,7 +193,7 @@ static void push_join(twin *t, const place *p) {
     }
 }
 
-static void walk_body_point(twin *t, const place *p) {
+static void walk_body_point(twin *t, const visited_point *p) {
     const uint32_t left = corner_at(p->slot, CAMBER_CORNER_OUT_LEFT), end = corner_at(p->slot, CAMBER_CORNER_IN_LEFT);
     if (camber_join_kind(p->join) == CAMBER_KIND_DOT) {
         push_triangle(t, left, left + 1, end);
@@ -181,7 +205,7 @@ static void walk_body_point(twin *t, const place *p) {
     }
 }
 
-/* Where the walk is: what has been appended so far is where this point's vertices and indices begin. */
+/* Notes the point's stages. Whatever has been appended so far is where its vertices and indices begin. */
 static void note_stages(twin *t, size_t slot, camber_u32 join) {
     const camber_polylines *p = t->polylines;
     camber_stages *stages = t->stages;
@@ -207,13 +231,13 @@ static void note_stages(twin *t, size_t slot, camber_u32 join) {
     };
 }
 
-static void walk_point(twin *t, const place *p, float half_shorter) {
-    const bool real = p->info & CAMBER_POINT_REAL, drawn = camber_join_kind(p->join) != CAMBER_KIND_GHOST;
+static void walk_point(twin *t, const visited_point *p, float half_shorter) {
+    const bool real = p->info & CAMBER_POINT_REAL, drawn = camber_join_kind(p->join) != CAMBER_KIND_SENTINEL;
     if (real) {
         note_stages(t, p->slot, p->join);
-        camber_mesh_info_count(&t->data->info, p->join, p->info);
+        camber_mesh_info_add_join(&t->data->info, p->join, p->info);
     }
-    if (t->method != CAMBER_STRIP) /* a record a slot, ghosts too */
+    if (t->method != CAMBER_STRIP) /* a record for each slot, sentinels too */
         push_point(t, p, camber_record_join(p->join, half_shorter), p->info);
     if (real && drawn && t->method == CAMBER_STRIP)
         walk_strip_point(t, p);
@@ -223,8 +247,9 @@ static void walk_point(twin *t, const place *p, float half_shorter) {
 
 static void walk(twin *t) {
     const camber_polylines *lines = t->polylines;
-    const size_t slots = lines->first_slots[lines->polyline_count]; /* the padding behind them is no mesh's */
-    place p = {0};
+    const size_t slots =
+        lines->first_slots[lines->polyline_count]; /* the padding behind them is not part of the mesh */
+    visited_point p = {0};
     for (p.slot = 1; p.slot <= slots && !t->failed; p.slot++) {
         float half_shorter = 0.0f;
         p.info = lines->info[p.slot];
@@ -234,11 +259,11 @@ static void walk(twin *t) {
     }
 }
 
-/* Of kite and fan the walk notes the record that a point's vertices belong to: which of its corners are vertices is
- * known when all triangles are there. */
+/* Replaces records by vertices in the stages of kite and fan. The walk could only note a point's record: which of its
+ * corners become vertices is known when all triangles are there. */
 static camber_status number_vertices(camber_context *context, camber_mesh_data *data, camber_stages *stages) {
     uint32_t *first_vertices;
-    const camber_status status = camber_corners_count(context, data, &first_vertices);
+    const camber_status status = camber_mesh_data_find_first_vertices(context, data, &first_vertices);
     for (size_t i = 0; status == CAMBER_OK && i < stages->point_count; i++)
         stages->points[i].first_vertex = first_vertices[stages->points[i].first_vertex];
     if (status == CAMBER_OK)
@@ -246,29 +271,32 @@ static camber_status number_vertices(camber_context *context, camber_mesh_data *
     return status;
 }
 
-/* Tessellates into data, and into stages where they are wanted; both are empty on failure. */
-static camber_status run(camber_context *context, const camber_polylines *polylines,
-                         const camber_tessellation_desc *desc, camber_mesh_data *data, camber_stages *stages) {
+/* Tessellates into data, and into stages unless that is NULL. Both are empty on failure. */
+static camber_status tessellate(camber_context *context, const camber_polylines *polylines,
+                                const camber_tessellation_desc *desc, camber_mesh_data *data, camber_stages *stages) {
     camber_row *rows = NULL;
     camber_status status = camber_rows_create(context, polylines->row_count, desc, &rows);
     if (status != CAMBER_OK)
         return status;
-    camber_measure *measures = NULL;
+    if (stages)
+        stages->context = context;
+    camber_arc_length *arc_lengths = NULL;
     camber_polylines *beside = NULL;
-    if (desc->measured)
-        status = camber_polylines_measure(polylines, &measures);
+    if (desc->has_arc_length)
+        status = camber_polylines_sum_arc_lengths(polylines, &arc_lengths);
     if (status == CAMBER_OK && camber_desc_has_offsets(desc)) {
-        status = camber_polylines_offset(polylines, desc, measures, &beside);
+        status = camber_polylines_offset(polylines, desc, arc_lengths, &beside);
         if (beside)
             polylines = beside;
     }
+    data->context = context;
     data->info = (camber_mesh_info){
-        .method = desc->method, .strips = desc->method == CAMBER_METHOD_STRIP, .measured = desc->measured};
+        .method = desc->method, .strips = desc->method == CAMBER_METHOD_STRIP, .has_arc_length = desc->has_arc_length};
     twin t = {.polylines = polylines,
               .rows = rows,
               .method = (camber_u32)desc->method,
               .data = data,
-              .measures = beside ? beside->measures : measures,
+              .arc_lengths = beside ? beside->arc_lengths : arc_lengths,
               .stages = stages};
     if (status == CAMBER_OK)
         walk(&t);
@@ -284,41 +312,44 @@ static camber_status run(camber_context *context, const camber_polylines *polyli
     if (status == CAMBER_OK && stages && !info->strips)
         status = number_vertices(context, data, stages);
     camber_polylines_destroy(beside);
-    camber_free(context, measures);
+    camber_free(context, arc_lengths);
     camber_free(context, rows);
     if (status == CAMBER_OK)
         return status;
-    camber_mesh_data_free(context, data);
+    camber_mesh_data_destroy(data);
     if (stages)
-        camber_stages_free(context, stages);
+        camber_stages_destroy(stages);
     return status;
 }
 
-camber_status camber_tessellate_on_host(camber_context *context, const camber_polylines *polylines,
-                                        const camber_tessellation_desc *desc, camber_mesh_data *data) {
+camber_status camber_mesh_data_tessellate(camber_context *context, const camber_polylines *polylines,
+                                          const camber_tessellation_desc *desc, camber_mesh_data *data) {
     camber_mesh_data made = {0};
-    const camber_status status = run(context, polylines, desc, &made, NULL);
+    const camber_status status = tessellate(context, polylines, desc, &made, NULL);
     if (status == CAMBER_OK)
         *data = made;
     return status;
 }
 
-camber_status camber_stages_on_host(camber_context *context, const camber_polylines *polylines,
-                                    const camber_tessellation_desc *desc, camber_stages *stages) {
+camber_status camber_stages_tessellate(camber_context *context, const camber_polylines *polylines,
+                                       const camber_tessellation_desc *desc, camber_stages *stages) {
     camber_mesh_data mesh = {0};
     camber_stages made = {0};
-    const camber_status status = run(context, polylines, desc, &mesh, &made);
-    camber_mesh_data_free(context, &mesh);
+    const camber_status status = tessellate(context, polylines, desc, &mesh, &made);
+    camber_mesh_data_destroy(&mesh);
     if (status == CAMBER_OK)
         *stages = made;
     return status;
 }
 
-void camber_mesh_data_free(camber_context *context, camber_mesh_data *data) {
+void camber_mesh_data_destroy(camber_mesh_data *data) {
+    camber_context *context = data->context;
+    if (!context)
+        return;
     camber_free(context, data->indices);
     camber_free(context, data->vertices);
     camber_free(context, data->corners);
-    camber_free(context, data->measures);
+    camber_free(context, data->arc_lengths);
     camber_free(context, data->records);
     *data = (camber_mesh_data){0};
 }

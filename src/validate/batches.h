@@ -1,10 +1,10 @@
 /* How many draw calls a mesh takes where an index has 16 bits, as in older GL and WebGL renderers. */
-#ifndef CAMBER_PROOF_BATCHES_H
-#define CAMBER_PROOF_BATCHES_H
+#ifndef CAMBER_VALIDATE_BATCHES_H
+#define CAMBER_VALIDATE_BATCHES_H
 
 #include "camber_proof.h"
 
-/* What an index of 16 bits reaches beside the restart index. */
+/* So many vertices an index of 16 bits reaches beside the restart index. */
 #define CAMBER_BATCH_VERTICES 65535u
 
 /* Triangles in their order, each into the batch under way as long as all of its vertices lie within vertices_max

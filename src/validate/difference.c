@@ -1,4 +1,4 @@
-#include "validate/truth.h"
+#include "validate/coverage_truth.h"
 
 #include <math.h>
 #include <stdlib.h>

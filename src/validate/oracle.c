@@ -1,3 +1,5 @@
+/* A stroke is a list of shapes, each an intersection of half-planes and a disc. Each pixel has 16 x 16 samples, one bit
+ * each; a shape sets the bits of the samples that lie in it. */
 #include "validate/oracle.h"
 
 #include <math.h>

@@ -7,8 +7,8 @@
  *                                  bevel: the triangle of point and corners
  *   the caps                       round: half a disc; square: half a width more of the rectangle
  */
-#ifndef CAMBER_PROOF_ORACLE_H
-#define CAMBER_PROOF_ORACLE_H
+#ifndef CAMBER_VALIDATE_ORACLE_H
+#define CAMBER_VALIDATE_ORACLE_H
 
 #include "camber_files.h"
 

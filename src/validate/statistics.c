@@ -15,11 +15,11 @@ void camber_statistics_sort(double *values, size_t count) {
 }
 
 double camber_statistics_quantile(const double *sorted, size_t count, double share) {
-    const double place = share * (double)(count - 1);
-    const size_t before = (size_t)place < count - 1 ? (size_t)place : count - 1;
+    const double rank = share * (double)(count - 1);
+    const size_t before = (size_t)rank < count - 1 ? (size_t)rank : count - 1;
     if (before == count - 1)
         return sorted[before];
-    const double part = place - (double)before;
+    const double part = rank - (double)before;
     return sorted[before] + part * (sorted[before + 1] - sorted[before]);
 }
 

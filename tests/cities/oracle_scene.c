@@ -18,7 +18,7 @@
 #include <string.h>
 
 enum { SIDE_PX = 2048, CROP_AT_PX = 800, CROP_PX = 400, SKIPPED = 77 };
-/* What a map leaves out unless told otherwise. */
+/* A map leaves out so much unless told otherwise. */
 static const double SIMPLIFY_PX = 0.1;
 
 /* World coordinates, then pixels of the picture. */
@@ -157,7 +157,7 @@ static bool keep_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint3
     return true;
 }
 
-/* What lines are drawn as: all points of all of them, or what the camera keeps. */
+/* Lines to draw: all points of all of them, or those that the camera keeps. */
 typedef enum source {
     ALL_POINTS,
     SIMPLIFIED,
@@ -174,15 +174,15 @@ static bool draw(const core *c, const network *n, source from, double width_px, 
     if (from == ALL_POINTS) {
         status = camber_polylines_create(c->context, &desc, &polylines);
         if (status == CAMBER_OK)
-            status = camber_tessellate(c->mesh, polylines, &tessellation);
+            status = camber_mesh_tessellate(c->mesh, polylines, &tessellation);
     } else {
-        status = camber_tessellate_network(c->mesh, n->held, &n->camera, &tessellation);
+        status = camber_mesh_tessellate_network(c->mesh, n->held, &n->camera, &tessellation);
     }
     if (status == CAMBER_OK) {
         const camber_pass pass = {.mesh = c->mesh, .paints = &paint, .paint_count = 1, .overlap = overlap};
         const camber_frame frame = {
             .width = SIDE_PX, .height = SIDE_PX, .background = {1, 1, 1, 1}, .passes = &pass, .pass_count = 1};
-        status = camber_render(c->renderer, &frame, keep_rows, levels, NULL);
+        status = camber_renderer_render(c->renderer, &frame, keep_rows, levels, NULL);
     }
     camber_polylines_destroy(polylines);
     return status == CAMBER_OK;
@@ -231,7 +231,7 @@ typedef struct bounds {
     double over, united, simplified;
 } bounds;
 
-/* What the mesh takes on the device with every point at the first width, per segment. */
+/* Bytes a segment that the mesh takes on the device, with every point at the first width. */
 static bool judge_bytes(const core *c, const network *n, double width_px, double most) {
     uint8_t *levels = must(malloc((size_t)SIDE_PX * SIDE_PX));
     const bool drawn = draw(c, n, ALL_POINTS, width_px, CAMBER_OVERLAP_FLATTEN, levels);
@@ -284,8 +284,8 @@ static void print_log(void *user, camber_log_level level, const char *message) {
         printf("# %s\n", message);
 }
 
-static bool open_renderer(core *c, camber_draw draws) {
-    const camber_renderer_desc desc = {.draw = draws};
+static bool open_renderer(core *c, camber_rasterizer draws) {
+    const camber_renderer_desc desc = {.rasterizer = draws};
     return camber_renderer_create(c->device, c->surface, &desc, &c->renderer) == CAMBER_OK &&
            camber_mesh_create(c->device, c->renderer, &c->mesh) == CAMBER_OK;
 }
@@ -294,8 +294,9 @@ static bool open_core(core *c) {
     const camber_context_desc desc = {.log = print_log};
     return camber_context_create(&desc, &c->context) == CAMBER_OK &&
            camber_surface_create(c->context, NULL, &c->surface) == CAMBER_OK &&
-           camber_device_create(c->context, NULL, c->surface, &c->device) == CAMBER_OK &&
-           open_renderer(c, CAMBER_DRAW_GL);
+           camber_device_create(c->context, &(camber_device_desc){.gl = camber_surface_get_handles(c->surface)},
+                                &c->device) == CAMBER_OK &&
+           open_renderer(c, CAMBER_RASTERIZER_GL);
 }
 
 static void close_renderer(core *c) {
@@ -333,7 +334,7 @@ int main(void) {
     if (!open_core(&c))
         goto done;
     in_cl = (core){.context = c.context, .device = c.device};
-    if (!open_renderer(&in_cl, CAMBER_DRAW_CL))
+    if (!open_renderer(&in_cl, CAMBER_RASTERIZER_OPENCL))
         goto done;
     for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
         network n = {0};

@@ -74,7 +74,7 @@ typedef enum style_change {
     HELD,     /* the zoom is 20 at most */
 } style_change;
 
-/* What shows that a reason holds: with this changed in its style camber's picture comes so close. */
+/* Proof that a reason holds: with this changed in its style camber's picture comes so close. */
 static const struct {
     const char *name;
     style_change change;

@@ -1,6 +1,6 @@
 /* Networks of real streets: the device against the twin under cameras from a whole city to a doorstep, turned and
  * straight, with points left out and with all of them. */
-#include "bench.h"
+#include "test_fixture.h"
 
 #include "camber_map.h"
 
@@ -31,17 +31,17 @@ static const char *data_folder(void) {
 }
 
 /* Points and meshes of one look. Gives how many records there are. */
-static size_t compare(bench *b, camber_network *network, const camber_camera *camera,
+static size_t compare(fixture *b, camber_network *network, const camber_camera *camera,
                       const camber_tessellation_desc *desc) {
     camber_polylines *twin = NULL;
     camber_mesh_data got = {0}, expected = {0};
     camber_stages got_stages = {0}, expected_stages = {0};
     assert_int_equal(camber_network_project(network, camera, desc, &twin), CAMBER_OK);
-    assert_int_equal(camber_tessellate_network(b->mesh, network, camera, desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate_network(b->mesh, network, camera, desc), CAMBER_OK);
     assert_int_equal(camber_mesh_read(b->mesh, &got), CAMBER_OK);
     assert_int_equal(camber_mesh_read_stages(b->mesh, &got_stages), CAMBER_OK);
-    assert_int_equal(camber_tessellate_on_host(b->context, twin, desc, &expected), CAMBER_OK);
-    assert_int_equal(camber_stages_on_host(b->context, twin, desc, &expected_stages), CAMBER_OK);
+    assert_int_equal(camber_mesh_data_tessellate(b->context, twin, desc, &expected), CAMBER_OK);
+    assert_int_equal(camber_stages_tessellate(b->context, twin, desc, &expected_stages), CAMBER_OK);
     assert_int_equal(got_stages.point_count, expected_stages.point_count);
     for (size_t i = 0; b->rounds && i < expected_stages.point_count; i++) {
         const camber_point_stages *is = got_stages.points + i, *should = expected_stages.points + i;
@@ -59,15 +59,15 @@ static size_t compare(bench *b, camber_network *network, const camber_camera *ca
         if (expected.info.index_count)
             assert_memory_equal(got.indices, expected.indices, expected.info.index_count * sizeof *got.indices);
     }
-    camber_stages_free(b->context, &expected_stages);
-    camber_stages_free(b->context, &got_stages);
-    camber_mesh_data_free(b->context, &expected);
-    camber_mesh_data_free(b->context, &got);
+    camber_stages_destroy(&expected_stages);
+    camber_stages_destroy(&got_stages);
+    camber_mesh_data_destroy(&expected);
+    camber_mesh_data_destroy(&got);
     camber_polylines_destroy(twin);
     return records;
 }
 
-static size_t check_city(bench *b, const camber_features *features, const city *c) {
+static size_t check_city(fixture *b, const camber_features *features, const city *c) {
     camber_scene *streets = NULL;
     size_t records = 0;
     for (size_t i = 0; i < LOOK_COUNT; i++) {
@@ -86,7 +86,7 @@ static size_t check_city(bench *b, const camber_features *features, const city *
             assert_int_equal(
                 camber_scene_create(features, &(camber_scene_desc){.view = view, .on_device = true}, &streets),
                 CAMBER_OK);
-        camber_network *network = camber_scene_network(streets, &camera, &desc);
+        camber_network *network = camber_scene_get_network(streets, &camera, &desc);
         camera.simplify_px = LOOKS[i].simplify_px;
         desc.method = (camber_method)(i % 3);
         records += compare(b, network, &camera, &desc);
@@ -96,10 +96,10 @@ static size_t check_city(bench *b, const camber_features *features, const city *
 }
 
 static void test_cities(void **state) {
-    bench *b = *state;
+    fixture *b = *state;
     camber_style *style = NULL;
     size_t seen = 0;
-    assert_int_equal(camber_style_builtin(b->context, CAMBER_THEME_LIGHT, &style), CAMBER_OK);
+    assert_int_equal(camber_style_create_builtin(b->context, CAMBER_THEME_LIGHT, &style), CAMBER_OK);
     for (size_t i = 0; i < sizeof CITIES / sizeof *CITIES; i++) {
         char path[4096];
         camber_features *features = NULL;
@@ -131,6 +131,6 @@ int main(void) {
         return 77;
     }
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_cities)};
-    const int failed = cmocka_run_group_tests(tests, bench_set_up, bench_tear_down);
+    const int failed = cmocka_run_group_tests(tests, fixture_set_up_mesh, fixture_tear_down);
     return failed;
 }

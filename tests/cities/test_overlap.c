@@ -1,9 +1,9 @@
 /* Neighbouring segments of real streets draw each pixel once where their join has room: counted on the GPU, and shown,
  * with the pixels that a line draws again elsewhere. */
-#include "picture.h"
+#include "pictures.h"
 
 #include "camber_map.h"
-#include "validate/joins.h"
+#include "validate/mesh_joins.h"
 
 enum { SIDE_PX = 1024 };
 
@@ -73,7 +73,7 @@ static camber_scene *streets_look(const streets *it, const network *n, double zo
     camber_scene *made = NULL;
     size_t rows;
     assert_int_equal(camber_scene_create(it->features, &desc, &made), CAMBER_OK);
-    camber_scene_strokes(made, &rows);
+    camber_scene_get_strokes(made, &rows);
     assert_int_equal(rows, 1);
     return made;
 }
@@ -89,25 +89,25 @@ static void streets_forget(streets *it) {
 typedef struct drawing {
     camber_renderer *renderer;
     camber_mesh *mesh;
-    camber_joins joins;
+    camber_mesh_joins joins;
     float width_px;
 } drawing;
 
-static drawing drawing_make(studio *s, const camber_polylines *polylines, float width_px, camber_method method) {
+static drawing drawing_make(fixture *s, const camber_polylines *polylines, float width_px, camber_method method) {
     const camber_stroke stroke = {width_px, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0};
     const camber_tessellation_desc desc = {&stroke, 1, method, 0, false};
-    drawing d = {.renderer = studio_any(s), .width_px = width_px};
+    drawing d = {.renderer = fixture_any(s), .width_px = width_px};
     camber_mesh_data data;
-    assert_int_equal(camber_mesh_create(s->device, d.renderer, &d.mesh), CAMBER_OK);
-    assert_int_equal(camber_tessellate(d.mesh, polylines, &desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_create(s->on.device, d.renderer, &d.mesh), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(d.mesh, polylines, &desc), CAMBER_OK);
     assert_int_equal(camber_mesh_read(d.mesh, &data), CAMBER_OK);
-    assert_true(camber_joins_find(&data, &stroke, &d.joins));
-    camber_mesh_data_free(s->context, &data);
+    assert_true(camber_mesh_joins_find(&data, &stroke, &d.joins));
+    camber_mesh_data_destroy(&data);
     return d;
 }
 
 static void drawing_free(drawing *d) {
-    camber_joins_free(&d->joins);
+    camber_mesh_joins_free(&d->joins);
     camber_mesh_destroy(d->mesh);
 }
 
@@ -123,7 +123,7 @@ static camber_overdraw count_ranges(const drawing *d, const camber_index_range *
                                        .range_count = count,
                                        .map = map};
     camber_overdraw sum;
-    assert_int_equal(camber_overdraw_count(d->renderer, &desc, &sum), CAMBER_OK);
+    assert_int_equal(camber_renderer_count_overdraw(d->renderer, &desc, &sum), CAMBER_OK);
     return sum;
 }
 
@@ -159,7 +159,7 @@ static void tell_worst(const drawing *d) {
                (unsigned long long)worst->range.first_index, (unsigned long long)worst->range.index_count);
 }
 
-/* What is counted apart: the joins by their room, then whole polylines. */
+/* Counts apart from each other: the joins by their room, then whole polylines. */
 enum { POLYLINES = CAMBER_JOIN_ROOMS, KINDS };
 
 typedef struct overlap {
@@ -237,13 +237,13 @@ static void show(camber_context *context, const drawing *d, const overlap *o, co
 /* ---- Tests ---- */
 
 /* One view with one method; what its plain joins draw again, at the mesh's width and at half of it. */
-static uint64_t check_view(studio *s, const camber_scene *town, const network *n, const street_view *view,
+static uint64_t check_view(fixture *s, const camber_scene *town, const network *n, const street_view *view,
                            camber_method method) {
-    drawing d = drawing_make(s, camber_scene_polylines(town), view->width_px, method);
+    drawing d = drawing_make(s, camber_scene_get_polylines(town), view->width_px, method);
     overlap o = count_overlap(&d);
     uint64_t broken = o.repeated[CAMBER_JOIN_PLAIN];
     printf("%-10s %4g %5g %-5s %8zu %6zu %6zu %9llu %6zu %6zu %6zu %9zu\n", n->name, view->zoom, (double)view->width_px,
-           camber_method_name(method), o.joins[CAMBER_JOIN_PLAIN], o.joins[CAMBER_JOIN_TIGHT],
+           camber_method_get_name(method), o.joins[CAMBER_JOIN_PLAIN], o.joins[CAMBER_JOIN_TIGHT],
            o.joins[CAMBER_JOIN_SPLIT], (unsigned long long)o.drawn, o.pixels[CAMBER_JOIN_PLAIN],
            o.pixels[CAMBER_JOIN_TIGHT], o.pixels[CAMBER_JOIN_SPLIT], o.elsewhere);
     assert_true(o.joins[CAMBER_JOIN_PLAIN] > 20 && o.drawn > 10000);
@@ -265,7 +265,7 @@ static uint64_t check_view(studio *s, const camber_scene *town, const network *n
 }
 
 static void test_streets(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     uint64_t broken = 0;
     size_t seen = 0;
     printf("                              joins                          pixels drawn again\n"
@@ -290,32 +290,32 @@ static void test_streets(void **state) {
 }
 
 /* Zigzags and spirals whose joins have hardly more room than they need. */
-static scene cramped_scene(double width_px) {
-    scene lines = {0};
+static camber_made_scene cramped_scene(double width_px) {
+    camber_made_scene lines = {0};
     uint64_t seed = 41;
     for (int i = 0; i < 400; i++) {
-        double x = random_between(&seed, 0, SIDE_PX), y = random_between(&seed, 0, SIDE_PX);
-        double direction = random_between(&seed, -SCENE_PI, SCENE_PI);
-        const double turn = random_between(&seed, 0.02, 2.2);
+        double x = camber_random_between(&seed, 0, SIDE_PX), y = camber_random_between(&seed, 0, SIDE_PX);
+        double direction = camber_random_between(&seed, -SCENE_PI, SCENE_PI);
+        const double turn = camber_random_between(&seed, 0.02, 2.2);
         const double needed = 2 * (width_px / 2 + (double)CAMBER_PAD_PX) * tan(turn / 2);
         for (int k = 0; k < 30; k++) {
-            const double length = needed * random_between(&seed, 1.00005, 1.01);
-            scene_point(&lines, x, y);
+            const double length = needed * camber_random_between(&seed, 1.00005, 1.01);
+            camber_made_scene_point(&lines, x, y);
             x += length * cos(direction);
             y += length * sin(direction);
             direction += i % 2 && k % 2 ? -turn : turn;
         }
-        scene_end(&lines, 0);
+        camber_made_scene_end(&lines, 0);
     }
     return lines;
 }
 
 /* Where the cuts of a segment's two ends meet, nothing is drawn twice either. */
 static void test_least_room(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     static const float widths[] = {2, 8, 20};
     for (size_t i = 0; i < sizeof widths / sizeof *widths; i++) {
-        scene lines = cramped_scene((double)widths[i]);
+        camber_made_scene lines = cramped_scene((double)widths[i]);
         camber_polylines *polylines = scene_polylines(s->context, &lines);
         for (int method = 0; method < 2; method++) {
             drawing d = drawing_make(s, polylines, widths[i], (camber_method)method);
@@ -327,33 +327,33 @@ static void test_least_room(void **state) {
             drawing_free(&d);
         }
         camber_polylines_destroy(polylines);
-        scene_free(&lines);
+        camber_made_scene_free(&lines);
     }
 }
 
 /* Rings that turn one way, with room at every join. */
-static scene ring_scene(void) {
-    scene lines = {0};
+static camber_made_scene ring_scene(void) {
+    camber_made_scene lines = {0};
     uint64_t seed = 31;
     for (int i = 0; i < 400; i++) {
-        const double x = random_between(&seed, 100, 900), y = random_between(&seed, 100, 900);
-        const double start = random_between(&seed, 0, 6.3), radius = random_between(&seed, 60, 95);
+        const double x = camber_random_between(&seed, 100, 900), y = camber_random_between(&seed, 100, 900);
+        const double start = camber_random_between(&seed, 0, 6.3), radius = camber_random_between(&seed, 60, 95);
         const int sides = 3 + i % 12;
         const size_t first = lines.point_count;
         for (int k = 0; k < sides; k++) {
             const double angle = start + 2 * SCENE_PI * k / sides * (i % 2 ? 1 : -1);
-            scene_point(&lines, x + radius * cos(angle), y + radius * sin(angle));
+            camber_made_scene_point(&lines, x + radius * cos(angle), y + radius * sin(angle));
         }
-        scene_point(&lines, (double)lines.points[2 * first], (double)lines.points[2 * first + 1]);
-        scene_end(&lines, 0);
+        camber_made_scene_point(&lines, (double)lines.points[2 * first], (double)lines.points[2 * first + 1]);
+        camber_made_scene_end(&lines, 0);
     }
     return lines;
 }
 
 /* A ring's seam is in no range of two neighbours: whole rings are counted. */
 static void test_seams(void **state) {
-    studio *s = *state;
-    scene lines = ring_scene();
+    fixture *s = *state;
+    camber_made_scene lines = ring_scene();
     camber_polylines *polylines = scene_polylines(s->context, &lines);
     for (int method = 0; method < 2; method++) {
         drawing d = drawing_make(s, polylines, 12, (camber_method)method);
@@ -365,7 +365,7 @@ static void test_seams(void **state) {
         drawing_free(&d);
     }
     camber_polylines_destroy(polylines);
-    scene_free(&lines);
+    camber_made_scene_free(&lines);
 }
 
 int main(void) {
@@ -374,5 +374,5 @@ int main(void) {
         cmocka_unit_test(test_least_room),
         cmocka_unit_test(test_seams),
     };
-    return STUDIO_RUN(tests);
+    return FIXTURE_RUN(tests);
 }

@@ -3,6 +3,7 @@
  * the simulator it is a quick test of whatever device there is. */
 #include "camber_proof.h"
 #include "tess/mesh.h"
+#include "validate/scenes.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -10,62 +11,14 @@
 
 enum { POINTS_MAX = 2048, LINES_MAX = 200, ROWS = 9 };
 
-typedef struct scene {
-    float points[2 * POINTS_MAX];
-    uint32_t offsets[LINES_MAX + 1], rows[LINES_MAX];
-    size_t point_count, line_count;
-} scene;
-
-static void add_point(scene *s, double x, double y) {
-    s->points[2 * s->point_count] = (float)x;
-    s->points[2 * s->point_count + 1] = (float)y;
-    s->point_count++;
-}
-
-static void end_line(scene *s) {
-    s->offsets[++s->line_count] = (uint32_t)s->point_count;
-}
-
-/* Lines that end before, on and behind the borders of blocks of 64, 128 and 256 points, with cut, tight and split joins
- * there, and dots on both sides. */
-static void fill_blocks(scene *s) {
-    static const int counts[] = {63, 1, 1, 63, 64, 65, 62, 1, 192, 257, 255, 2, 126, 129};
-    for (size_t line = 0; line < sizeof counts / sizeof *counts; line++) {
-        for (int i = 0; i < counts[line]; i++)
-            add_point(s, 3 * i + i % 7 * 5, 300 + 40.0 * (double)line + (i % 3 ? 2 * (i % 5) : 25));
-        end_line(s);
-    }
-}
-
-/* Rings, stars whose turns are tight or past 127 degrees, dots, reversals, repeated points. */
-static void fill_shapes(scene *s) {
-    for (int ring = 0; ring < 12; ring++) {
-        const int corners = 3 + ring % 7;
-        for (int i = 0; i <= corners; i++) {
-            const double angle = 6.283185307 * (i % corners) * (ring % 3 + 1) / corners;
-            add_point(s, 100 + 11 * ring + (3 + ring) * cos(angle), 100 + (3 + ring) * sin(angle));
-        }
-        end_line(s);
-    }
-    for (int line = 0; line < 60; line++) {
-        for (int i = 0; i <= line % 7; i++)
-            add_point(s, 7.0 * line + i * 13 % 5, 50 + i * i * 7 % 23);
-        end_line(s);
-    }
-    const double there_and_back[][2] = {{5, 5}, {25, 5}, {5, 5}, {5, 5}, {15, 5.001}};
-    for (size_t i = 0; i < sizeof there_and_back / sizeof *there_and_back; i++)
-        add_point(s, there_and_back[i][0], there_and_back[i][1]);
-    end_line(s);
-}
-
 /* Joins with caps, narrow and wide, with limits that miters keep and exceed. Each rotation gives a line another row. */
-static void rotate(scene *s, camber_stroke strokes[ROWS], size_t rotation) {
+static void rotate(camber_made_scene *s, camber_stroke strokes[ROWS], size_t rotation) {
     for (int row = 0; row < ROWS; row++)
         strokes[row] = (camber_stroke){row % 2 ? 25.0f : 6.0f, (camber_join)(row % 3), (camber_cap)(row / 3),
                                        row == 4   ? 1.05f
                                        : row == 7 ? 10.0f
                                                   : 0.0f};
-    for (size_t i = 0; i < s->line_count; i++)
+    for (size_t i = 0; i < s->polyline_count; i++)
         s->rows[i] = (uint32_t)((i + rotation) % ROWS);
 }
 
@@ -102,26 +55,22 @@ static bool check(camber_context *context, camber_mesh *mesh, const camber_polyl
                   const camber_tessellation_desc *desc) {
     camber_mesh_data device = {0}, twin = {0};
     camber_stages device_stages = {0}, twin_stages = {0};
-    const bool good = camber_tessellate(mesh, polylines, desc) == CAMBER_OK &&
+    const bool good = camber_mesh_tessellate(mesh, polylines, desc) == CAMBER_OK &&
                       camber_mesh_read(mesh, &device) == CAMBER_OK &&
                       camber_mesh_read_stages(mesh, &device_stages) == CAMBER_OK &&
-                      camber_tessellate_on_host(context, polylines, desc, &twin) == CAMBER_OK &&
-                      camber_stages_on_host(context, polylines, desc, &twin_stages) == CAMBER_OK &&
+                      camber_mesh_data_tessellate(context, polylines, desc, &twin) == CAMBER_OK &&
+                      camber_stages_tessellate(context, polylines, desc, &twin_stages) == CAMBER_OK &&
                       same_meshes(&device, &twin) && same_stages(&device_stages, &twin_stages);
-    camber_stages_free(context, &twin_stages);
-    camber_stages_free(context, &device_stages);
-    camber_mesh_data_free(context, &twin);
-    camber_mesh_data_free(context, &device);
+    camber_stages_destroy(&twin_stages);
+    camber_stages_destroy(&device_stages);
+    camber_mesh_data_destroy(&twin);
+    camber_mesh_data_destroy(&device);
     return good;
 }
 
-static int check_methods(camber_context *context, camber_mesh *mesh, const scene *s, const camber_stroke *strokes,
-                         const char *what) {
-    const camber_polylines_desc desc = {.points = s->points,
-                                        .point_count = s->point_count,
-                                        .offsets = s->offsets,
-                                        .polyline_count = s->line_count,
-                                        .rows = s->rows};
+static int check_methods(camber_context *context, camber_mesh *mesh, const camber_made_scene *s,
+                         const camber_stroke *strokes, const char *what) {
+    const camber_polylines_desc desc = camber_made_scene_polylines(s);
     camber_polylines *polylines = NULL;
     int failures = 0;
     if (camber_polylines_create(context, &desc, &polylines) != CAMBER_OK)
@@ -131,7 +80,7 @@ static int check_methods(camber_context *context, camber_mesh *mesh, const scene
             .strokes = strokes, .stroke_count = ROWS, .method = (camber_method)method};
         if (check(context, mesh, polylines, &tessellation))
             continue;
-        printf("not ok - %s, %s\n", camber_method_name(tessellation.method), what);
+        printf("not ok - %s, %s\n", camber_method_get_name(tessellation.method), what);
         failures++;
     }
     camber_polylines_destroy(polylines);
@@ -141,7 +90,8 @@ static int check_methods(camber_context *context, camber_mesh *mesh, const scene
 /* Cameras over the lines as a network: all of it, a cut and simplified part, also as a tilted
  * camera sees it, one segment whose ends lie far outside,
  * and none. */
-static int check_networks(camber_context *context, camber_mesh *mesh, const scene *s, const camber_stroke *strokes) {
+static int check_networks(camber_context *context, camber_mesh *mesh, const camber_made_scene *s,
+                          const camber_stroke *strokes) {
     static double points[2 * POINTS_MAX];
     static float importance[POINTS_MAX];
     static size_t offsets[LINES_MAX + 1];
@@ -165,38 +115,38 @@ static int check_networks(camber_context *context, camber_mesh *mesh, const scen
         points[2 * i + 1] = (double)s->points[2 * i + 1];
         importance[i] = (float)(i % 5) * 0.3f;
     }
-    for (size_t i = 0; i <= s->line_count; i++)
+    for (size_t i = 0; i <= s->polyline_count; i++)
         offsets[i] = s->offsets[i];
-    for (size_t i = 0; i < s->line_count; i++)
+    for (size_t i = 0; i < s->polyline_count; i++)
         entries[i] = (camber_network_entry){.polyline = (uint32_t)i, .row = s->rows[i]};
-    for (size_t i = 0; i < s->line_count; i++) {
+    for (size_t i = 0; i < s->polyline_count; i++) {
         progress[2 * i] = (float)(i % 4) * 0.2f;
         progress[2 * i + 1] = i % 3 ? 1.0f : 0.8f;
     }
     const camber_network_desc desc = {.points = points,
                                       .offsets = offsets,
-                                      .polyline_count = s->line_count,
+                                      .polyline_count = s->polyline_count,
                                       .importance = importance,
                                       .entries = entries,
-                                      .entry_count = s->line_count,
-                                      .measured = true,
+                                      .entry_count = s->polyline_count,
+                                      .has_arc_length = true,
                                       .progress = progress};
-    const camber_tessellation_desc strips = {.strokes = strokes, .stroke_count = ROWS, .measured = true};
+    const camber_tessellation_desc strips = {.strokes = strokes, .stroke_count = ROWS, .has_arc_length = true};
     camber_network *network = NULL;
     int failures = camber_network_create(context, &desc, &network) != CAMBER_OK;
     for (size_t i = 0; i < sizeof cameras / sizeof *cameras && network; i++) {
         camber_stages device = {0}, twin = {0};
         camber_polylines *seen = NULL;
         const bool good = camber_network_project(network, cameras + i, &strips, &seen) == CAMBER_OK &&
-                          camber_tessellate_network(mesh, network, cameras + i, &strips) == CAMBER_OK &&
+                          camber_mesh_tessellate_network(mesh, network, cameras + i, &strips) == CAMBER_OK &&
                           camber_mesh_read_stages(mesh, &device) == CAMBER_OK &&
-                          camber_stages_on_host(context, seen, &strips, &twin) == CAMBER_OK &&
+                          camber_stages_tessellate(context, seen, &strips, &twin) == CAMBER_OK &&
                           same_stages(&device, &twin);
         if (!good)
             printf("not ok - camera %zu\n", i);
         failures += !good;
-        camber_stages_free(context, &device);
-        camber_stages_free(context, &twin);
+        camber_stages_destroy(&device);
+        camber_stages_destroy(&twin);
         camber_polylines_destroy(seen);
     }
     camber_network_destroy(network);
@@ -207,31 +157,29 @@ static int check_networks(camber_context *context, camber_mesh *mesh, const scen
 static bool check_counts(camber_context *context, camber_mesh *mesh, const camber_polylines *polylines,
                          const camber_tessellation_desc *desc) {
     camber_mesh_data device = {0}, twin = {0};
-    const bool good = camber_tessellate(mesh, polylines, desc) == CAMBER_OK &&
+    const bool good = camber_mesh_tessellate(mesh, polylines, desc) == CAMBER_OK &&
                       camber_mesh_read(mesh, &device) == CAMBER_OK &&
-                      camber_tessellate_on_host(context, polylines, desc, &twin) == CAMBER_OK &&
+                      camber_mesh_data_tessellate(context, polylines, desc, &twin) == CAMBER_OK &&
                       device.info.record_count == twin.info.record_count;
-    camber_mesh_data_free(context, &twin);
-    camber_mesh_data_free(context, &device);
+    camber_mesh_data_destroy(&twin);
+    camber_mesh_data_destroy(&device);
     return good;
 }
 
-static int check_offsets(camber_context *context, camber_mesh *mesh, const scene *s, camber_stroke *strokes) {
+static int check_offsets(camber_context *context, camber_mesh *mesh, const camber_made_scene *s,
+                         camber_stroke *strokes) {
     static const float offsets[] = {6.0f, -6.0f, 0.0f, 25.0f, -2.5f, 3.0f, -40.0f, 1.0f, -12.0f};
-    const camber_polylines_desc desc = {.points = s->points,
-                                        .point_count = s->point_count,
-                                        .offsets = s->offsets,
-                                        .polyline_count = s->line_count,
-                                        .rows = s->rows};
+    const camber_polylines_desc desc = camber_made_scene_polylines(s);
     camber_polylines *polylines = NULL;
     int failures = camber_polylines_create(context, &desc, &polylines) != CAMBER_OK;
     for (size_t row = 0; row < ROWS; row++)
         strokes[row].offset_px = offsets[row % (sizeof offsets / sizeof *offsets)];
-    for (int measured = 0; measured < 2 && polylines; measured++) {
-        const camber_tessellation_desc strips = {.strokes = strokes, .stroke_count = ROWS, .measured = measured};
+    for (int has_arc_length = 0; has_arc_length < 2 && polylines; has_arc_length++) {
+        const camber_tessellation_desc strips = {
+            .strokes = strokes, .stroke_count = ROWS, .has_arc_length = has_arc_length};
         if (check_counts(context, mesh, polylines, &strips))
             continue;
-        printf("not ok - offsets%s\n", measured ? ", measured" : "");
+        printf("not ok - offsets%s\n", has_arc_length ? ", measured" : "");
         failures++;
     }
     for (size_t row = 0; row < ROWS; row++)
@@ -240,7 +188,7 @@ static int check_offsets(camber_context *context, camber_mesh *mesh, const scene
     return failures;
 }
 
-/* ---- What draws ---- */
+/* ---- Drawing ---- */
 
 enum { PICTURE_WIDTH = 150, PICTURE_HEIGHT = 130, PICTURES = 3 };
 typedef uint8_t picture[4 * PICTURE_WIDTH * PICTURE_HEIGHT];
@@ -263,16 +211,12 @@ static camber_paint rich_paint(int row, float width_px) {
     return paint;
 }
 
-/* Pictures of the lines, opaque and in a united layer over a veil, seen from above and at an angle, and with all that
- * paints have. */
-static bool draw(camber_device *device, camber_context *context, const scene *s, const camber_stroke *strokes,
-                 picture pictures[PICTURES]) {
-    const camber_polylines_desc desc = {.points = s->points,
-                                        .point_count = s->point_count,
-                                        .offsets = s->offsets,
-                                        .polyline_count = s->line_count,
-                                        .rows = s->rows};
-    const camber_tessellation_desc strips = {.strokes = strokes, .stroke_count = ROWS, .measured = true};
+/* Pictures of the lines, opaque and in a united layer over a translucent fill, seen from above and at an angle, and
+ * with all that paints have. */
+static bool draw(camber_device *device, camber_context *context, const camber_made_scene *s,
+                 const camber_stroke *strokes, picture pictures[PICTURES]) {
+    const camber_polylines_desc desc = camber_made_scene_polylines(s);
+    const camber_tessellation_desc strips = {.strokes = strokes, .stroke_count = ROWS, .has_arc_length = true};
     static const float lengths[] = {4, 3, 0, 2};
     static const camber_ramp_stop stops[] = {{0.1f, {1, 0, 0, 1}}, {0.5f, {0, 1, 0, 0}}, {0.5f, {0, 1, 1, 1}}};
     const camber_dash dash = {lengths, 4};
@@ -289,29 +233,31 @@ static bool draw(camber_device *device, camber_context *context, const scene *s,
     bool good = camber_polylines_create(context, &desc, &polylines) == CAMBER_OK &&
                 camber_renderer_create(device, NULL, NULL, &renderer) == CAMBER_OK &&
                 camber_mesh_create(device, renderer, &mesh) == CAMBER_OK &&
-                camber_tessellate(mesh, polylines, &strips) == CAMBER_OK;
+                camber_mesh_tessellate(mesh, polylines, &strips) == CAMBER_OK;
     const camber_pass passes[] = {{.mesh = mesh, .paints = paints[0], .paint_count = ROWS},
-                                  {.fill = {.color = {0, 1, 0, 0.3f}}},
+                                  {.kind = CAMBER_PASS_FILL, .fill = {.color = {0, 1, 0, 0.3f}}},
                                   {.mesh = mesh, .paints = paints[1], .paint_count = ROWS, .opacity = 0.5f}};
     static const uint8_t texels[4 * 5 * 3] = {9, 0, 0, 9, 40, 50, 60, 200};
     const camber_image image = {texels, 5, 3, 0};
-    const camber_pass rich_passes[] = {
-        {.fill = {.color = {0, 0, 0, 1}, .pattern = 1, .bearing_deg = 30}, .images = &image, .image_count = 1},
-        {.mesh = mesh,
-         .paints = paints[2],
-         .paint_count = ROWS,
-         .dashes = &dash,
-         .dash_count = 1,
-         .ramps = &ramp,
-         .ramp_count = 1,
-         .images = &image,
-         .image_count = 1}};
+    const camber_pass rich_passes[] = {{.kind = CAMBER_PASS_FILL,
+                                        .fill = {.color = {0, 0, 0, 1}, .pattern = 1, .bearing_deg = 30},
+                                        .images = &image,
+                                        .image_count = 1},
+                                       {.mesh = mesh,
+                                        .paints = paints[2],
+                                        .paint_count = ROWS,
+                                        .dashes = &dash,
+                                        .dash_count = 1,
+                                        .ramps = &ramp,
+                                        .ramp_count = 1,
+                                        .images = &image,
+                                        .image_count = 1}};
     camber_frame frame = {.width = PICTURE_WIDTH, .height = PICTURE_HEIGHT, .passes = passes, .pass_count = 3};
-    good = good && camber_render(renderer, &frame, take_rows, pictures[0], NULL) == CAMBER_OK;
+    good = good && camber_renderer_render(renderer, &frame, take_rows, pictures[0], NULL) == CAMBER_OK;
     frame.pitch_deg = 75;
-    good = good && camber_render(renderer, &frame, take_rows, pictures[1], NULL) == CAMBER_OK;
+    good = good && camber_renderer_render(renderer, &frame, take_rows, pictures[1], NULL) == CAMBER_OK;
     frame = (camber_frame){.width = PICTURE_WIDTH, .height = PICTURE_HEIGHT, .passes = rich_passes, .pass_count = 2};
-    good = good && camber_render(renderer, &frame, take_rows, pictures[2], NULL) == CAMBER_OK;
+    good = good && camber_renderer_render(renderer, &frame, take_rows, pictures[2], NULL) == CAMBER_OK;
     camber_mesh_destroy(mesh);
     camber_renderer_destroy(renderer);
     camber_polylines_destroy(polylines);
@@ -319,7 +265,7 @@ static bool draw(camber_device *device, camber_context *context, const scene *s,
 }
 
 /* In the shape for a CPU and in that for a GPU, at once and in slices: the same bytes. */
-static int check_drawing(camber_context *context, scene *s) {
+static int check_drawing(camber_context *context, camber_made_scene *s) {
     static const struct {
         unsigned lanes;
         uint64_t largest_bytes;
@@ -331,7 +277,7 @@ static int check_drawing(camber_context *context, scene *s) {
     for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
         const camber_device_desc desc = {.largest_buffer_bytes = ways[i].largest_bytes};
         camber_device *device = NULL;
-        bool good = camber_device_create(context, &desc, NULL, &device) == CAMBER_OK;
+        bool good = camber_device_create(context, &desc, &device) == CAMBER_OK;
         if (good) {
             device->lanes = ways[i].lanes;
             good = draw(device, context, s, strokes, i ? seen : first);
@@ -346,12 +292,13 @@ static int check_drawing(camber_context *context, scene *s) {
     return failures;
 }
 
-static int check_device(camber_context *context, scene *s, const camber_device_desc *desc, size_t rotations) {
+static int check_device(camber_context *context, camber_made_scene *s, const camber_device_desc *desc,
+                        size_t rotations) {
     camber_device *device = NULL;
     camber_mesh *mesh = NULL;
     camber_stroke strokes[ROWS];
     int failures = 1;
-    if (camber_device_create(context, desc, NULL, &device) == CAMBER_OK &&
+    if (camber_device_create(context, desc, &device) == CAMBER_OK &&
         camber_mesh_create(device, NULL, &mesh) == CAMBER_OK) {
         failures = 0;
         printf("%s, work-groups of %u, buffers of up to %llu bytes\n", camber_device_get_info(device).name,
@@ -378,15 +325,13 @@ static void print_log(void *user, camber_log_level level, const char *message) {
 
 int main(void) {
     static const uint32_t sizes[] = {64, 128, 256};
-    static scene s;
+    camber_made_scene s;
     const camber_context_desc desc = {.log = print_log};
     camber_context *context = NULL;
     int failures = 0;
-    fill_blocks(&s);
-    fill_shapes(&s);
-    if (camber_context_create(&desc, &context) != CAMBER_OK)
+    if (!camber_small_scene_make(&s) || camber_context_create(&desc, &context) != CAMBER_OK)
         return 1;
-    printf("%zu points in %zu lines\n", s.point_count, s.line_count);
+    printf("%zu points in %zu lines\n", s.point_count, s.polyline_count);
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
         const camber_device_desc whole = {.work_group_size = sizes[i]};
         const camber_device_desc parts = {.work_group_size = sizes[i], .largest_buffer_bytes = 65536};
@@ -395,6 +340,7 @@ int main(void) {
     }
     failures += check_drawing(context, &s);
     camber_context_destroy(context);
+    camber_made_scene_free(&s);
     printf("%d failures\n", failures);
     return failures ? 1 : 0;
 }

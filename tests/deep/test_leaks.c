@@ -4,7 +4,7 @@
 #define _DEFAULT_SOURCE /* mallinfo2 */
 #define _XOPEN_SOURCE 700
 
-#include "picture.h"
+#include "pictures.h"
 
 #include "tess/mesh.h"
 
@@ -22,7 +22,7 @@ enum { HOLDS_BACK = 1, FRAMES = 100, CYCLES = 20 };
 enum { HOLDS_BACK = 0, FRAMES = 1000, CYCLES = 200 };
 #endif
 
-/* ---- What the process holds ---- */
+/* ---- Held by the process ---- */
 
 typedef struct usage {
     double resident, heap; /* bytes; heap is 0 where the C library does not tell */
@@ -163,7 +163,7 @@ static bool cycle_osmesa(void) {
     return true;
 }
 
-static bool (*const CYCLE_BARE[BACKENDS])(void) = {cycle_egl, cycle_osmesa};
+static bool (*const CYCLE_BARE[CAMBER_FIXTURE_BACKENDS])(void) = {cycle_egl, cycle_osmesa};
 
 /* The same of OpenCL: a context, a program that is built and run. */
 static bool cycle_opencl(void) {
@@ -191,16 +191,16 @@ static bool cycle_opencl(void) {
     return clReleaseContext(context) == CL_SUCCESS;
 }
 
-/* ---- What is drawn ---- */
+/* ---- The pictures ---- */
 
 enum { ROWS = 4, SCENES = 7 };
 
 typedef struct atelier {
-    studio s;
-    bool here[BACKENDS];
-    char cache[64];       /* of kernels */
-    scene scenes[SCENES]; /* of sizes that go up and down */
-    uint64_t sum;         /* of what has been drawn: the work is not left out */
+    fixture s;
+    bool here[CAMBER_FIXTURE_BACKENDS];
+    char cache[64];                   /* of kernels */
+    camber_made_scene scenes[SCENES]; /* of sizes that go up and down */
+    uint64_t sum;                     /* of what has been drawn: the work is not left out */
 } atelier;
 
 static const camber_stroke STROKES[ROWS] = {{12, CAMBER_JOIN_ROUND, CAMBER_CAP_ROUND, 0},
@@ -225,7 +225,7 @@ static camber_status draw(camber_context *context, camber_renderer *renderer, ca
     }
     camber_polylines *polylines = scene_polylines(context, a->scenes + n % SCENES);
     const camber_tessellation_desc desc = {STROKES, ROWS, (camber_method)(n % 3), 0, false};
-    camber_status status = camber_tessellate(mesh, polylines, &desc);
+    camber_status status = camber_mesh_tessellate(mesh, polylines, &desc);
     const camber_pass passes[] = {
         {.mesh = mesh, .paints = solid, .paint_count = ROWS},
         {.mesh = mesh, .paints = layered, .paint_count = ROWS},
@@ -237,7 +237,7 @@ static camber_status draw(camber_context *context, camber_renderer *renderer, ca
                                 .coverage = (camber_coverage)(n / 3 % 2),
                                 .largest_piece_px = pieces[n % 5]};
     if (status == CAMBER_OK)
-        status = camber_render(renderer, &frame, take_rows, a, NULL);
+        status = camber_renderer_render(renderer, &frame, take_rows, a, NULL);
     camber_polylines_destroy(polylines);
     return status;
 }
@@ -249,15 +249,15 @@ static int set_up(void **state) {
     uint64_t seed = 6;
     for (size_t i = 0; i < SCENES; i++)
         for (size_t k = 0; k < lines[i]; k++) {
-            scene_walk(a->scenes + i, &seed, 10, (const double[]){2, 20}, 2);
-            scene_end(a->scenes + i, k * ROWS / lines[i]);
+            camber_made_scene_walk(a->scenes + i, &seed, 10, (const double[]){2, 20}, 2);
+            camber_made_scene_end(a->scenes + i, k * ROWS / lines[i]);
         }
     folder_make(a->cache);
     /* With the drivers' threads and libraries there from the beginning. */
-    assert_true(studio_open(&a->s));
-    for (int i = 0; i < BACKENDS; i++)
-        a->here[i] = a->s.renderer[i] != NULL;
-    studio_close(&a->s);
+    assert_true(fixture_open(&a->s));
+    for (int i = 0; i < CAMBER_FIXTURE_BACKENDS; i++)
+        a->here[i] = a->s.on.renderer[i] != NULL;
+    fixture_close(&a->s);
     *state = a;
     return 0;
 }
@@ -265,22 +265,22 @@ static int set_up(void **state) {
 static int tear_down(void **state) {
     atelier *a = *state;
     for (size_t i = 0; i < SCENES; i++)
-        scene_free(a->scenes + i);
+        camber_made_scene_free(a->scenes + i);
     folder_remove(a->cache);
     free(a);
     return 0;
 }
 
-/* With a studio around the test, but for those that want nothing else to be open. */
-static int open_studio(void **state) {
+/* With a fixture around the test, but for those that want nothing else to be open. */
+static int open_fixture(void **state) {
     atelier *a = *state;
-    assert_true(studio_open(&a->s));
+    assert_true(fixture_open(&a->s));
     return 0;
 }
 
-static int close_studio(void **state) {
+static int close_fixture(void **state) {
     atelier *a = *state;
-    studio_close(&a->s);
+    fixture_close(&a->s);
     assert_int_equal(a->s.h.live_blocks, 0);
     return 0;
 }
@@ -290,23 +290,23 @@ static int close_studio(void **state) {
 static void test_frames(void **state) {
     enum { WARM_UP = 210 }; /* all combinations of the above */
     atelier *a = *state;
-    for (int i = 0; i < BACKENDS; i++) {
-        if (!a->s.renderer[i])
+    for (int i = 0; i < CAMBER_FIXTURE_BACKENDS; i++) {
+        if (!a->s.on.renderer[i])
             continue;
         camber_mesh *mesh = NULL;
         usage before = {0};
         size_t live = 0;
-        assert_int_equal(camber_mesh_create(a->s.device, a->s.renderer[i], &mesh), CAMBER_OK);
+        assert_int_equal(camber_mesh_create(a->s.on.device, a->s.on.renderer[i], &mesh), CAMBER_OK);
         for (size_t n = 0; n < WARM_UP + FRAMES; n++) {
             if (n == WARM_UP) {
                 before = measure();
                 live = a->s.h.live_blocks;
             }
-            assert_int_equal(draw(a->s.context, a->s.renderer[i], mesh, a, n), CAMBER_OK);
+            assert_int_equal(draw(a->s.context, a->s.on.renderer[i], mesh, a, n), CAMBER_OK);
         }
         const usage after = measure();
         assert_int_equal(a->s.h.live_blocks, live);
-        const growth g = grown(before, after, FRAMES, BACKEND_NAME[i]);
+        const growth g = grown(before, after, FRAMES, fixture_name(i));
         assert_at_most(g, 1024, 64, "a frame"); /* 1 MB of noise in all */
         camber_mesh_destroy(mesh);
     }
@@ -318,9 +318,9 @@ typedef camber_status cycle_fn(atelier *a, int backend);
 
 static camber_status cycle_meshes(atelier *a, int backend) {
     camber_mesh *mesh = NULL;
-    camber_status status = camber_mesh_create(a->s.device, a->s.renderer[backend], &mesh);
+    camber_status status = camber_mesh_create(a->s.on.device, a->s.on.renderer[backend], &mesh);
     if (status == CAMBER_OK)
-        status = draw(a->s.context, a->s.renderer[backend], mesh, a, 1);
+        status = draw(a->s.context, a->s.on.renderer[backend], mesh, a, 1);
     camber_mesh_destroy(mesh);
     return status;
 }
@@ -329,7 +329,7 @@ static camber_status draw_on(atelier *a, camber_context *context, camber_device 
     camber_renderer *renderer = NULL;
     camber_mesh *mesh = NULL;
     camber_status status =
-        camber_renderer_create(device, surface, &(camber_renderer_desc){.draw = CAMBER_DRAW_GL}, &renderer);
+        camber_renderer_create(device, surface, &(camber_renderer_desc){.rasterizer = CAMBER_RASTERIZER_GL}, &renderer);
     if (status == CAMBER_OK)
         status = camber_mesh_create(device, renderer, &mesh);
     if (status == CAMBER_OK)
@@ -340,14 +340,15 @@ static camber_status draw_on(atelier *a, camber_context *context, camber_device 
 }
 
 static camber_status cycle_renderers(atelier *a, int backend) {
-    return draw_on(a, a->s.context, a->s.device, a->s.surface[backend]);
+    return draw_on(a, a->s.context, a->s.on.device, a->s.on.surface[backend]);
 }
 
 static camber_status cycle_surfaces(atelier *a, int backend) {
     camber_surface *surface = NULL;
-    camber_status status = camber_surface_create(a->s.context, &(camber_surface_desc){BACKEND[backend]}, &surface);
+    camber_status status =
+        camber_surface_create(a->s.context, &(camber_surface_desc){fixture_backend(backend)}, &surface);
     if (status == CAMBER_OK)
-        status = draw_on(a, a->s.context, a->s.device, surface);
+        status = draw_on(a, a->s.context, a->s.on.device, surface);
     camber_surface_destroy(surface);
     return status;
 }
@@ -361,9 +362,10 @@ static camber_status cycle_contexts(atelier *a, int backend) {
     camber_surface *surface = NULL;
     camber_status status = camber_context_create(&desc, &context);
     if (status == CAMBER_OK)
-        status = camber_surface_create(context, &(camber_surface_desc){BACKEND[backend]}, &surface);
+        status = camber_surface_create(context, &(camber_surface_desc){fixture_backend(backend)}, &surface);
     if (status == CAMBER_OK)
-        status = camber_device_create(context, NULL, surface, &device);
+        status =
+            camber_device_create(context, &(camber_device_desc){.gl = camber_surface_get_handles(surface)}, &device);
     if (status == CAMBER_OK)
         status = draw_on(a, context, device, surface);
     camber_device_destroy(device);
@@ -385,7 +387,7 @@ static growth repeat_bare(bool (*cycle)(void), const char *what) {
     return grown(before, measure(), CYCLES, what);
 }
 
-/* Of so many cycles, after some that fill what is filled once. */
+/* Growth over so many cycles, after some that fill what is filled once. */
 static growth grow(atelier *a, int backend, cycle_fn *cycle, const char *what) {
     usage before = {0};
     for (size_t n = 0; n < FIRST_CYCLES + CYCLES; n++) {
@@ -401,7 +403,7 @@ static void repeat(atelier *a, int backend, cycle_fn *cycle, growth drivers, con
     static const double RESIDENT_MOST = 8192, HEAP_MOST = 512;
     char name[64];
     growth ours = {INFINITY, INFINITY};
-    snprintf(name, sizeof name, "%s, %s", BACKEND_NAME[backend], what);
+    snprintf(name, sizeof name, "%s, %s", fixture_name(backend), what);
     for (int turn = 0; turn < 2 && (ours.resident > RESIDENT_MOST || ours.heap > HEAP_MOST); turn++) {
         const growth all = grow(a, backend, cycle, name);
         ours = (growth){all.resident - fmax(drivers.resident, 0), all.heap - fmax(drivers.heap, 0)};
@@ -411,11 +413,11 @@ static void repeat(atelier *a, int backend, cycle_fn *cycle, growth drivers, con
 
 static void test_cycles(void **state) {
     atelier *a = *state;
-    for (int i = 0; i < BACKENDS; i++) {
+    for (int i = 0; i < CAMBER_FIXTURE_BACKENDS; i++) {
         char name[64];
-        if (!a->s.renderer[i])
+        if (!a->s.on.renderer[i])
             continue;
-        snprintf(name, sizeof name, "%s, bare contexts", BACKEND_NAME[i]);
+        snprintf(name, sizeof name, "%s, bare contexts", fixture_name(i));
         const growth bare = repeat_bare(CYCLE_BARE[i], name);
         repeat(a, i, cycle_meshes, (growth){0}, "meshes");
         repeat(a, i, cycle_renderers, (growth){0}, "renderers");
@@ -428,16 +430,16 @@ static void test_cycles(void **state) {
 static void test_context_cycles(void **state) {
     atelier *a = *state;
     const growth opencl = repeat_bare(cycle_opencl, "OpenCL, bare contexts");
-    for (int i = 0; i < BACKENDS; i++)
+    for (int i = 0; i < CAMBER_FIXTURE_BACKENDS; i++)
         if (a->here[i])
             repeat(a, i, cycle_contexts, opencl, "contexts, devices, surfaces");
 }
 
-#define IN_STUDIO(name) cmocka_unit_test_setup_teardown(name, open_studio, close_studio)
+#define IN_FIXTURE(name) cmocka_unit_test_setup_teardown(name, open_fixture, close_fixture)
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_context_cycles), IN_STUDIO(test_frames),
-                                       IN_STUDIO(test_cycles)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_context_cycles), IN_FIXTURE(test_frames),
+                                       IN_FIXTURE(test_cycles)};
     const int failed = device_is_there() ? cmocka_run_group_tests(tests, set_up, tear_down) : 77;
     return failed;
 }

@@ -2,7 +2,7 @@
 # Breaks kernels, shaders and join maths on purpose, one line at a time, and runs `camber validate` on each build: it
 # must end with 1 and name a check that failed, or be ended by what the broken kernel did.
 # test_mutations.sh SOURCES [PART OF A ROW'S FILE OR WORDS] [K/N: every N-th row, from the K-th on]
-# kernels/join.h and kernels/network.h are compiled into kernels and CPU twin alike, so that pixels and the window tell.
+# kernels/join.h and kernels/cull.h are compiled into kernels and CPU twin alike, so that pixels and the window tell.
 set -u
 sources=$1
 only=${2:-}
@@ -25,7 +25,7 @@ fail() {
 # The tool reads its kernels from the build tree: one that no twin shares is written there, and nothing is compiled here.
 build() { # [FILE THAT HAS CHANGED]
     local targets=(camber_tool)
-    [[ ${1:-} != kernels/*.cl ]] || targets=(src/kernels.cl src/network.cl src/measure.cl src/offset.cl src/cover.cl)
+    [[ ${1:-} != kernels/*.cl ]] || targets=(src/tessellate.cl src/cull.cl src/arc_length.cl src/offset.cl src/raster.cl)
     ninja -C "$tmp/build" "${targets[@]}" >"$tmp/build.log" 2>&1
 }
 
@@ -53,7 +53,7 @@ validate_until_failure() {
     wait "$process" 2>"$tmp/killed"
 }
 
-# What a failure leaves: a picture that the report names, JUnit's failures, and JSON with what differs.
+# A failure leaves a picture that the report names, JUnit's failures, and JSON with what differs.
 evidence=()
 look_at_evidence() { # FILE METHOD
     local picture member
@@ -92,7 +92,7 @@ mutant() {
         status=$?
         first=$(grep -m 1 '^not ok' "$tmp/tap")
         if [ "$status" -gt 128 ] && [ ${#evidence[@]} = 0 ]; then
-            # What a broken kernel leaves unwritten is whatever lay there: the next one may go anywhere.
+            # A broken kernel may leave unwritten whatever lay there: the next one may go anywhere.
             caught=$((caught + 1))
             echo "caught: $file: $what: ended by signal $((status - 128))"
         elif [ "$status" = 1 ] && [ -n "$first" ]; then
@@ -160,55 +160,55 @@ mutant fan kernels/emit.cl "a fan from the inner edge" 'outer > 0.0f ? CAMBER_CO
 mutant strip kernels/layout.h "a pad of another width on the device" '#define CAMBER_PAD_PX 0.75f' \
     '#define CAMBER_PAD_PX 0.7f'
 
-mutant strip kernels/offset.cl "slots that begin one too far" 'pen.at = bases[chunk] + 1u' 'pen.at = bases[chunk] + 2u'
-mutant strip kernels/offset.cl "what is left of a neighbour" 'camber_span_of(&course, slot)' \
-    'camber_span_of(&course, slot > 1u ? slot - 1u : slot)'
+mutant strip kernels/offset_emit.cl "slots that begin one too far" 'writer.at = bases[chunk] + 1u' 'writer.at = bases[chunk] + 2u'
+mutant strip kernels/offset_clip.cl "what is left of a neighbour" 'camber_offset_clip_of(&source_line, slot)' \
+    'camber_offset_clip_of(&source_line, slot > 1u ? slot - 1u : slot)'
 
 # ---- Offsets, which kernels and twin share: where points lie tells ----
 
-mutant strip kernels/offset.h "to the other side" 'leg->ux * along - leg->uy * offset' 'leg->ux * along + leg->uy * offset'
+mutant strip kernels/offset.h "to the other side" 'segment->ux * along - segment->uy * offset' 'segment->ux * along + segment->uy * offset'
 mutant strip kernels/offset.h "bends that hide nothing" 'return room;' 'return 0.0f;'
-mutant strip kernels/offset_spans.h "lines that hide nothing" 'if (lo >= leg->length || hi <= 0.0f)' 'if (lo < leg->length)'
-mutant strip kernels/offset.h "arcs of a single point" 'define CAMBER_ARC_POINTS_MAX 64u' 'define CAMBER_ARC_POINTS_MAX 1u'
+mutant strip kernels/offset_clip.h "lines that hide nothing" 'if (lo >= segment->length || hi <= 0.0f)' 'if (lo < segment->length)'
+mutant strip kernels/offset.h "arcs of a single point" 'define CAMBER_OFFSET_ARC_POINTS_MAX 64u' 'define CAMBER_OFFSET_ARC_POINTS_MAX 1u'
 
 # ---- Join maths, which kernels and twin share: pixels tell ----
 
 mutant strip kernels/join.h "turns to the other side" 'aside = dx * ey - dy * ex' 'aside = dy * ex - dx * ey'
 mutant strip kernels/join.h "turns of half the angle" 'turn.c) * 32767.0f' 'turn.c) * 16383.0f'
 mutant strip kernels/join.h "no join is tight" 'tight = row->reach_px * sine > ' 'tight = -row->reach_px * sine > '
-mutant strip kernels/join.h "split miters cut like bevels" 'miter ? 7u : bevel ? 6u' 'miter ? 6u : bevel ? 7u'
+mutant strip kernels/join.h "split miters cut like bevels" 'split_end = miter   ?' 'split_end = !miter ?'
 mutant strip kernels/join.h "tight joins that forget the bisector" 'end = split || tight ?' 'end = split ?'
 mutant strip kernels/join.h "a miter past its limit" 'turn.c * row->miter_limit >= 1.0f' 'turn.c * row->miter_limit <= 1.0f'
 mutant strip kernels/join.h "round joins past their limit" 'turn.c > row->round_cos' 'turn.c < row->round_cos'
-mutant strip kernels/join.h "round and square caps swapped" 'cap == 1u ? 0u : cap == 2u ? 2u' 'cap == 1u ? 2u : cap == 2u ? 0u'
+mutant strip kernels/join.h "round and square caps swapped" 'cap == CAMBER_CAPS_ROUND ' 'cap == CAMBER_CAPS_SQUARE '
 mutant fan kernels/join.h "fans of one triangle" 'x > turn_cos && y > 0.0f' 'x < turn_cos && y > 0.0f'
 
-# ---- Networks: the twin tells of survey and project, pixels and the window of what they share with it ----
+# ---- Networks: the twin tells of the cull stages, pixels and the window of what they share with it ----
 
-mutant strip kernels/survey.cl "chunks that are not counted" 'counts[item] = w.at' 'counts[item] = chunk % 7u == 5u ? 0u : w.at'
-mutant strip kernels/project.cl "x in the place of y" '{x, y, importance, slot_x' '{y, x, importance, slot_x'
-mutant strip kernels/project.cl "chunks that skip where there is something" 'bases[item + 1u] > bases[item]' \
+mutant strip kernels/cull_count.cl "chunks that are not counted" 'counts[item] = w.at' 'counts[item] = chunk % 7u == 5u ? 0u : w.at'
+mutant strip kernels/cull_emit.cl "x in the place of y" '{x, y, importance, slot_x' '{y, x, importance, slot_x'
+mutant strip kernels/cull_emit.cl "chunks that skip where there is something" 'bases[item + 1u] > bases[item]' \
     'bases[item + 1u] > bases[item] + 1u'
-mutant strip kernels/network.h "a side of the window" 'x > p->window_x1 + grown ? 2u' 'x > p->window_x1 + grown ? 1u'
-mutant strip kernels/network.h "the farther side of the window" 'return tx < ty ? tx : ty' 'return tx > ty ? tx : ty'
-mutant strip kernels/network.h "a corner of the window that is cut off" '> 1.0f)))' '> 1.5f)))'
-mutant strip kernels/network.h "important points that go" 'return w->importance[i] >= p->tolerance' \
+mutant strip kernels/cull.h "a side of the window" 'x > p->window_x1 + grown ? 2u' 'x > p->window_x1 + grown ? 1u'
+mutant strip kernels/cull.h "the farther side of the window" 'return tx < ty ? tx : ty' 'return tx > ty ? tx : ty'
+mutant strip kernels/cull.h "a corner of the window that is cut off" '> 1.0f)))' '> 1.5f)))'
+mutant strip kernels/cull.h "important points that go" 'return w->importance[i] >= p->tolerance' \
     'return w->importance[i] > p->tolerance'
-mutant strip kernels/network.h "segments to points that are left out" 'if (!camber_matters(w, p, i))' \
+mutant strip kernels/cull.h "segments to points that are left out" 'if (!camber_matters(w, p, i))' \
     'if (!(w->importance[i] >= 0.0f))'
-mutant strip kernels/network.h "ends that are not pulled" 'if (out == 0u)' 'if (out < 16u)'
-mutant strip kernels/network.h "ends pulled past the window" 'if (mid_out & out) {' 'if (mid_out) {'
-mutant strip kernels/network.h "a seam that is an end" 'begins == has_next ? CAMBER_POINT_RING' 'begins != has_next ? CAMBER_POINT_RING'
-mutant strip kernels/network.h "the ghost behind in the place of the one before" 'camber_put_ghost(w, p, 1u, a)' \
-    'camber_put_ghost(w, p, 0u, a)'
-mutant strip kernels/network.h "a ghost on the seam" 'other.point > w->first && camber_same_pixel(other, seam)' \
+mutant strip kernels/cull.h "ends that are not pulled" 'if (out == 0u)' 'if (out < 16u)'
+mutant strip kernels/cull.h "ends pulled past the window" 'if (mid_out & out) {' 'if (mid_out) {'
+mutant strip kernels/cull.h "a seam that is an end" 'begins == has_next ? CAMBER_POINT_RING' 'begins != has_next ? CAMBER_POINT_RING'
+mutant strip kernels/cull.h "the ghost behind in the place of the one before" 'camber_walk_put_sentinel(w, p, 1u, a)' \
+    'camber_walk_put_sentinel(w, p, 0u, a)'
+mutant strip kernels/cull.h "a ghost on the seam" 'other.point > w->first && camber_same_pixel(other, seam)' \
     'other.point > w->first && !camber_same_pixel(other, seam)'
-mutant strip kernels/network.h "pieces that do not begin" 'camber_put_cut(w, p, to, from, real | CAMBER_POINT_FIRST)' \
+mutant strip kernels/cull.h "pieces that do not begin" 'camber_put_cut(w, p, to, from, real | CAMBER_POINT_FIRST)' \
     'camber_put_cut(w, p, to, from, real)'
-mutant strip kernels/network.h "pieces that end where they began" 'camber_put_cut(w, p, from, to, real | CAMBER_POINT_LAST)' \
+mutant strip kernels/cull.h "pieces that end where they began" 'camber_put_cut(w, p, from, to, real | CAMBER_POINT_LAST)' \
     'camber_put_cut(w, p, from, from, real | CAMBER_POINT_LAST)'
-mutant strip kernels/network.h "runs that are not seen" 'run->x1 < p->seen_x0' 'run->x0 < p->seen_x0'
-mutant strip kernels/network.h "pixels turned the other way" 'p->down_x + p->at_x' '-p->down_x + p->at_x'
+mutant strip kernels/cull.h "runs that are not seen" 'run->x1 < p->seen_x0' 'run->x0 < p->seen_x0'
+mutant strip kernels/cull.h "pixels turned the other way" 'p->down_x + p->at_x' '-p->down_x + p->at_x'
 
 # ---- Shaders ----
 
@@ -244,7 +244,7 @@ mutant strip shaders/flatten.frag "united lines: edges that face alike are added
 mutant strip shaders/flatten.frag "united lines: every two edges face alike" 'abs(cosine))' '1.0)'
 mutant strip shaders/flatten.frag "united lines: one over the other" 'abs(cosine))' '0.0)'
 
-# What lies along lines, and bands beside them.
+# Paints along lines, and bands beside them.
 mutant strip shaders/stroke.frag "gaps that are not cut out" 'max(area - gap, 0.0)' 'area'
 mutant strip shaders/stroke.frag "a fade half as wide" 'fade = v_band.y + 1.0' 'fade = 0.5 * v_band.y + 1.0'
 mutant strip shaders/stroke.frag "dashes that do not end" 'covered((t - dash.x) * scale, edge) - covered((t - dash.y) * scale, edge)' \
@@ -257,49 +257,49 @@ mutant strip shaders/stroke.frag "steps at the pixel before" 'float from = along
 mutant strip shaders/stroke.frag "colours at the ends of pieces" 'mix(color, next_color, part)' 'color'
 mutant strip shaders/stroke.frag "translucent ramps that are opaque" 'o_alpha = vec4(o_color.a' 'o_alpha = vec4(area'
 mutant strip shaders/flatten.frag "alphas that are left beside" 'vec4(layer.rgb, texelFetch' 'vec4(layer.rgb, layer.a) + 0.0 * vec4(texelFetch'
-mutant strip kernels/measure.cl "lengths that are not summed" 'FIRST ? 0 : sum + ' 'FIRST ? 0 : '
-mutant strip kernels/emit.cl "measures of the neighbour" 'as_uint(measures[2 * i])' 'as_uint(measures[2 * i + 2])'
+mutant strip kernels/arc_length_scan.cl "lengths that are not summed" 'FIRST ? 0 : sum + ' 'FIRST ? 0 : '
+mutant strip kernels/emit.cl "measures of the neighbour" 'as_uint(arc_lengths[2 * i])' 'as_uint(arc_lengths[2 * i + 2])'
 
 # ---- Kernels that draw: the twin tells ----
 
 drawer=(--draw cl)
-mutant strip kernels/shape.cl "a segment from its end to its end" 'first - 1, r, &before)' 'first, r, &before)'
-mutant strip kernels/shape.cl "a direction that is not that of the segment before" 'first - 2, r, &second)' \
+mutant strip kernels/setup.cl "a segment from its end to its end" 'first - 1, r, &before)' 'first, r, &before)'
+mutant strip kernels/setup.cl "a direction that is not that of the segment before" 'first - 2, r, &second)' \
     'first - 1, r, &second)'
-mutant strip kernels/shape.cl "the table of another pass" 'take_rows(rows, r.first_row,' 'take_rows(rows, 0u * r.first_row,'
-mutant kite kernels/shape.cl "lines that go on to the next" 'r.strips ? STARTS : CAMBER_POINT_FIRST' \
+mutant strip kernels/setup.cl "the table of another pass" 'take_rows(rows, r.first_row,' 'take_rows(rows, 0u * r.first_row,'
+mutant kite kernels/setup.cl "lines that go on to the next" 'r.strips ? STARTS : CAMBER_POINT_FIRST' \
     'r.strips ? STARTS : 0u'
-mutant strip kernels/count.cl "a tile too few in a span" 'x <= span >> 8' 'x < span >> 8'
-mutant strip kernels/total.cl "sums with what comes behind" 'vstore16(sum, at, of_chunk)' 'vstore16(sum + here, at, of_chunk)'
-mutant strip kernels/fill.cl "lists that are turned over" 'lists[starts[tile] + own[tile]++]' \
+mutant strip kernels/bin_count.cl "a tile too few in a span" 'x <= span >> 8' 'x < span >> 8'
+mutant strip kernels/bin_scan.cl "sums with what comes behind" 'vstore16(sum, at, of_chunk)' 'vstore16(sum + here, at, of_chunk)'
+mutant strip kernels/bin_scatter.cl "lists that are turned over" 'lists[starts[tile] + own[tile]++]' \
     'lists[starts[tile + 1] - 1u - own[tile]++]'
-mutant strip kernels/cover_canvas.cl "cells that are done too early" 'most_of(c->level[0][3][i]) < CAMBER_NOTHING_PX' \
+mutant strip kernels/tile_state.cl "cells that are done too early" 'most_of(c->level[0][3][i]) < CAMBER_NOTHING_PX' \
     'most_of(c->level[0][3][i]) < 0.3f'
-mutant strip kernels/cover_canvas.cl "cells that are full too early" 'most_of(through) < CAMBER_NOTHING_PX' 'most_of(through) < 0.5f'
-mutant strip kernels/cover_canvas.cl "what lies below shines through" 'c->level[level][3][i] = through * (1.0f - area)' \
+mutant strip kernels/tile_state.cl "cells that are full too early" 'most_of(through) < CAMBER_NOTHING_PX' 'most_of(through) < 0.5f'
+mutant strip kernels/tile_state.cl "what lies below shines through" 'c->level[level][3][i] = through * (1.0f - area)' \
     'c->level[level][3][i] = through'
-mutant strip kernels/cover_canvas.cl "groups that are opaque" 'seen = through * opacity' 'seen = through'
-mutant strip kernels/cover_canvas.cl "united lines: areas that are not summed" 'c->ink[1][i] += ' 'c->ink[1][i] = '
-mutant strip kernels/cover_batch.cl "tight joins that cut strokes narrower than their mesh" ' & (limit * c < outer)' ''
-mutant strip kernels/cover_batch.cl "cells that are whole too soon" 'full = h - p->extent - reach' 'full = h - p->extent'
-mutant strip kernels/cover_lanes.cl "places behind those of later lanes" 'popcount(*mark & before)' 'popcount(*mark & ~before) - 1'
-mutant strip kernels/cover_lanes.cl "cells that are full without a look" '& (next <= BATCH)' '& (next > BATCH)'
-mutant strip kernels/cover_lanes.cl "segments between two strips" 'r.strips ? (b.s3 & STARTS) == 0u' 'r.strips ? (b.s3 & STARTS) != 1u'
-mutant strip kernels/cover.cl "lists that end too soon" 'k-- > starts[tile];' 'k-- > starts[tile] + 1u;'
+mutant strip kernels/tile_state.cl "groups that are opaque" 'seen = through * opacity' 'seen = through'
+mutant strip kernels/tile_state.cl "united lines: areas that are not summed" 'c->brush[1][i] += ' 'c->brush[1][i] = '
+mutant strip kernels/rasterize_sixteen.cl "tight joins that cut strokes narrower than their mesh" ' & (limit * c < outer)' ''
+mutant strip kernels/rasterize_sixteen.cl "cells that are whole too soon" 'full = h - p->extent - reach' 'full = h - p->extent'
+mutant strip kernels/bin_gpu.cl "places behind those of later lanes" 'popcount(*mark & before)' 'popcount(*mark & ~before) - 1'
+mutant strip kernels/rasterize_gpu.cl "cells that are full without a look" '& (next <= BATCH)' '& (next > BATCH)'
+mutant strip kernels/setup_gpu.cl "segments between two strips" 'r.strips ? (b.s3 & STARTS) == 0u' 'r.strips ? (b.s3 & STARTS) != 1u'
+mutant strip kernels/rasterize.cl "lists that end too soon" 'k-- > starts[tile];' 'k-- > starts[tile] + 1u;'
 
 # ---- Coverage, which these kernels and their twin share: pixels tell ----
 
-mutant strip kernels/cover_shapes.h "the slope of an edge" 's.slope = linear ? one : one / p' 's.slope = linear ? one : 0.8f / p'
-mutant strip kernels/cover.h "the corner of a pixel" 'bend * bend * curve' 'bend * curve'
-mutant strip kernels/cover.h "half the width" 'camber_inside_edge(p, half_width - d)' 'camber_inside_edge(p, 0.9f * half_width - d)'
-mutant strip kernels/cover.h "a bend to the wrong side" '*bent = y - bend' '*bent = y + bend'
-mutant strip kernels/cover.h "a cut on the wrong side" '((fb >= 0.0f) & (past_b > p->own_b))' '((fb < 0.0f) & (past_b > p->own_b))'
-mutant strip kernels/cover.h "tight joins: the inner side on the outer one" '*slope = tight ? (s > 0.0f ? more : -more)' \
+mutant strip kernels/segment.h "the slope of an edge" 's.slope = linear ? one : one / p' 's.slope = linear ? one : 0.8f / p'
+mutant strip kernels/coverage.h "the corner of a pixel" 'bend * bend * curve' 'bend * curve'
+mutant strip kernels/coverage.h "half the width" 'camber_inside_edge(p, half_width - d)' 'camber_inside_edge(p, 0.9f * half_width - d)'
+mutant strip kernels/coverage.h "a bend to the wrong side" '*bent = y - bend' '*bent = y + bend'
+mutant strip kernels/coverage.h "a cut on the wrong side" '((fb >= 0.0f) & (past_b > p->owner_b))' '((fb < 0.0f) & (past_b > p->owner_b))'
+mutant strip kernels/coverage.h "tight joins: the inner side on the outer one" '*slope = tight ? (s > 0.0f ? more : -more)' \
     '*slope = tight ? (s > 0.0f ? -more : more)'
-mutant strip kernels/cover.h "caps of thin lines" '0.5f + 0.785398f * half_width + past' '0.5f + past'
-mutant strip kernels/cover.h "united lines: edges that face alike are added up" 'cosine < 0.0f ? apart : more' \
+mutant strip kernels/coverage.h "caps of thin lines" '0.5f + 0.785398f * half_width + past' '0.5f + past'
+mutant strip kernels/coverage.h "united lines: edges that face alike are added up" 'cosine < 0.0f ? apart : more' \
     'cosine > 0.0f ? apart : more'
-mutant strip kernels/cover_shapes.h "boxes without joins" 'CAMBER_MORE(reach_a, reach_b)' '0.5f * CAMBER_LESS(reach_a, reach_b)'
+mutant strip kernels/segment.h "boxes without joins" 'CAMBER_MORE(reach_a, reach_b)' '0.5f * CAMBER_LESS(reach_a, reach_b)'
 drawer=()
 
 echo "$caught caught, $failures failures"

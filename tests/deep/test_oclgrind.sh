@@ -6,7 +6,7 @@ set -u
 command -v oclgrind >/dev/null || { echo "oclgrind is not installed: skipped"; exit 77; }
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-# What it makes of a kernel is nothing for others.
+# The kernels that it compiles are of no use to others.
 export XDG_CACHE_HOME=$folder CAMBER_KERNELS=
 # Its clang reads the kernels from memory only where it may write a cache.
 oclgrind --data-races --check-api --log "$folder/log" "$1"

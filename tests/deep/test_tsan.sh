@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# What has threads, under ThreadSanitizer: test_tsan.sh build SOURCE FOLDER [CMAKE ARGS...], then run SOURCE FOLDER
+# Tests of threads, under ThreadSanitizer: test_tsan.sh build SOURCE FOLDER [CMAKE ARGS...], then run SOURCE FOLDER
 set -eu
 verb=$1 source=$2 folder=$3
 shift 3
 
 build() {
-    local targets=(camber_tool test_bands test_threads)
+    local targets=(camber_tool test_picture_error test_threads)
     mkdir -p "$folder"
     if ! { cmake -S "$source" -B "$folder" -G Ninja -DCAMBER_TESTS=ON -DCAMBER_SANITIZE=THREAD -DCMAKE_BUILD_TYPE=Release "$@" &&
         { ! grep -q '^CAMBER_MAP:.*=ON$' "$folder/CMakeCache.txt" || targets+=(test_readers); } &&
@@ -63,7 +63,7 @@ run() {
     # A run that a signal ends joins no thread.
     export TSAN_OPTIONS=report_thread_leaks=0:exitcode=99:halt_on_error=1:atexit_sleep_ms=0:suppressions=$source/tests/fixtures/tsan.supp:print_suppressions=0
     begin
-    for test in test_bands test_readers test_threads; do
+    for test in test_picture_error test_readers test_threads; do
         [ -e "$folder/tests/$test" ] || continue # no test_readers in a build without maps
         status=0
         "${fixed[@]}" "$folder/tests/$test" || status=$?

@@ -3,13 +3,13 @@
 
 #include "tess/network.h"
 
-typedef struct bench {
+typedef struct network_devices {
     host h;
     camber_context *context;
     camber_device *devices[5]; /* 256, 64 and 128 points a work-group; buffers of 12288 and 40000 bytes */
     camber_mesh *meshes[5];
     bool rounds; /* the device divides as the host does */
-} bench;
+} network_devices;
 
 static const camber_device_desc DEVICES[] = {{.work_group_size = 256},
                                              {.work_group_size = 64},
@@ -19,12 +19,12 @@ static const camber_device_desc DEVICES[] = {{.work_group_size = 256},
 enum { DEVICE_COUNT = 5 };
 
 static int set_up(void **state) {
-    bench *b = calloc(1, sizeof *b);
+    network_devices *b = calloc(1, sizeof *b);
     if (!b)
         return -1;
     b->context = host_context(&b->h);
     for (size_t i = 0; i < DEVICE_COUNT; i++)
-        if (camber_device_create(b->context, DEVICES + i, NULL, b->devices + i) != CAMBER_OK ||
+        if (camber_device_create(b->context, DEVICES + i, b->devices + i) != CAMBER_OK ||
             camber_mesh_create(b->devices[i], NULL, b->meshes + i) != CAMBER_OK)
             return -1;
     b->rounds = b->devices[0]->rounds_correctly;
@@ -33,7 +33,7 @@ static int set_up(void **state) {
 }
 
 static int tear_down(void **state) {
-    bench *b = *state;
+    network_devices *b = *state;
     for (size_t i = 0; i < DEVICE_COUNT; i++) {
         camber_mesh_destroy(b->meshes[i]);
         camber_device_destroy(b->devices[i]);
@@ -55,7 +55,7 @@ typedef struct world {
 
 static const double WORLD_X = 0.4821, WORLD_Y = 0.3757, WORLD_UNIT = 1e-7; /* a city at zoom 16 */
 
-static world world_make(const scene *s, uint64_t seed) {
+static world world_make(const camber_made_scene *s, uint64_t seed) {
     world w = {.point_count = s->point_count, .polyline_count = s->polyline_count};
     w.points = malloc((s->point_count + 1) * 2 * sizeof *w.points);
     w.importance = malloc((s->point_count + 1) * sizeof *w.importance);
@@ -65,7 +65,7 @@ static world world_make(const scene *s, uint64_t seed) {
     for (size_t i = 0; i < s->point_count; i++) {
         w.points[2 * i] = WORLD_X + WORLD_UNIT * (double)s->points[2 * i];
         w.points[2 * i + 1] = WORLD_Y + WORLD_UNIT * (double)s->points[2 * i + 1];
-        w.importance[i] = (float)(WORLD_UNIT * pow(10, random_between(&seed, -3, 2)));
+        w.importance[i] = (float)(WORLD_UNIT * pow(10, camber_random_between(&seed, -3, 2)));
     }
     for (size_t i = 0; i <= s->polyline_count; i++)
         w.offsets[i] = s->offsets[i];
@@ -91,7 +91,7 @@ static camber_network_desc world_desc(const world *w) {
                                  .entry_count = w->polyline_count};
 }
 
-static camber_network *network_make(bench *b, const camber_network_desc *desc) {
+static camber_network *network_make(network_devices *b, const camber_network_desc *desc) {
     camber_network *network = NULL;
     assert_int_equal(camber_network_create(b->context, desc, &network), CAMBER_OK);
     return network;
@@ -100,13 +100,13 @@ static camber_network *network_make(bench *b, const camber_network_desc *desc) {
 /* A camera that sees 1000 / zoom units across, somewhere in the world. */
 static camber_camera camera_make(uint64_t *seed, double zoom, double simplify_px) {
     static const double bearings[] = {0, 90, 33.7, -145, 360}, pitches[] = {0, 0, 45, 85};
-    return (camber_camera){.x = WORLD_X + WORLD_UNIT * random_between(seed, 0, 1000),
-                           .y = WORLD_Y + WORLD_UNIT * random_between(seed, 0, 1000),
+    return (camber_camera){.x = WORLD_X + WORLD_UNIT * camber_random_between(seed, 0, 1000),
+                           .y = WORLD_Y + WORLD_UNIT * camber_random_between(seed, 0, 1000),
                            .scale_px = zoom / WORLD_UNIT,
-                           .bearing_deg = bearings[random_below(seed, 5)],
-                           .pitch_deg = pitches[random_below(seed, 4)],
-                           .width = (uint32_t)(1 + random_below(seed, 1000)),
-                           .height = (uint32_t)(1 + random_below(seed, 1000)),
+                           .bearing_deg = bearings[camber_random_below(seed, 5)],
+                           .pitch_deg = pitches[camber_random_below(seed, 4)],
+                           .width = (uint32_t)(1 + camber_random_below(seed, 1000)),
+                           .height = (uint32_t)(1 + camber_random_below(seed, 1000)),
                            .simplify_px = simplify_px};
 }
 
@@ -115,9 +115,9 @@ static const double TOLERANCES[] = {0, 0.1, 3};
 enum { ZOOM_COUNT = 8 };
 
 /* Narrow strokes, so that the window is no larger than need be. */
-static void narrow_strokes(camber_stroke strokes[SCENE_ROWS]) {
+static void narrow_strokes(camber_stroke strokes[CAMBER_KERNEL_ROWS]) {
     scene_strokes(strokes);
-    for (int i = 0; i < SCENE_ROWS; i++) {
+    for (int i = 0; i < CAMBER_KERNEL_ROWS; i++) {
         strokes[i].width_px = (float)(1 + i);
         strokes[i].miter_limit = 2;
     }
@@ -125,7 +125,7 @@ static void narrow_strokes(camber_stroke strokes[SCENE_ROWS]) {
 
 /* ---- Device and twin ---- */
 
-static void *read_words(const bench *b, size_t which, cl_mem mem, size_t words) {
+static void *read_words(const network_devices *b, size_t which, cl_mem mem, size_t words) {
     void *bytes = malloc(4 * words);
     assert_non_null(bytes);
     assert_int_equal(clEnqueueReadBuffer(b->devices[which]->queue, mem, CL_TRUE, 0, 4 * words, bytes, 0, NULL, NULL),
@@ -133,7 +133,7 @@ static void *read_words(const bench *b, size_t which, cl_mem mem, size_t words) 
     return bytes;
 }
 
-static void compare_words(const bench *b, size_t which, cl_mem mem, const void *expected, size_t words) {
+static void compare_words(const network_devices *b, size_t which, cl_mem mem, const void *expected, size_t words) {
     uint32_t *got = read_words(b, which, mem, words);
     for (size_t i = 0; i < words; i++)
         if (memcmp(got + i, (const uint32_t *)expected + i, 4) != 0)
@@ -142,8 +142,9 @@ static void compare_words(const bench *b, size_t which, cl_mem mem, const void *
     free(got);
 }
 
-/* Slots of a part, with the ghosts around them. */
-static void compare_part(const bench *b, size_t which, const camber_mesh_part *part, const camber_polylines *twin) {
+/* Slots of a part, with the sentinels around them. */
+static void compare_part(const network_devices *b, size_t which, const camber_mesh_part *part,
+                         const camber_polylines *twin) {
     const camber_mesh *mesh = b->meshes[which];
     const size_t first = twin->first_slots[part->first_polyline];
     const size_t end = twin->first_slots[part->first_polyline + part->polyline_count];
@@ -167,18 +168,18 @@ static void compare_part(const bench *b, size_t which, const camber_mesh_part *p
 }
 
 /* Tessellates what the camera sees on a device; gives how many slots the twin has. */
-static size_t compare(bench *b, size_t which, camber_network *network, const camber_camera *camera,
+static size_t compare(network_devices *b, size_t which, camber_network *network, const camber_camera *camera,
                       const camber_tessellation_desc *desc) {
     camber_polylines *twin = NULL;
     camber_mesh *mesh = b->meshes[which];
     assert_int_equal(camber_network_project(network, camera, desc, &twin), CAMBER_OK);
-    assert_int_equal(camber_tessellate_network(mesh, network, camera, desc), CAMBER_OK);
-    assert_true(camber_mesh_holds(mesh, network));
+    assert_int_equal(camber_mesh_tessellate_network(mesh, network, camera, desc), CAMBER_OK);
+    assert_true(camber_mesh_holds_network(mesh, network));
     for (size_t i = 0; b->rounds && i < mesh->part_count; i++)
         compare_part(b, which, mesh->parts + i, twin);
     camber_mesh_data device, twins;
     assert_int_equal(camber_mesh_read(mesh, &device), CAMBER_OK);
-    assert_int_equal(camber_tessellate_on_host(b->context, twin, desc, &twins), CAMBER_OK);
+    assert_int_equal(camber_mesh_data_tessellate(b->context, twin, desc, &twins), CAMBER_OK);
     if (b->rounds) {
         assert_int_equal(device.info.vertex_count, twins.info.vertex_count);
         assert_int_equal(device.info.joins, twins.info.joins);
@@ -189,39 +190,39 @@ static size_t compare(bench *b, size_t which, camber_network *network, const cam
         if (device.info.vertex_count)
             assert_memory_equal(device.vertices, twins.vertices, device.info.vertex_count * sizeof *twins.vertices);
     }
-    camber_mesh_data_free(b->context, &device);
-    camber_mesh_data_free(b->context, &twins);
+    camber_mesh_data_destroy(&device);
+    camber_mesh_data_destroy(&twins);
     const size_t slots = twin->first_slots[twin->polyline_count];
     camber_polylines_destroy(twin);
     return slots;
 }
 
 static void test_device_equals_twin(void **state) {
-    bench *b = *state;
-    camber_stroke strokes[SCENE_ROWS];
+    network_devices *b = *state;
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     narrow_strokes(strokes);
     uint64_t seed = 7;
-    for (size_t which = 0; which < SCENE_COUNT; which++) {
-        scene s = scene_make(which);
+    for (size_t which = 0; which < CAMBER_KERNEL_SCENES; which++) {
+        camber_made_scene s = scene_make(which);
         world w = world_make(&s, 5 + which);
         const camber_network_desc from = world_desc(&w);
         camber_network *network = network_make(b, &from);
         size_t slots = 0;
         for (size_t i = 0; i < 3 * ZOOM_COUNT; i++) {
             const camber_camera camera = camera_make(&seed, ZOOMS[i % ZOOM_COUNT], TOLERANCES[i / ZOOM_COUNT]);
-            const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)(i % 3), 0, false};
+            const camber_tessellation_desc desc = {strokes, CAMBER_KERNEL_ROWS, (camber_method)(i % 3), 0, false};
             slots += compare(b, i % 3, network, &camera, &desc);
         }
         assert_true(slots > 1000);
         camber_network_destroy(network);
         world_free(&w);
-        scene_free(&s);
+        camber_made_scene_free(&s);
     }
 }
 
 /* All points in one place, or nearer to each other than a double tells, are a dot in any view. */
 static void test_draws_a_dot(void **state) {
-    bench *b = *state;
+    network_devices *b = *state;
     static const double apart[] = {0, 4.9e-324, 1e-310, 1e-200, 1e-31, 1e-20},
                         scales[] = {1, 512, 2147483648.0, 5.5e11};
     const camber_stroke stroke = {.width_px = 8, .cap = CAMBER_CAP_ROUND};
@@ -235,17 +236,15 @@ static void test_draws_a_dot(void **state) {
             const camber_camera camera = {
                 .scale_px = scales[k], .width = 64, .height = 32, .pitch_deg = k % 2 ? 60 : 0};
             camber_lines lines;
-            uint32_t *entries;
-            assert_int_equal(camber_network_lines(network, &camera, &desc, &lines, &entries), CAMBER_OK);
+            assert_int_equal(camber_network_project_lines(network, &camera, &desc, &lines), CAMBER_OK);
             assert_int_equal(lines.polyline_count, 1);
             for (size_t n = 0; n < lines.point_count; n++) {
                 assert_true(fabsf(lines.points[2 * n] - 32) < 0.01f);
                 assert_true(fabsf(lines.points[2 * n + 1] - 16) < 0.01f);
             }
-            camber_lines_free(b->context, &lines);
-            camber_entries_free(b->context, entries);
+            camber_lines_destroy(&lines);
             assert_true(compare(b, k % 3, network, &camera, &desc) > 0);
-            assert_int_equal(camber_tessellate_network(b->meshes[0], network, &camera, &desc), CAMBER_OK);
+            assert_int_equal(camber_mesh_tessellate_network(b->meshes[0], network, &camera, &desc), CAMBER_OK);
             assert_true(camber_mesh_get_info(b->meshes[0]).triangle_count > 0);
         }
         camber_network_destroy(network);
@@ -254,27 +253,27 @@ static void test_draws_a_dot(void **state) {
 
 /* Sections, parts cut in two for their slots and parts split for their output. */
 static void test_parts_equal_twin(void **state) {
-    bench *b = *state;
-    camber_stroke strokes[SCENE_ROWS];
+    network_devices *b = *state;
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     narrow_strokes(strokes);
     uint64_t seed = 77;
-    scene s = scene_make(0);
+    camber_made_scene s = scene_make(0);
     world w = world_make(&s, 3);
     const camber_network_desc from = world_desc(&w);
     camber_network *network = network_make(b, &from);
     for (size_t i = 0; i < 2 * ZOOM_COUNT; i++) {
         const camber_camera camera = camera_make(&seed, ZOOMS[i % ZOOM_COUNT], TOLERANCES[i / ZOOM_COUNT]);
-        const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)(i % 3), 0, false};
+        const camber_tessellation_desc desc = {strokes, CAMBER_KERNEL_ROWS, (camber_method)(i % 3), 0, false};
         compare(b, 3 + i % 2, network, &camera, &desc);
     }
     assert_true(b->meshes[3]->held->section_count > 1);
     assert_true(b->meshes[3]->part_count > b->meshes[3]->held->section_count);
     camber_network_destroy(network);
     world_free(&w);
-    scene_free(&s);
+    camber_made_scene_free(&s);
 }
 
-/* ---- What the camera sees ---- */
+/* ---- The camera's view ---- */
 
 static void project(const camber_camera *camera, const double *place, double *px) {
     const double angle = camera->bearing_deg * SCENE_PI / 180, c = cos(angle), s = sin(angle);
@@ -341,14 +340,14 @@ static bool is_end(const world *w, const camber_camera *camera, size_t entry, co
 }
 
 static void test_sees_all_in_the_picture(void **state) {
-    bench *b = *state;
-    camber_stroke strokes[SCENE_ROWS];
+    network_devices *b = *state;
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     narrow_strokes(strokes);
-    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0, false};
+    const camber_tessellation_desc desc = {strokes, CAMBER_KERNEL_ROWS, CAMBER_METHOD_STRIP, 0, false};
     uint64_t seed = 99;
     size_t seen = 0, cut = 0;
     for (size_t which = 0; which < 3; which++) {
-        scene s = scene_make(which);
+        camber_made_scene s = scene_make(which);
         world w = world_make(&s, which);
         const camber_network_desc from = world_desc(&w);
         camber_network *network = network_make(b, &from);
@@ -356,9 +355,8 @@ static void test_sees_all_in_the_picture(void **state) {
             camber_camera camera = camera_make(&seed, i % 2 ? 6 : 30, 0);
             camera.pitch_deg = 0; /* test_pitch.c has pictures of others */
             camber_lines lines;
-            uint32_t *entries;
-            assert_int_equal(camber_network_lines(network, &camera, &desc, &lines, &entries), CAMBER_OK);
-            seen += check_seen(&w, &camera, &lines, entries);
+            assert_int_equal(camber_network_project_lines(network, &camera, &desc, &lines), CAMBER_OK);
+            seen += check_seen(&w, &camera, &lines, lines.entries);
             for (size_t k = 0; k < lines.point_count; k++)
                 for (size_t axis = 0; axis < 2; axis++) {
                     const float most = axis ? (float)camera.height : (float)camera.width,
@@ -371,31 +369,30 @@ static void test_sees_all_in_the_picture(void **state) {
                 const bool ring = first[0] == last[0] && first[1] == last[1];
                 const bool border = lies_on_border(first, &camera, 64) && lies_on_border(last, &camera, 64);
                 cut += border;
-                assert_true(ring || lies_on_border(first, &camera, 64) || is_end(&w, &camera, entries[k], first));
-                assert_true(ring || lies_on_border(last, &camera, 64) || is_end(&w, &camera, entries[k], last));
+                assert_true(ring || lies_on_border(first, &camera, 64) || is_end(&w, &camera, lines.entries[k], first));
+                assert_true(ring || lies_on_border(last, &camera, 64) || is_end(&w, &camera, lines.entries[k], last));
                 /* A seam is no end: a ring is whole, or cut at the border twice. */
                 if (which == 2 && !ring)
                     assert_true(border || lines.offsets[k + 1] - lines.offsets[k] == 1 ||
-                                w.offsets[entries[k] + 1] - w.offsets[entries[k]] <= 3);
+                                w.offsets[lines.entries[k] + 1] - w.offsets[lines.entries[k]] <= 3);
             }
-            camber_lines_free(b->context, &lines);
-            camber_entries_free(b->context, entries);
+            camber_lines_destroy(&lines);
         }
         camber_network_destroy(network);
         world_free(&w);
-        scene_free(&s);
+        camber_made_scene_free(&s);
     }
     assert_true(seen > 1000 && cut > 100);
 }
 
 /* A camera that sees everything at tolerance 0: what camber_polylines_create makes of the same points. */
 static void test_keeps_everything(void **state) {
-    bench *b = *state;
-    camber_stroke strokes[SCENE_ROWS];
+    network_devices *b = *state;
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     scene_strokes(strokes);
-    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0, false};
+    const camber_tessellation_desc desc = {strokes, CAMBER_KERNEL_ROWS, CAMBER_METHOD_STRIP, 0, false};
     for (size_t which = 0; which < 5; which++) {
-        scene s = scene_make(which);
+        camber_made_scene s = scene_make(which);
         world w = world_make(&s, which);
         for (size_t i = 0; i < s.point_count; i++)
             if (!camber_point_is_valid(s.points + 2 * i))
@@ -416,7 +413,7 @@ static void test_keeps_everything(void **state) {
         assert_int_equal(got.dots, had.dots);
         assert_int_equal(camber_network_get_stats(network).invalid_points, had.invalid_points);
         assert_int_equal(camber_network_get_stats(network).repeated_points, had.repeated_points);
-        size_t k = 0; /* ghosts that turned out not to be needed are told apart by their words alone */
+        size_t k = 0; /* sentinels that turned out not to be needed are told apart by their words alone */
         for (size_t i = 1; i <= plain->slot_count; i++) {
             if (!(plain->info[i] & CAMBER_POINT_REAL))
                 continue;
@@ -431,13 +428,13 @@ static void test_keeps_everything(void **state) {
         camber_polylines_destroy(plain);
         camber_network_destroy(network);
         world_free(&w);
-        scene_free(&s);
+        camber_made_scene_free(&s);
     }
 }
 
 /* Points go by their importance, and by nothing else. */
 static void test_drops_by_importance(void **state) {
-    bench *b = *state;
+    network_devices *b = *state;
     const double points[] = {0, 0, 0.1, 0.1, 0.2, 0, 0.3, 0.1, 0.4, 0};
     const float importance[] = {0, 0.02f, (float)NAN, 0.01f, -1};
     const size_t offsets[] = {0, 5};
@@ -469,13 +466,11 @@ static camber_status make_and_look(camber_context *context, void *user) {
     const camber_camera camera = {.scale_px = 100, .width = 50, .height = 50};
     camber_network *network = NULL;
     camber_lines lines = {0};
-    uint32_t *entries = NULL;
     camber_status status = camber_network_create(context, user, &network);
     if (status == CAMBER_OK)
-        status = camber_network_lines(network, &camera, &desc, &lines, &entries);
+        status = camber_network_project_lines(network, &camera, &desc, &lines);
     camber_network_destroy(network);
-    camber_lines_free(context, &lines);
-    camber_entries_free(context, entries);
+    camber_lines_destroy(&lines);
     return status;
 }
 
@@ -483,7 +478,7 @@ static camber_status draw_on_device(camber_context *context, void *user) {
     const camber_stroke stroke = {.width_px = 2};
     const camber_tessellation_desc desc = {&stroke, 1, CAMBER_METHOD_STRIP, 0, false};
     const camber_camera camera = {.scale_px = 100, .width = 50, .height = 50};
-    bench *b = user;
+    network_devices *b = user;
     const double points[] = {0, 0, 0.1, 0.1, NAN, 0, 0.3, 0.1, 0.4, 0};
     const size_t offsets[] = {0, 5};
     camber_network *network = NULL;
@@ -493,14 +488,14 @@ static camber_status draw_on_device(camber_context *context, void *user) {
     if (status == CAMBER_OK)
         status = camber_mesh_create(b->devices[0], NULL, &mesh);
     if (status == CAMBER_OK)
-        status = camber_tessellate_network(mesh, network, &camera, &desc);
+        status = camber_mesh_tessellate_network(mesh, network, &camera, &desc);
     camber_network_destroy(network);
     camber_mesh_destroy(mesh);
     return status;
 }
 
 static void test_allocations_fail(void **state) {
-    bench *b = *state;
+    network_devices *b = *state;
     const double points[] = {0, 0, 0.1, 0.1, NAN, 0, 0.3, 0.1, 0.4, 0};
     const size_t offsets[] = {0, 5};
     camber_network_desc desc = {.points = points, .offsets = offsets, .polyline_count = 1};
@@ -510,7 +505,7 @@ static void test_allocations_fail(void **state) {
 }
 
 static void test_wrong_input(void **state) {
-    bench *b = *state;
+    network_devices *b = *state;
     const double points[] = {0, 0, 1, 1};
     const size_t offsets[] = {0, 2}, falling[] = {2, 0};
     const camber_network_entry far = {.polyline = 1}, row = {.row = 1u << 24};
@@ -534,17 +529,18 @@ static void test_wrong_input(void **state) {
                                      {.scale_px = 1, .width = 65536, .height = 1},
                                      {.scale_px = 1, .width = 1, .height = 1, .simplify_px = -1}};
     for (size_t i = 0; i < sizeof cameras / sizeof *cameras; i++) {
-        assert_int_equal(camber_tessellate_network(b->meshes[0], network, cameras + i, &desc), CAMBER_ERROR_ARGUMENT);
+        assert_int_equal(camber_mesh_tessellate_network(b->meshes[0], network, cameras + i, &desc),
+                         CAMBER_ERROR_ARGUMENT);
         assert_story(&b->h, "camera: ");
-        assert_false(camber_mesh_holds(b->meshes[0], network));
+        assert_false(camber_mesh_holds_network(b->meshes[0], network));
     }
     const camber_camera good = {.scale_px = 1, .width = 1, .height = 1};
-    assert_int_equal(camber_tessellate_network(b->meshes[0], network, &good, &(camber_tessellation_desc){0}),
+    assert_int_equal(camber_mesh_tessellate_network(b->meshes[0], network, &good, &(camber_tessellation_desc){0}),
                      CAMBER_ERROR_ARGUMENT);
     assert_story(&b->h, "row 0");
     camber_network_destroy(network);
     network = network_make(b, &(camber_network_desc){0});
-    assert_int_equal(camber_tessellate_network(b->meshes[0], network, &good, &desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate_network(b->meshes[0], network, &good, &desc), CAMBER_OK);
     assert_int_equal(camber_mesh_get_info(b->meshes[0]).vertex_count, 0);
     camber_network_destroy(network);
 }

@@ -1,6 +1,6 @@
 /* Lines beside others: against offset curves that are sampled in double precision and thinned by distance, the device
  * against the twin to the last bit, over borders of chunks and parts, and cameras against each other. */
-#include "bench.h"
+#include "test_fixture.h"
 
 #include <float.h>
 
@@ -51,7 +51,7 @@ static void sample(samples *s, double x, double y) {
 }
 
 /* Every place at the offset of a segment, or about a bend on its outer side, that lies no nearer than that to the line:
- * each leg by itself, no thought of what comes before or behind. */
+ * each offset segment by itself, no thought of what comes before or behind. */
 static samples sample_truth(const line *l, double offset, double step) {
     samples s = {0};
     const double least = fabs(offset) - 1e-6;
@@ -81,9 +81,9 @@ static samples sample_truth(const line *l, double offset, double step) {
     return s;
 }
 
-/* ---- What is made ---- */
+/* ---- Making lines ---- */
 
-static camber_polylines *polylines_of(bench *b, const line *l) {
+static camber_polylines *polylines_of(fixture *b, const line *l) {
     float points[2 * POINTS_MAX];
     const uint32_t offsets[] = {0, (uint32_t)l->count};
     for (size_t i = 0; i < 2 * l->count; i++)
@@ -95,16 +95,16 @@ static camber_polylines *polylines_of(bench *b, const line *l) {
     return polylines;
 }
 
-static line made_of(bench *b, const line *l, camber_stroke stroke) {
+static line made_of(fixture *b, const line *l, camber_stroke stroke) {
     static line made;
     camber_polylines *polylines = polylines_of(b, l);
     const camber_tessellation_desc desc = {.strokes = &stroke, .stroke_count = 1};
     camber_stages stages;
     made.count = 0;
-    assert_int_equal(camber_stages_on_host(b->context, polylines, &desc, &stages), CAMBER_OK);
+    assert_int_equal(camber_stages_tessellate(b->context, polylines, &desc, &stages), CAMBER_OK);
     for (size_t i = 0; i < stages.point_count; i++)
         add(&made, (double)stages.points[i].x, (double)stages.points[i].y);
-    camber_stages_free(b->context, &stages);
+    camber_stages_destroy(&stages);
     camber_polylines_destroy(polylines);
     return made;
 }
@@ -125,7 +125,7 @@ static double distance_to_samples(const samples *s, double x, double y) {
 
 /* The line beside is where the truth is and nowhere else. aside: how far either may lie from the other, where links cut
  * corners. */
-static void check_shape(bench *b, const char *name, const line *l, double offset, double aside) {
+static void check_shape(fixture *b, const char *name, const line *l, double offset, double aside) {
     const camber_stroke stroke = {.width_px = 2, .offset_px = (float)offset};
     const line made = made_of(b, l, stroke);
     samples truth = sample_truth(l, offset, 0.1);
@@ -279,24 +279,25 @@ static void test_joins(void **state) {
 
 /* No point lies farther than the offset, and rings begin where they end, whatever the line. */
 static void test_walks(void **state) {
-    bench *b = *state;
+    fixture *b = *state;
     uint64_t seed = 77;
     for (int n = 0; n < 400; n++) {
         static line l;
         l.count = 0;
-        const double turn = random_between(&seed, 0.1, SCENE_PI), longest = random_between(&seed, 0.5, 30);
-        const size_t count = 2 + random_below(&seed, 60);
+        const double turn = camber_random_between(&seed, 0.1, SCENE_PI),
+                     longest = camber_random_between(&seed, 0.5, 30);
+        const size_t count = 2 + camber_random_below(&seed, 60);
         double x = 200, y = 200, direction = 0;
         for (size_t i = 0; i < count; i++) {
             add(&l, (double)(float)x, (double)(float)y);
-            direction += random_between(&seed, -turn, turn);
-            const double step = random_between(&seed, 0.05, longest);
+            direction += camber_random_between(&seed, -turn, turn);
+            const double step = camber_random_between(&seed, 0.05, longest);
             x += step * cos(direction);
             y += step * sin(direction);
         }
         if (n % 3 == 0 && count > 3)
             add(&l, l.points[0], l.points[1]);
-        const double offset = random_between(&seed, -25, 25);
+        const double offset = camber_random_between(&seed, -25, 25);
         const line made = made_of(b, &l, (camber_stroke){.width_px = 2, .offset_px = (float)offset});
         for (size_t i = 0; i < made.count; i++) {
             const double d = distance_to_line(&l, made.points[2 * i], made.points[2 * i + 1]);
@@ -311,10 +312,10 @@ static void test_walks(void **state) {
 
 /* ---- Device and twin ---- */
 
-static void offset_strokes(camber_stroke strokes[SCENE_ROWS]) {
+static void offset_strokes(camber_stroke strokes[CAMBER_KERNEL_ROWS]) {
     static const float offsets[] = {6, -6, 0, 0.4f, -25, 3, 140, -3, 12};
     scene_strokes(strokes);
-    for (size_t i = 0; i < SCENE_ROWS; i++)
+    for (size_t i = 0; i < CAMBER_KERNEL_ROWS; i++)
         strokes[i].offset_px = offsets[i];
 }
 
@@ -325,54 +326,54 @@ static void assert_same(const camber_mesh_data *a, const camber_mesh_data *b) {
         if (memcmp(a->records + i, b->records + i, sizeof *a->records) != 0)
             fail_msg("record %zu: %.9g, %.9g and %.9g, %.9g", i, (double)a->records[i].x, (double)a->records[i].y,
                      (double)b->records[i].x, (double)b->records[i].y);
-    assert_int_equal(a->measures != NULL, b->measures != NULL);
-    if (a->measures)
-        assert_memory_equal(a->measures, b->measures, a->info.record_count * sizeof *a->measures);
+    assert_int_equal(a->arc_lengths != NULL, b->arc_lengths != NULL);
+    if (a->arc_lengths)
+        assert_memory_equal(a->arc_lengths, b->arc_lengths, a->info.record_count * sizeof *a->arc_lengths);
     if (a->corners)
         assert_memory_equal(a->corners, b->corners, a->info.index_count * sizeof *a->corners);
 }
 
-static void compare(bench *b, camber_mesh *mesh, const camber_polylines *polylines,
+static void compare(fixture *b, camber_mesh *mesh, const camber_polylines *polylines,
                     const camber_tessellation_desc *desc) {
     camber_mesh_data device, twin;
     camber_stages seen, wanted;
-    assert_int_equal(camber_tessellate_on_host(b->context, polylines, desc, &twin), CAMBER_OK);
-    assert_int_equal(camber_stages_on_host(b->context, polylines, desc, &wanted), CAMBER_OK);
-    assert_int_equal(camber_tessellate(mesh, polylines, desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_data_tessellate(b->context, polylines, desc, &twin), CAMBER_OK);
+    assert_int_equal(camber_stages_tessellate(b->context, polylines, desc, &wanted), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(mesh, polylines, desc), CAMBER_OK);
     assert_int_equal(camber_mesh_read(mesh, &device), CAMBER_OK);
     assert_int_equal(camber_mesh_read_stages(mesh, &seen), CAMBER_OK);
     assert_same(&twin, &device);
     assert_int_equal(seen.point_count, wanted.point_count);
     assert_memory_equal(seen.points, wanted.points, seen.point_count * sizeof *seen.points);
-    camber_stages_free(b->context, &seen);
-    camber_stages_free(b->context, &wanted);
-    camber_mesh_data_free(b->context, &device);
-    camber_mesh_data_free(b->context, &twin);
+    camber_stages_destroy(&seen);
+    camber_stages_destroy(&wanted);
+    camber_mesh_data_destroy(&device);
+    camber_mesh_data_destroy(&twin);
 }
 
 /* Every scene, as one part of work-groups of 256, and in parts of other ones. */
 static void test_device_equals_twin(void **state) {
-    bench *b = *state;
+    fixture *b = *state;
     if (!b->rounds)
         skip();
-    camber_stroke strokes[SCENE_ROWS];
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     camber_device *small = NULL;
     camber_mesh *mesh = NULL;
     const camber_device_desc parts = {.work_group_size = 64, .memory_bytes = 64 << 20};
     offset_strokes(strokes);
-    assert_int_equal(camber_device_create(b->context, &parts, NULL, &small), CAMBER_OK);
+    assert_int_equal(camber_device_create(b->context, &parts, &small), CAMBER_OK);
     assert_int_equal(camber_mesh_create(small, NULL, &mesh), CAMBER_OK);
-    for (size_t which = 0; which < SCENE_COUNT; which++) {
-        scene s = scene_make(which);
+    for (size_t which = 0; which < CAMBER_KERNEL_SCENES; which++) {
+        camber_made_scene s = scene_make(which);
         camber_polylines *polylines = scene_polylines(b->context, &s);
         for (int method = 0; method < 3; method++) {
-            camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)method, 0, method != 1};
+            camber_tessellation_desc desc = {strokes, CAMBER_KERNEL_ROWS, (camber_method)method, 0, method != 1};
             compare(b, b->mesh, polylines, &desc);
-            desc.measured = !desc.measured;
+            desc.has_arc_length = !desc.has_arc_length;
             compare(b, mesh, polylines, &desc);
         }
         camber_polylines_destroy(polylines);
-        scene_free(&s);
+        camber_made_scene_free(&s);
     }
     camber_mesh_destroy(mesh);
     camber_device_destroy(small);
@@ -380,23 +381,24 @@ static void test_device_equals_twin(void **state) {
 
 /* A mesh whose buffers or memory are too small for one part: the same bytes. */
 static void test_parts(void **state) {
-    bench *b = *state;
-    camber_stroke strokes[SCENE_ROWS];
+    fixture *b = *state;
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     offset_strokes(strokes);
-    scene s = {0};
+    camber_made_scene s = {0};
     uint64_t seed = 3;
     for (size_t i = 0; i < 600; i++) {
-        scene_walk(&s, &seed, 3 + random_below(&seed, 90), (const double[]){0.3, 12}, 1.2);
-        scene_end(&s, i % SCENE_ROWS);
+        camber_made_scene_walk(&s, &seed, 3 + camber_random_below(&seed, 90), (const double[]){0.3, 12}, 1.2);
+        camber_made_scene_end(&s, i % CAMBER_KERNEL_ROWS);
     }
     static const camber_device_desc descs[] = {
         {.largest_buffer_bytes = 70000}, {.memory_bytes = 700000}, {.memory_bytes = 2 << 20}};
     camber_polylines *polylines = scene_polylines(b->context, &s);
-    const camber_tessellation_desc desc = {.strokes = strokes, .stroke_count = SCENE_ROWS, .measured = true};
+    const camber_tessellation_desc desc = {
+        .strokes = strokes, .stroke_count = CAMBER_KERNEL_ROWS, .has_arc_length = true};
     for (size_t i = 0; i < sizeof descs / sizeof *descs; i++) {
         camber_device *device = NULL;
         camber_mesh *mesh = NULL;
-        assert_int_equal(camber_device_create(b->context, descs + i, NULL, &device), CAMBER_OK);
+        assert_int_equal(camber_device_create(b->context, descs + i, &device), CAMBER_OK);
         assert_int_equal(camber_mesh_create(device, NULL, &mesh), CAMBER_OK);
         for (int again = 0; again < 2; again++)
             compare(b, mesh, polylines, &desc);
@@ -408,30 +410,31 @@ static void test_parts(void **state) {
         camber_device_destroy(device);
     }
     camber_polylines_destroy(polylines);
-    scene_free(&s);
+    camber_made_scene_free(&s);
 }
 
 /* With, without and with again: what has no offset is as if nothing had had one. */
 static void test_in_turn(void **state) {
-    bench *b = *state;
-    camber_stroke with[SCENE_ROWS], without[SCENE_ROWS];
+    fixture *b = *state;
+    camber_stroke with[CAMBER_KERNEL_ROWS], without[CAMBER_KERNEL_ROWS];
     offset_strokes(with);
     scene_strokes(without);
-    scene s = scene_make(0);
+    camber_made_scene s = scene_make(0);
     camber_polylines *polylines = scene_polylines(b->context, &s);
     for (int i = 0; i < 6; i++) {
-        const camber_tessellation_desc desc = {i % 2 ? with : without, SCENE_ROWS, CAMBER_METHOD_STRIP, 0, i > 2};
+        const camber_tessellation_desc desc = {i % 2 ? with : without, CAMBER_KERNEL_ROWS, CAMBER_METHOD_STRIP, 0,
+                                               i > 2};
         compare(b, b->mesh, polylines, &desc);
-        assert_int_equal(b->mesh->shifts != NULL, i % 2);
-        assert_int_equal(b->mesh->parts[0].course.x != NULL, i % 2);
+        assert_int_equal(b->mesh->offset_rows != NULL, i % 2);
+        assert_int_equal(b->mesh->parts[0].source_line.x != NULL, i % 2);
     }
     camber_polylines_destroy(polylines);
-    scene_free(&s);
+    camber_made_scene_free(&s);
 }
 
 /* Nothing is left of a line that lies inside a small bend: nothing is drawn, whatever the mesh had before. */
 static void test_vanishes(void **state) {
-    bench *b = *state;
+    fixture *b = *state;
     line l = {0};
     add(&l, 13.49f, 93.51f);
     add(&l, 18.53f, 88.48f);
@@ -459,7 +462,7 @@ typedef struct world {
     camber_network *network;
 } world;
 
-static world world_of(bench *b, const scene *s) {
+static world world_of(fixture *b, const camber_made_scene *s) {
     world w = {.points = malloc(2 * s->point_count * sizeof *w.points),
                .offsets = malloc((s->polyline_count + 1) * sizeof *w.offsets),
                .entries = malloc(s->polyline_count * sizeof *w.entries),
@@ -476,7 +479,7 @@ static world world_of(bench *b, const scene *s) {
                                       .polyline_count = w.count,
                                       .entries = w.entries,
                                       .entry_count = w.count,
-                                      .measured = true};
+                                      .has_arc_length = true};
     assert_int_equal(camber_network_create(b->context, &desc, &w.network), CAMBER_OK);
     return w;
 }
@@ -488,57 +491,59 @@ static void world_free(world *w) {
     free(w->points);
 }
 
-static camber_stages seen_by(bench *b, const world *w, const camber_camera *camera,
+static camber_stages seen_by(fixture *b, const world *w, const camber_camera *camera,
                              const camber_tessellation_desc *desc) {
     camber_polylines *seen = NULL;
     camber_stages stages = {0}, device = {0};
     assert_int_equal(camber_network_project(w->network, camera, desc, &seen), CAMBER_OK);
-    assert_int_equal(camber_stages_on_host(b->context, seen, desc, &stages), CAMBER_OK);
+    assert_int_equal(camber_stages_tessellate(b->context, seen, desc, &stages), CAMBER_OK);
     if (b->rounds) {
-        assert_int_equal(camber_tessellate_network(b->mesh, w->network, camera, desc), CAMBER_OK);
+        assert_int_equal(camber_mesh_tessellate_network(b->mesh, w->network, camera, desc), CAMBER_OK);
         assert_int_equal(camber_mesh_read_stages(b->mesh, &device), CAMBER_OK);
         assert_int_equal(device.point_count, stages.point_count);
         assert_memory_equal(device.points, stages.points, device.point_count * sizeof *device.points);
-        camber_stages_free(b->context, &device);
+        camber_stages_destroy(&device);
     }
     camber_polylines_destroy(seen);
     return stages;
 }
 
 /* Rings and walks about the middle. */
-static scene make_streets(void) {
-    scene s = {0};
+static camber_made_scene make_streets(void) {
+    camber_made_scene s = {0};
     uint64_t seed = 11;
     for (size_t i = 0; i < 120; i++) {
-        scene_walk(&s, &seed, 5 + random_below(&seed, 60), (const double[]){1, 25}, i % 2 ? 0.7 : 2.5);
-        scene_end(&s, i % SCENE_ROWS);
+        camber_made_scene_walk(&s, &seed, 5 + camber_random_below(&seed, 60), (const double[]){1, 25},
+                               i % 2 ? 0.7 : 2.5);
+        camber_made_scene_end(&s, i % CAMBER_KERNEL_ROWS);
     }
     for (size_t i = 0; i < 60; i++) {
-        const size_t sides = 4 + random_below(&seed, 30), first = s.point_count;
-        const double x = random_between(&seed, 0, 1000), y = random_between(&seed, 0, 1000);
-        const double radius = random_between(&seed, 5, 150);
+        const size_t sides = 4 + camber_random_below(&seed, 30), first = s.point_count;
+        const double x = camber_random_between(&seed, 0, 1000), y = camber_random_between(&seed, 0, 1000);
+        const double radius = camber_random_between(&seed, 5, 150);
         for (size_t k = 0; k < sides; k++)
-            scene_point(&s, x + radius * cos(2 * SCENE_PI * (double)k / (double)sides),
-                        y + radius * sin(2 * SCENE_PI * (double)k / (double)sides));
-        scene_point(&s, (double)s.points[2 * first], (double)s.points[2 * first + 1]);
-        scene_end(&s, i % SCENE_ROWS);
+            camber_made_scene_point(&s, x + radius * cos(2 * SCENE_PI * (double)k / (double)sides),
+                                    y + radius * sin(2 * SCENE_PI * (double)k / (double)sides));
+        camber_made_scene_point(&s, (double)s.points[2 * first], (double)s.points[2 * first + 1]);
+        camber_made_scene_end(&s, i % CAMBER_KERNEL_ROWS);
     }
     return s;
 }
 
 /* Windows do not move a point: what a small picture shows lies where a large one has it. */
 static void test_windows(void **state) {
-    bench *b = *state;
-    camber_stroke strokes[SCENE_ROWS];
+    fixture *b = *state;
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     offset_strokes(strokes);
-    for (size_t i = 0; i < SCENE_ROWS; i++) {
+    for (size_t i = 0; i < CAMBER_KERNEL_ROWS; i++) {
         strokes[i].width_px = 3;
         strokes[i].miter_limit = 2;
         strokes[i].offset_px = i == 6 ? 18 : strokes[i].offset_px; /* farther out rounding is seen */
     }
-    scene s = make_streets();
+    camber_made_scene s = make_streets();
     world w = world_of(b, &s);
-    const camber_tessellation_desc desc = {.strokes = strokes, .stroke_count = SCENE_ROWS, .measured = true};
+    const camber_tessellation_desc desc = {
+        .strokes = strokes, .stroke_count = CAMBER_KERNEL_ROWS, .has_arc_length = true};
     const camber_camera whole = {.x = 500, .y = 500, .scale_px = 1, .width = 6000, .height = 6000};
     camber_stages all = seen_by(b, &w, &whole, &desc);
     size_t compared = 0;
@@ -567,24 +572,25 @@ static void test_windows(void **state) {
                          few.points[i].y < 119.99f;
         assert_int_equal(inside[0], inside[1]);
         compared += inside[0];
-        camber_stages_free(b->context, &few);
+        camber_stages_destroy(&few);
     }
     assert_true(compared > 500);
-    camber_stages_free(b->context, &all);
+    camber_stages_destroy(&all);
     world_free(&w);
-    scene_free(&s);
+    camber_made_scene_free(&s);
 }
 
 /* A ring that a window cuts: its seam stays a join, and both pieces have the same point there. */
 static void test_cut_rings(void **state) {
-    bench *b = *state;
+    fixture *b = *state;
     for (int k = 0; k < 24; k++) {
         const double angle = k * SCENE_PI / 12;
-        scene s = {0};
+        camber_made_scene s = {0};
         for (int i = 0; i < 36; i++)
-            scene_point(&s, 500 + 400 * cos(angle + i * SCENE_PI / 18), 500 + 400 * sin(angle + i * SCENE_PI / 18));
-        scene_point(&s, (double)s.points[0], (double)s.points[1]);
-        scene_end(&s, 0);
+            camber_made_scene_point(&s, 500 + 400 * cos(angle + i * SCENE_PI / 18),
+                                    500 + 400 * sin(angle + i * SCENE_PI / 18));
+        camber_made_scene_point(&s, (double)s.points[0], (double)s.points[1]);
+        camber_made_scene_end(&s, 0);
         world w = world_of(b, &s);
         const camber_stroke stroke = {.width_px = 4, .offset_px = k % 2 ? 7 : -7};
         const camber_tessellation_desc desc = {.strokes = &stroke, .stroke_count = 1};
@@ -596,17 +602,17 @@ static void test_cut_rings(void **state) {
         assert_true(p[0].x == p[stages.point_count - 1].x && p[0].y == p[stages.point_count - 1].y);
         assert_int_equal(p[0].join & 0xffffu, p[stages.point_count - 1].join & 0xffffu);
         assert_true((p[0].join >> 28) >= 3);
-        camber_stages_free(b->context, &stages);
+        camber_stages_destroy(&stages);
         world_free(&w);
-        scene_free(&s);
+        camber_made_scene_free(&s);
     }
 }
 
 /* ---- Measures and arguments ---- */
 
 /* Along a line beside, what is measured is the line: it grows from 0 to all of it. */
-static void test_measures(void **state) {
-    bench *b = *state;
+static void test_arc_length(void **state) {
+    fixture *b = *state;
     line l = {0};
     add(&l, 10, 10);
     add(&l, 110, 10);
@@ -615,13 +621,13 @@ static void test_measures(void **state) {
     for (int sign = -1; sign < 2; sign += 2) {
         const double total = 150 + hypot(80, 30);
         const camber_stroke stroke = {.width_px = 3, .offset_px = (float)(6 * sign)};
-        const camber_tessellation_desc desc = {.strokes = &stroke, .stroke_count = 1, .measured = true};
+        const camber_tessellation_desc desc = {.strokes = &stroke, .stroke_count = 1, .has_arc_length = true};
         camber_polylines *polylines = polylines_of(b, &l);
         camber_mesh_data data;
-        assert_int_equal(camber_tessellate_on_host(b->context, polylines, &desc, &data), CAMBER_OK);
+        assert_int_equal(camber_mesh_data_tessellate(b->context, polylines, &desc, &data), CAMBER_OK);
         double before = 0;
         for (size_t i = 0; i < data.info.record_count; i++) {
-            const camber_measure m = data.measures[i];
+            const camber_arc_length m = data.arc_lengths[i];
             assert_true(fabs((double)m.total_px - total) < 0.01);
             assert_true((double)m.along_px >= before - 1e-3 && (double)m.along_px <= total + 1e-3);
             before = (double)m.along_px;
@@ -630,13 +636,13 @@ static void test_measures(void **state) {
                 assert_true(fabs((double)m.along_px - (x - 10)) < 0.01 || data.records[i].last & 16);
         }
         assert_true(fabs(before - total) < 0.01);
-        camber_mesh_data_free(b->context, &data);
+        camber_mesh_data_destroy(&data);
         camber_polylines_destroy(polylines);
     }
 }
 
 static void test_arguments(void **state) {
-    bench *b = *state;
+    fixture *b = *state;
     static const float wrong[] = {NAN, INFINITY, -INFINITY, 16385, -16385};
     line l = {0};
     add(&l, 10, 10);
@@ -646,9 +652,9 @@ static void test_arguments(void **state) {
         const camber_stroke stroke = {.width_px = 3, .offset_px = wrong[i]};
         const camber_tessellation_desc desc = {.strokes = &stroke, .stroke_count = 1};
         camber_mesh_data data;
-        assert_int_equal(camber_tessellate_on_host(b->context, polylines, &desc, &data), CAMBER_ERROR_ARGUMENT);
+        assert_int_equal(camber_mesh_data_tessellate(b->context, polylines, &desc, &data), CAMBER_ERROR_ARGUMENT);
         assert_story(&b->h, "offset");
-        assert_int_equal(camber_tessellate(b->mesh, polylines, &desc), CAMBER_ERROR_ARGUMENT);
+        assert_int_equal(camber_mesh_tessellate(b->mesh, polylines, &desc), CAMBER_ERROR_ARGUMENT);
         assert_story(&b->h, "offset");
     }
     camber_polylines_destroy(polylines);
@@ -662,8 +668,8 @@ int main(void) {
         cmocka_unit_test(test_walks),        cmocka_unit_test(test_device_equals_twin),
         cmocka_unit_test(test_parts),        cmocka_unit_test(test_in_turn),
         cmocka_unit_test(test_windows),      cmocka_unit_test(test_cut_rings),
-        cmocka_unit_test(test_measures),     cmocka_unit_test(test_arguments),
+        cmocka_unit_test(test_arc_length),   cmocka_unit_test(test_arguments),
         cmocka_unit_test(test_vanishes),
     };
-    return cmocka_run_group_tests(tests, bench_set_up, bench_tear_down);
+    return cmocka_run_group_tests(tests, fixture_set_up_mesh, fixture_tear_down);
 }

@@ -1,10 +1,10 @@
 /* Meshes in parts and work-groups of other sizes: what is read, told and drawn is the same as of one part of 256s; no
  * buffer is larger than allowed; what fits no part is refused by name. */
-#include "picture.h"
+#include "pictures.h"
 
 #include "draw/renderer.h"
 
-/* ---- What OpenCL is asked for ---- */
+/* ---- Watching OpenCL ---- */
 
 static cl_context watched;
 static size_t largest_buffer, writes; /* of the watched one */
@@ -32,28 +32,17 @@ cl_int __wrap_clEnqueueWriteBuffer(cl_command_queue queue, cl_mem mem, cl_bool b
 
 /* ---- Meshes and what is known of them ---- */
 
-typedef struct bench {
-    host h;
-    camber_context *context;
-    camber_device *device;
-    camber_mesh *mesh;
-} bench;
-
-static void bench_open(bench *b, uint64_t largest_buffer_bytes, uint32_t work_group_size) {
+static void bounded_open(fixture *b, uint64_t largest_buffer_bytes, uint32_t work_group_size) {
     const camber_device_desc desc = {.work_group_size = work_group_size, .largest_buffer_bytes = largest_buffer_bytes};
-    b->context = host_context(&b->h);
-    assert_int_equal(camber_device_create(b->context, &desc, NULL, &b->device), CAMBER_OK);
-    assert_int_equal(camber_mesh_create(b->device, NULL, &b->mesh), CAMBER_OK);
-    watched = b->device->cl;
+    fixture_open_mesh(b, &desc);
+    watched = b->on.device->cl;
     largest_buffer = 0;
 }
 
-static void bench_close(bench *b) {
-    if (watched == b->device->cl)
-        assert_true(largest_buffer > 0 && largest_buffer <= camber_device_get_info(b->device).largest_buffer_bytes);
-    camber_mesh_destroy(b->mesh);
-    camber_device_destroy(b->device);
-    host_done(&b->h, b->context);
+static void bounded_close(fixture *b) {
+    if (watched == b->on.device->cl)
+        assert_true(largest_buffer > 0 && largest_buffer <= camber_device_get_info(b->on.device).largest_buffer_bytes);
+    fixture_close(b);
 }
 
 typedef struct result {
@@ -62,7 +51,7 @@ typedef struct result {
     size_t parts;
 } result;
 
-static result read_result(bench *b) {
+static result read_result(fixture *b) {
     result r = {.parts = b->mesh->part_count};
     assert_int_equal(camber_mesh_read(b->mesh, &r.mesh), CAMBER_OK);
     assert_int_equal(camber_mesh_read_stages(b->mesh, &r.stages), CAMBER_OK);
@@ -71,21 +60,21 @@ static result read_result(bench *b) {
     return r;
 }
 
-static result tessellate(bench *b, const scene *s, const camber_tessellation_desc *desc) {
+static result tessellate(fixture *b, const camber_made_scene *s, const camber_tessellation_desc *desc) {
     camber_polylines *polylines = scene_polylines(b->context, s);
-    assert_int_equal(camber_tessellate(b->mesh, polylines, desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(b->mesh, polylines, desc), CAMBER_OK);
     camber_polylines_destroy(polylines);
     return read_result(b);
 }
 
-static void free_result(bench *b, result *r) {
-    camber_mesh_data_free(b->context, &r->mesh);
-    camber_stages_free(b->context, &r->stages);
+static void free_result(result *r) {
+    camber_mesh_data_destroy(&r->mesh);
+    camber_stages_destroy(&r->stages);
 }
 
 static void assert_same(const result *a, const result *b) {
     camber_mesh_info x = a->mesh.info, y = b->mesh.info;
-    x.classify_ms = x.scan_ms = x.emit_ms = y.classify_ms = y.scan_ms = y.emit_ms = 0;
+    x.times = y.times = (camber_stage_times){0};
     assert_memory_equal(&x, &y, sizeof x);
     assert_memory_equal(a->mesh.records, b->mesh.records, x.record_count * sizeof *a->mesh.records);
     if (a->mesh.corners)
@@ -104,13 +93,13 @@ static void assert_same(const result *a, const result *b) {
 }
 
 /* Lines, rings, dots, empty polylines, split ones. */
-static scene make_scene(int repeats) {
-    scene s = {0};
+static camber_made_scene make_scene(int repeats) {
+    camber_made_scene s = {0};
     uint64_t seed = 21;
     for (int i = 0; i < repeats; i++) {
-        scene_walks(&s, &seed);
-        scene_degenerate(&s, &seed);
-        scene_rings(&s, &seed);
+        camber_scene_add_walks(&s, &seed);
+        camber_scene_add_degenerate(&s, &seed);
+        camber_scene_add_rings(&s, &seed);
     }
     return s;
 }
@@ -125,17 +114,17 @@ static uint64_t larger_buffer(const camber_mesh_info *info) {
 static void test_same_bytes(void **state) {
     (void)state;
     static const uint64_t limits[] = {UINT64_MAX, 1 << 18, 100000, 1 << 15, 10000};
-    camber_stroke strokes[SCENE_ROWS];
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     scene_strokes(strokes);
-    scene s = make_scene(3);
-    bench whole;
-    bench_open(&whole, 0, 0);
+    camber_made_scene s = make_scene(3);
+    fixture whole;
+    bounded_open(&whole, 0, 0);
     for (size_t i = 0; i < sizeof limits / sizeof *limits; i++) {
-        bench b;
+        fixture b;
         size_t parts[3];
-        bench_open(&b, limits[i], 0);
+        bounded_open(&b, limits[i], 0);
         for (int method = 0; method < 3; method++) {
-            const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)method, 0, false};
+            const camber_tessellation_desc desc = {strokes, CAMBER_KERNEL_ROWS, (camber_method)method, 0, false};
             result wanted = tessellate(&whole, &s, &desc), r = tessellate(&b, &s, &desc);
             assert_same(&r, &wanted);
             assert_int_equal(wanted.parts, 1);
@@ -143,111 +132,111 @@ static void test_same_bytes(void **state) {
             /* Not more parts than twice what the bytes take: each but the last is as full as whole polylines allow. */
             const uint64_t bytes = larger_buffer(&r.mesh.info);
             assert_true(r.parts >= bytes / limits[i] + 1 && r.parts <= 2 * (bytes / limits[i] + 1));
-            free_result(&b, &r);
-            free_result(&whole, &wanted);
+            free_result(&r);
+            free_result(&wanted);
         }
         print_message("%llu bytes: %zu, %zu, %zu parts, no buffer above %zu\n", (unsigned long long)limits[i], parts[0],
                       parts[1], parts[2], largest_buffer);
-        bench_close(&b);
+        bounded_close(&b);
     }
-    bench_close(&whole);
-    scene_free(&s);
+    bounded_close(&whole);
+    camber_made_scene_free(&s);
 }
 
 static void test_work_groups(void **state) {
     (void)state;
     static const uint32_t sizes[] = {64, 128, 256};
-    camber_stroke strokes[SCENE_ROWS];
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     scene_strokes(strokes);
-    bench whole;
-    bench_open(&whole, 0, 0);
+    fixture whole;
+    bounded_open(&whole, 0, 0);
     size_t parts = 0;
     for (size_t i = 0; i < 6; i++) { /* the second three in parts */
-        bench b;
-        bench_open(&b, i < 3 ? 0 : 1 << 18, sizes[i % 3]);
-        for (size_t which = 0; which < SCENE_COUNT; which++) {
+        fixture b;
+        bounded_open(&b, i < 3 ? 0 : 1 << 18, sizes[i % 3]);
+        for (size_t which = 0; which < CAMBER_KERNEL_SCENES; which++) {
             if (i >= 3 && which == 1)
                 continue; /* a line that fits no part */
-            scene s = scene_make(which);
+            camber_made_scene s = scene_make(which);
             for (int method = 0; method < 3; method++) {
-                const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)method, 0, false};
+                const camber_tessellation_desc desc = {strokes, CAMBER_KERNEL_ROWS, (camber_method)method, 0, false};
                 result wanted = tessellate(&whole, &s, &desc), r = tessellate(&b, &s, &desc);
                 assert_same(&r, &wanted);
                 parts += i < 3 ? 0 : r.parts - 1;
-                free_result(&b, &r);
-                free_result(&whole, &wanted);
+                free_result(&r);
+                free_result(&wanted);
             }
-            scene_free(&s);
+            camber_made_scene_free(&s);
         }
-        bench_close(&b);
+        bounded_close(&b);
     }
     assert_true(parts > 10);
-    bench_close(&whole);
+    bounded_close(&whole);
 }
 
 /* Borders of parts fall on rings, dots and empty polylines, with one and with several of them in a part. */
 static void test_borders(void **state) {
     (void)state;
-    camber_stroke strokes[SCENE_ROWS];
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     scene_strokes(strokes);
     strokes[8].width_px = 30;
-    scene s = {0};
+    camber_made_scene s = {0};
     uint64_t seed = 5;
     for (int i = 0; i < 5; i++)
-        scene_end(&s, 0); /* empty ones first, last, and between */
-    scene_degenerate(&s, &seed);
-    scene_rings(&s, &seed);
+        camber_made_scene_end(&s, 0); /* empty ones first, last, and between */
+    camber_scene_add_degenerate(&s, &seed);
+    camber_scene_add_rings(&s, &seed);
     for (int i = 0; i < 40; i++) {
-        scene_end(&s, 3);
-        scene_point(&s, i, i);
-        scene_end(&s, (size_t)i % SCENE_ROWS);
+        camber_made_scene_end(&s, 3);
+        camber_made_scene_point(&s, i, i);
+        camber_made_scene_end(&s, (size_t)i % CAMBER_KERNEL_ROWS);
     }
     for (int i = 0; i < 80; i++) { /* rings behind open lines, whose ends are none of theirs */
         for (int k = 0; k <= 3 + i % 5; k++)
-            scene_point(&s, 30 * k, i % 7);
-        scene_end(&s, 3);
+            camber_made_scene_point(&s, 30 * k, i % 7);
+        camber_made_scene_end(&s, 3);
         for (int k = 0; k <= 8; k++)
-            scene_point(&s, 50 * cos(k % 8 * SCENE_PI / 4), 50 * sin(k % 8 * SCENE_PI / 4));
-        scene_end(&s, (size_t)i % SCENE_ROWS);
+            camber_made_scene_point(&s, 50 * cos(k % 8 * SCENE_PI / 4), 50 * sin(k % 8 * SCENE_PI / 4));
+        camber_made_scene_end(&s, (size_t)i % CAMBER_KERNEL_ROWS);
     }
     for (int i = 0; i < 300; i++)
-        scene_end(&s, 0);
-    bench whole;
-    bench_open(&whole, 0, 0);
+        camber_made_scene_end(&s, 0);
+    fixture whole;
+    bounded_open(&whole, 0, 0);
     result wanted[3];
     size_t borders = 0;
     for (int method = 0; method < 3; method++)
-        wanted[method] =
-            tessellate(&whole, &s, &(camber_tessellation_desc){strokes, SCENE_ROWS, (camber_method)method, 0, false});
+        wanted[method] = tessellate(
+            &whole, &s, &(camber_tessellation_desc){strokes, CAMBER_KERNEL_ROWS, (camber_method)method, 0, false});
     for (uint64_t limit = 7000; limit < 14000; limit += 622) {
-        bench b;
-        bench_open(&b, limit, limit % 2 ? 64 : 256);
+        fixture b;
+        bounded_open(&b, limit, limit % 2 ? 64 : 256);
         for (int method = 0; method < 3; method++) {
-            result r =
-                tessellate(&b, &s, &(camber_tessellation_desc){strokes, SCENE_ROWS, (camber_method)method, 0, false});
+            result r = tessellate(
+                &b, &s, &(camber_tessellation_desc){strokes, CAMBER_KERNEL_ROWS, (camber_method)method, 0, false});
             assert_same(&r, wanted + method);
             borders += r.parts - 1;
-            free_result(&b, &r);
+            free_result(&r);
         }
-        bench_close(&b);
+        bounded_close(&b);
     }
     assert_true(borders > 500);
     for (int method = 0; method < 3; method++)
-        free_result(&whole, wanted + method);
-    bench_close(&whole);
-    scene_free(&s);
+        free_result(wanted + method);
+    bounded_close(&whole);
+    camber_made_scene_free(&s);
 }
 
 static void test_first_index(void **state) {
     (void)state;
-    camber_stroke strokes[SCENE_ROWS];
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     scene_strokes(strokes);
-    scene s = make_scene(1);
-    bench b, whole;
-    bench_open(&whole, 0, 0);
-    bench_open(&b, 30000, 128);
+    camber_made_scene s = make_scene(1);
+    fixture b, whole;
+    bounded_open(&whole, 0, 0);
+    bounded_open(&b, 30000, 128);
     for (int method = 0; method < 3; method += 2) {
-        const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)method, 0, false};
+        const camber_tessellation_desc desc = {strokes, CAMBER_KERNEL_ROWS, (camber_method)method, 0, false};
         result wanted = tessellate(&whole, &s, &desc), r = tessellate(&b, &s, &desc);
         for (size_t i = 0; i <= s.polyline_count; i++) {
             uint64_t first, first_of_whole;
@@ -255,21 +244,21 @@ static void test_first_index(void **state) {
             assert_int_equal(camber_mesh_first_index(whole.mesh, i, &first_of_whole), CAMBER_OK);
             assert_true(first == first_of_whole);
         }
-        free_result(&b, &r);
-        free_result(&whole, &wanted);
+        free_result(&r);
+        free_result(&wanted);
     }
-    bench_close(&b);
-    bench_close(&whole);
-    scene_free(&s);
+    bounded_close(&b);
+    bounded_close(&whole);
+    camber_made_scene_free(&s);
 }
 
 static void test_nothing(void **state) {
     (void)state;
     const camber_stroke stroke = {2, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0};
     const camber_tessellation_desc desc = {&stroke, 1, CAMBER_METHOD_STRIP, 0, false};
-    bench b;
-    bench_open(&b, 4096, 0);
-    scene s = {0};
+    fixture b;
+    bounded_open(&b, 4096, 0);
+    camber_made_scene s = {0};
     for (int i = 0; i < 3000; i++) {
         result r = {.parts = 0};
         if (i % 1000 == 0) { /* none; then dots that nothing is drawn of: parts without output */
@@ -278,20 +267,21 @@ static void test_nothing(void **state) {
             assert_int_equal(r.mesh.info.undrawn_dots, i);
             assert_int_equal(r.stages.point_count, i);
             assert_true(i ? r.parts > 1 : r.parts == 0);
-            free_result(&b, &r);
+            free_result(&r);
         }
-        scene_point(&s, i, 0);
-        scene_end(&s, 0);
+        camber_made_scene_point(&s, i, 0);
+        camber_made_scene_end(&s, 0);
     }
-    scene_free(&s);
-    bench_close(&b);
+    camber_made_scene_free(&s);
+    bounded_close(&b);
 }
 
 /* ---- Again and again ---- */
 
-static result again(bench *b, const camber_polylines *polylines, const camber_tessellation_desc *desc, size_t *count) {
+static result again(fixture *b, const camber_polylines *polylines, const camber_tessellation_desc *desc,
+                    size_t *count) {
     writes = 0;
-    assert_int_equal(camber_tessellate(b->mesh, polylines, desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(b->mesh, polylines, desc), CAMBER_OK);
     *count = writes;
     return read_result(b);
 }
@@ -301,11 +291,11 @@ static result again(bench *b, const camber_polylines *polylines, const camber_te
 static void test_again(void **state) {
     (void)state;
     static const uint64_t limits[] = {0, 100000};
-    camber_stroke wide[SCENE_ROWS], narrow[SCENE_ROWS];
+    camber_stroke wide[CAMBER_KERNEL_ROWS], narrow[CAMBER_KERNEL_ROWS];
     scene_strokes(wide);
-    for (int i = 0; i < SCENE_ROWS; i++)
+    for (int i = 0; i < CAMBER_KERNEL_ROWS; i++)
         narrow[i] = (camber_stroke){0.5f, CAMBER_JOIN_MITER, CAMBER_CAP_SQUARE, 0};
-    scene scenes[] = {make_scene(2), scene_make(3), make_scene(1)};
+    camber_made_scene scenes[] = {make_scene(2), scene_make(3), make_scene(1)};
     const struct {
         size_t scene;
         camber_method method;
@@ -317,15 +307,15 @@ static void test_again(void **state) {
         {1, CAMBER_METHOD_STRIP, wide},
     };
     for (size_t k = 0; k < 2; k++) {
-        bench b, whole;
+        fixture b, whole;
         camber_polylines *polylines[3];
-        bench_open(&whole, 0, 0);
-        bench_open(&b, limits[k], 0);
+        bounded_open(&whole, 0, 0);
+        bounded_open(&b, limits[k], 0);
         for (size_t i = 0; i < 3; i++)
             polylines[i] = scene_polylines(b.context, scenes + i);
         size_t parts = 0, count;
         for (size_t i = 0; i < sizeof steps / sizeof *steps; i++) {
-            const camber_tessellation_desc desc = {steps[i].strokes, SCENE_ROWS, steps[i].method, 0, false};
+            const camber_tessellation_desc desc = {steps[i].strokes, CAMBER_KERNEL_ROWS, steps[i].method, 0, false};
             result wanted = tessellate(&whole, scenes + steps[i].scene, &desc);
             result r = again(&b, polylines[steps[i].scene], &desc, &count);
             assert_same(&r, &wanted);
@@ -338,16 +328,16 @@ static void test_again(void **state) {
                 assert_true(count >= 1 + 6 * parts);
             if (i == 4) /* what the fan needed is kept for the strip */
                 assert_true(same);
-            free_result(&b, &r);
-            free_result(&whole, &wanted);
+            free_result(&r);
+            free_result(&wanted);
         }
         for (size_t i = 0; i < 3; i++)
             camber_polylines_destroy(polylines[i]);
-        bench_close(&b);
-        bench_close(&whole);
+        bounded_close(&b);
+        bounded_close(&whole);
     }
     for (size_t i = 0; i < 3; i++)
-        scene_free(scenes + i);
+        camber_made_scene_free(scenes + i);
 }
 
 /* ---- Limits ---- */
@@ -359,20 +349,21 @@ static void test_too_long(void **state) {
      * than 64 KiB of indices otherwise. */
     static const size_t lengths[] = {20000, 4200, 1400};
     for (size_t k = 0; k < 3; k++) {
-        bench b;
-        scene s = {0}, lines = make_scene(1);
+        fixture b;
+        camber_made_scene s = {0}, lines = make_scene(1);
         uint64_t seed = 2;
-        bench_open(&b, 1 << 16, 0);
+        bounded_open(&b, 1 << 16, 0);
         for (size_t i = 0; i < 60; i++) {
-            scene_walk(&s, &seed, i == 41 ? lengths[k] : 30, (const double[]){5, 50}, 1);
-            scene_end(&s, 0);
+            camber_made_scene_walk(&s, &seed, i == 41 ? lengths[k] : 30, (const double[]){5, 50}, 1);
+            camber_made_scene_end(&s, 0);
         }
         camber_polylines *polylines = scene_polylines(b.context, &s), *others = scene_polylines(b.context, &lines);
         for (int method = 0; method < 3; method++) {
             const camber_tessellation_desc desc = {&stroke, 1, (camber_method)method, 0, false};
             const bool fits = k == 2 && method == CAMBER_METHOD_STRIP;
             for (int time = 0; time < 2; time++) {
-                assert_int_equal(camber_tessellate(b.mesh, polylines, &desc), fits ? CAMBER_OK : CAMBER_ERROR_LIMIT);
+                assert_int_equal(camber_mesh_tessellate(b.mesh, polylines, &desc),
+                                 fits ? CAMBER_OK : CAMBER_ERROR_LIMIT);
                 if (fits)
                     continue;
                 assert_story(&b.h, "polyline 41 ");
@@ -381,26 +372,26 @@ static void test_too_long(void **state) {
                 assert_int_equal(camber_mesh_read(b.mesh, &none), CAMBER_OK);
                 assert_int_equal(camber_mesh_read_stages(b.mesh, &no_stages), CAMBER_OK);
                 assert_int_equal(none.info.vertex_count + none.info.joins + no_stages.point_count, 0);
-                camber_mesh_data_free(b.context, &none);
-                camber_stages_free(b.context, &no_stages);
+                camber_mesh_data_destroy(&none);
+                camber_stages_destroy(&no_stages);
             }
-            camber_stroke strokes[SCENE_ROWS];
+            camber_stroke strokes[CAMBER_KERNEL_ROWS];
             scene_strokes(strokes);
-            const camber_tessellation_desc next = {strokes, SCENE_ROWS, (camber_method)method, 0, false};
+            const camber_tessellation_desc next = {strokes, CAMBER_KERNEL_ROWS, (camber_method)method, 0, false};
             camber_mesh_data mesh, twin;
-            assert_int_equal(camber_tessellate(b.mesh, others, &next), CAMBER_OK);
+            assert_int_equal(camber_mesh_tessellate(b.mesh, others, &next), CAMBER_OK);
             assert_int_equal(camber_mesh_read(b.mesh, &mesh), CAMBER_OK);
-            assert_int_equal(camber_tessellate_on_host(b.context, others, &next, &twin), CAMBER_OK);
+            assert_int_equal(camber_mesh_data_tessellate(b.context, others, &next, &twin), CAMBER_OK);
             assert_int_equal(mesh.info.vertex_count, twin.info.vertex_count);
             assert_memory_equal(mesh.indices, twin.indices, twin.info.index_count * sizeof *twin.indices);
-            camber_mesh_data_free(b.context, &mesh);
-            camber_mesh_data_free(b.context, &twin);
+            camber_mesh_data_destroy(&mesh);
+            camber_mesh_data_destroy(&twin);
         }
         camber_polylines_destroy(polylines);
         camber_polylines_destroy(others);
-        scene_free(&lines);
-        scene_free(&s);
-        bench_close(&b);
+        camber_made_scene_free(&lines);
+        camber_made_scene_free(&s);
+        bounded_close(&b);
     }
 }
 
@@ -408,24 +399,25 @@ static void test_too_many_strokes(void **state) {
     (void)state;
     enum { STROKES = 128 }; /* and one that is never read: 4128 bytes */
     static camber_stroke strokes[STROKES];
-    bench b;
-    bench_open(&b, 4096, 0);
-    scene s = {0};
-    scene_point(&s, 0, 0);
-    scene_point(&s, 9, 9);
-    scene_end(&s, 0);
+    fixture b;
+    bounded_open(&b, 4096, 0);
+    camber_made_scene s = {0};
+    camber_made_scene_point(&s, 0, 0);
+    camber_made_scene_point(&s, 9, 9);
+    camber_made_scene_end(&s, 0);
     camber_polylines *polylines = scene_polylines(b.context, &s);
-    assert_int_equal(camber_tessellate(b.mesh, polylines,
-                                       &(camber_tessellation_desc){strokes, STROKES, CAMBER_METHOD_STRIP, 0, false}),
-                     CAMBER_ERROR_LIMIT);
+    assert_int_equal(
+        camber_mesh_tessellate(b.mesh, polylines,
+                               &(camber_tessellation_desc){strokes, STROKES, CAMBER_METHOD_STRIP, 0, false}),
+        CAMBER_ERROR_LIMIT);
     assert_story(&b.h, "128 strokes");
     assert_int_equal(
-        camber_tessellate(b.mesh, polylines,
-                          &(camber_tessellation_desc){strokes, STROKES - 1, CAMBER_METHOD_STRIP, 0, false}),
+        camber_mesh_tessellate(b.mesh, polylines,
+                               &(camber_tessellation_desc){strokes, STROKES - 1, CAMBER_METHOD_STRIP, 0, false}),
         CAMBER_OK);
     camber_polylines_destroy(polylines);
-    scene_free(&s);
-    bench_close(&b);
+    camber_made_scene_free(&s);
+    bounded_close(&b);
 }
 
 static void test_descriptions(void **state) {
@@ -438,18 +430,18 @@ static void test_descriptions(void **state) {
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         camber_device *const untouched = (camber_device *)(void *)&h;
         camber_device *device = untouched;
-        assert_int_equal(camber_device_create(context, bad + i, NULL, &device), CAMBER_ERROR_ARGUMENT);
+        assert_int_equal(camber_device_create(context, bad + i, &device), CAMBER_ERROR_ARGUMENT);
         assert_ptr_equal(device, untouched);
         assert_story(&h, "; it must be ");
     }
     camber_device *device = NULL;
-    assert_int_equal(camber_device_create(context, NULL, NULL, &device), CAMBER_OK);
+    assert_int_equal(camber_device_create(context, NULL, &device), CAMBER_OK);
     const uint64_t own = camber_device_get_info(device).largest_buffer_bytes;
     camber_device_destroy(device);
     const uint64_t asked[] = {4096, own - 1, own, own + 1, UINT64_MAX};
     for (size_t i = 0; i < 5; i++) {
         const camber_device_desc desc = {.largest_buffer_bytes = asked[i]};
-        assert_int_equal(camber_device_create(context, &desc, NULL, &device), CAMBER_OK);
+        assert_int_equal(camber_device_create(context, &desc, &device), CAMBER_OK);
         assert_true(camber_device_get_info(device).largest_buffer_bytes == (asked[i] < own ? asked[i] : own));
         camber_device_destroy(device);
     }
@@ -465,40 +457,41 @@ typedef struct attempt {
 } attempt;
 
 static camber_status try_parts(camber_context *context, void *user) {
+    (void)context;
     const attempt *a = user;
     camber_mesh *mesh = NULL;
     camber_mesh_data data;
     camber_stages stages;
     camber_status status = camber_mesh_create(a->device, NULL, &mesh);
     if (status == CAMBER_OK)
-        status = camber_tessellate(mesh, a->polylines, a->desc);
+        status = camber_mesh_tessellate(mesh, a->polylines, a->desc);
     if (status == CAMBER_OK)
         status = camber_mesh_read(mesh, &data);
     if (status == CAMBER_OK) {
-        camber_mesh_data_free(context, &data);
+        camber_mesh_data_destroy(&data);
         status = camber_mesh_read_stages(mesh, &stages);
     }
     if (status == CAMBER_OK)
-        camber_stages_free(context, &stages);
+        camber_stages_destroy(&stages);
     camber_mesh_destroy(mesh);
     return status;
 }
 
 static void test_memory(void **state) {
     (void)state;
-    camber_stroke strokes[SCENE_ROWS];
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     scene_strokes(strokes);
-    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0, false};
-    scene s = make_scene(1);
-    bench b;
-    bench_open(&b, 50000, 0);
+    const camber_tessellation_desc desc = {strokes, CAMBER_KERNEL_ROWS, CAMBER_METHOD_STRIP, 0, false};
+    camber_made_scene s = make_scene(1);
+    fixture b;
+    bounded_open(&b, 50000, 0);
     camber_polylines *polylines = scene_polylines(b.context, &s);
-    attempt a = {b.device, polylines, &desc};
+    attempt a = {b.on.device, polylines, &desc};
     assert_int_equal(try_parts(b.context, &a), CAMBER_OK); /* builds the kernels */
     each_allocation_fails(&b.h, try_parts, b.context, &a);
     camber_polylines_destroy(polylines);
-    bench_close(&b);
-    scene_free(&s);
+    bounded_close(&b);
+    camber_made_scene_free(&s);
 }
 
 /* ---- Pictures ---- */
@@ -513,47 +506,49 @@ typedef struct drawing {
 } drawing;
 
 /* An opaque pass, a flattened translucent one with rows of two alphas, and a range of the polylines. */
-static bool draw(uint64_t limit, camber_backend backend, camber_sharing sharing, const scene *s, drawing *d) {
+static bool draw(uint64_t limit, camber_backend backend, camber_sharing sharing, const camber_made_scene *s,
+                 drawing *d) {
     host h;
     camber_context *context = host_context(&h);
-    const camber_device_desc device_desc = {.largest_buffer_bytes = limit};
+    camber_device_desc device_desc = {.largest_buffer_bytes = limit};
     const camber_surface_desc surface_desc = {backend};
-    const camber_renderer_desc renderer_desc = {.sharing = sharing, .draw = CAMBER_DRAW_GL};
+    const camber_renderer_desc renderer_desc = {.sharing = sharing, .rasterizer = CAMBER_RASTERIZER_GL};
     camber_surface *surface = NULL;
     camber_device *device = NULL;
     camber_renderer *renderer = NULL;
-    const bool there = camber_surface_create(context, &surface_desc, &surface) == CAMBER_OK &&
-                       camber_device_create(context, &device_desc, surface, &device) == CAMBER_OK &&
+    const bool has_surface = camber_surface_create(context, &surface_desc, &surface) == CAMBER_OK;
+    device_desc.gl = camber_surface_get_handles(surface);
+    const bool there = has_surface && camber_device_create(context, &device_desc, &device) == CAMBER_OK &&
                        camber_renderer_create(device, surface, &renderer_desc, &renderer) == CAMBER_OK;
     if (there) {
         watched = device->cl;
         largest_buffer = 0;
-        camber_stroke strokes[SCENE_ROWS];
-        camber_paint paints[SCENE_ROWS];
+        camber_stroke strokes[CAMBER_KERNEL_ROWS];
+        camber_paint paints[CAMBER_KERNEL_ROWS];
         scene_strokes(strokes);
-        for (int i = 0; i < SCENE_ROWS; i++) {
-            const float hue = (float)i / SCENE_ROWS;
+        for (int i = 0; i < CAMBER_KERNEL_ROWS; i++) {
+            const float hue = (float)i / CAMBER_KERNEL_ROWS;
             paints[i] = (camber_paint){.width_px = fminf(strokes[i].width_px, 1),
                                        .color = {hue, 1 - hue, 0.5f, i == 4 ? 0.3f : 0.6f}};
         }
-        camber_paint opaque[SCENE_ROWS];
+        camber_paint opaque[CAMBER_KERNEL_ROWS];
         memcpy(opaque, paints, sizeof opaque);
-        for (int i = 0; i < SCENE_ROWS; i++)
+        for (int i = 0; i < CAMBER_KERNEL_ROWS; i++)
             opaque[i].color = (camber_color){1, 1, paints[i].color.r, 1}; /* not what goes over it */
         camber_mesh *mesh = NULL;
         camber_polylines *polylines = scene_polylines(context, s);
         assert_int_equal(camber_mesh_create(device, renderer, &mesh), CAMBER_OK);
-        assert_int_equal(
-            camber_tessellate(mesh, polylines,
-                              &(camber_tessellation_desc){strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0, false}),
-            CAMBER_OK);
-        const camber_pass passes[PASSES] = {{.mesh = mesh, .paints = opaque, .paint_count = SCENE_ROWS},
-                                            {.mesh = mesh, .paints = paints, .paint_count = SCENE_ROWS},
+        assert_int_equal(camber_mesh_tessellate(
+                             mesh, polylines,
+                             &(camber_tessellation_desc){strokes, CAMBER_KERNEL_ROWS, CAMBER_METHOD_STRIP, 0, false}),
+                         CAMBER_OK);
+        const camber_pass passes[PASSES] = {{.mesh = mesh, .paints = opaque, .paint_count = CAMBER_KERNEL_ROWS},
+                                            {.mesh = mesh, .paints = paints, .paint_count = CAMBER_KERNEL_ROWS},
                                             {.mesh = mesh,
                                              .first_polyline = 137,
                                              .polyline_count = s->polyline_count - 260,
                                              .paints = paints,
-                                             .paint_count = SCENE_ROWS,
+                                             .paint_count = CAMBER_KERNEL_ROWS,
                                              .overlap = CAMBER_OVERLAP_ACCUMULATE}};
         d->picture = picture_draw(
             renderer, &(camber_frame){.width = SIDE_PX, .height = SIDE_PX, .passes = passes, .pass_count = PASSES});
@@ -563,9 +558,9 @@ static bool draw(uint64_t limit, camber_backend backend, camber_sharing sharing,
                                               .height = SIDE_PX,
                                               .mesh = mesh,
                                               .paints = paints,
-                                              .paint_count = SCENE_ROWS,
+                                              .paint_count = CAMBER_KERNEL_ROWS,
                                               .map = d->map};
-        assert_int_equal(camber_overdraw_count(renderer, &counted, &d->overdraw), CAMBER_OK);
+        assert_int_equal(camber_renderer_count_overdraw(renderer, &counted, &d->overdraw), CAMBER_OK);
         d->parts = mesh->part_count;
         d->largest_buffer = largest_buffer;
         camber_mesh_destroy(mesh);
@@ -587,15 +582,15 @@ static void test_same_picture(void **state) {
     (void)state;
     static const uint64_t limits[] = {20000, 1 << 16, 200000};
     static const camber_sharing sharings[] = {CAMBER_SHARING_GL, CAMBER_SHARING_ZERO_COPY, CAMBER_SHARING_COPY};
-    scene s = make_scene(1);
+    camber_made_scene s = make_scene(1);
     size_t drawn = 0;
     for (size_t i = 0; i < 2 * s.point_count; i++)
         s.points[i] *= (float)SIDE_PX / 1000; /* into the picture */
-    for (int backend = 0; backend < BACKENDS; backend++) {
+    for (int backend = 0; backend < CAMBER_FIXTURE_BACKENDS; backend++) {
         for (size_t k = 0; k < 3; k++) {
             drawing whole;
-            if (!draw(0, BACKEND[backend], sharings[k], &s, &whole)) {
-                print_message("%s, %s: not here\n", BACKEND_NAME[backend], camber_sharing_name(sharings[k]));
+            if (!draw(0, fixture_backend(backend), sharings[k], &s, &whole)) {
+                print_message("%s, %s: not here\n", fixture_name(backend), camber_sharing_get_name(sharings[k]));
                 continue;
             }
             assert_int_equal(whole.parts, 1);
@@ -607,7 +602,7 @@ static void test_same_picture(void **state) {
             assert_true(left > SIDE_PX * SIDE_PX / 5);
             for (size_t i = 0; i < 3; i++) {
                 drawing d;
-                assert_true(draw(limits[i], BACKEND[backend], sharings[k], &s, &d));
+                assert_true(draw(limits[i], fixture_backend(backend), sharings[k], &s, &d));
                 assert_true(d.parts > 1 && d.largest_buffer <= limits[i]);
                 picture_assert_same(&d.picture, &whole.picture);
                 assert_memory_equal(&d.overdraw, &whole.overdraw, sizeof d.overdraw);
@@ -618,7 +613,7 @@ static void test_same_picture(void **state) {
             free_drawing(&whole);
         }
     }
-    scene_free(&s);
+    camber_made_scene_free(&s);
     if (drawn == 0)
         skip();
 }

@@ -1,5 +1,5 @@
-/* What classify and scan found: the device against the twin's walk, and both against the mesh that came of it. */
-#include "bench.h"
+/* The results of classify and scan: the device against the twin's walk, and both against the mesh that came of it. */
+#include "test_fixture.h"
 
 #include "kernels/join.h"
 
@@ -16,20 +16,20 @@ static size_t first_difference(const camber_stages *a, const camber_stages *b) {
     return a->point_count;
 }
 
-static camber_stages on_device(bench *b) {
+static camber_stages on_device(fixture *b) {
     camber_stages stages;
     assert_int_equal(camber_mesh_read_stages(b->mesh, &stages), CAMBER_OK);
     return stages;
 }
 
-static camber_stages on_host(bench *b, const camber_polylines *polylines, const camber_tessellation_desc *desc) {
+static camber_stages on_host(fixture *b, const camber_polylines *polylines, const camber_tessellation_desc *desc) {
     camber_stages stages;
-    assert_int_equal(camber_stages_on_host(b->context, polylines, desc, &stages), CAMBER_OK);
+    assert_int_equal(camber_stages_tessellate(b->context, polylines, desc, &stages), CAMBER_OK);
     return stages;
 }
 
 /* Points ascend within polylines that ascend, and what lies at a point's first vertex is the point. */
-static void check_against_mesh(bench *b, const camber_polylines *polylines, const camber_stages *stages) {
+static void check_against_mesh(fixture *b, const camber_polylines *polylines, const camber_stages *stages) {
     camber_mesh_data data;
     assert_int_equal(camber_mesh_read(b->mesh, &data), CAMBER_OK);
     assert_int_equal(stages->point_count, polylines->stats.kept_points);
@@ -43,7 +43,7 @@ static void check_against_mesh(bench *b, const camber_polylines *polylines, cons
         else
             assert_int_equal(p.point, 0);
         assert_true(i == 0 || p.polyline >= before.polyline);
-        if (camber_join_kind(p.join) == CAMBER_KIND_GHOST)
+        if (camber_join_kind(p.join) == CAMBER_KIND_SENTINEL)
             continue;
         drawn++;
         rings += p.point == 0 && camber_join_kind(p.join) >= CAMBER_KIND_CUT;
@@ -53,46 +53,46 @@ static void check_against_mesh(bench *b, const camber_polylines *polylines, cons
     }
     assert_int_equal(drawn + data.info.undrawn_dots, stages->point_count);
     assert_true(rings <= polylines->stats.rings);
-    camber_mesh_data_free(b->context, &data);
+    camber_mesh_data_destroy(&data);
 }
 
 static void test_device_equals_twin(void **state) {
-    bench *b = *state;
-    camber_stroke strokes[SCENE_ROWS];
+    fixture *b = *state;
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     scene_strokes(strokes);
-    for (size_t which = 0; which < SCENE_COUNT; which++) {
-        scene s = scene_make(which);
+    for (size_t which = 0; which < CAMBER_KERNEL_SCENES; which++) {
+        camber_made_scene s = scene_make(which);
         for (int i = 0; i < 6; i++) {
-            const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)(i / 2), 0, false};
+            const camber_tessellation_desc desc = {strokes, CAMBER_KERNEL_ROWS, (camber_method)(i / 2), 0, false};
             camber_polylines *polylines = scene_first(b->context, &s, s.polyline_count, i % 2);
-            assert_int_equal(camber_tessellate(b->mesh, polylines, &desc), CAMBER_OK);
+            assert_int_equal(camber_mesh_tessellate(b->mesh, polylines, &desc), CAMBER_OK);
             camber_stages device = on_device(b), twin = on_host(b, polylines, &desc);
             assert_true(device.point_count > 100);
             check_against_mesh(b, polylines, &device);
             if (b->rounds)
                 assert_int_equal(first_difference(&device, &twin), device.point_count);
-            camber_stages_free(b->context, &device);
+            camber_stages_destroy(&device);
             assert_null(device.points);
-            camber_stages_free(b->context, &twin);
+            camber_stages_destroy(&twin);
             camber_polylines_destroy(polylines);
         }
-        scene_free(&s);
+        camber_made_scene_free(&s);
     }
 }
 
 /* A word that is wrong on the device shows where it is. */
 static void test_wrong_words_show(void **state) {
-    bench *b = *state;
-    camber_stroke strokes[SCENE_ROWS];
+    fixture *b = *state;
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     scene_strokes(strokes);
-    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_STRIP, 0, false};
-    scene s = scene_make(1);
+    const camber_tessellation_desc desc = {strokes, CAMBER_KERNEL_ROWS, CAMBER_METHOD_STRIP, 0, false};
+    camber_made_scene s = scene_make(1);
     camber_polylines *polylines = scene_first(b->context, &s, s.polyline_count, true);
-    assert_int_equal(camber_tessellate(b->mesh, polylines, &desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(b->mesh, polylines, &desc), CAMBER_OK);
     camber_stages good = on_device(b);
     /* Without rings and repeated points a point's slot is its place in the list. */
     assert_int_equal(good.point_count, polylines->first_slots[polylines->polyline_count]);
-    const size_t item = b->mesh->device->item; /* an offset is that of a run */
+    const size_t item = b->mesh->device->point_chunk; /* an offset is that of a run */
     const cl_mem mems[] = {b->mesh->parts->x, b->mesh->parts->y, b->mesh->parts->joins, b->mesh->parts->offsets};
     for (size_t k = 0; k < 4; k++) {
         const size_t points[] = {0, 255, 256, 1000, good.point_count - 1};
@@ -100,37 +100,37 @@ static void test_wrong_words_show(void **state) {
             const size_t at = 4 * (k < 3 ? points[i] + 1 : points[i] / item);
             cl_uint word = 0;
             for (int bit = 0; bit < 32; bit += 7) {
-                clEnqueueReadBuffer(b->device->queue, mems[k], CL_TRUE, at, 4, &word, 0, NULL, NULL);
+                clEnqueueReadBuffer(b->on.device->queue, mems[k], CL_TRUE, at, 4, &word, 0, NULL, NULL);
                 word ^= 1u << bit;
-                clEnqueueWriteBuffer(b->device->queue, mems[k], CL_TRUE, at, 4, &word, 0, NULL, NULL);
+                clEnqueueWriteBuffer(b->on.device->queue, mems[k], CL_TRUE, at, 4, &word, 0, NULL, NULL);
                 camber_stages bad = on_device(b);
                 assert_int_equal(first_difference(&good, &bad), k < 3 ? points[i] : points[i] / item * item);
-                camber_stages_free(b->context, &bad);
+                camber_stages_destroy(&bad);
                 word ^= 1u << bit;
-                clEnqueueWriteBuffer(b->device->queue, mems[k], CL_TRUE, at, 4, &word, 0, NULL, NULL);
+                clEnqueueWriteBuffer(b->on.device->queue, mems[k], CL_TRUE, at, 4, &word, 0, NULL, NULL);
             }
         }
     }
     camber_stages again = on_device(b);
     assert_int_equal(first_difference(&good, &again), good.point_count);
-    camber_stages_free(b->context, &again);
-    camber_stages_free(b->context, &good);
+    camber_stages_destroy(&again);
+    camber_stages_destroy(&good);
     camber_polylines_destroy(polylines);
-    scene_free(&s);
+    camber_made_scene_free(&s);
 }
 
 static void test_ring_by_hand(void **state) {
-    bench *b = *state;
-    scene s = {0};
+    fixture *b = *state;
+    camber_made_scene s = {0};
     const double points[][2] = {{0, 0}, {40, 0}, {10, 10}, {0, 0}};
-    scene_end(&s, 0); /* empty */
+    camber_made_scene_end(&s, 0); /* empty */
     for (size_t i = 0; i < 4; i++)
-        scene_point(&s, points[i][0], points[i][1]);
-    scene_end(&s, 0);
+        camber_made_scene_point(&s, points[i][0], points[i][1]);
+    camber_made_scene_end(&s, 0);
     const camber_stroke stroke = {2, CAMBER_JOIN_ROUND, CAMBER_CAP_ROUND, 0};
     const camber_tessellation_desc desc = {&stroke, 1, CAMBER_METHOD_STRIP, 0, false};
     camber_polylines *polylines = scene_polylines(b->context, &s);
-    assert_int_equal(camber_tessellate(b->mesh, polylines, &desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(b->mesh, polylines, &desc), CAMBER_OK);
     camber_stages stages = on_device(b);
     assert_int_equal(stages.point_count, 4);
     /* A break and a start; a turn past 127 degrees: an end, a break and a start; an end. Two indices each. */
@@ -147,45 +147,45 @@ static void test_ring_by_hand(void **state) {
     assert_int_equal(camber_join_kind(stages.points[0].join), CAMBER_KIND_SPLIT);
     assert_int_equal(camber_join_kind(stages.points[1].join), CAMBER_KIND_SPLIT);
     assert_int_equal(camber_join_kind(stages.points[2].join), CAMBER_KIND_CUT);
-    camber_stages_free(b->context, &stages);
+    camber_stages_destroy(&stages);
     camber_polylines_destroy(polylines);
-    scene_free(&s);
+    camber_made_scene_free(&s);
 }
 
-static void assert_no_points(bench *b) {
+static void assert_no_points(fixture *b) {
     camber_stages stages = on_device(b);
     assert_int_equal(stages.point_count, 0);
-    camber_stages_free(b->context, &stages);
+    camber_stages_destroy(&stages);
 }
 
 static void test_nothing(void **state) {
-    bench *b = *state;
+    fixture *b = *state;
     camber_mesh *used = b->mesh;
     const camber_stroke stroke = {2, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0};
     const camber_tessellation_desc desc = {&stroke, 1, CAMBER_METHOD_STRIP, 0, false};
-    assert_int_equal(camber_mesh_create(b->device, NULL, &b->mesh), CAMBER_OK);
+    assert_int_equal(camber_mesh_create(b->on.device, NULL, &b->mesh), CAMBER_OK);
     assert_no_points(b); /* before the first tessellation */
-    scene s = {0};
+    camber_made_scene s = {0};
     camber_polylines *none = scene_polylines(b->context, &s);
-    scene_point(&s, 3, 4);
-    scene_end(&s, 0);
+    camber_made_scene_point(&s, 3, 4);
+    camber_made_scene_end(&s, 0);
     camber_polylines *dot = scene_polylines(b->context, &s);
-    assert_int_equal(camber_tessellate(b->mesh, dot, &desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(b->mesh, dot, &desc), CAMBER_OK);
     camber_stages stages = on_device(b), twin = on_host(b, dot, &desc);
     assert_int_equal(stages.point_count, 1); /* tessellated, and nothing drawn of it */
     assert_int_equal(first_difference(&stages, &twin), 1);
-    camber_stages_free(b->context, &stages);
-    camber_stages_free(b->context, &twin);
-    assert_int_equal(camber_tessellate(b->mesh, none, &desc), CAMBER_OK);
+    camber_stages_destroy(&stages);
+    camber_stages_destroy(&twin);
+    assert_int_equal(camber_mesh_tessellate(b->mesh, none, &desc), CAMBER_OK);
     assert_no_points(b);
     twin = on_host(b, none, &desc);
     assert_int_equal(twin.point_count, 0);
-    camber_stages_free(b->context, &twin);
-    assert_int_equal(camber_tessellate(b->mesh, dot, &(camber_tessellation_desc){0}), CAMBER_ERROR_ARGUMENT);
+    camber_stages_destroy(&twin);
+    assert_int_equal(camber_mesh_tessellate(b->mesh, dot, &(camber_tessellation_desc){0}), CAMBER_ERROR_ARGUMENT);
     assert_no_points(b); /* of the last tessellation, which failed */
     const camber_stages untouched = {.point_count = 7};
     twin = untouched;
-    assert_int_equal(camber_stages_on_host(b->context, dot, &(camber_tessellation_desc){0}, &twin),
+    assert_int_equal(camber_stages_tessellate(b->context, dot, &(camber_tessellation_desc){0}, &twin),
                      CAMBER_ERROR_ARGUMENT);
     assert_memory_equal(&twin, &untouched, sizeof twin);
     b->h.errors = 0;
@@ -193,13 +193,13 @@ static void test_nothing(void **state) {
     camber_polylines_destroy(none);
     camber_mesh_destroy(b->mesh);
     b->mesh = used;
-    scene_free(&s);
+    camber_made_scene_free(&s);
 }
 
 /* ---- Memory ---- */
 
 typedef struct attempt {
-    bench *b;
+    fixture *b;
     const camber_polylines *polylines;
     const camber_tessellation_desc *desc;
 } attempt;
@@ -210,28 +210,28 @@ static camber_status try_stages(camber_context *context, void *user) {
     camber_stages device = untouched, twin = untouched;
     camber_status status = camber_mesh_read_stages(a->b->mesh, &device);
     if (status == CAMBER_OK)
-        status = camber_stages_on_host(context, a->polylines, a->desc, &twin);
+        status = camber_stages_tessellate(context, a->polylines, a->desc, &twin);
     if (status != CAMBER_OK)
         assert_memory_equal(&twin, &untouched, sizeof twin);
     else
-        camber_stages_free(context, &twin);
+        camber_stages_destroy(&twin);
     if (device.point_count != untouched.point_count)
-        camber_stages_free(context, &device);
+        camber_stages_destroy(&device);
     return status;
 }
 
 static void test_memory(void **state) {
-    bench *b = *state;
-    camber_stroke strokes[SCENE_ROWS];
+    fixture *b = *state;
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     scene_strokes(strokes);
-    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, CAMBER_METHOD_KITE, 0, false};
-    scene s = scene_make(0);
+    const camber_tessellation_desc desc = {strokes, CAMBER_KERNEL_ROWS, CAMBER_METHOD_KITE, 0, false};
+    camber_made_scene s = scene_make(0);
     camber_polylines *polylines = scene_polylines(b->context, &s);
-    assert_int_equal(camber_tessellate(b->mesh, polylines, &desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(b->mesh, polylines, &desc), CAMBER_OK);
     attempt a = {b, polylines, &desc};
     each_allocation_fails(&b->h, try_stages, b->context, &a);
     camber_polylines_destroy(polylines);
-    scene_free(&s);
+    camber_made_scene_free(&s);
 }
 
 int main(void) {
@@ -244,7 +244,7 @@ int main(void) {
     };
     int failed = 77;
     if (device_is_there())
-        failed = cmocka_run_group_tests(tests, bench_set_up, bench_tear_down);
+        failed = cmocka_run_group_tests(tests, fixture_set_up_mesh, fixture_tear_down);
     else
         puts("skipped: no OpenCL device");
     return failed;

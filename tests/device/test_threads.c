@@ -56,8 +56,8 @@ static camber_status draw(task *t, camber_renderer *renderer, camber_mesh *mesh,
     const camber_tessellation_desc tessellation = {.strokes = strokes, .stroke_count = 2};
     const camber_pass pass = {.mesh = mesh, .paints = paints, .paint_count = 2};
     const camber_frame frame = {.width = SIDE_PX, .height = SIDE_PX, .passes = &pass, .pass_count = 1};
-    const camber_status status = camber_tessellate(mesh, polylines, &tessellation);
-    return status == CAMBER_OK ? camber_render(renderer, &frame, take_rows, t, NULL) : status;
+    const camber_status status = camber_mesh_tessellate(mesh, polylines, &tessellation);
+    return status == CAMBER_OK ? camber_renderer_render(renderer, &frame, take_rows, t, NULL) : status;
 }
 
 static camber_status draw_lines(task *t, camber_context *context, camber_device *device, camber_renderer *renderer) {
@@ -82,7 +82,8 @@ static void *work(void *user) {
     task *t = user;
     const camber_context_desc desc = {.log = take_log, .log_user = t};
     const camber_surface_desc surface_desc = {t->where == IN_OSMESA ? CAMBER_BACKEND_OSMESA : CAMBER_BACKEND_EGL};
-    const camber_renderer_desc renderer_desc = {.draw = t->where == IN_CL ? CAMBER_DRAW_CL : CAMBER_DRAW_GL};
+    const camber_renderer_desc renderer_desc = {.rasterizer = t->where == IN_CL ? CAMBER_RASTERIZER_OPENCL
+                                                                                : CAMBER_RASTERIZER_GL};
     camber_context *context = NULL;
     camber_surface *surface = NULL;
     camber_device *device = NULL;
@@ -92,7 +93,8 @@ static void *work(void *user) {
     if (t->status == CAMBER_OK && t->where != IN_CL)
         t->status = camber_surface_create(context, &surface_desc, &surface);
     if (t->status == CAMBER_OK)
-        t->status = camber_device_create(context, NULL, surface, &device);
+        t->status =
+            camber_device_create(context, &(camber_device_desc){.gl = camber_surface_get_handles(surface)}, &device);
     if (t->status == CAMBER_OK)
         t->status = camber_renderer_create(device, surface, &renderer_desc, &renderer);
     if (t->status == CAMBER_OK)

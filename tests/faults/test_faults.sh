@@ -72,7 +72,7 @@ kernels_come_from() { # "the cache" or "built"
         fail "kernels are not '$1': $(grep kernels "$tmp/stderr")"
 }
 
-# What lies in a cache folder: whole files of camber's, no temporary ones.
+# A clean cache folder has whole files of camber's, no temporary ones.
 is_clean() {
     local file
     for file in "$1"/* "$1"/.[!.]*; do
@@ -313,7 +313,7 @@ for run in $(seq $runs); do
     137:"$expected" | 137:new) killed=$((killed + 1)) ;;
     *) fail "after $delay ms: exit status $status, and the file is $found" && torn=$((torn + 1)) ;;
     esac
-    # What is left is hidden and has the process's name, in the cache the kernels' with six letters behind.
+    # Files that are left are hidden and have the process's name, in the cache the kernels' with six letters behind.
     for file in .[!.]*; do
         [ -e "$file" ] || continue
         left=$((left + 1))

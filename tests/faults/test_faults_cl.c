@@ -1,6 +1,6 @@
 /* OpenCL's failures: the n-th call is refused, once or from there on, for every n. Each time the call says so in one
  * line, leaks nothing, and works when the fault is gone; what is drawn and read then is right. */
-#include "picture.h"
+#include "pictures.h"
 
 #include "cl_fault.h"
 #include "tess/mesh.h"
@@ -36,7 +36,7 @@ typedef struct stage_set {
     camber_context *context;
     camber_device *device;
     camber_polylines *polylines, *others;
-    camber_stroke strokes[SCENE_ROWS];
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     camber_tessellation_desc desc;
     camber_mesh_data wanted; /* of polylines */
     camber_stages stages;
@@ -44,15 +44,15 @@ typedef struct stage_set {
 } stage_set;
 
 static camber_polylines *make_lines(camber_context *context, uint64_t seed, size_t count) {
-    scene s = {0};
+    camber_made_scene s = {0};
     for (size_t i = 0; i < count; i++) {
-        scene_walk(&s, &seed, 20, (const double[]){20, 200}, 1);
-        scene_end(&s, i % SCENE_ROWS);
+        camber_made_scene_walk(&s, &seed, 20, (const double[]){20, 200}, 1);
+        camber_made_scene_end(&s, i % CAMBER_KERNEL_ROWS);
     }
     for (size_t i = 0; i < 2 * s.point_count; i++)
         s.points[i] *= SIDE_PX / 1000.0f; /* into the picture */
     camber_polylines *polylines = scene_polylines(context, &s);
-    scene_free(&s);
+    camber_made_scene_free(&s);
     return polylines;
 }
 
@@ -61,15 +61,15 @@ static void open_set(stage_set *s, bool parts, camber_method method) {
     *s = (stage_set){.before = cl_fault.live};
     s->context = host_context(&s->h);
     const camber_device_desc device_desc = {.largest_buffer_bytes = parts && !cl_fault.largest_bytes ? 6000 : 0};
-    assert_int_equal(camber_device_create(s->context, &device_desc, NULL, &s->device), CAMBER_OK);
+    assert_int_equal(camber_device_create(s->context, &device_desc, &s->device), CAMBER_OK);
     s->polylines = make_lines(s->context, 3, 60);
     s->others = make_lines(s->context, 4, 30);
     scene_strokes(s->strokes);
     s->strokes[1].offset_px = 6;
-    s->desc = (camber_tessellation_desc){s->strokes, SCENE_ROWS, method, 0, false};
+    s->desc = (camber_tessellation_desc){s->strokes, CAMBER_KERNEL_ROWS, method, 0, false};
     camber_mesh *mesh = NULL;
     assert_int_equal(camber_mesh_create(s->device, NULL, &mesh), CAMBER_OK);
-    assert_int_equal(camber_tessellate(mesh, s->polylines, &s->desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(mesh, s->polylines, &s->desc), CAMBER_OK);
     assert_true(parts ? mesh->part_count > 2 : mesh->part_count == 1);
     assert_int_equal(camber_mesh_read(mesh, &s->wanted), CAMBER_OK);
     assert_int_equal(camber_mesh_read_stages(mesh, &s->stages), CAMBER_OK);
@@ -78,8 +78,8 @@ static void open_set(stage_set *s, bool parts, camber_method method) {
 }
 
 static void close_set(stage_set *s) {
-    camber_mesh_data_free(s->context, &s->wanted);
-    camber_stages_free(s->context, &s->stages);
+    camber_mesh_data_destroy(&s->wanted);
+    camber_stages_destroy(&s->stages);
     camber_polylines_destroy(s->others);
     camber_polylines_destroy(s->polylines);
     camber_device_destroy(s->device);
@@ -121,7 +121,7 @@ static size_t refuse(stage_set *s, attempt_fn *attempt, void *user, const char *
             continue;
         }
         if (cl_fault.refusals == 0)
-            fail_msg("%s, and no call was refused: %s", camber_status_name(status), s->h.last);
+            fail_msg("%s, and no call was refused: %s", camber_status_get_name(status), s->h.last);
         if (!story)
             assert_int_equal(status, FAULTS[fault].status);
         else
@@ -140,7 +140,7 @@ static void each_call_fails(stage_set *s, attempt_fn *attempt, void *user, const
 static camber_status try_device(stage_set *s, void *user) {
     (void)user;
     camber_device *device = NULL;
-    const camber_status status = camber_device_create(s->context, NULL, NULL, &device);
+    const camber_status status = camber_device_create(s->context, NULL, &device);
     assert_true((status == CAMBER_OK) == (device != NULL));
     if (status == CAMBER_OK) {
         const camber_device_info info = camber_device_get_info(device), wanted = camber_device_get_info(s->device);
@@ -166,18 +166,18 @@ static camber_status read_mesh(stage_set *s, camber_device *device) {
     camber_stages stages;
     camber_status status = camber_mesh_create(device, NULL, &mesh);
     if (status == CAMBER_OK)
-        status = camber_tessellate(mesh, s->polylines, &s->desc);
+        status = camber_mesh_tessellate(mesh, s->polylines, &s->desc);
     if (status == CAMBER_OK)
         status = camber_mesh_read(mesh, &data);
     if (status == CAMBER_OK) {
         assert_wanted(s, &data);
-        camber_mesh_data_free(s->context, &data);
+        camber_mesh_data_destroy(&data);
         status = camber_mesh_read_stages(mesh, &stages);
     }
     if (status == CAMBER_OK) {
         assert_int_equal(stages.point_count, s->stages.point_count);
         assert_memory_equal(stages.points, s->stages.points, stages.point_count * sizeof *stages.points);
-        camber_stages_free(s->context, &stages);
+        camber_stages_destroy(&stages);
     }
     camber_mesh_destroy(mesh);
     return status;
@@ -201,7 +201,7 @@ static void test_mesh(void **state) {
 static camber_status try_program(stage_set *s, void *user) {
     (void)user;
     camber_device *device = NULL;
-    camber_status status = camber_device_create(s->context, NULL, NULL, &device);
+    camber_status status = camber_device_create(s->context, NULL, &device);
     if (status == CAMBER_OK)
         status = read_mesh(s, device);
     camber_device_destroy(device);
@@ -223,14 +223,14 @@ static void assert_right(stage_set *s, camber_mesh *mesh) {
     camber_mesh_data data;
     assert_int_equal(camber_mesh_read(mesh, &data), CAMBER_OK);
     assert_wanted(s, &data);
-    camber_mesh_data_free(s->context, &data);
+    camber_mesh_data_destroy(&data);
 }
 
-static void assert_nothing(stage_set *s, camber_mesh *mesh) {
+static void assert_nothing(camber_mesh *mesh) {
     camber_mesh_data data;
     assert_int_equal(camber_mesh_read(mesh, &data), CAMBER_OK);
     assert_int_equal(data.info.vertex_count + data.info.index_count + data.info.joins, 0);
-    camber_mesh_data_free(s->context, &data);
+    camber_mesh_data_destroy(&data);
 }
 
 /* A failed tessellation leaves an empty mesh that works again, whether its polylines were there or are new. */
@@ -242,19 +242,19 @@ static void test_mesh_again(void **state) {
         camber_mesh *mesh = NULL;
         open_set(&s, parts, CAMBER_METHOD_STRIP);
         assert_int_equal(camber_mesh_create(s.device, NULL, &mesh), CAMBER_OK);
-        assert_int_equal(camber_tessellate(mesh, s.polylines, &s.desc), CAMBER_OK);
+        assert_int_equal(camber_mesh_tessellate(mesh, s.polylines, &s.desc), CAMBER_OK);
         for (size_t n = 1;; n++) {
             assert_true(n < CALLS_MAX);
             if (fresh)
-                assert_int_equal(camber_tessellate(mesh, s.others, &s.desc), CAMBER_OK);
+                assert_int_equal(camber_mesh_tessellate(mesh, s.others, &s.desc), CAMBER_OK);
             cl_fault_arm(n, n, CL_OUT_OF_RESOURCES);
-            const camber_status status = camber_tessellate(mesh, s.polylines, &s.desc);
+            const camber_status status = camber_mesh_tessellate(mesh, s.polylines, &s.desc);
             cl_fault_disarm();
             if (status != CAMBER_OK) {
                 assert_int_equal(status, CAMBER_ERROR_MEMORY);
                 assert_story(&s.h, cl_fault.refused);
-                assert_nothing(&s, mesh);
-                assert_int_equal(camber_tessellate(mesh, s.polylines, &s.desc), CAMBER_OK);
+                assert_nothing(mesh);
+                assert_int_equal(camber_mesh_tessellate(mesh, s.polylines, &s.desc), CAMBER_OK);
             }
             assert_right(&s, mesh);
             if (cl_fault.refusals == 0)
@@ -275,20 +275,20 @@ static void test_read_again(void **state) {
     for (size_t n = 1;; n++) {
         const camber_mesh_data untouched = {.indices = (uint32_t *)(uintptr_t)8};
         camber_mesh_data data = untouched;
-        assert_int_equal(camber_tessellate(mesh, s.polylines, &s.desc), CAMBER_OK);
+        assert_int_equal(camber_mesh_tessellate(mesh, s.polylines, &s.desc), CAMBER_OK);
         cl_fault_arm(n, n, CL_OUT_OF_HOST_MEMORY);
         const camber_status status = camber_mesh_read(mesh, &data);
         cl_fault_disarm();
         assert_int_equal(status, cl_fault.refusals ? CAMBER_ERROR_MEMORY : CAMBER_OK);
         if (status == CAMBER_OK) {
-            camber_mesh_data_free(s.context, &data);
+            camber_mesh_data_destroy(&data);
             break;
         }
         assert_memory_equal(&data, &untouched, sizeof data);
         assert_story(&s.h, cl_fault.refused);
         assert_right(&s, mesh);
     }
-    assert_int_equal(camber_tessellate(mesh, s.polylines, &s.desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(mesh, s.polylines, &s.desc), CAMBER_OK);
     cl_fault_arm(2, 2, CL_OUT_OF_HOST_MEMORY); /* the second map of the first part */
     camber_mesh_info info = camber_mesh_get_info(mesh);
     cl_fault_disarm();
@@ -310,7 +310,7 @@ static void test_build_log(void **state) {
     camber_device *device = NULL;
     camber_mesh *mesh = NULL;
     open_set(&s, false, CAMBER_METHOD_STRIP);
-    assert_int_equal(camber_device_create(s.context, NULL, NULL, &device), CAMBER_OK);
+    assert_int_equal(camber_device_create(s.context, NULL, &device), CAMBER_OK);
     assert_int_equal(camber_mesh_create(device, NULL, &mesh), CAMBER_OK);
     const cl_objects live = cl_fault.live;
     char long_log[20000];
@@ -319,7 +319,7 @@ static void test_build_log(void **state) {
     const char *const logs[] = {"emit.cl:7:3: error: no such thing\n  thing(7);\r\n", "", long_log};
     for (size_t i = 0; i < 3; i++) {
         cl_fault.build_log = logs[i];
-        assert_int_equal(camber_tessellate(mesh, s.polylines, &s.desc), CAMBER_ERROR_DEVICE);
+        assert_int_equal(camber_mesh_tessellate(mesh, s.polylines, &s.desc), CAMBER_ERROR_DEVICE);
         cl_fault.build_log = NULL;
         assert_non_null(strstr(s.h.last, "clBuildProgram"));
         assert_non_null(strstr(s.h.last, "; update"));
@@ -329,7 +329,7 @@ static void test_build_log(void **state) {
         assert_int_equal(cl_fault.live.programs, live.programs);
         assert_int_equal(cl_fault.live.kernels, live.kernels);
     }
-    assert_int_equal(camber_tessellate(mesh, s.polylines, &s.desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(mesh, s.polylines, &s.desc), CAMBER_OK);
     assert_right(&s, mesh);
     camber_mesh_destroy(mesh);
     camber_device_destroy(device);
@@ -346,9 +346,10 @@ static camber_status try_cached(stage_set *s, void *user) {
     camber_device *device = NULL;
     camber_program *program = NULL;
     assert_int_equal(camber_context_create(&context_desc, &context), CAMBER_OK);
-    camber_status status = camber_device_create(context, NULL, NULL, &device);
+    camber_status status = camber_device_create(context, NULL, &device);
     if (status == CAMBER_OK)
-        status = camber_device_program(device, (camber_program_desc){s->desc.method, s->desc.measured, true}, &program);
+        status = camber_device_program(device, (camber_program_desc){s->desc.method, s->desc.has_arc_length, true},
+                                       &program);
     s->h.errors += h.errors;
     if (h.errors)
         snprintf(s->h.last, sizeof s->h.last, "%s", h.last);
@@ -406,21 +407,21 @@ static void test_small_device(void **state) {
 
 /* ---- Drawing ---- */
 
-typedef struct easel {
+typedef struct drawn_lines {
     camber_surface *surface;
     camber_sharing sharing;
     camber_renderer *renderer;
     camber_mesh *mesh;
     picture wanted;
     camber_overdraw overdraw;
-} easel;
+} drawn_lines;
 
-static camber_paint paints[SCENE_ROWS];
+static camber_paint paints[CAMBER_KERNEL_ROWS];
 
 static camber_status try_renderer(stage_set *s, void *user) {
-    const easel *e = user;
+    const drawn_lines *e = user;
     camber_renderer *renderer = NULL;
-    const camber_renderer_desc desc = {.sharing = e->sharing, .draw = CAMBER_DRAW_GL};
+    const camber_renderer_desc desc = {.sharing = e->sharing, .rasterizer = CAMBER_RASTERIZER_GL};
     const camber_status status = camber_renderer_create(s->device, e->surface, &desc, &renderer);
     camber_renderer_destroy(renderer);
     return status;
@@ -431,16 +432,16 @@ static bool take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint3
     return true;
 }
 
-static camber_status draw(const easel *e, uint8_t *rgba, camber_overdraw *overdraw) {
-    const camber_pass pass = {.mesh = e->mesh, .paints = paints, .paint_count = SCENE_ROWS};
+static camber_status draw(const drawn_lines *e, uint8_t *rgba, camber_overdraw *overdraw) {
+    const camber_pass pass = {.mesh = e->mesh, .paints = paints, .paint_count = CAMBER_KERNEL_ROWS};
     const camber_frame frame = {.width = SIDE_PX, .height = SIDE_PX, .passes = &pass, .pass_count = 1};
     const camber_overdraw_desc counted = {
-        .width = SIDE_PX, .height = SIDE_PX, .mesh = e->mesh, .paints = paints, .paint_count = SCENE_ROWS};
-    const camber_status status = camber_render(e->renderer, &frame, take_rows, rgba, NULL);
-    return status == CAMBER_OK ? camber_overdraw_count(e->renderer, &counted, overdraw) : status;
+        .width = SIDE_PX, .height = SIDE_PX, .mesh = e->mesh, .paints = paints, .paint_count = CAMBER_KERNEL_ROWS};
+    const camber_status status = camber_renderer_render(e->renderer, &frame, take_rows, rgba, NULL);
+    return status == CAMBER_OK ? camber_renderer_count_overdraw(e->renderer, &counted, overdraw) : status;
 }
 
-static void assert_drawn(const easel *e) {
+static void assert_drawn(const drawn_lines *e) {
     uint8_t rgba[4 * SIDE_PX * SIDE_PX];
     camber_overdraw overdraw;
     assert_int_equal(draw(e, rgba, &overdraw), CAMBER_OK);
@@ -449,14 +450,14 @@ static void assert_drawn(const easel *e) {
 }
 
 /* Tessellates and draws with the n-th call refused; then once more without. */
-static void draw_after_each(stage_set *s, easel *e) {
+static void draw_after_each(stage_set *s, drawn_lines *e) {
     for (size_t n = 1;; n++) {
         uint8_t rgba[4 * SIDE_PX * SIDE_PX];
         camber_overdraw overdraw;
         assert_true(n < CALLS_MAX);
-        assert_int_equal(camber_tessellate(e->mesh, s->others, &s->desc), CAMBER_OK);
+        assert_int_equal(camber_mesh_tessellate(e->mesh, s->others, &s->desc), CAMBER_OK);
         cl_fault_arm(n, n, CL_OUT_OF_RESOURCES);
-        camber_status status = camber_tessellate(e->mesh, s->polylines, &s->desc);
+        camber_status status = camber_mesh_tessellate(e->mesh, s->polylines, &s->desc);
         const bool tessellated = status == CAMBER_OK;
         if (tessellated)
             status = draw(e, rgba, &overdraw);
@@ -466,7 +467,7 @@ static void draw_after_each(stage_set *s, easel *e) {
             assert_story(&s->h, cl_fault.refused);
         }
         if (!tessellated)
-            assert_int_equal(camber_tessellate(e->mesh, s->polylines, &s->desc), CAMBER_OK);
+            assert_int_equal(camber_mesh_tessellate(e->mesh, s->polylines, &s->desc), CAMBER_OK);
         assert_drawn(e);
         if (cl_fault.refusals == 0)
             break;
@@ -477,21 +478,21 @@ static void test_drawing(void **state) {
     (void)state;
     static const camber_sharing sharings[] = {CAMBER_SHARING_AUTO, CAMBER_SHARING_ZERO_COPY, CAMBER_SHARING_COPY};
     size_t drawn = 0;
-    for (int k = 0; k < 3 * BACKENDS; k++) {
+    for (int k = 0; k < 3 * CAMBER_FIXTURE_BACKENDS; k++) {
         const bool parts = k % 3 == 2;
         stage_set s;
-        easel e = {.sharing = sharings[k % 3]};
+        drawn_lines e = {.sharing = sharings[k % 3]};
         open_set(&s, parts, CAMBER_METHOD_STRIP);
-        for (int i = 0; i < SCENE_ROWS; i++)
+        for (int i = 0; i < CAMBER_KERNEL_ROWS; i++)
             paints[i] = (camber_paint){.width_px = fminf(s.strokes[i].width_px, 2),
-                                       .color = {1, 0.5f, (float)i / SCENE_ROWS, 1}};
-        const camber_surface_desc surface_desc = {BACKEND[k / 3]};
-        const camber_renderer_desc renderer_desc = {.sharing = e.sharing, .draw = CAMBER_DRAW_GL};
+                                       .color = {1, 0.5f, (float)i / CAMBER_KERNEL_ROWS, 1}};
+        const camber_surface_desc surface_desc = {fixture_backend(k / 3)};
+        const camber_renderer_desc renderer_desc = {.sharing = e.sharing, .rasterizer = CAMBER_RASTERIZER_GL};
         if (camber_surface_create(s.context, &surface_desc, &e.surface) == CAMBER_OK &&
             camber_renderer_create(s.device, e.surface, &renderer_desc, &e.renderer) == CAMBER_OK) {
             each_call_fails(&s, try_renderer, &e, "sharing '", 2);
             assert_int_equal(camber_mesh_create(s.device, e.renderer, &e.mesh), CAMBER_OK);
-            assert_int_equal(camber_tessellate(e.mesh, s.polylines, &s.desc), CAMBER_OK);
+            assert_int_equal(camber_mesh_tessellate(e.mesh, s.polylines, &s.desc), CAMBER_OK);
             assert_true(parts ? e.mesh->part_count > 2 : e.mesh->part_count == 1);
             e.wanted = (picture){.rgba = calloc(SIDE_PX * SIDE_PX, 4), .width = SIDE_PX, .height = SIDE_PX};
             assert_non_null(e.wanted.rgba);
@@ -501,7 +502,7 @@ static void test_drawing(void **state) {
             picture_free(&e.wanted);
             drawn++;
         } else {
-            print_message("%s, %s: not here\n", BACKEND_NAME[k / 3], camber_sharing_name(e.sharing));
+            print_message("%s, %s: not here\n", fixture_name(k / 3), camber_sharing_get_name(e.sharing));
         }
         camber_mesh_destroy(e.mesh);
         camber_renderer_destroy(e.renderer);
@@ -516,22 +517,22 @@ static void test_drawing(void **state) {
 
 /* A device of its own where kernels are to be built, and everything else in any case. */
 static camber_status draw_covered(const stage_set *s, camber_device *device, uint8_t *rgba) {
-    const camber_renderer_desc desc = {.draw = CAMBER_DRAW_CL};
-    camber_pass passes[2] = {{.paints = paints, .paint_count = SCENE_ROWS}};
+    const camber_renderer_desc desc = {.rasterizer = CAMBER_RASTERIZER_OPENCL};
+    camber_pass passes[2] = {{.paints = paints, .paint_count = CAMBER_KERNEL_ROWS}};
     camber_renderer *renderer = NULL;
     camber_mesh *mesh = NULL;
     camber_status status = camber_renderer_create(device, NULL, &desc, &renderer);
     if (status == CAMBER_OK)
         status = camber_mesh_create(device, renderer, &mesh);
     if (status == CAMBER_OK)
-        status = camber_tessellate(mesh, s->polylines, &s->desc);
+        status = camber_mesh_tessellate(mesh, s->polylines, &s->desc);
     passes[0].mesh = mesh;
     passes[1] = passes[0];
     passes[1].overlap = CAMBER_OVERLAP_UNITE;
     passes[1].opacity = 0.5f;
     const camber_frame frame = {.width = SIDE_PX, .height = SIDE_PX, .passes = passes, .pass_count = 2};
     if (status == CAMBER_OK)
-        status = camber_render(renderer, &frame, take_rows, rgba, NULL);
+        status = camber_renderer_render(renderer, &frame, take_rows, rgba, NULL);
     camber_mesh_destroy(mesh);
     camber_renderer_destroy(renderer);
     return status;
@@ -546,7 +547,7 @@ static camber_status try_covered(stage_set *s, void *user) {
     const sheet *of = user;
     uint8_t rgba[4 * SIDE_PX * SIDE_PX];
     camber_device *made = NULL;
-    camber_status status = of->device ? CAMBER_OK : camber_device_create(s->context, NULL, NULL, &made);
+    camber_status status = of->device ? CAMBER_OK : camber_device_create(s->context, NULL, &made);
     if (status == CAMBER_OK)
         status = draw_covered(s, of->device ? of->device : made, rgba);
     if (status == CAMBER_OK)
@@ -568,7 +569,7 @@ static void refuse_some(stage_set *s, sheet *of, bool forever) {
         assert_live(&live);
         assert_int_equal(s->h.live_blocks, blocks);
         if (status == CAMBER_OK ? reached && !is_optional(cl_fault.refused) : !reached)
-            fail_msg("%s (call %zu) was refused: %s", cl_fault.refused, n, camber_status_name(status));
+            fail_msg("%s (call %zu) was refused: %s", cl_fault.refused, n, camber_status_get_name(status));
         if (status != CAMBER_OK)
             assert_story(&s->h, forever ? ": OpenCL " : cl_fault.refused);
     }
@@ -582,14 +583,14 @@ static void test_covered(void **state) {
     stage_set s;
     sheet whole;
     open_set(&s, false, CAMBER_METHOD_STRIP);
-    for (int i = 0; i < SCENE_ROWS; i++)
+    for (int i = 0; i < CAMBER_KERNEL_ROWS; i++)
         paints[i] = (camber_paint){.width_px = fminf(s.strokes[i].width_px, 2),
-                                   .color = {1, 0.5f, (float)i / SCENE_ROWS, i % 2 ? 1 : 0.5f}};
+                                   .color = {1, 0.5f, (float)i / CAMBER_KERNEL_ROWS, i % 2 ? 1 : 0.5f}};
     whole.device = s.device;
     assert_int_equal(draw_covered(&s, s.device, whole.wanted), CAMBER_OK);
     assert_true(refuse(&s, try_covered, &whole, NULL, 0, false) > 100);
     sheet sliced = whole;
-    assert_int_equal(camber_device_create(s.context, &small, NULL, &sliced.device), CAMBER_OK);
+    assert_int_equal(camber_device_create(s.context, &small, &sliced.device), CAMBER_OK);
     assert_int_equal(try_covered(&s, &sliced), CAMBER_OK);
     refuse_some(&s, &sliced, false);
     camber_device_destroy(sliced.device);
@@ -598,45 +599,45 @@ static void test_covered(void **state) {
     close_set(&s);
 }
 
-static void open_easel(stage_set *s, easel *e) {
+static void open_drawn_lines(stage_set *s, drawn_lines *e) {
     assert_int_equal(camber_renderer_create(s->device, NULL, NULL, &e->renderer), CAMBER_OK);
     assert_int_equal(camber_mesh_create(s->device, e->renderer, &e->mesh), CAMBER_OK);
-    assert_int_equal(camber_tessellate(e->mesh, s->polylines, &s->desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(e->mesh, s->polylines, &s->desc), CAMBER_OK);
 }
 
-static void close_easel(easel *e) {
+static void close_drawn_lines(drawn_lines *e) {
     camber_mesh_destroy(e->mesh);
     camber_renderer_destroy(e->renderer);
 }
 
-static camber_status draw_easel(const easel *e, uint8_t *rgba) {
-    const camber_pass pass = {.mesh = e->mesh, .paints = paints, .paint_count = SCENE_ROWS};
+static camber_status draw_drawn_lines(const drawn_lines *e, uint8_t *rgba) {
+    const camber_pass pass = {.mesh = e->mesh, .paints = paints, .paint_count = CAMBER_KERNEL_ROWS};
     const camber_frame frame = {.width = SIDE_PX, .height = SIDE_PX, .passes = &pass, .pass_count = 1};
-    return camber_render(e->renderer, &frame, take_rows, rgba, NULL);
+    return camber_renderer_render(e->renderer, &frame, take_rows, rgba, NULL);
 }
 
-/* What a renderer draws after its first frame has failed, wherever it did, is right. */
+/* A renderer whose first frame has failed, wherever it did, draws the next one right. */
 static void test_covered_again(void **state) {
     (void)state;
     stage_set s;
-    easel e = {.renderer = NULL};
+    drawn_lines e = {.renderer = NULL};
     uint8_t wanted[4 * SIDE_PX * SIDE_PX], rgba[sizeof wanted];
     open_set(&s, false, CAMBER_METHOD_STRIP);
-    open_easel(&s, &e);
-    assert_int_equal(draw_easel(&e, wanted), CAMBER_OK);
-    close_easel(&e);
+    open_drawn_lines(&s, &e);
+    assert_int_equal(draw_drawn_lines(&e, wanted), CAMBER_OK);
+    close_drawn_lines(&e);
     for (size_t n = 1;; n++) {
-        open_easel(&s, &e);
+        open_drawn_lines(&s, &e);
         cl_fault_arm(n, n, CL_OUT_OF_RESOURCES);
-        const camber_status status = draw_easel(&e, rgba);
+        const camber_status status = draw_drawn_lines(&e, rgba);
         cl_fault_disarm();
         assert_int_equal(status == CAMBER_OK, cl_fault.refusals == 0 || is_optional(cl_fault.refused));
         if (status != CAMBER_OK)
             assert_story(&s.h, cl_fault.refused);
         memset(rgba, 0, sizeof rgba);
-        assert_int_equal(draw_easel(&e, rgba), CAMBER_OK);
+        assert_int_equal(draw_drawn_lines(&e, rgba), CAMBER_OK);
         assert_memory_equal(rgba, wanted, sizeof wanted);
-        close_easel(&e);
+        close_drawn_lines(&e);
         if (cl_fault.refusals == 0)
             break;
         assert_true(n < CALLS_MAX);

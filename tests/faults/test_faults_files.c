@@ -104,7 +104,7 @@ const char *__wrap_sqlite3_errmsg(sqlite3 *database) {
 
 /* ---- pread: by one of its two names ---- */
 
-/* What it does: fails, is interrupted, reads a byte only, or comes to the end of a file that was longer. */
+/* The fault of a call: it fails, is interrupted, reads a byte only, or comes to the end of a file that was longer. */
 enum { CUT_OFF = 10000, SHORT };
 
 static ssize_t refuse_read(void) {
@@ -258,7 +258,7 @@ static void judge(desk *d, camber_status status, uint64_t hash, verdict wanted, 
         return;
     }
     if (status != wanted.status && status != wanted.other)
-        fail_msg("%s: call %zu, %s, was refused: %s: %s", d->path, n, call, camber_status_name(status), d->h.last);
+        fail_msg("%s: call %zu, %s, was refused: %s: %s", d->path, n, call, camber_status_get_name(status), d->h.last);
     assert_story(&d->h, NULL);
 }
 

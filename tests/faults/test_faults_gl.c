@@ -2,17 +2,17 @@
  * of a wrong picture is handed over, all can be destroyed, and drawing works again: with the same objects, or after the
  * context's loss with new ones. */
 #include "gl_fault.h"
-#include "picture.h"
+#include "pictures.h"
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <dlfcn.h>
 
-/* ---- What is drawn: every kind of pass, in two pieces ---- */
+/* ---- The pictures: every kind of pass, in two pieces ---- */
 
 enum { WIDTH = 97, HEIGHT = 61, PIECE_PX = 64, MESHES = 2, ROWS = 3 };
 
-typedef struct easel {
+typedef struct drawn_lines {
     host h;
     camber_context *context;
     camber_device *device;
@@ -28,10 +28,10 @@ typedef struct easel {
     uint32_t rows;
     bool counts;              /* overdraw, instead of drawing */
     camber_overdraw overdraw; /* the first */
-} easel;
+} drawn_lines;
 
 static bool take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
-    easel *e = user;
+    drawn_lines *e = user;
     uint8_t *wanted = e->wanted + 4 * WIDTH * (size_t)first_row;
     assert_int_equal(first_row, e->rows);
     assert_true(row_count <= HEIGHT - first_row);
@@ -43,11 +43,11 @@ static bool take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint3
     return true;
 }
 
-static camber_status count(easel *e, const camber_paint *paints) {
+static camber_status count(drawn_lines *e, const camber_paint *paints) {
     const camber_overdraw_desc desc = {
         .width = WIDTH, .height = HEIGHT, .mesh = e->meshes[0], .paints = paints, .paint_count = ROWS};
     camber_overdraw counted = {0};
-    const camber_status status = camber_overdraw_count(e->renderer, &desc, &counted);
+    const camber_status status = camber_renderer_count_overdraw(e->renderer, &desc, &counted);
     if (status == CAMBER_OK && e->overdraw.fragments == 0)
         e->overdraw = counted;
     if (status == CAMBER_OK)
@@ -56,11 +56,11 @@ static camber_status count(easel *e, const camber_paint *paints) {
 }
 
 /* Whatever is missing is made; a mesh that was tessellated is whole. Pictures are held against the first. */
-static camber_status draw(easel *e) {
+static camber_status draw(drawn_lines *e) {
     static const camber_paint solid[ROWS] = {{.width_px = 9, .color = {1, 0, 0, 1}},
                                              {.width_px = 9, .color = {0, 1, 0, 1}},
                                              {.width_px = 9, .color = {0, 0, 1, 1}}};
-    static const camber_paint veil[ROWS] = {{.width_px = 7, .color = {0, 0, 0, 0.5f}},
+    static const camber_paint overlay[ROWS] = {{.width_px = 7, .color = {0, 0, 0, 0.5f}},
                                             {.width_px = 7, .color = {0, 0, 0, 0.5f}},
                                             {.width_px = 7, .color = {0, 0, 0, 0.5f}}};
     static const camber_paint mixed[ROWS] = {{.width_px = 5, .color = {1, 1, 0, 0.4f}},
@@ -68,9 +68,9 @@ static camber_status draw(easel *e) {
                                              {.width_px = 5, .color = {1, 0, 1, 0.7f}}};
     camber_status status = CAMBER_OK;
     if (!e->renderer)
-        status = camber_renderer_create(e->device, e->surface,
-                                        &(camber_renderer_desc){.sharing = e->sharing, .draw = CAMBER_DRAW_GL},
-                                        &e->renderer);
+        status = camber_renderer_create(
+            e->device, e->surface, &(camber_renderer_desc){.sharing = e->sharing, .rasterizer = CAMBER_RASTERIZER_GL},
+            &e->renderer);
     for (int i = 0; i < MESHES && status == CAMBER_OK; i++) {
         camber_stroke strokes[ROWS];
         for (int k = 0; k < ROWS; k++)
@@ -78,13 +78,13 @@ static camber_status draw(easel *e) {
         if (!e->meshes[i])
             status = camber_mesh_create(e->device, e->renderer, e->meshes + i);
         if (status == CAMBER_OK && !e->ready[i])
-            status = camber_tessellate(e->meshes[i], e->polylines,
-                                       &(camber_tessellation_desc){strokes, ROWS, CAMBER_METHOD_STRIP, 0, false});
+            status = camber_mesh_tessellate(e->meshes[i], e->polylines,
+                                            &(camber_tessellation_desc){strokes, ROWS, CAMBER_METHOD_STRIP, 0, false});
         e->ready[i] = status == CAMBER_OK;
     }
     const camber_pass passes[] = {
         {.mesh = e->meshes[0], .paints = solid, .paint_count = ROWS},
-        {.mesh = e->meshes[1], .paints = veil, .paint_count = ROWS},
+        {.mesh = e->meshes[1], .paints = overlay, .paint_count = ROWS},
         {.mesh = e->meshes[0], .paints = mixed, .paint_count = ROWS},
         {.mesh = e->meshes[1], .paints = mixed, .paint_count = ROWS, .overlap = CAMBER_OVERLAP_ACCUMULATE}};
     const camber_frame frame = {.width = WIDTH,
@@ -97,13 +97,13 @@ static camber_status draw(easel *e) {
     if (status == CAMBER_OK && e->counts)
         return count(e, solid);
     if (status == CAMBER_OK)
-        status = camber_render(e->renderer, &frame, take_rows, e, NULL);
+        status = camber_renderer_render(e->renderer, &frame, take_rows, e, NULL);
     if (status == CAMBER_OK)
         assert_int_equal(e->rows, HEIGHT);
     return status;
 }
 
-static void put_away_renderer(easel *e) {
+static void put_away_renderer(drawn_lines *e) {
     for (int i = 0; i < MESHES; i++) {
         camber_mesh_destroy(e->meshes[i]);
         e->meshes[i] = NULL;
@@ -114,41 +114,41 @@ static void put_away_renderer(easel *e) {
 }
 
 /* The next picture is drawn under a fault, from the tessellation on. */
-static void begin(easel *e) {
+static void begin(drawn_lines *e) {
     memset(e->ready, 0, sizeof e->ready);
     fault_on(e->surface);
 }
 
-static void assert_draws(easel *e) {
+static void assert_draws(drawn_lines *e) {
     if (draw(e) != CAMBER_OK)
         fail_msg("does not draw again: %s", e->h.last);
     assert_int_equal(e->h.errors, 0);
 }
 
-static camber_status new_surface(easel *e) {
+static camber_status new_surface(drawn_lines *e) {
     return camber_surface_create(e->context, &(camber_surface_desc){e->backend}, &e->surface);
 }
 
 /* false: not on this machine. */
-static bool set_up_easel(easel *e, camber_backend backend, camber_sharing sharing) {
-    *e = (easel){.backend = backend, .sharing = sharing};
+static bool set_up_drawn_lines(drawn_lines *e, camber_backend backend, camber_sharing sharing) {
+    *e = (drawn_lines){.backend = backend, .sharing = sharing};
     camber_context_desc desc = host_desc(&e->h);
     desc.cache_dir = ""; /* or linked shaders are loaded, and fewer calls are made */
     assert_int_equal(camber_context_create(&desc, &e->context), CAMBER_OK);
-    assert_int_equal(camber_device_create(e->context, NULL, NULL, &e->device), CAMBER_OK);
-    scene lines = {0};
+    assert_int_equal(camber_device_create(e->context, NULL, &e->device), CAMBER_OK);
+    camber_made_scene lines = {0};
     uint64_t seed = 3;
     for (size_t i = 0; i < 12; i++) {
         const size_t first = lines.point_count;
-        scene_walk(&lines, &seed, 6, (const double[]){5, 40}, 1.5);
+        camber_made_scene_walk(&lines, &seed, 6, (const double[]){5, 40}, 1.5);
         for (size_t k = first; k < lines.point_count; k++) {
             lines.points[2 * k] = fmodf(fabsf(lines.points[2 * k]), WIDTH);
             lines.points[2 * k + 1] = fmodf(fabsf(lines.points[2 * k + 1]), HEIGHT);
         }
-        scene_end(&lines, i % ROWS);
+        camber_made_scene_end(&lines, i % ROWS);
     }
     e->polylines = scene_polylines(e->context, &lines);
-    scene_free(&lines);
+    camber_made_scene_free(&lines);
     if (new_surface(e) == CAMBER_OK && draw(e) == CAMBER_OK) {
         e->known = true;
         return true;
@@ -158,7 +158,7 @@ static bool set_up_easel(easel *e, camber_backend backend, camber_sharing sharin
     return false;
 }
 
-static void put_away(easel *e) {
+static void put_away(drawn_lines *e) {
     put_away_renderer(e);
     camber_surface_destroy(e->surface);
     camber_polylines_destroy(e->polylines);
@@ -174,12 +174,12 @@ static const struct road {
              {CAMBER_BACKEND_EGL, CAMBER_SHARING_COPY},
              {CAMBER_BACKEND_OSMESA, CAMBER_SHARING_AUTO}};
 
-/* Calls check with an easel for each way of drawing that is here. */
-static void on_each_road(void (*check)(easel *e)) {
+/* Calls check with drawn lines for each way of drawing that is here. */
+static void on_each_road(void (*check)(drawn_lines *e)) {
     size_t found = 0;
     for (size_t i = 0; i < sizeof ROADS / sizeof *ROADS; i++) {
-        easel e;
-        if (set_up_easel(&e, ROADS[i].backend, ROADS[i].sharing)) {
+        drawn_lines e;
+        if (set_up_drawn_lines(&e, ROADS[i].backend, ROADS[i].sharing)) {
             check(&e);
             found++;
         }
@@ -188,15 +188,16 @@ static void on_each_road(void (*check)(easel *e)) {
     assert_true(found > 0);
 }
 
-static void assert_told(easel *e, camber_status status, camber_status wanted, const char *part) {
+static void assert_told(drawn_lines *e, camber_status status, camber_status wanted, const char *part) {
     if (status != wanted)
-        fail_msg("status '%s', not '%s': %s", camber_status_name(status), camber_status_name(wanted), e->h.last);
+        fail_msg("status '%s', not '%s': %s", camber_status_get_name(status), camber_status_get_name(wanted),
+                 e->h.last);
     assert_non_null(strchr(e->h.last, ';')); /* the cure */
     assert_story(&e->h, part);
 }
 
 /* After a loss: all is refused in one line, destroyed without a word, and made again. */
-static void assert_lost_and_found(easel *e) {
+static void assert_lost_and_found(drawn_lines *e) {
     assert_true(camber_surface_is_lost(e->surface));
     assert_told(e, draw(e), CAMBER_ERROR_DEVICE, "lost");
     fault_off();
@@ -213,7 +214,7 @@ static void assert_lost_and_found(easel *e) {
 /* ---- Every call ---- */
 
 /* fresh: the renderer is made under the fault too. */
-static void sweep(easel *e, GLenum error, bool fresh) {
+static void sweep(drawn_lines *e, GLenum error, bool fresh) {
     const bool lost = error == GL_CONTEXT_LOST_KHR;
     size_t n = 1, told = 0;
     for (bool reached = true; reached; n++) {
@@ -242,7 +243,7 @@ static void sweep(easel *e, GLenum error, bool fresh) {
     assert_true(told == n - 2 || (fresh && e->sharing == CAMBER_SHARING_AUTO && told > n - 20));
 }
 
-static void check_calls(easel *e) {
+static void check_calls(drawn_lines *e) {
     sweep(e, GL_OUT_OF_MEMORY, true);
     if (e->sharing == CAMBER_SHARING_COPY)
         return; /* drawn as the others are */
@@ -261,7 +262,7 @@ static void test_each_call_fails(void **state) {
 
 /* ---- Calls that fail without an error of GL's ---- */
 
-static void fail_silently(easel *e, const char *function, camber_status wanted, const char *part) {
+static void fail_silently(drawn_lines *e, const char *function, camber_status wanted, const char *part) {
     for (size_t n = 1;; n++) {
         put_away_renderer(e);
         begin(e);
@@ -283,7 +284,7 @@ static void fail_silently(easel *e, const char *function, camber_status wanted, 
     }
 }
 
-static void check_silent(easel *e) {
+static void check_silent(drawn_lines *e) {
     fail_silently(e, "CompileShader", CAMBER_ERROR_DEVICE, "does not compile on ");
     fail_silently(e, "CompileShader", CAMBER_ERROR_DEVICE, "0:1: no such thing 0:2: nor this");
     fail_silently(e, "LinkProgram", CAMBER_ERROR_DEVICE, "do not link on ");
@@ -297,7 +298,7 @@ static void test_silent_failures(void **state) {
 }
 
 /* A map that is refused without an error: past the choice of a path the mesh is out of memory. */
-static void check_maps(easel *e) {
+static void check_maps(drawn_lines *e) {
     if (e->sharing != CAMBER_SHARING_ZERO_COPY)
         return;
     for (size_t n = 1; n <= 4; n++) { /* two of the choice, one a mesh */
@@ -322,7 +323,7 @@ static void test_no_map(void **state) {
 
 /* ---- Errors at each query ---- */
 
-static void check_queries(easel *e) {
+static void check_queries(drawn_lines *e) {
     const GLenum errors[] = {GL_OUT_OF_MEMORY, GL_INVALID_OPERATION, GL_CONTEXT_LOST_KHR};
     for (int i = 0; i < 3; i++) {
         size_t n = 1;
@@ -356,7 +357,7 @@ static void test_error_at_each_query(void **state) {
 
 /* ---- Contexts that cannot be made current, and lost ones ---- */
 
-static void check_current(easel *e) {
+static void check_current(drawn_lines *e) {
     for (int lost = 0; lost < 2; lost++) {
         size_t n = 1, told = 0;
         for (bool reached = true; reached; n++) {
@@ -380,8 +381,9 @@ static void check_current(easel *e) {
     }
 }
 
-/* What is destroyed while the context cannot be made current says nothing, and OpenCL's side of the buffers goes. */
-static void check_destruction(easel *e) {
+/* Whatever is destroyed while the context cannot be made current says nothing, and OpenCL's side of the buffers goes.
+ */
+static void check_destruction(drawn_lines *e) {
     for (size_t n = 1; n <= 3; n++) { /* a buffer a mesh, and the renderer */
         cl_mem mem = e->meshes[0]->parts[0].buffers[CAMBER_BUFFER_RECORDS].mem;
         cl_uint count = 0;
@@ -405,7 +407,7 @@ static void test_not_current(void **state) {
     on_each_road(check_destruction);
 }
 
-static void check_reset(easel *e) {
+static void check_reset(drawn_lines *e) {
     for (size_t n = 1;; n++) {
         begin(e);
         fault.reset_at = n;
@@ -428,7 +430,7 @@ static void test_reset(void **state) {
 }
 
 /* EGL's contexts ask to be told. */
-static void check_notification(easel *e) {
+static void check_notification(drawn_lines *e) {
     enum { RESET_NOTIFICATION_STRATEGY = 0x8256, LOSE_CONTEXT_ON_RESET = 0x8252 };
     GLint strategy = 0;
     assert_int_equal(camber_surface_make_current(e->surface), CAMBER_OK);
@@ -445,7 +447,7 @@ static void test_contexts_tell_of_resets(void **state) {
 }
 
 /* One surface is lost; the other, of the same context and device, does not notice. */
-static void check_others(easel *e) {
+static void check_others(drawn_lines *e) {
     camber_surface *lost = e->surface;
     camber_renderer *renderer = e->renderer;
     camber_mesh *meshes[MESHES] = {e->meshes[0], e->meshes[1]};
@@ -469,7 +471,7 @@ static void test_loss_leaves_others(void **state) {
 }
 
 /* No fake: another part of the process terminates the display that EGL gives to all of it. */
-static void check_terminated(easel *e) {
+static void check_terminated(drawn_lines *e) {
     void *library = e->backend == CAMBER_BACKEND_EGL ? dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL) : NULL;
     if (!library || strcmp(e->surface->info.backend, "EGL surfaceless") != 0)
         return;

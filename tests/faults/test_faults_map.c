@@ -71,7 +71,7 @@ typedef struct desk {
     byte_list glb;
 } desk;
 
-/* ---- What came of it, as a number ---- */
+/* ---- The result as a number ---- */
 
 static uint64_t hash_features(const camber_features *f) {
     uint64_t hash = camber_hash(CAMBER_HASH_START, f->points, 2 * f->point_count * sizeof *f->points);
@@ -97,12 +97,12 @@ static uint64_t hash_features(const camber_features *f) {
 
 static uint64_t hash_scene(camber_scene *scene) {
     size_t count = 0;
-    const camber_lines *lines = camber_scene_lines(scene);
-    const camber_stroke *strokes = camber_scene_strokes(scene, &count);
-    const camber_frame frame = camber_scene_frame(scene, NULL);
+    const camber_lines *lines = camber_scene_get_lines(scene);
+    const camber_stroke *strokes = camber_scene_get_strokes(scene, &count);
+    const camber_frame frame = camber_scene_get_frame(scene, NULL);
     uint64_t hash = camber_hash(CAMBER_HASH_START, lines->points, 2 * lines->point_count * sizeof *lines->points);
     hash = camber_hash(hash, lines->offsets, (lines->polyline_count + 1) * sizeof *lines->offsets);
-    hash = camber_hash(hash, camber_scene_rows(scene), lines->polyline_count * sizeof(uint32_t));
+    hash = camber_hash(hash, camber_scene_get_rows(scene), lines->polyline_count * sizeof(uint32_t));
     hash = camber_hash(hash, strokes, count * sizeof *strokes);
     hash = camber_hash(hash, &frame.background, sizeof frame.background);
     for (size_t i = 0; i < frame.pass_count; i++) {
@@ -138,7 +138,7 @@ static camber_status try_style(camber_context *context, void *user) {
 static camber_status try_builtin(camber_context *context, void *user) {
     (void)user;
     camber_style *style = NULL;
-    const camber_status status = camber_style_builtin(context, CAMBER_THEME_LIGHT, &style);
+    const camber_status status = camber_style_create_builtin(context, CAMBER_THEME_LIGHT, &style);
     assert_true((status == CAMBER_OK) == (style != NULL));
     camber_style_destroy(style);
     return status;
@@ -188,7 +188,7 @@ static camber_status try_scene(camber_context *context, void *user) {
 
 static camber_status write_glb(camber_context *context, desk *d, byte_list *file) {
     size_t count = 0;
-    const camber_stroke *strokes = camber_scene_strokes(d->scene, &count);
+    const camber_stroke *strokes = camber_scene_get_strokes(d->scene, &count);
     camber_paint *paints = calloc(count, sizeof *paints);
     assert_non_null(paints);
     for (size_t i = 0; i < count; i++)
@@ -279,10 +279,10 @@ static int set_up(void **state) {
     const camber_scene_desc desc = {.view = {CAMBER_VIEW_BBOX, 9.9, 49.9, 10.6, 50.5}};
     assert_int_equal(camber_scene_create(d->features, &desc, &d->scene), CAMBER_OK);
     size_t count = 0;
-    const camber_stroke *strokes = camber_scene_strokes(d->scene, &count);
+    const camber_stroke *strokes = camber_scene_get_strokes(d->scene, &count);
     assert_true(count >= 4 && camber_scene_get_info(d->scene).layers >= 3);
     const camber_tessellation_desc strips = {strokes, count, CAMBER_METHOD_STRIP, 0, false};
-    assert_int_equal(camber_tessellate_on_host(d->context, camber_scene_polylines(d->scene), &strips, &d->mesh),
+    assert_int_equal(camber_mesh_data_tessellate(d->context, camber_scene_get_polylines(d->scene), &strips, &d->mesh),
                      CAMBER_OK);
     d->glb.refuse_at = SIZE_MAX;
     assert_int_equal(write_glb(d->context, d, &d->glb), CAMBER_OK);
@@ -293,7 +293,7 @@ static int set_up(void **state) {
 static int tear_down(void **state) {
     desk *d = *state;
     free(d->glb.bytes);
-    camber_mesh_data_free(d->context, &d->mesh);
+    camber_mesh_data_destroy(&d->mesh);
     camber_scene_destroy(d->scene);
     camber_features_destroy(d->features);
     camber_style_destroy(d->style);
@@ -381,7 +381,7 @@ static void test_settings(void **state) {
 
 /* ---- jansson's ---- */
 
-/* Of the process, as jansson's functions are. */
+/* One for the process, as jansson's functions are. */
 static struct { size_t live_blocks, calls, refuse_at; } json;
 
 static void *json_allocate(size_t size) {

@@ -1,14 +1,14 @@
 /* The n-th allocation fails, for every n, in all of libcamber: the status says so in one line, nothing is kept, inputs
  * stay as they are, what comes out in spite of it is right, and what failed works afterwards. test_faults_map.c does
  * the same for libcamber-map. */
-#include "picture.h"
+#include "pictures.h"
 
 enum { WIDTH = 80, HEIGHT = 60, PIECE_PX = 32, ROWS = 3 };
 
-/* What an attempt reads, and what came of it the first time. */
+/* The input of an attempt, and what came of it the first time. */
 typedef struct desk {
-    studio s;
-    scene lines;
+    fixture s;
+    camber_made_scene lines;
     camber_polylines *polylines;
     camber_mesh_data mesh; /* of the twin */
     camber_stages stages;
@@ -16,7 +16,7 @@ typedef struct desk {
     camber_overdraw overdraw;
     byte_list file; /* a polyline file */
     byte_list png;
-    int backend; /* BACKENDS: kernels draw */
+    int backend; /* CAMBER_FIXTURE_BACKENDS: kernels draw */
     bool known;  /* rgba and overdraw are there */
 } desk;
 
@@ -54,8 +54,8 @@ static camber_status try_lines(camber_context *context, void *user) {
         assert_memory_equal(again.bytes, d->file.bytes, again.size);
     }
     free(again.bytes);
-    camber_lines_free(context, &simplified);
-    camber_lines_free(context, &lines);
+    camber_lines_destroy(&simplified);
+    camber_lines_destroy(&lines);
     return status;
 }
 
@@ -63,7 +63,7 @@ static camber_status try_polylines(camber_context *context, void *user) {
     desk *d = user;
     camber_polylines *const untouched = (camber_polylines *)(void *)d;
     camber_polylines *made = untouched;
-    const scene *s = &d->lines;
+    const camber_made_scene *s = &d->lines;
     const camber_polylines_desc desc = {s->points, s->point_count, s->offsets, s->polyline_count, s->rows, false};
     const camber_status status = camber_polylines_create(context, &desc, &made);
     if (status != CAMBER_OK) {
@@ -86,25 +86,25 @@ static camber_status try_twin(camber_context *context, void *user) {
     desk *d = user;
     camber_mesh_data mesh = {.vertices = (camber_vertex *)(uintptr_t)8};
     camber_stages stages = {.point_count = 7};
-    camber_status status = camber_tessellate_on_host(context, d->polylines, &STRIPS, &mesh);
+    camber_status status = camber_mesh_data_tessellate(context, d->polylines, &STRIPS, &mesh);
     if (status != CAMBER_OK) {
         assert_ptr_equal(mesh.vertices, (camber_vertex *)(uintptr_t)8);
         return status;
     }
     assert_same_mesh(&mesh, &d->mesh);
-    camber_mesh_data_free(context, &mesh);
-    status = camber_stages_on_host(context, d->polylines, &STRIPS, &stages);
+    camber_mesh_data_destroy(&mesh);
+    status = camber_stages_tessellate(context, d->polylines, &STRIPS, &stages);
     if (status != CAMBER_OK) {
         assert_true(stages.point_count == 7 && !stages.points);
         return status;
     }
     assert_same_stages(&stages, &d->stages);
-    camber_stages_free(context, &stages);
+    camber_stages_destroy(&stages);
     return status;
 }
 
-/* What a mesh of the device holds. */
-static camber_status read_all(camber_context *context, camber_mesh *mesh, const desk *d) {
+/* A mesh of the device, read back. */
+static camber_status read_all(camber_mesh *mesh, const desk *d) {
     camber_mesh_data data = {.indices = (uint32_t *)(uintptr_t)8};
     camber_stages stages = {.point_count = 7};
     camber_status status = camber_mesh_read(mesh, &data);
@@ -113,14 +113,14 @@ static camber_status read_all(camber_context *context, camber_mesh *mesh, const 
         return status;
     }
     assert_same_mesh(&data, &d->mesh);
-    camber_mesh_data_free(context, &data);
+    camber_mesh_data_destroy(&data);
     status = camber_mesh_read_stages(mesh, &stages);
     if (status != CAMBER_OK) {
         assert_true(stages.point_count == 7 && !stages.points);
         return status;
     }
     assert_same_stages(&stages, &d->stages);
-    camber_stages_free(context, &stages);
+    camber_stages_destroy(&stages);
     return status;
 }
 
@@ -129,13 +129,13 @@ static camber_status try_device(camber_context *context, void *user) {
     desk *d = user;
     camber_device *device = NULL;
     camber_mesh *mesh = NULL;
-    camber_status status = camber_device_create(context, NULL, NULL, &device);
+    camber_status status = camber_device_create(context, NULL, &device);
     if (status == CAMBER_OK)
         status = camber_mesh_create(device, NULL, &mesh);
     if (status == CAMBER_OK)
-        status = camber_tessellate(mesh, d->polylines, &STRIPS);
+        status = camber_mesh_tessellate(mesh, d->polylines, &STRIPS);
     if (status == CAMBER_OK)
-        status = read_all(context, mesh, d);
+        status = read_all(mesh, d);
     camber_mesh_destroy(mesh);
     camber_device_destroy(device);
     return status;
@@ -178,14 +178,14 @@ static camber_status draw(camber_renderer *renderer, camber_mesh *mesh, desk *d)
                                 .pass_count = 3,
                                 .largest_piece_px = PIECE_PX};
     taker t = {d, 0};
-    camber_status status = camber_render(renderer, &frame, take_rows, &t, NULL);
+    camber_status status = camber_renderer_render(renderer, &frame, take_rows, &t, NULL);
     if (status != CAMBER_OK)
         return status;
     assert_int_equal(t.rows, HEIGHT);
-    if (camber_renderer_get_draw(renderer) == CAMBER_DRAW_CL)
+    if (camber_renderer_get_rasterizer(renderer) == CAMBER_RASTERIZER_OPENCL)
         return CAMBER_OK;
     camber_overdraw overdraw = {0};
-    status = camber_overdraw_count(
+    status = camber_renderer_count_overdraw(
         renderer,
         &(camber_overdraw_desc){.width = WIDTH, .height = HEIGHT, .mesh = mesh, .paints = solid, .paint_count = ROWS},
         &overdraw);
@@ -202,17 +202,17 @@ static camber_status try_drawing(camber_context *context, void *user) {
     camber_surface *surface = NULL;
     camber_renderer *renderer = NULL;
     camber_mesh *mesh = NULL;
-    const bool in_cl = d->backend == BACKENDS;
-    const camber_renderer_desc desc = {.draw = in_cl ? CAMBER_DRAW_CL : CAMBER_DRAW_GL};
+    const bool in_cl = d->backend == CAMBER_FIXTURE_BACKENDS;
+    const camber_renderer_desc desc = {.rasterizer = in_cl ? CAMBER_RASTERIZER_OPENCL : CAMBER_RASTERIZER_GL};
     camber_status status = CAMBER_OK;
     if (!in_cl)
-        status = camber_surface_create(context, &(camber_surface_desc){BACKEND[d->backend]}, &surface);
+        status = camber_surface_create(context, &(camber_surface_desc){fixture_backend(d->backend)}, &surface);
     if (status == CAMBER_OK)
-        status = camber_renderer_create(d->s.device, surface, &desc, &renderer);
+        status = camber_renderer_create(d->s.on.device, surface, &desc, &renderer);
     if (status == CAMBER_OK)
-        status = camber_mesh_create(d->s.device, renderer, &mesh);
+        status = camber_mesh_create(d->s.on.device, renderer, &mesh);
     if (status == CAMBER_OK)
-        status = camber_tessellate(mesh, d->polylines, &STRIPS);
+        status = camber_mesh_tessellate(mesh, d->polylines, &STRIPS);
     if (status == CAMBER_OK)
         status = draw(renderer, mesh, d);
     camber_mesh_destroy(mesh);
@@ -267,22 +267,25 @@ static camber_status try_png(camber_context *context, void *user) {
 static int set_up(void **state) {
     desk *d = calloc(1, sizeof *d);
     assert_non_null(d);
-    assert_true(studio_open(&d->s));
+    assert_true(fixture_open(&d->s));
     uint64_t seed = 8;
     for (size_t i = 0; i < 40; i++) {
-        scene_walk(&d->lines, &seed, 12, (const double[]){4, 30}, 2);
-        scene_end(&d->lines, i % ROWS);
+        camber_made_scene_walk(&d->lines, &seed, 12, (const double[]){4, 30}, 2);
+        camber_made_scene_end(&d->lines, i % ROWS);
     }
     for (size_t i = 0; i < 2 * d->lines.point_count; i++)
         d->lines.points[i] = fmodf(fabsf(d->lines.points[i]), i % 2 ? HEIGHT : WIDTH);
-    const camber_lines lines = {d->lines.points, d->lines.offsets, d->lines.point_count, d->lines.polyline_count};
+    const camber_lines lines = {.points = d->lines.points,
+                                .offsets = d->lines.offsets,
+                                .point_count = d->lines.point_count,
+                                .polyline_count = d->lines.polyline_count};
     d->file.refuse_at = d->png.refuse_at = SIZE_MAX;
     assert_int_equal(camber_lines_write(d->s.context, &lines, (camber_sink){byte_list_write, &d->file}), CAMBER_OK);
     d->polylines = scene_polylines(d->s.context, &d->lines);
-    assert_int_equal(camber_tessellate_on_host(d->s.context, d->polylines, &STRIPS, &d->mesh), CAMBER_OK);
-    assert_int_equal(camber_stages_on_host(d->s.context, d->polylines, &STRIPS, &d->stages), CAMBER_OK);
+    assert_int_equal(camber_mesh_data_tessellate(d->s.context, d->polylines, &STRIPS, &d->mesh), CAMBER_OK);
+    assert_int_equal(camber_stages_tessellate(d->s.context, d->polylines, &STRIPS, &d->stages), CAMBER_OK);
     for (size_t i = 0; i < sizeof d->rgba; i++)
-        d->rgba[i] = (uint8_t)(i % 4 == 3 ? 255 : random_bits(&seed));
+        d->rgba[i] = (uint8_t)(i % 4 == 3 ? 255 : camber_random_bits(&seed));
     assert_int_equal(write_png(d->s.context, d, &d->png), CAMBER_OK);
     *state = d;
     return 0;
@@ -290,13 +293,13 @@ static int set_up(void **state) {
 
 static int tear_down(void **state) {
     desk *d = *state;
-    camber_stages_free(d->s.context, &d->stages);
-    camber_mesh_data_free(d->s.context, &d->mesh);
+    camber_stages_destroy(&d->stages);
+    camber_mesh_data_destroy(&d->mesh);
     camber_polylines_destroy(d->polylines);
-    scene_free(&d->lines);
+    camber_made_scene_free(&d->lines);
     free(d->file.bytes);
     free(d->png.bytes);
-    studio_close(&d->s);
+    fixture_close(&d->s);
     assert_int_equal(d->s.h.live_blocks, 0);
     free(d);
     return 0;
@@ -370,8 +373,8 @@ static void test_with_cache(void **state) {
 static void test_drawing(void **state) {
     desk *d = *state;
     each_fails(d, try_any_surface);
-    for (d->backend = 0; d->backend <= BACKENDS; d->backend++) {
-        if (d->backend < BACKENDS && !d->s.renderer[d->backend])
+    for (d->backend = 0; d->backend <= CAMBER_FIXTURE_BACKENDS; d->backend++) {
+        if (d->backend < CAMBER_FIXTURE_BACKENDS && !d->s.on.renderer[d->backend])
             continue;
         d->known = false;
         assert_int_equal(try_drawing(d->s.context, d), CAMBER_OK);
@@ -385,23 +388,23 @@ static void test_same_objects(void **state) {
     desk *d = *state;
     host *h = &d->s.h;
     d->known = false;
-    for (int i = 0; i <= BACKENDS; i++) {
-        const bool in_cl = i == BACKENDS;
-        const camber_renderer_desc desc = {.draw = in_cl ? CAMBER_DRAW_CL : CAMBER_DRAW_GL};
+    for (int i = 0; i <= CAMBER_FIXTURE_BACKENDS; i++) {
+        const bool in_cl = i == CAMBER_FIXTURE_BACKENDS;
+        const camber_renderer_desc desc = {.rasterizer = in_cl ? CAMBER_RASTERIZER_OPENCL : CAMBER_RASTERIZER_GL};
         camber_renderer *renderer = NULL;
-        if (!in_cl && !d->s.renderer[i])
+        if (!in_cl && !d->s.on.renderer[i])
             continue;
-        assert_int_equal(camber_renderer_create(d->s.device, in_cl ? NULL : d->s.surface[i], &desc, &renderer),
+        assert_int_equal(camber_renderer_create(d->s.on.device, in_cl ? NULL : d->s.on.surface[i], &desc, &renderer),
                          CAMBER_OK);
         size_t n = 1;
         for (bool reached = true; reached; n++) {
             camber_mesh *mesh = NULL;
-            assert_int_equal(camber_mesh_create(d->s.device, renderer, &mesh), CAMBER_OK);
+            assert_int_equal(camber_mesh_create(d->s.on.device, renderer, &mesh), CAMBER_OK);
             h->refuse_first = h->calls + n;
             h->refuse_count = 1;
-            camber_status status = camber_tessellate(mesh, d->polylines, &STRIPS);
+            camber_status status = camber_mesh_tessellate(mesh, d->polylines, &STRIPS);
             if (status == CAMBER_OK)
-                status = read_all(d->s.context, mesh, d);
+                status = read_all(mesh, d);
             if (status == CAMBER_OK && d->known)
                 status = draw(renderer, mesh, d);
             reached = h->calls >= h->refuse_first;
@@ -410,8 +413,8 @@ static void test_same_objects(void **state) {
                 assert_int_equal(status, CAMBER_ERROR_MEMORY);
                 assert_story(h, "memory");
             }
-            assert_int_equal(camber_tessellate(mesh, d->polylines, &STRIPS), CAMBER_OK);
-            assert_int_equal(read_all(d->s.context, mesh, d), CAMBER_OK);
+            assert_int_equal(camber_mesh_tessellate(mesh, d->polylines, &STRIPS), CAMBER_OK);
+            assert_int_equal(read_all(mesh, d), CAMBER_OK);
             assert_int_equal(draw(renderer, mesh, d), CAMBER_OK);
             assert_int_equal(h->errors, 0);
             d->known = true;
@@ -428,7 +431,7 @@ int main(void) {
         cmocka_unit_test(test_on_host), cmocka_unit_test(test_on_device),    cmocka_unit_test(test_with_cache),
         cmocka_unit_test(test_drawing), cmocka_unit_test(test_same_objects),
     };
-    if (!studio_begin())
+    if (!fixture_begin())
         return 77;
     const int failed = cmocka_run_group_tests(tests, set_up, tear_down);
     return failed;

@@ -288,7 +288,7 @@ for name in ("/dev/zero", "pipe"):
     refused("INPUT is " + name, lambda: os.mkfifo("pipe"), "a device or a pipe", 65, name)
     case("the style is " + name, lambda: os.mkfifo("pipe"), [*RENDER, "--style", name], 65, "a device or a pipe")
 
-# ---- What a style may name ----
+# ---- Files that a style may name ----
 
 subprocess.run([TOOL, "render", "-q", "--style", "-", "-o", "one.png", "--size", "1x1"], check=True,
                input=style('"type":"geojson","data":' + LINE).encode())
@@ -307,7 +307,7 @@ styled("tiles within the root that are not there", lambda: write("style.json", s
 styled("tiles beyond the root", lambda: write("style.json", style('"type":"vector","tiles":["../{z}/{x}/{y}.pbf"]')),
        "beyond", options=("--root", "."))
 
-# ---- What OUT may be ----
+# ---- Files that OUT may be ----
 
 for name, out in (("a source", "a.geojson"), ("a link to a source", "link")):
     case("OUT is " + name, lambda: (write("a.geojson", LINE), os.symlink("a.geojson", "link"), write(

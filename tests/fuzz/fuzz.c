@@ -1,3 +1,4 @@
+/* The context of a fuzz target: it counts memory and keeps the log; and the properties of any mesh. */
 #include "fuzz.h"
 
 #include "kernels/layout.h"
@@ -179,7 +180,7 @@ static void check_stages(fuzz_run *run, const camber_polylines *polylines, const
     const camber_mesh_info *info = &mesh->info;
     size_t kinds[16] = {0};
     camber_stages stages = {0};
-    if (!fuzz_done(run, camber_stages_on_host(run->context, polylines, desc, &stages)))
+    if (!fuzz_done(run, camber_stages_tessellate(run->context, polylines, desc, &stages)))
         return;
     const bool offset = has_offsets(desc);
     REQUIRE(offset || stages.point_count == camber_polylines_get_stats(polylines).kept_points);
@@ -199,19 +200,19 @@ static void check_stages(fuzz_run *run, const camber_polylines *polylines, const
         kinds[at->join >> CAMBER_JOIN_KIND_SHIFT]++;
     }
     const camber_polylines_stats stats = camber_polylines_get_stats(polylines);
-    REQUIRE(kinds[CAMBER_KIND_GHOST] == info->undrawn_dots);
-    REQUIRE(offset || kinds[CAMBER_KIND_GHOST] + kinds[CAMBER_KIND_DOT] == stats.dots);
+    REQUIRE(kinds[CAMBER_KIND_SENTINEL] == info->undrawn_dots);
+    REQUIRE(offset || kinds[CAMBER_KIND_SENTINEL] + kinds[CAMBER_KIND_DOT] == stats.dots);
     /* A ring's seam stands at both of its ends. */
     REQUIRE(offset ||
             kinds[CAMBER_KIND_CUT] + kinds[CAMBER_KIND_TIGHT] + kinds[CAMBER_KIND_SPLIT] == info->joins + stats.rings);
     REQUIRE(kinds[CAMBER_KIND_TIGHT] >= info->tight_joins && kinds[CAMBER_KIND_SPLIT] >= info->split_joins);
-    camber_stages_free(run->context, &stages);
+    camber_stages_destroy(&stages);
 }
 
 bool fuzz_tessellate(fuzz_run *run, const camber_polylines *polylines, const camber_tessellation_desc *desc,
                      camber_mesh_data *keep) {
     camber_mesh_data mesh = {0};
-    if (!fuzz_done(run, camber_tessellate_on_host(run->context, polylines, desc, &mesh))) {
+    if (!fuzz_done(run, camber_mesh_data_tessellate(run->context, polylines, desc, &mesh))) {
         REQUIRE(!mesh.vertices && !mesh.indices);
         return false;
     }
@@ -226,7 +227,7 @@ bool fuzz_tessellate(fuzz_run *run, const camber_polylines *polylines, const cam
     if (keep)
         *keep = mesh;
     else
-        camber_mesh_data_free(run->context, &mesh);
+        camber_mesh_data_destroy(&mesh);
     return true;
 }
 

@@ -1,9 +1,9 @@
-/* What the fuzz targets share: a context that watches its memory and its log, and what must hold for any mesh.
+/* Helpers that the fuzz targets share: a context that watches its memory and its log, and what must hold for any mesh.
  *
  * A target is a body over bytes. libFuzzer's main calls it (CAMBER_FUZZ, ./dev fuzz), or replay.c's on the files that
  * lie in corpus/ and regressions/. */
-#ifndef CAMBER_FUZZ_H
-#define CAMBER_FUZZ_H
+#ifndef CAMBER_TESTS_FUZZ_FUZZ_H
+#define CAMBER_TESTS_FUZZ_FUZZ_H
 
 #include "camber_proof.h"
 

@@ -5,19 +5,19 @@
 
 enum { WIDTH_PX = 200, HEIGHT_PX = 120, PASSES = 3, ROWS_MAX = 16 };
 
-void fuzz_easel_open(fuzz_easel *easel) {
-    const camber_renderer_desc desc = {.draw = CAMBER_DRAW_CL};
+void fuzz_drawer_open(fuzz_drawer *drawer) {
+    const camber_renderer_desc desc = {.rasterizer = CAMBER_RASTERIZER_OPENCL};
     camber_device *device = NULL;
-    *easel = (fuzz_easel){0};
+    *drawer = (fuzz_drawer){0};
 #ifdef CAMBER_FUZZ_ALONE
     if (!getenv("CAMBER_FUZZ_DEVICE"))
         return;
 #endif
-    if (camber_context_create(NULL, &easel->context) != CAMBER_OK ||
-        camber_device_create(easel->context, &(camber_device_desc){0}, NULL, &device) != CAMBER_OK)
+    if (camber_context_create(NULL, &drawer->context) != CAMBER_OK ||
+        camber_device_create(drawer->context, &(camber_device_desc){0}, &device) != CAMBER_OK)
         return;
-    REQUIRE(camber_renderer_create(device, NULL, &desc, &easel->renderer) == CAMBER_OK);
-    REQUIRE(camber_mesh_create(device, easel->renderer, &easel->mesh) == CAMBER_OK);
+    REQUIRE(camber_renderer_create(device, NULL, &desc, &drawer->renderer) == CAMBER_OK);
+    REQUIRE(camber_mesh_create(device, drawer->renderer, &drawer->mesh) == CAMBER_OK);
 }
 
 static bool is_drawn(uint32_t box) {
@@ -30,17 +30,17 @@ static void require_equal_words(const float *got, const float *expected, size_t 
 
 static void compare(const camber_drawing_stages *got, const camber_drawing_stages *expected) {
     const size_t tiles = (size_t)expected->columns * expected->rows;
-    REQUIRE(got->shape_count == expected->shape_count);
-    REQUIRE(!got->measures == !expected->measures && !got->planes == !expected->planes);
-    for (size_t i = 0; i < expected->shape_count; i++) {
-        const size_t word = expected->shape_words * i, measure = expected->measure_words * i,
+    REQUIRE(got->segment_count == expected->segment_count);
+    REQUIRE(!got->arc_lengths == !expected->arc_lengths && !got->planes == !expected->planes);
+    for (size_t i = 0; i < expected->segment_count; i++) {
+        const size_t word = expected->segment_words * i, measure = expected->measure_words * i,
                      plane = expected->plane_words * i;
         REQUIRE(got->boxes[i] == expected->boxes[i]);
         if (!is_drawn(got->boxes[i]))
             continue;
-        require_equal_words(got->shapes + word, expected->shapes + word, expected->shape_words);
-        if (expected->measures)
-            require_equal_words(got->measures + measure, expected->measures + measure, expected->measure_words);
+        require_equal_words(got->segments + word, expected->segments + word, expected->segment_words);
+        if (expected->arc_lengths)
+            require_equal_words(got->arc_lengths + measure, expected->arc_lengths + measure, expected->measure_words);
         if (expected->planes)
             require_equal_words(got->planes + plane, expected->planes + plane, expected->plane_words);
     }
@@ -56,14 +56,14 @@ static const struct {
     double pitch_deg;
 } variants[] = {{0, 0, 0}, {1.5f, 0.8f, 0}, {0, 0, 50}};
 
-static void draw(const fuzz_easel *easel, const camber_stroke *strokes, size_t stroke_count, size_t variant) {
+static void draw(const fuzz_drawer *drawer, const camber_stroke *strokes, size_t stroke_count, size_t variant) {
     static const float widths[PASSES] = {1.0f, 0.6f, 0.3f}, alphas[PASSES] = {1.0f, 0.5f, 0.7f};
     camber_paint paints[PASSES][ROWS_MAX] = {{{0}}};
     camber_pass passes[PASSES];
     camber_drawing_stages got = {0}, expected = {0};
     REQUIRE(stroke_count <= ROWS_MAX);
     for (int k = 0; k < PASSES; k++) {
-        passes[k] = (camber_pass){.mesh = easel->mesh, .paints = paints[k], .paint_count = stroke_count};
+        passes[k] = (camber_pass){.mesh = drawer->mesh, .paints = paints[k], .paint_count = stroke_count};
         for (size_t i = 0; i < stroke_count; i++)
             paints[k][i] = (camber_paint){.width_px = widths[k] * strokes[i].width_px,
                                           .color = {0.5f * (float)k, k == 1 ? 1.0f : 0.1f * (float)i, 0.5f, alphas[k]},
@@ -80,14 +80,15 @@ static void draw(const fuzz_easel *easel, const camber_stroke *strokes, size_t s
                                 .passes = passes,
                                 .pass_count = PASSES,
                                 .pitch_deg = variants[variant].pitch_deg};
-    REQUIRE(camber_drawing_read_stages(easel->renderer, &frame, &got) == CAMBER_OK);
-    REQUIRE(camber_drawing_stages_on_host(easel->renderer, &frame, &expected) == CAMBER_OK);
+    REQUIRE(camber_renderer_read_stages(drawer->renderer, &frame, &got) == CAMBER_OK);
+    REQUIRE(camber_drawing_stages_rasterize(drawer->renderer, &frame, &expected) == CAMBER_OK);
     compare(&got, &expected);
-    camber_drawing_stages_free(easel->context, &got);
-    camber_drawing_stages_free(easel->context, &expected);
+    camber_drawing_stages_destroy(&got);
+    camber_drawing_stages_destroy(&expected);
 }
 
-void fuzz_easel_draw(const fuzz_easel *easel, const camber_stroke *strokes, size_t stroke_count) {
+void fuzz_drawer_draw(const fuzz_drawer *drawer, const camber_stroke *strokes, size_t stroke_count, bool has_camera) {
     for (size_t i = 0; i < sizeof variants / sizeof *variants; i++)
-        draw(easel, strokes, stroke_count, i);
+        if (!has_camera || !(variants[i].pitch_deg > 0))
+            draw(drawer, strokes, stroke_count, i);
 }

@@ -1,7 +1,7 @@
 /* GeoJSON through the whole reader, from a file in memory, and on to a scene. */
 #include "fuzz_scene.h"
 
-#include "source/source.h"
+#include "gdal/vector_file.h"
 
 #include <cpl_conv.h>
 #include <cpl_vsi.h>

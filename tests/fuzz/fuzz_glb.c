@@ -16,7 +16,7 @@
 
 enum { STROKES_MAX = 8, POLYLINES_MAX = 255 };
 
-/* ---- What the bytes say ---- */
+/* ---- Reading the bytes ---- */
 
 typedef struct input {
     camber_stroke strokes[STROKES_MAX];
@@ -175,7 +175,7 @@ static accessor open_accessor(const glb *file, const json_t *json) {
     return made;
 }
 
-/* ---- What must hold ---- */
+/* ---- Requirements ---- */
 
 static void check_floats(const accessor *of) {
     float low[4], high[4];
@@ -265,7 +265,7 @@ static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
         fuzz_tessellate(run, polylines, &made.tessellation, &mesh)) {
         if (fuzz_done(run, camber_glb_write(run->context, &mesh, &made.glb, fuzz_sink(&file))))
             check_file(&file, &mesh, &made.glb);
-        camber_mesh_data_free(run->context, &mesh);
+        camber_mesh_data_destroy(&mesh);
     }
     camber_polylines_destroy(polylines);
     free(file.bytes);

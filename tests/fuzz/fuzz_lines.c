@@ -42,7 +42,7 @@ static void check_simplified(const camber_lines *from, const camber_lines *to, d
         REQUIRE((first == past) == (count == 0));
         for (uint32_t i = first; i < past; i++) {
             const float *point = from->points + 2 * (size_t)i;
-            /* Of equal points the last one is left to the end. */
+            /* The last of equal points is left to the end. */
             if (next < count && same_point(point, kept + 2 * next) && (next + 1 < count || i + 1 == past)) {
                 next++;
                 continue;
@@ -87,10 +87,10 @@ static void use_file(fuzz_run *run, const uint8_t *bytes, size_t size) {
     if (fuzz_done(run, camber_lines_simplify(run->context, &lines, tolerance_px, &simplified))) {
         check_simplified(&lines, &simplified, tolerance_px);
         use_lines(run, &simplified, false);
-        camber_lines_free(run->context, &simplified);
+        camber_lines_destroy(&simplified);
     }
     use_lines(run, &lines, run->hash & 16);
-    camber_lines_free(run->context, &lines);
+    camber_lines_destroy(&lines);
 }
 
 static uint32_t get_u32(const uint8_t *bytes) {

@@ -5,12 +5,10 @@
 #include "fuzz_tile_file.h"
 
 #include <sqlite3.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
-/* What a database may take to be made: it is the reading that is tried. */
+/* Limits for making the database: the target tests reading it. */
 enum { STEPS_A_CALL = 1000, MOST_CALLS = 100, LARGEST_VALUE_BYTES = 1 << 16, LARGEST_FILE_BYTES = 1 << 20 };
 
 /* Where the SQL makes none; then it runs once more, over these. */
@@ -64,8 +62,9 @@ static void run_statements(sqlite3 *database, const char *sql) {
     }
 }
 
-/* false: the SQL has made nothing that is a file, as within a transaction. */
-static bool make_file(const char *path, const uint8_t *bytes, size_t size) {
+/* Returns the database as a file, to be freed with sqlite3_free. NULL: the SQL has made none, as within a transaction.
+ */
+static unsigned char *make_file(const uint8_t *bytes, size_t size, size_t *made_bytes) {
     int calls = 0;
     sqlite3 *database = open_database(&calls);
     char *sql = malloc(size + 1);
@@ -85,34 +84,19 @@ static bool make_file(const char *path, const uint8_t *bytes, size_t size) {
     sqlite3_set_authorizer(database, NULL, NULL); /* to be written takes settings too */
     sqlite3_int64 length = 0;
     unsigned char *made = sqlite3_serialize(database, "main", &length, 0);
-    const bool is_file = made && length > 0 && length <= LARGEST_FILE_BYTES;
-    if (is_file)
-        fuzz_write_file(path, made, (size_t)length);
-    sqlite3_free(made);
     sqlite3_close(database);
-    return is_file;
+    *made_bytes = made ? (size_t)length : 0;
+    return made;
 }
 
 /* ---- All of it ---- */
 
-/* Whoever reads a file leaves nothing beside it. */
-static void require_alone(const char *path) {
-    static const char *const tails[] = {"-journal", "-wal", "-shm"};
-    for (size_t i = 0; i < sizeof tails / sizeof *tails; i++) {
-        char beside[96];
-        snprintf(beside, sizeof beside, "%s%s", path, tails[i]);
-        REQUIRE(access(beside, F_OK) != 0);
-    }
-}
-
 static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
-    char path[64];
-    snprintf(path, sizeof path, "/tmp/camber-fuzz-%ld.mbtiles", (long)getpid());
-    if (make_file(path, bytes, size)) {
-        fuzz_read_tiles(run, path, "mbtiles");
-        require_alone(path);
-        unlink(path);
-    }
+    size_t made_bytes;
+    unsigned char *made = make_file(bytes, size, &made_bytes);
+    if (made_bytes > 0 && made_bytes <= LARGEST_FILE_BYTES)
+        fuzz_read_tiles(run, made, made_bytes, "mbtiles");
+    sqlite3_free(made);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {

@@ -77,7 +77,7 @@ static void read_points(fuzz_reader *from, unsigned form, bool bare, size_t want
         const int byte = bare ? 0 : (int8_t)fuzz_take(from, 1);
         made->importance[i] = byte == -128 ? NAN : byte == 127 ? INFINITY : (float)byte / 16;
     }
-    /* What there are no points for is left out: offsets are the caller's promise. */
+    /* Polylines that there are no points for are left out: offsets are the caller's promise. */
     for (size_t i = 0; i <= made->network.polyline_count; i++)
         if (made->offsets[i] > count)
             made->offsets[i] = count;
@@ -120,7 +120,7 @@ static void read_input(fuzz_reader *from, input *made) {
     made->tessellation.stroke_count = stroke_count;
 }
 
-/* ---- What must hold ---- */
+/* ---- Requirements ---- */
 
 static void check_network(const camber_network *network) {
     const camber_polylines_stats stats = camber_network_get_stats(network);
@@ -128,8 +128,8 @@ static void check_network(const camber_network *network) {
     REQUIRE(stats.kept_points == network->point_count);
     for (size_t i = 0; i < network->point_count; i++)
         REQUIRE(network->x[i] >= 0 && network->y[i] >= 0 && network->importance[i] >= 0.0f);
-    for (size_t i = 0; i < network->run_count; i++)
-        REQUIRE(network->runs[i].first < network->runs[i + 1].first);
+    for (size_t i = 0; i < network->stretch_count; i++)
+        REQUIRE(network->stretches[i].first < network->stretches[i + 1].first);
 }
 
 /* How far outside the picture a point may lie. */
@@ -181,11 +181,11 @@ static void check_chunks(fuzz_run *run, const camber_network *network, const inp
     camber_projection p;
     if (!fuzz_done(run, camber_network_aim(network, &from->camera, &from->tessellation, &p)))
         return;
-    const camber_run *first = network->runs;
+    const camber_stretch *first = network->stretches;
     size_t at = 1;
-    for (uint32_t chunk = 0; chunk * CAMBER_CHUNK < network->point_count; chunk++) {
-        float x[3 * CAMBER_CHUNK] = {0}, y[3 * CAMBER_CHUNK] = {0};
-        camber_u32 info[3 * CAMBER_CHUNK] = {0}, begin, end;
+    for (uint32_t chunk = 0; chunk * CAMBER_CULL_CHUNK < network->point_count; chunk++) {
+        float x[3 * CAMBER_CULL_CHUNK] = {0}, y[3 * CAMBER_CULL_CHUNK] = {0};
+        camber_u32 info[3 * CAMBER_CULL_CHUNK] = {0}, begin, end;
         camber_walk counts = camber_network_walk(network), puts = counts;
         camber_chunk_bounds(&p, chunk, &begin, &end);
         while (first[1].first <= begin)
@@ -207,40 +207,39 @@ static void check_chunks(fuzz_run *run, const camber_network *network, const inp
 /* Pieces are parts of entries, in their order. */
 static void check_lines(fuzz_run *run, const camber_network *network, const input *from) {
     camber_lines lines = {0};
-    uint32_t *entries = NULL;
-    if (!fuzz_done(run, camber_network_lines(network, &from->camera, &from->tessellation, &lines, &entries)))
+    if (!fuzz_done(run, camber_network_project_lines(network, &from->camera, &from->tessellation, &lines)))
         return;
     fuzz_check_lines(&lines);
     for (size_t i = 0; i < lines.polyline_count; i++) {
-        REQUIRE(lines.offsets[i] < lines.offsets[i + 1] && entries[i] < network->entry_count);
-        REQUIRE(i == 0 || entries[i - 1] <= entries[i]);
+        REQUIRE(lines.offsets[i] < lines.offsets[i + 1] && lines.entries[i] < network->entry_count);
+        REQUIRE(i == 0 || lines.entries[i - 1] <= lines.entries[i]);
     }
-    camber_lines_free(run->context, &lines);
-    camber_entries_free(run->context, entries);
+    camber_lines_destroy(&lines);
 }
 
 /* ---- On a device ---- */
 
-static fuzz_easel easel;
+static fuzz_drawer drawer;
 
 static void check_device(const input *from) {
     camber_network *network = NULL;
     camber_polylines *twin = NULL;
     camber_mesh_data got = {0}, expected = {0};
-    REQUIRE(camber_network_create(easel.context, &from->network, &network) == CAMBER_OK);
-    const camber_status status = camber_tessellate_network(easel.mesh, network, &from->camera, &from->tessellation);
+    REQUIRE(camber_network_create(drawer.context, &from->network, &network) == CAMBER_OK);
+    const camber_status status =
+        camber_mesh_tessellate_network(drawer.mesh, network, &from->camera, &from->tessellation);
     REQUIRE(status == camber_network_project(network, &from->camera, &from->tessellation, &twin));
     if (status == CAMBER_OK) {
-        REQUIRE(camber_mesh_read(easel.mesh, &got) == CAMBER_OK);
-        REQUIRE(camber_tessellate_on_host(easel.context, twin, &from->tessellation, &expected) == CAMBER_OK);
+        REQUIRE(camber_mesh_read(drawer.mesh, &got) == CAMBER_OK);
+        REQUIRE(camber_mesh_data_tessellate(drawer.context, twin, &from->tessellation, &expected) == CAMBER_OK);
         REQUIRE(got.info.record_count == expected.info.record_count &&
                 got.info.index_count == expected.info.index_count);
         REQUIRE(got.info.record_count == 0 ||
                 memcmp(got.records, expected.records, got.info.record_count * sizeof *got.records) == 0);
-        fuzz_easel_draw(&easel, from->tessellation.strokes, from->tessellation.stroke_count);
+        fuzz_drawer_draw(&drawer, from->tessellation.strokes, from->tessellation.stroke_count, true);
     }
-    camber_mesh_data_free(easel.context, &got);
-    camber_mesh_data_free(easel.context, &expected);
+    camber_mesh_data_destroy(&got);
+    camber_mesh_data_destroy(&expected);
     camber_polylines_destroy(twin);
     camber_network_destroy(network);
 }
@@ -261,7 +260,7 @@ static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
             check_lines(run, network, &from);
             fuzz_tessellate(run, slots, &from.tessellation, NULL);
         }
-        if (easel.mesh && !run->refuse_at)
+        if (drawer.mesh && !run->refuse_at)
             check_device(&from);
     }
     camber_polylines_destroy(slots);
@@ -273,7 +272,7 @@ static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
 int LLVMFuzzerInitialize(int *argument_count, char ***arguments) {
     (void)argument_count;
     (void)arguments;
-    fuzz_easel_open(&easel);
+    fuzz_drawer_open(&drawer);
     return 0;
 }
 

@@ -12,7 +12,7 @@ enum { MOST_TILES = 64 };
 
 static void take_tiles(fuzz_run *run, camber_tile_set *set, int zoom) {
     camber_bytes bytes = {.context = run->context};
-    camber_tile_place *places = NULL;
+    camber_tile_index *places = NULL;
     size_t count = 0;
     if (fuzz_done(run, camber_tile_set_list(set, zoom, &places, &count)))
         for (size_t i = 0; i < count && i < MOST_TILES; i++) {

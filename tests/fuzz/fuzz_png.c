@@ -24,7 +24,7 @@ typedef struct picture {
     uint8_t *rgba;
 } picture;
 
-/* ---- What the bytes say ---- */
+/* ---- Reading the bytes ---- */
 
 static const char *take_word(fuzz_reader *from, char word[256]) {
     const size_t size = (size_t)fuzz_take(from, 1);

@@ -10,18 +10,18 @@ static void check_color(camber_color c) {
 /* Passes draw polylines that there are, with paints that the strokes are wide enough for. */
 static void check_frame(camber_scene *scene) {
     size_t stroke_count;
-    const camber_stroke *strokes = camber_scene_strokes(scene, &stroke_count);
-    const camber_frame frame = camber_scene_frame(scene, NULL);
-    const camber_lines *lines = camber_scene_lines(scene);
+    const camber_stroke *strokes = camber_scene_get_strokes(scene, &stroke_count);
+    const camber_frame frame = camber_scene_get_frame(scene, NULL);
+    const camber_lines *lines = camber_scene_get_lines(scene);
     fuzz_check_lines(lines);
     for (size_t i = 0; i < lines->polyline_count; i++)
-        REQUIRE(camber_scene_rows(scene)[i] < stroke_count);
+        REQUIRE(camber_scene_get_rows(scene)[i] < stroke_count);
     for (size_t i = 0; i < lines->point_count; i++)
         REQUIRE(fabsf(lines->points[2 * i]) < 1e6f && fabsf(lines->points[2 * i + 1]) < 1e6f);
     check_color(frame.background);
     for (size_t i = 0; i < frame.pass_count; i++) {
         const camber_pass *pass = frame.passes + i;
-        if (!pass->mesh && pass->polyline_count == 0) { /* a fill */
+        if (pass->kind == CAMBER_PASS_FILL) {
             REQUIRE(pass->paint_count == 0);
             check_color(pass->fill.color);
             continue;
@@ -44,8 +44,8 @@ void fuzz_scene(fuzz_run *run, const camber_features *features, const camber_sce
     REQUIRE(isfinite(info.longitude) && fabs(info.longitude) <= 180.0 && fabs(info.latitude) <= 85.06);
     REQUIRE(isfinite(info.zoom) && info.zoom <= 24.0);
     camber_tessellation_desc tessellation = {.method = (camber_method)(run->hash >> 20 & 0xff) % 3};
-    tessellation.strokes = camber_scene_strokes(scene, &tessellation.stroke_count);
-    /* What a style says is never what a tessellation refuses. */
-    REQUIRE(fuzz_tessellate(run, camber_scene_polylines(scene), &tessellation, NULL) || run->refused);
+    tessellation.strokes = camber_scene_get_strokes(scene, &tessellation.stroke_count);
+    /* A tessellation never refuses what a style says. */
+    REQUIRE(fuzz_tessellate(run, camber_scene_get_polylines(scene), &tessellation, NULL) || run->refused);
     camber_scene_destroy(scene);
 }

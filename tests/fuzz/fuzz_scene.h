@@ -1,6 +1,6 @@
-/* What must hold for any scene, whatever the style and the features. */
-#ifndef CAMBER_FUZZ_SCENE_H
-#define CAMBER_FUZZ_SCENE_H
+/* Properties of any scene, whatever the style and the features. */
+#ifndef CAMBER_TESTS_FUZZ_FUZZ_SCENE_H
+#define CAMBER_TESTS_FUZZ_FUZZ_SCENE_H
 
 #include "fuzz.h"
 

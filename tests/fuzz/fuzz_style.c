@@ -2,7 +2,7 @@
  * documents of one expression, as style eval takes them. */
 #include "fuzz_scene.h"
 
-#include "source/fill.h"
+#include "source/features.h"
 #include "style/style.h"
 
 #include <math.h>
@@ -65,12 +65,12 @@ static bool add_features(fuzz_run *run, camber_features *features) {
     return true;
 }
 
-/* What reads an id or all properties finds these. */
+/* Expressions that read an id or all properties find these. */
 static const camber_value numbers[] = {{.type = CAMBER_VALUE_NUMBER, .number = 1.5},
                                        {.type = CAMBER_VALUE_STRING, .string = "a"}};
 static const camber_member members[] = {
-    {.key = "a", .place = 1, .value = {.type = CAMBER_VALUE_ARRAY, .count = 2, .items = numbers}},
-    {.key = "k", .place = 0, .value = {.type = CAMBER_VALUE_NUMBER, .number = -2.0}}};
+    {.key = "a", .position = 1, .value = {.type = CAMBER_VALUE_ARRAY, .count = 2, .items = numbers}},
+    {.key = "k", .position = 0, .value = {.type = CAMBER_VALUE_NUMBER, .number = -2.0}}};
 static const camber_value all_properties = {.type = CAMBER_VALUE_OBJECT, .count = 2, .members = members};
 
 static void check_layers(const camber_style *style, const camber_features *features) {
@@ -122,7 +122,7 @@ static void use_expression(fuzz_run *run, const uint8_t *bytes, size_t size) {
     free(answer.bytes);
 }
 
-/* What is wrong, each with its place; what has no errors parses. */
+/* Everything that is wrong has its place; a style without errors parses. */
 static void use_report(fuzz_run *run, const uint8_t *bytes, size_t size, bool *right) {
     camber_style_report *report = NULL;
     *right = false;

@@ -60,7 +60,7 @@ static void read_input(fuzz_reader *from, input *made) {
         made->rows[i] = wild_rows ? row << (row & 31) : made->stroke_count ? row % (uint32_t)made->stroke_count : 0;
     }
     read_points(from, form, made->offsets[polyline_count], made);
-    /* What there are no points for is left out. */
+    /* Polylines that there are no points for are left out. */
     for (size_t i = 0; i <= polyline_count && !wild_offsets; i++)
         if (made->offsets[i] > made->polylines.point_count)
             made->offsets[i] = (uint32_t)made->polylines.point_count;
@@ -102,22 +102,22 @@ static void check_again(fuzz_run *run, const camber_polylines *polylines, const 
                 memcmp(mesh->records, again.records, mesh->info.record_count * sizeof *mesh->records) == 0);
         REQUIRE(memcmp(mesh->indices, again.indices, mesh->info.index_count * sizeof *mesh->indices) == 0);
     }
-    camber_mesh_data_free(run->context, &again);
+    camber_mesh_data_destroy(&again);
 }
 
-static fuzz_easel easel;
+static fuzz_drawer drawer;
 
 static void check_device(const input *from, const camber_mesh_data *expected) {
     camber_polylines *polylines = NULL;
     camber_mesh_data got = {0};
-    REQUIRE(camber_polylines_create(easel.context, &from->polylines, &polylines) == CAMBER_OK);
-    REQUIRE(camber_tessellate(easel.mesh, polylines, &from->tessellation) == CAMBER_OK);
-    REQUIRE(camber_mesh_read(easel.mesh, &got) == CAMBER_OK);
+    REQUIRE(camber_polylines_create(drawer.context, &from->polylines, &polylines) == CAMBER_OK);
+    REQUIRE(camber_mesh_tessellate(drawer.mesh, polylines, &from->tessellation) == CAMBER_OK);
+    REQUIRE(camber_mesh_read(drawer.mesh, &got) == CAMBER_OK);
     REQUIRE(got.info.record_count == expected->info.record_count);
     REQUIRE(got.info.record_count == 0 ||
             memcmp(got.records, expected->records, got.info.record_count * sizeof *got.records) == 0);
-    fuzz_easel_draw(&easel, from->strokes, from->stroke_count);
-    camber_mesh_data_free(easel.context, &got);
+    fuzz_drawer_draw(&drawer, from->strokes, from->stroke_count, false);
+    camber_mesh_data_destroy(&got);
     camber_polylines_destroy(polylines);
 }
 
@@ -138,9 +138,9 @@ static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
         fuzz_tessellate(run, polylines, &made.tessellation, &mesh)) {
         check_again(run, polylines, &made, &mesh);
         write_glb(run, &mesh, &made);
-        if (easel.mesh && !run->refuse_at)
+        if (drawer.mesh && !run->refuse_at)
             check_device(&made, &mesh);
-        camber_mesh_data_free(run->context, &mesh);
+        camber_mesh_data_destroy(&mesh);
     }
     camber_polylines_destroy(polylines);
     free(made.points);
@@ -149,7 +149,7 @@ static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {
 int LLVMFuzzerInitialize(int *argument_count, char ***arguments) {
     (void)argument_count;
     (void)arguments;
-    fuzz_easel_open(&easel);
+    fuzz_drawer_open(&drawer);
     return 0;
 }
 

@@ -2,6 +2,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 static const char input_style[] =
     "{\"version\": 8, \"layers\": [{\"id\": \"all\", \"type\": \"line\", \"paint\": {\"line-width\": 2}}]}";
@@ -9,14 +10,9 @@ static const char source_style[] =
     "{\"version\": 8, \"sources\": {\"s\": {\"type\": \"vector\", \"url\": \"%s://%s\"}}, \"layers\": [{\"id\": "
     "\"all\", \"type\": \"line\", \"source\": \"s\", \"source-layer\": \"roads\", \"paint\": {\"line-width\": 2}}]}";
 
-void fuzz_write_file(const char *path, const void *bytes, size_t size) {
-    FILE *file = fopen(path, "wb");
-    REQUIRE(file && fwrite(bytes, 1, size, file) == size && fclose(file) == 0);
-}
-
 static void check(const camber_features *features) {
     const camber_features_stats stats = camber_features_get_stats(features);
-    const char *attribution = camber_features_attribution(features);
+    const char *attribution = camber_features_get_attribution(features);
     for (const char *c = attribution; c && *c; c++)
         REQUIRE((unsigned char)*c >= ' ' && *c != 0x7f);
     REQUIRE(stats.points >= stats.polylines);
@@ -59,7 +55,23 @@ static void read_source(fuzz_run *run, const char *path, const char *scheme) {
     camber_style_destroy(style);
 }
 
-void fuzz_read_tiles(fuzz_run *run, const char *path, const char *scheme) {
+/* Reading a file leaves nothing beside it. */
+static void require_alone(const char *path) {
+    static const char *const tails[] = {"-journal", "-wal", "-shm"};
+    for (size_t i = 0; i < sizeof tails / sizeof *tails; i++) {
+        char beside[96];
+        snprintf(beside, sizeof beside, "%s%s", path, tails[i]);
+        REQUIRE(access(beside, F_OK) != 0);
+    }
+}
+
+void fuzz_read_tiles(fuzz_run *run, const void *bytes, size_t size, const char *scheme) {
+    char path[64];
+    snprintf(path, sizeof path, "/tmp/camber-fuzz-%ld.%s", (long)getpid(), scheme);
+    FILE *file = fopen(path, "wb");
+    REQUIRE(file && fwrite(bytes, 1, size, file) == size && fclose(file) == 0);
     read_input(run, path);
     read_source(run, path, scheme);
+    require_alone(path);
+    unlink(path);
 }

@@ -28,29 +28,30 @@ static void read_tile(fuzz_run *run, camber_features *features, const uint8_t *b
     static const char *const layers[] = {"roads", "", "a"};
     /* The first row: there is no north of it. */
     const unsigned sides = run->hash % 3 ? CAMBER_SIDE_WEST | CAMBER_SIDE_EAST | CAMBER_SIDE_SOUTH : 0;
-    const camber_mvt_place place = {.zoom = (int)(run->hash % 3) * 7, .open_sides = (unsigned)(run->hash >> 8) & sides};
+    const camber_tile_address place = {.zoom = (int)(run->hash % 3) * 7,
+                                       .open_sides = (unsigned)(run->hash >> 8) & sides};
     camber_mvt_desc desc = {.features = features,
                             .layers = run->hash >> 12 & 7 ? layers : NULL,
                             .layer_count = 3,
                             .wants_polygons = run->hash >> 16 & 1,
                             .plain = run->hash >> 17 & 1};
     camber_mvt *mvt = NULL;
-    bool done = fuzz_done(run, camber_tiles_create(run->context, place.zoom, &desc.tiles)) &&
+    bool done = fuzz_done(run, camber_tile_stitcher_create(run->context, place.zoom, &desc.stitcher)) &&
                 fuzz_done(run, camber_mvt_create(run->context, &desc, &mvt));
     /* Twice, so that pieces of equal features meet. */
     for (uint32_t column = 0; column < 2 && done && column < 1u << place.zoom; column++) {
-        camber_mvt_place at = place;
+        camber_tile_address at = place;
         at.column = column;
         done = fuzz_done(run, camber_mvt_read(mvt, &at, bytes, size));
     }
-    if (done && fuzz_done(run, camber_tiles_finish(desc.tiles, features)) &&
-        fuzz_done(run, camber_features_weigh(features, 0))) {
+    if (done && fuzz_done(run, camber_tile_stitcher_finish(desc.stitcher, features)) &&
+        fuzz_done(run, camber_features_set_importance(features, 0))) {
         const camber_view_desc view = {.width = 100, .height = 100};
         check(features, ldexp(1.0, -place.zoom) + 1e-9);
         fuzz_scene(run, features, &(camber_scene_desc){.view = view});
     }
     camber_mvt_destroy(mvt);
-    camber_tiles_destroy(desc.tiles);
+    camber_tile_stitcher_destroy(desc.stitcher);
 }
 
 static void use(fuzz_run *run, const uint8_t *bytes, size_t size) {

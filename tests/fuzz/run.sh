@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Fuzzes, each target for some seconds: run.sh FOLDER SECONDS [TARGET...]
 #
-# What is kept in tests/fuzz is where it starts from; what it finds on top grows in FOLDER/corpus, and inputs that break
+# A run starts from the inputs in tests/fuzz; what it finds on top grows in FOLDER/corpus, and inputs that break
 # something land in FOLDER/broken.
 set -u
 folder=$1 seconds=$2

@@ -1,15 +1,15 @@
 /* The ink of a stroke is its area, as GEOS makes it: buffers with the same joins and caps are a second truth, which
  * shares nothing with the oracle. */
-#include "easel.h"
+#include "property_picture.h"
 
 #ifdef CAMBER_GEOS
 #include <geos_c.h>
 
-typedef struct bench {
-    easel *easel;
+typedef struct area_test {
+    property_canvas *property_canvas;
     GEOSContextHandle_t geos;
     double relative, absolute_px; /* how far ink and area may be apart */
-} bench;
+} area_test;
 
 enum { QUADRANT_SEGMENTS = 64 };
 
@@ -75,16 +75,16 @@ static double shortest_px(const property_case *c) {
 
 /* Speaks of lines whose segments are as long as the line is wide: of shorter ones GEOS leaves some out. */
 static property_outcome check_area(void *user, const property_case *c, char story[PROPERTY_STORY]) {
-    const bench *b = user;
-    static easel_picture drawn;
+    const area_test *b = user;
+    static property_picture drawn;
     double ink = 0;
     if (shortest_px(c) < (double)c->stroke.width_px || passes_miter_limit(c))
         return PROPERTY_SILENT;
     const double area = area_of(b->geos, c);
     if (area < 0)
         return PROPERTY_SILENT;
-    easel_draw(b->easel, c, &drawn);
-    for (size_t i = 0; i < EASEL_PIXELS; i++)
+    property_draw(b->property_canvas, c, &drawn);
+    for (size_t i = 0; i < PROPERTY_PIXELS; i++)
         ink += drawn.level[i] / 255.0;
     snprintf(story, PROPERTY_STORY, "%.2f px of ink, %.2f of area", ink, area);
     return fabs(ink - area) <= b->relative * area + b->absolute_px ? PROPERTY_HOLDS : PROPERTY_BROKEN;
@@ -101,42 +101,42 @@ static void ignore_message(const char *message, void *user) {
 }
 
 static void test_plain(void **state) {
-    bench *b = *state;
-    b->easel->overlap = CAMBER_OVERLAP_FLATTEN;
+    area_test *b = *state;
+    b->property_canvas->overlap = CAMBER_OVERLAP_FLATTEN;
     b->relative = 0.004, b->absolute_px = 1.5;
     property_check(&(property){"area, plain joins", property_make_plain, check_area, 600, 0}, b);
 }
 
 /* Lines over themselves: united, their area counts once. */
 static void test_crossing(void **state) {
-    bench *b = *state;
-    b->easel->overlap = CAMBER_OVERLAP_UNITE;
+    area_test *b = *state;
+    b->property_canvas->overlap = CAMBER_OVERLAP_UNITE;
     b->relative = 0.01, b->absolute_px = 1;
     property_check(&(property){"area, lines over themselves", property_make_crossing, check_crossing, 600, 0}, b);
 }
 
 static int set_up(void **state) {
-    static bench b;
+    static area_test b;
     b.geos = GEOS_init_r();
     GEOSContext_setNoticeMessageHandler_r(b.geos, ignore_message, NULL);
     GEOSContext_setErrorMessageHandler_r(b.geos, ignore_message, NULL);
     void *opened = NULL;
-    if (easel_open(&opened) != 0)
+    if (property_open(&opened) != 0)
         return -1;
-    b.easel = opened;
+    b.property_canvas = opened;
     *state = &b;
     return 0;
 }
 
 static int tear_down(void **state) {
-    bench *b = *state;
-    void *opened = b->easel;
+    area_test *b = *state;
+    void *opened = b->property_canvas;
     GEOS_finish_r(b->geos);
-    return easel_close(&opened);
+    return property_close(&opened);
 }
 
 int main(void) {
-    if (!studio_begin())
+    if (!fixture_begin())
         return 77;
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_plain), cmocka_unit_test(test_crossing)};
     const int failed = cmocka_run_group_tests(tests, set_up, tear_down);

@@ -1,5 +1,5 @@
 /* Dashes: against each dash drawn by itself, as the oracle samples it. */
-#include "along.h"
+#include "along_picture.h"
 
 #include "validate/oracle.h"
 
@@ -53,7 +53,7 @@ static void add_truth(const drawing *d, double truth[SIDE * SIDE]) {
     }
 }
 
-static void check(studio *s, const drawing *d, double mean_bound, double most_bound) {
+static void check(fixture *s, const drawing *d, double mean_bound, double most_bound) {
     static double area[SIDE * SIDE];
     static along_truth truth;
     memset(area, 0, sizeof area);
@@ -139,5 +139,5 @@ int main(void) {
         cmocka_unit_test(test_round),
         cmocka_unit_test(test_fine),
     };
-    return STUDIO_RUN(tests);
+    return FIXTURE_RUN(tests);
 }

@@ -1,28 +1,29 @@
-/* Frames that overlap: what camber_render_begin and camber_render_end hand over is what camber_render does. */
-#include "picture.h"
+/* Frames that overlap: what camber_renderer_begin and camber_renderer_end hand over is what camber_renderer_render
+ * does. */
+#include "pictures.h"
 
 enum { SIDE = 96 };
 
 static const camber_paint paint = {.width_px = 6, .color = {0.2f, 0.4f, 1, 0.5f}};
 
 /* A zigzag that depends on the number. */
-static void fill(studio *s, camber_mesh *mesh, int number) {
-    scene lines = {0};
+static void fill(fixture *s, camber_mesh *mesh, int number) {
+    camber_made_scene lines = {0};
     for (int i = 0; i < 12; i++)
-        scene_point(&lines, 6 + 7 * i, (i % 2 ? 70 : 20) + 3 * number);
-    scene_end(&lines, 0);
+        camber_made_scene_point(&lines, 6 + 7 * i, (i % 2 ? 70 : 20) + 3 * number);
+    camber_made_scene_end(&lines, 0);
     const camber_stroke stroke = {.width_px = paint.width_px};
     camber_polylines *polylines = scene_polylines(s->context, &lines);
     assert_int_equal(
-        camber_tessellate(mesh, polylines, &(camber_tessellation_desc){.strokes = &stroke, .stroke_count = 1}),
+        camber_mesh_tessellate(mesh, polylines, &(camber_tessellation_desc){.strokes = &stroke, .stroke_count = 1}),
         CAMBER_OK);
     camber_polylines_destroy(polylines);
-    scene_free(&lines);
+    camber_made_scene_free(&lines);
 }
 
-static camber_mesh *make_mesh(studio *s, camber_renderer *renderer) {
+static camber_mesh *make_mesh(fixture *s, camber_renderer *renderer) {
     camber_mesh *mesh = NULL;
-    assert_int_equal(camber_mesh_create(s->device, renderer, &mesh), CAMBER_OK);
+    assert_int_equal(camber_mesh_create(s->on.device, renderer, &mesh), CAMBER_OK);
     return mesh;
 }
 
@@ -39,7 +40,7 @@ static void begin(camber_renderer *renderer, camber_mesh *mesh, uint32_t largest
     camber_paint own = paint;
     camber_pass pass = {.mesh = mesh, .paints = &own, .paint_count = 1};
     camber_frame frame = frame_of(&pass, largest_piece_px);
-    assert_int_equal(camber_render_begin(renderer, &frame), CAMBER_OK);
+    assert_int_equal(camber_renderer_begin(renderer, &frame), CAMBER_OK);
     /* They are the caller's again. */
     own = (camber_paint){.width_px = 1};
     pass = (camber_pass){0};
@@ -49,12 +50,12 @@ static void begin(camber_renderer *renderer, camber_mesh *mesh, uint32_t largest
 static picture end(camber_renderer *renderer, camber_frame_stats *stats) {
     picture p = {.width = SIDE, .height = SIDE, .rgba = calloc(SIDE * SIDE, 4)};
     assert_non_null(p.rgba);
-    assert_int_equal(camber_render_end(renderer, picture_rows, &p, stats), CAMBER_OK);
+    assert_int_equal(camber_renderer_end(renderer, picture_rows, &p, stats), CAMBER_OK);
     assert_int_equal(p.rows, SIDE);
     return p;
 }
 
-static picture alone(studio *s, camber_renderer *renderer, int number) {
+static picture alone(fixture *s, camber_renderer *renderer, int number) {
     camber_mesh *mesh = make_mesh(s, renderer);
     fill(s, mesh, number);
     const camber_pass pass = {.mesh = mesh, .paints = &paint, .paint_count = 1};
@@ -69,7 +70,7 @@ static void assert_same(const picture *a, const picture *b) {
 }
 
 /* Frames in turn from two meshes, one or two of them in flight, whole or in pieces. */
-static void run_frames(studio *s, camber_renderer *renderer, size_t in_flight, uint32_t largest_piece_px) {
+static void run_frames(fixture *s, camber_renderer *renderer, size_t in_flight, uint32_t largest_piece_px) {
     enum { FRAMES = 5 };
     camber_mesh *meshes[2] = {make_mesh(s, renderer), make_mesh(s, renderer)};
     for (int n = 0; n < FRAMES + (int)in_flight - 1; n++) {
@@ -85,7 +86,7 @@ static void run_frames(studio *s, camber_renderer *renderer, size_t in_flight, u
         assert_int_equal(stats.pieces, largest_piece_px ? 9 : 1);
         assert_true((stats.draw_calls >= 1) != draws_in_cl() && stats.draw_ms > 0);
         if (n + 1 < FRAMES + (int)in_flight - 1 && in_flight > 1) {
-            picture_free(&got); /* camber_render waits for none in flight: the last one is looked at */
+            picture_free(&got); /* camber_renderer_render waits for none in flight: the last one is looked at */
             continue;
         }
         wanted = alone(s, renderer, ready);
@@ -98,19 +99,19 @@ static void run_frames(studio *s, camber_renderer *renderer, size_t in_flight, u
 }
 
 static void test_turns(void **state) {
-    studio *s = *state;
-    for (int i = 0; i < BACKENDS; i++)
-        for (size_t in_flight = 1; s->renderer[i] && in_flight <= CAMBER_FRAMES_IN_FLIGHT; in_flight++) {
-            run_frames(s, s->renderer[i], in_flight, 0);
-            run_frames(s, s->renderer[i], in_flight, 40);
+    fixture *s = *state;
+    for (int i = 0; i < CAMBER_FIXTURE_DRAWERS; i++)
+        for (size_t in_flight = 1; s->on.renderer[i] && in_flight <= CAMBER_FRAMES_IN_FLIGHT; in_flight++) {
+            run_frames(s, s->on.renderer[i], in_flight, 0);
+            run_frames(s, s->on.renderer[i], in_flight, 40);
         }
     assert_int_equal(s->h.errors, 0);
 }
 
 /* Every frame of two in flight, against frames by themselves. */
 static void test_each_of_two(void **state) {
-    studio *s = *state;
-    camber_renderer *renderer = studio_any(s);
+    fixture *s = *state;
+    camber_renderer *renderer = fixture_any(s);
     picture wanted[2] = {alone(s, renderer, 0), alone(s, renderer, 4)};
     camber_mesh *meshes[2] = {make_mesh(s, renderer), make_mesh(s, renderer)};
     for (int i = 0; i < 2; i++) {
@@ -128,8 +129,8 @@ static void test_each_of_two(void **state) {
 
 /* A mesh that changes while its frame is in flight: the drawing is awaited. */
 static void test_mesh_in_flight(void **state) {
-    studio *s = *state;
-    camber_renderer *renderer = studio_any(s);
+    fixture *s = *state;
+    camber_renderer *renderer = fixture_any(s);
     picture wanted = alone(s, renderer, 1), next = alone(s, renderer, 5);
     camber_mesh *mesh = make_mesh(s, renderer);
     fill(s, mesh, 1);
@@ -156,16 +157,16 @@ static bool refuse(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t
 
 /* A frame that does not begin leaves none in flight, one that does not end is given up; what follows is right. */
 static void test_failures(void **state) {
-    studio *s = *state;
-    camber_renderer *renderer = studio_any(s);
+    fixture *s = *state;
+    camber_renderer *renderer = fixture_any(s);
     camber_mesh *mesh = make_mesh(s, renderer);
     fill(s, mesh, 2);
     const camber_frame wide = {.width = 70000, .height = 1};
-    assert_int_equal(camber_render_begin(renderer, &wide), CAMBER_ERROR_ARGUMENT);
+    assert_int_equal(camber_renderer_begin(renderer, &wide), CAMBER_ERROR_ARGUMENT);
     begin(renderer, mesh, 40);
-    assert_int_equal(camber_render_end(renderer, refuse, NULL, NULL), CAMBER_ERROR_IO);
+    assert_int_equal(camber_renderer_end(renderer, refuse, NULL, NULL), CAMBER_ERROR_IO);
     begin(renderer, mesh, 0);
-    assert_int_equal(camber_render_end(renderer, NULL, NULL, NULL), CAMBER_OK); /* drawn, not read */
+    assert_int_equal(camber_renderer_end(renderer, NULL, NULL, NULL), CAMBER_OK); /* drawn, not read */
     picture got = alone(s, renderer, 2), wanted = alone(s, renderer, 2);
     assert_same(&got, &wanted);
     picture_free(&got);
@@ -176,13 +177,13 @@ static void test_failures(void **state) {
 
 /* Frames in flight go with their renderer; tear-down counts the blocks. */
 static void test_renderer_destroyed(void **state) {
-    studio *s = *state;
-    for (int i = 0; i < BACKENDS; i++) {
+    fixture *s = *state;
+    for (int i = 0; i < CAMBER_FIXTURE_DRAWERS; i++) {
         camber_renderer *renderer = NULL;
-        const camber_renderer_desc desc = {.draw = draws_in_cl() ? CAMBER_DRAW_CL : CAMBER_DRAW_GL};
-        if (!s->renderer[i])
+        if (!s->on.renderer[i])
             continue;
-        assert_int_equal(camber_renderer_create(s->device, s->surface[i], &desc, &renderer), CAMBER_OK);
+        assert_int_equal(camber_fixture_open_renderer(&s->on, (camber_fixture_drawer)i, CAMBER_SHARING_AUTO, &renderer),
+                         CAMBER_OK);
         camber_mesh *mesh = make_mesh(s, renderer);
         fill(s, mesh, 3);
         begin(renderer, mesh, 0);
@@ -200,5 +201,5 @@ int main(void) {
         cmocka_unit_test(test_failures),
         cmocka_unit_test(test_renderer_destroyed),
     };
-    return STUDIO_RUN(tests);
+    return FIXTURE_RUN(tests);
 }

@@ -1,7 +1,7 @@
 /* Golden pictures of what the core draws. What is black on white is held against the oracle as well, so that a picture
  * is no truth just because it was drawn yesterday. ./dev golden renews them. */
 #include "golden.h"
-#include "torture.h"
+#include "torture_judge.h"
 
 static const camber_color WHITE = {1, 1, 1, 1};
 
@@ -15,7 +15,7 @@ static void finish(void **state, golden *g) {
 
 /* A point off the grid of pixels, so that edges fall on every part of one. */
 static void add_point(golden *g, double x, double y) {
-    scene_point(&g->lines, x + 0.37, y + 0.61);
+    camber_made_scene_point(&g->lines, x + 0.37, y + 0.61);
 }
 
 static void add_arm(golden *g, const double from[2], double length, double direction_deg) {
@@ -40,7 +40,7 @@ static void draw_turns(void **state, const char *name, camber_join join, camber_
         add_arm(&g, centre, arms_px[row], base + 180);
         add_point(&g, centre[0], centre[1]);
         add_arm(&g, centre, arms_px[row], base + (i % 2 ? turn : -turn));
-        scene_end(&g.lines, style);
+        camber_made_scene_end(&g.lines, style);
     }
     finish(state, &g);
 }
@@ -76,7 +76,7 @@ static void test_caps(void **state) {
             golden_row(&g, (camber_stroke){widths_px[i % 8], CAMBER_JOIN_ROUND, (camber_cap)(i / 8), 0});
         add_arm(&g, centre, 14, 11 * i);
         add_arm(&g, centre, 14, 11 * i + 180);
-        scene_end(&g.lines, style);
+        camber_made_scene_end(&g.lines, style);
     }
     finish(state, &g);
 }
@@ -93,7 +93,7 @@ static void test_rings(void **state) {
         const int n = sides[i % 6];
         for (int k = 0; k <= n; k++)
             add_arm(&g, centre, radii_px[i % 6], 10 + 360.0 / n * (k % n));
-        scene_end(&g.lines, style);
+        camber_made_scene_end(&g.lines, style);
     }
     finish(state, &g);
 }
@@ -106,7 +106,7 @@ static void test_dots(void **state) {
         const size_t style =
             golden_row(&g, (camber_stroke){width, CAMBER_JOIN_ROUND, i < 12 ? CAMBER_CAP_ROUND : CAMBER_CAP_SQUARE, 0});
         add_point(&g, 16 + 32 * (i % 12) + 0.09 * i, 16 + 32 * (i / 12) + 0.05 * i);
-        scene_end(&g.lines, style);
+        camber_made_scene_end(&g.lines, style);
     }
     finish(state, &g);
 }
@@ -122,7 +122,7 @@ static void test_zigzags(void **state) {
         const int count = (int)(90 / (0.42 * steps_px[i]));
         for (int k = 0; k <= count; k++)
             add_point(&g, left + 0.42 * steps_px[i] * k, middle + (k % 2 ? 0.45 : -0.45) * steps_px[i]);
-        scene_end(&g.lines, style);
+        camber_made_scene_end(&g.lines, style);
     }
     finish(state, &g);
 }
@@ -139,7 +139,7 @@ static void draw_star(void **state, const char *name, camber_coverage coverage, 
             golden_row(&g, (camber_stroke){0.1f + 0.05f * (float)(i % 40), CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0});
         add_arm(&g, (const double[]){120, 120}, 30, 9 * i);
         add_arm(&g, (const double[]){120, 120}, 116, 9 * i);
-        scene_end(&g.lines, style);
+        camber_made_scene_end(&g.lines, style);
     }
     finish(state, &g);
 }
@@ -160,14 +160,14 @@ static void add_crossings(golden *g, double left) {
     static const double back[][2] = {{20, 128}, {96, 122}, {30, 134}, {100, 146}};
     for (int k = 0; k < 5; k++)
         add_point(g, left + loop[k][0], loop[k][1]);
-    scene_end(&g->lines, 0);
+    camber_made_scene_end(&g->lines, 0);
     for (int k = 0; k < 4; k++)
         add_point(g, left + back[k][0], back[k][1]);
-    scene_end(&g->lines, 1);
+    camber_made_scene_end(&g->lines, 1);
     for (int k = 0; k < 2; k++) {
         add_point(g, left + 50, k ? 165 : 8);
         add_point(g, left + 62, k ? 8 : 165);
-        scene_end(&g->lines, 0);
+        camber_made_scene_end(&g->lines, 0);
     }
 }
 
@@ -200,7 +200,7 @@ static void test_hairpins(void **state) {
         if (i < 6)
             add_point(&g, left + 5 + gap, top + 62);
         add_point(&g, left + gap, top + 8);
-        scene_end(&g.lines, style);
+        camber_made_scene_end(&g.lines, style);
     }
     finish(state, &g);
 }
@@ -220,7 +220,7 @@ static void test_casing(void **state) {
         g.paints[1][style] = (camber_paint){.width_px = width - 5, .color = {1, 0.93f, 0.7f, 1}};
         for (int k = 0; k < 4; k++)
             add_point(&g, streets[i][k][0], streets[i][k][1]);
-        scene_end(&g.lines, style);
+        camber_made_scene_end(&g.lines, style);
     }
     finish(state, &g);
 }
@@ -237,7 +237,7 @@ static void test_rows(void **state) {
         add_point(&g, x - 12, y + 4);
         add_point(&g, x, y - 5 + i % 7);
         add_point(&g, x + 14, y + 9);
-        scene_end(&g.lines, style);
+        camber_made_scene_end(&g.lines, style);
     }
     finish(state, &g);
 }
@@ -247,8 +247,8 @@ static void test_rows(void **state) {
 /* For people: each figure translucent and flattened, and its own line over it where that can be made
  * out. */
 static void test_torture(void **state) {
-    const studio *s = *state;
-    torture_set set = torture_make();
+    const fixture *s = *state;
+    camber_torture_set set = camber_torture_make();
     golden g = begin("torture", (uint32_t)set.width, (uint32_t)set.height);
     for (size_t i = 0; i < set.count; i++) {
         const size_t style = golden_row(
@@ -259,13 +259,13 @@ static void test_torture(void **state) {
     }
     g.pass_count = 2;
     g.lines = set.lines;
-    set.lines = (scene){0};
+    set.lines = (camber_made_scene){0};
     assert_true(golden_draw(s, &g));
-    torture_free(&set);
+    camber_torture_free(&set);
 }
 
 int main(void) {
-    if (!studio_begin())
+    if (!fixture_begin())
         return 77;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_round_joins),
@@ -285,6 +285,6 @@ int main(void) {
         cmocka_unit_test(test_rows),
         cmocka_unit_test(test_torture),
     };
-    const int failed = cmocka_run_group_tests(tests, studio_set_up, studio_tear_down);
+    const int failed = cmocka_run_group_tests(tests, fixture_set_up, fixture_tear_down);
     return failed;
 }

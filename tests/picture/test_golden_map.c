@@ -13,7 +13,7 @@ static camber_scene *load(camber_context *context, camber_theme theme, camber_st
     camber_scene *map = NULL;
     const camber_source_desc source = {.path = CAMBER_TEST_DATA "/santa_cruz/osm.mbtiles"};
     const camber_scene_desc desc = {.view = CROSSING, .simplify_px = 0.1};
-    assert_int_equal(camber_style_builtin(context, theme, style), CAMBER_OK);
+    assert_int_equal(camber_style_create_builtin(context, theme, style), CAMBER_OK);
     assert_int_equal(camber_features_create(context, *style, features), CAMBER_OK);
     assert_int_equal(camber_features_read(*features, &source), CAMBER_OK);
     assert_int_equal(camber_scene_create(*features, &desc, &map), CAMBER_OK);
@@ -21,34 +21,35 @@ static camber_scene *load(camber_context *context, camber_theme theme, camber_st
 }
 
 static void draw_crossing(void **state, const char *name, camber_theme theme) {
-    const studio *s = *state;
+    const fixture *s = *state;
     camber_style *style = NULL;
     camber_features *features = NULL;
     camber_scene *map = load(s->context, theme, &style, &features);
     bool good = true;
-    for (int b = 0; b < BACKENDS && good; b++) {
-        if (!s->renderer[b])
+    for (int b = 0; b < CAMBER_FIXTURE_DRAWERS && good; b++) {
+        if (!s->on.renderer[b])
             continue;
         camber_mesh *mesh = NULL;
         size_t stroke_count = 0;
-        const camber_stroke *strokes = camber_scene_strokes(map, &stroke_count);
+        const camber_stroke *strokes = camber_scene_get_strokes(map, &stroke_count);
         const camber_tessellation_desc desc = {strokes, stroke_count, CAMBER_METHOD_STRIP, 0, false};
-        assert_int_equal(camber_mesh_create(s->device, s->renderer[b], &mesh), CAMBER_OK);
-        assert_int_equal(camber_tessellate(mesh, camber_scene_polylines(map), &desc), CAMBER_OK);
-        const camber_frame frame = camber_scene_frame(map, mesh);
-        picture drawn = picture_draw(s->renderer[b], &frame);
+        assert_int_equal(camber_mesh_create(s->on.device, s->on.renderer[b], &mesh), CAMBER_OK);
+        assert_int_equal(camber_scene_project(map), CAMBER_OK);
+        assert_int_equal(camber_mesh_tessellate(mesh, camber_scene_get_polylines(map), &desc), CAMBER_OK);
+        const camber_frame frame = camber_scene_get_frame(map, mesh);
+        picture drawn = picture_draw(s->on.renderer[b], &frame);
         good = golden_judge(name, &drawn);
         if (!good)
-            printf("%s: not as it should be with %s\n", name, BACKEND_NAME[b]);
+            printf("%s: not as it should be with %s\n", name, fixture_name(b));
         picture_free(&drawn);
         /* The same by the network, and once more after the view was elsewhere. */
         for (int round = 0; round < 2 && good; round++) {
             assert_int_equal(camber_scene_tessellate(map, mesh, CAMBER_METHOD_STRIP), CAMBER_OK);
-            const camber_frame again = camber_scene_frame(map, mesh);
-            drawn = picture_draw(s->renderer[b], &again);
+            const camber_frame again = camber_scene_get_frame(map, mesh);
+            drawn = picture_draw(s->on.renderer[b], &again);
             good = golden_judge(name, &drawn);
             if (!good)
-                printf("%s: not as it should be by the network with %s, round %d\n", name, BACKEND_NAME[b], round);
+                printf("%s: not as it should be by the network with %s, round %d\n", name, fixture_name(b), round);
             picture_free(&drawn);
             const camber_view_desc elsewhere = {CAMBER_VIEW_CENTER, .longitude = -122.03, .latitude = 36.97,
                                                 .zoom = 11.3, .bearing_deg = 40};
@@ -73,7 +74,7 @@ static void test_dark(void **state) {
 }
 
 static size_t polylines_of(camber_scene *map, camber_mesh *mesh) {
-    const camber_frame frame = camber_scene_frame(map, mesh);
+    const camber_frame frame = camber_scene_get_frame(map, mesh);
     size_t count = 0;
     for (size_t i = 0; i < frame.pass_count; i++)
         count += frame.passes[i].polyline_count;
@@ -82,12 +83,12 @@ static size_t polylines_of(camber_scene *map, camber_mesh *mesh) {
 
 /* A view that moves and zooms while filters draw the same keeps its network, which the mesh then still holds. */
 static void test_moves(void **state) {
-    const studio *s = *state;
+    const fixture *s = *state;
     camber_style *style = NULL;
     camber_features *features = NULL;
     camber_scene *map = load(s->context, CAMBER_THEME_LIGHT, &style, &features);
     camber_mesh *mesh = NULL;
-    assert_int_equal(camber_mesh_create(s->device, NULL, &mesh), CAMBER_OK);
+    assert_int_equal(camber_mesh_create(s->on.device, NULL, &mesh), CAMBER_OK);
     const size_t pieces = polylines_of(map, mesh);
     assert_int_equal(camber_scene_tessellate(map, mesh, CAMBER_METHOD_STRIP), CAMBER_OK);
     const size_t entries = polylines_of(map, mesh);
@@ -106,7 +107,7 @@ static void test_moves(void **state) {
     assert_int_equal(polylines_of(map, mesh), 0);
     view.zoom = 100;
     assert_int_equal(camber_scene_move(map, &view), CAMBER_ERROR_ARGUMENT);
-    assert_true(fabs(camber_scene_get_view(map).zoom - 6) < 1e-9); /* as before */
+    assert_true(fabs(camber_scene_get_info(map).zoom - 6) < 1e-9); /* as before */
     assert_int_equal(camber_scene_tessellate(map, mesh, CAMBER_METHOD_STRIP), CAMBER_OK);
     camber_mesh_destroy(mesh);
     camber_scene_destroy(map);
@@ -115,10 +116,10 @@ static void test_moves(void **state) {
 }
 
 int main(void) {
-    if (!studio_begin())
+    if (!fixture_begin())
         return 77;
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_light), cmocka_unit_test(test_dark),
                                        cmocka_unit_test(test_moves)};
-    const int failed = cmocka_run_group_tests(tests, studio_set_up, studio_tear_down);
+    const int failed = cmocka_run_group_tests(tests, fixture_set_up, fixture_tear_down);
     return failed;
 }

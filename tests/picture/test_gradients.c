@@ -1,7 +1,6 @@
 /* line-gradient and line-trim-offset of styles: the stops that a gradient becomes, and what is drawn by them. */
-#include "picture.h"
+#include "map_picture.h"
 
-#include "camber_map.h"
 #include "style/expression.h"
 
 #include <time.h>
@@ -45,9 +44,9 @@ static void check_stops(camber_context *context, const char *gradient, const sto
     camber_style_destroy(style);
 }
 
-/* What is linear has its own stops and no more; steps lie where they are. */
+/* A linear gradient has its own stops and no more; steps lie where they are. */
 static void test_stops(void **state) {
-    camber_context *context = ((studio *)*state)->context;
+    camber_context *context = ((fixture *)*state)->context;
     const stop linear[] = {{0, 1, 0, 0, 1}, {0.25, 1, 0, 0, 1}, {0.7, 0, 0, 1, 1}, {1, 0, 0, 1, 1}};
     check_stops(context, "[\"interpolate\", [\"linear\"], [\"line-progress\"], 0.25, \"red\", 0.7, \"blue\"]", linear,
                 4);
@@ -60,7 +59,7 @@ static void test_stops(void **state) {
 
 /* Curves, and steps that are found: within half a level of the expression at a thousand places. */
 static void test_curves(void **state) {
-    camber_context *context = ((studio *)*state)->context;
+    camber_context *context = ((fixture *)*state)->context;
     static const struct {
         const char *gradient;
         size_t most;
@@ -103,9 +102,9 @@ static void test_curves(void **state) {
     }
 }
 
-/* ---- What is hostile ---- */
+/* ---- Hostile gradients ---- */
 
-static camber_style *parse_quickly(studio *s, const char *paint) {
+static camber_style *parse_quickly(fixture *s, const char *paint) {
     const clock_t begin = clock();
     camber_style *style = parse(s->context, LINE, paint);
     assert_true((double)(clock() - begin) / CLOCKS_PER_SEC < 5);
@@ -123,7 +122,7 @@ static camber_style *parse_quickly(studio *s, const char *paint) {
 
 /* It says where it cannot be evaluated, and draws nothing there. */
 static void test_fails_somewhere(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     s->h.warnings = 0;
     camber_style *style = parse_quickly(
         s, ", \"line-gradient\": [\"case\", [\"<\", [\"line-progress\"], 0.25], \"red\", [\"to-color\", [\"concat\", "
@@ -135,7 +134,7 @@ static void test_fails_somewhere(void **state) {
 }
 
 static void test_hostile(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     static char paint[8 << 20];
     for (int kind = 0; kind < 3; kind++) {
         size_t used = (size_t)snprintf(paint, sizeof paint, ", \"line-gradient\": [%s, [\"line-progress\"], %s",
@@ -161,23 +160,11 @@ static void test_hostile(void **state) {
 
 /* ---- Pictures ---- */
 
-static picture draw(studio *s, const char *data, const char *paint) {
+static picture draw(fixture *s, const char *data, const char *paint) {
     const camber_scene_desc desc = {.view = {.kind = CAMBER_VIEW_CENTER, .zoom = 0, .width = 128, .height = 64}};
-    camber_style *style = parse(s->context, data, paint);
-    camber_features *features = NULL;
-    camber_scene *map = NULL;
-    camber_mesh *mesh = NULL;
-    assert_int_equal(camber_features_create(s->context, style, &features), CAMBER_OK);
-    assert_int_equal(camber_features_read_sources(features, &desc.view, NULL), CAMBER_OK);
-    assert_int_equal(camber_scene_create(features, &desc, &map), CAMBER_OK);
-    assert_int_equal(camber_mesh_create(s->device, studio_any(s), &mesh), CAMBER_OK);
-    assert_int_equal(camber_scene_tessellate(map, mesh, CAMBER_METHOD_STRIP), CAMBER_OK);
-    const camber_frame frame = camber_scene_frame(map, mesh);
-    picture p = picture_draw(studio_any(s), &frame);
-    camber_mesh_destroy(mesh);
-    camber_scene_destroy(map);
-    camber_features_destroy(features);
-    camber_style_destroy(style);
+    map m = map_open(s, parse(s->context, data, paint), &desc);
+    picture p = map_draw(s, &m);
+    map_close(&m);
     return p;
 }
 
@@ -189,7 +176,7 @@ static void expect(const picture *p, uint32_t x, uint32_t y, const double rgba[4
 
 /* The line goes from 12.8 to 115.2 px; a degree is 1.4222 px. */
 static void test_drawn(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     picture p = draw(s, LINE,
                      ", \"line-gradient\": [\"interpolate\", [\"linear\"], [\"line-progress\"], 0, \"red\", 1, "
                      "\"blue\"], \"line-color\": \"transparent\"");
@@ -224,7 +211,7 @@ static void test_several(void **state) {
 
 /* A border that has a colour is that all along, one that has none takes the gradient's; both are trimmed. */
 static void test_border(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     picture p = draw(s, LINE,
                      ", \"line-gradient\": [\"step\", [\"line-progress\"], \"red\", 0.5, \"white\"], "
                      "\"line-border-width\": 4, \"line-border-color\": \"blue\", \"line-trim-offset\": [0, 0.25]");
@@ -256,5 +243,5 @@ int main(void) {
         cmocka_unit_test(test_hostile), cmocka_unit_test(test_drawn),  cmocka_unit_test(test_several),
         cmocka_unit_test(test_border),
     };
-    return STUDIO_RUN(tests);
+    return FIXTURE_RUN(tests);
 }

@@ -1,6 +1,6 @@
 /* Linked shader programs in the cache folder: taken from there, and built anew where what lies there is no program. */
 #include "gl_fault.h"
-#include "picture.h"
+#include "pictures.h"
 
 #include <dirent.h>
 
@@ -18,10 +18,11 @@ static picture draw_anew(const char *cache_dir, camber_backend backend, size_t *
     camber_mesh *mesh = NULL;
     camber_polylines *polylines = NULL;
     assert_int_equal(camber_context_create(&context_desc, &context), CAMBER_OK);
-    assert_int_equal(camber_device_create(context, NULL, NULL, &device), CAMBER_OK);
+    assert_int_equal(camber_device_create(context, NULL, &device), CAMBER_OK);
     assert_int_equal(camber_surface_create(context, &(camber_surface_desc){backend}, &surface), CAMBER_OK);
     assert_int_equal(
-        camber_renderer_create(device, surface, &(camber_renderer_desc){.draw = CAMBER_DRAW_GL}, &renderer), CAMBER_OK);
+        camber_renderer_create(device, surface, &(camber_renderer_desc){.rasterizer = CAMBER_RASTERIZER_GL}, &renderer),
+        CAMBER_OK);
     assert_int_equal(camber_mesh_create(device, renderer, &mesh), CAMBER_OK);
     const float points[] = {4, 4, 40, 30, 60, 8};
     const uint32_t offsets[] = {0, 3};
@@ -31,7 +32,7 @@ static picture draw_anew(const char *cache_dir, camber_backend backend, size_t *
         camber_polylines_create(context, &(camber_polylines_desc){points, 3, offsets, 1, NULL, false}, &polylines),
         CAMBER_OK);
     assert_int_equal(
-        camber_tessellate(mesh, polylines, &(camber_tessellation_desc){&stroke, 1, CAMBER_METHOD_STRIP, 0, false}),
+        camber_mesh_tessellate(mesh, polylines, &(camber_tessellation_desc){&stroke, 1, CAMBER_METHOD_STRIP, 0, false}),
         CAMBER_OK);
     fault_on(surface);
     fault.only = "CompileShader"; /* counted, none fails */
@@ -85,33 +86,33 @@ static size_t spoil(const char *folder, damage how) {
 }
 
 static void test_cache(void **state) {
-    studio *s = *state;
-    for (int i = 0; i < BACKENDS; i++) {
-        if (!s->renderer[i])
+    fixture *s = *state;
+    for (int i = 0; i < CAMBER_FIXTURE_BACKENDS; i++) {
+        if (!s->on.renderer[i])
             continue;
         GLint formats = 0;
-        assert_int_equal(camber_surface_make_current(s->surface[i]), CAMBER_OK);
-        s->surface[i]->gl.GetIntegerv(GL_NUM_PROGRAM_BINARY_FORMATS, &formats);
+        assert_int_equal(camber_surface_make_current(s->on.surface[i]), CAMBER_OK);
+        s->on.surface[i]->gl.GetIntegerv(GL_NUM_PROGRAM_BINARY_FORMATS, &formats);
         if (formats == 0) {
-            printf("%s keeps no programs\n", BACKEND_NAME[i]);
+            printf("%s keeps no programs\n", fixture_name(i));
             continue;
         }
         char folder[64];
         size_t built, compiled;
         folder_make(folder);
-        picture wanted = draw_anew(folder, BACKEND[i], &built);
+        picture wanted = draw_anew(folder, fixture_backend(i), &built);
         assert_true(built >= 4); /* the strokes and the flattening, two each */
-        picture again = draw_anew(folder, BACKEND[i], &compiled);
+        picture again = draw_anew(folder, fixture_backend(i), &compiled);
         assert_int_equal(compiled, 0);
         picture_assert_same(&wanted, &again);
         picture_free(&again);
         for (damage how = 0; how < DAMAGES; how++) {
             assert_int_equal(2 * spoil(folder, how), built);
-            again = draw_anew(folder, BACKEND[i], &compiled);
+            again = draw_anew(folder, fixture_backend(i), &compiled);
             assert_int_equal(compiled, built);
             picture_assert_same(&wanted, &again);
             picture_free(&again);
-            again = draw_anew(folder, BACKEND[i], &compiled); /* mended */
+            again = draw_anew(folder, fixture_backend(i), &compiled); /* mended */
             assert_int_equal(compiled, 0);
             picture_free(&again);
         }
@@ -121,9 +122,9 @@ static void test_cache(void **state) {
 }
 
 int main(void) {
-    if (!studio_begin())
+    if (!fixture_begin())
         return 77;
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_cache)};
-    const int failed = cmocka_run_group_tests(tests, studio_set_up, studio_tear_down);
+    const int failed = cmocka_run_group_tests(tests, fixture_set_up, fixture_tear_down);
     return failed;
 }

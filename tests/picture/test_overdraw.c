@@ -1,8 +1,8 @@
 /* Overdraw against counts by hand, against the oracle, and against itself in other ranges, pieces and back ends. */
-#include "picture.h"
+#include "pictures.h"
 
-#include "validate/oracle.h"
 #include "tess/mesh.h"
+#include "validate/oracle.h"
 
 /* ---- Counting ---- */
 
@@ -16,24 +16,25 @@ static counts count(camber_renderer *renderer, camber_overdraw_desc desc) {
     assert_non_null(made.map);
     memset(made.map, 7, (size_t)desc.width * desc.height);
     desc.map = made.map;
-    assert_int_equal(camber_overdraw_count(renderer, &desc, &made.sum), CAMBER_OK);
+    assert_int_equal(camber_renderer_count_overdraw(renderer, &desc, &made.sum), CAMBER_OK);
     camber_overdraw bare;
     desc.map = NULL;
-    assert_int_equal(camber_overdraw_count(renderer, &desc, &bare), CAMBER_OK);
+    assert_int_equal(camber_renderer_count_overdraw(renderer, &desc, &bare), CAMBER_OK);
     assert_memory_equal(&bare, &made.sum, sizeof bare);
     return made;
 }
 
 /* The polylines of a scene at one width with butt caps, on 64 x 64 px. */
-static counts count_lines(studio *s, scene *lines, float width_px, camber_method method) {
+static counts count_lines(fixture *s, camber_made_scene *lines, float width_px, camber_method method) {
     const camber_stroke stroke = {width_px, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0};
     const camber_paint paint = {.width_px = width_px, .color = {0, 0, 0, 0}};
-    camber_mesh *mesh = studio_mesh(s, studio_any(s), lines, &(camber_tessellation_desc){&stroke, 1, method, 0, false});
+    camber_mesh *mesh =
+        fixture_mesh(s, fixture_any(s), lines, &(camber_tessellation_desc){&stroke, 1, method, 0, false});
     const counts made =
-        count(studio_any(s),
+        count(fixture_any(s),
               (camber_overdraw_desc){.width = 64, .height = 64, .mesh = mesh, .paints = &paint, .paint_count = 1});
     camber_mesh_destroy(mesh);
-    scene_free(lines);
+    camber_made_scene_free(lines);
     return made;
 }
 
@@ -45,10 +46,10 @@ static void assert_counts(counts *made, uint64_t fragments, uint64_t drawn, uint
     free(made->map);
 }
 
-static void add(scene *s, size_t row, const double *points, size_t point_count) {
+static void add(camber_made_scene *s, size_t row, const double *points, size_t point_count) {
     for (size_t i = 0; i < point_count; i++)
-        scene_point(s, points[2 * i], points[2 * i + 1]);
-    scene_end(s, row);
+        camber_made_scene_point(s, points[2 * i], points[2 * i + 1]);
+    camber_made_scene_end(s, row);
 }
 
 /* A line of 40 x 4 px on whole pixels; the pad adds a pixel on every side. */
@@ -57,7 +58,7 @@ static const double BAR[] = {10, 20, 50, 20};
 
 static void test_bar(void **state) {
     for (int method = 0; method < 3; method++) {
-        scene lines = {0};
+        camber_made_scene lines = {0};
         add(&lines, 0, BAR, 2);
         counts made = count_lines(*state, &lines, 4, (camber_method)method);
         assert_counts(&made, BAR_FRAGMENTS, BAR_DRAWN, 0);
@@ -69,7 +70,7 @@ static void test_crossing(void **state) {
     for (int method = 0; method < 2; method++) {
         for (int between = 0; between < 2; between++) {
             const double d = between ? 0.3 : 0, side = between ? 5 : 4;
-            scene lines = {0};
+            camber_made_scene lines = {0};
             add(&lines, 0, (const double[]){10, 32 + d, 54 + d, 32 + d, 54 + d, 10, 32 + d, 10, 32 + d, 54}, 5);
             counts made = count_lines(*state, &lines, 4, (camber_method)method);
             assert_int_equal(made.sum.repeated_pixels, side * side);
@@ -82,7 +83,7 @@ static void test_crossing(void **state) {
 }
 
 static void test_two_polylines(void **state) {
-    scene lines = {0};
+    camber_made_scene lines = {0};
     add(&lines, 0, BAR, 2);
     add(&lines, 0, (const double[]){30, 4, 30, 44}, 2);
     counts made = count_lines(*state, &lines, 4, CAMBER_METHOD_STRIP);
@@ -117,8 +118,9 @@ static uint64_t shared_pixels(const float *a, const float *b, double width_px, d
 static void test_slanted_crossings(void **state) {
     uint64_t seed = 3;
     for (int i = 0; i < 20; i++) {
-        const double a = random_between(&seed, 0, 6), b = a + random_between(&seed, 1, 1.8), m = (a + b) / 2;
-        const double width = random_between(&seed, 1, 7);
+        const double a = camber_random_between(&seed, 0, 6), b = a + camber_random_between(&seed, 1, 1.8),
+                     m = (a + b) / 2;
+        const double width = camber_random_between(&seed, 1, 7);
         /* Through 32, 32 twice, and around in between. */
         const double p[] = {32 - 20 * cos(a), 32 - 20 * sin(a), 32 + 20 * cos(a), 32 + 20 * sin(a), 32 + 26 * cos(m),
                             32 + 26 * sin(m), 32 + 20 * cos(b), 32 + 20 * sin(b), 32 - 20 * cos(b), 32 - 20 * sin(b)};
@@ -126,7 +128,7 @@ static void test_slanted_crossings(void **state) {
                            (float)p[6], (float)p[7], (float)p[8], (float)p[9]};
         double most;
         const uint64_t least = shared_pixels(f, f + 4, width, &most);
-        scene lines = {0};
+        camber_made_scene lines = {0};
         add(&lines, 0, p, 5);
         counts made = count_lines(*state, &lines, (float)width, CAMBER_METHOD_STRIP);
         assert_in_range(made.sum.repeated_pixels, least, (uint64_t)most);
@@ -140,7 +142,7 @@ static void test_bends(void **state) {
     for (int degree = -124; degree <= 124; degree += 4) {
         for (int method = 0; method < 3; method++) {
             const double angle = degree * SCENE_PI / 180;
-            scene lines = {0};
+            camber_made_scene lines = {0};
             add(&lines, 0, (const double[]){8, 32.3, 31.7, 32.3, 31.7 + 24 * cos(angle), 32.3 + 24 * sin(angle)}, 3);
             counts made = count_lines(*state, &lines, 5, (camber_method)method);
             if (method < 2)
@@ -155,7 +157,7 @@ static void test_bends(void **state) {
 }
 
 static void test_reversal(void **state) {
-    scene lines = {0};
+    camber_made_scene lines = {0};
     add(&lines, 0, (const double[]){10, 20, 50, 20, 20, 20}, 3);
     counts made = count_lines(*state, &lines, 4, CAMBER_METHOD_STRIP);
     assert_int_equal(made.sum.repeated_pixels, 30 * 4);
@@ -169,7 +171,7 @@ enum { LAYERS = 3000 };
 /* More ranges on a pixel than a channel holds, or than a 16-bit float counts. */
 static void test_layers(void **state) {
     for (int method = 0; method < 2; method++) {
-        scene lines = {0};
+        camber_made_scene lines = {0};
         for (int i = 0; i < LAYERS; i++)
             add(&lines, 0, BAR, 2);
         counts made = count_lines(*state, &lines, 4, (camber_method)method);
@@ -179,18 +181,18 @@ static void test_layers(void **state) {
 
 /* More fragments of one range on a pixel than a channel or the stencil holds. */
 static void test_layers_of_one(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     const camber_stroke stroke = {4, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0};
     const camber_paint paint = {.width_px = 4, .color = {0, 0, 0, 1}};
     for (int method = 0; method < 3; method++) {
-        scene lines = {0};
+        camber_made_scene lines = {0};
         for (int i = 0; i <= LAYERS; i++) /* there and back from 10 to 50 */
-            scene_point(&lines, i % 2 ? 50 : 10, 20);
-        scene_end(&lines, 0);
-        camber_mesh *mesh = studio_mesh(s, studio_any(s), &lines,
-                                        &(camber_tessellation_desc){&stroke, 1, (camber_method)method, 0, false});
+            camber_made_scene_point(&lines, i % 2 ? 50 : 10, 20);
+        camber_made_scene_end(&lines, 0);
+        camber_mesh *mesh = fixture_mesh(s, fixture_any(s), &lines,
+                                         &(camber_tessellation_desc){&stroke, 1, (camber_method)method, 0, false});
         const camber_overdraw_desc desc = {.width = 64, .height = 64, .mesh = mesh, .paints = &paint, .paint_count = 1};
-        counts made = count(studio_any(s), desc);
+        counts made = count(fixture_any(s), desc);
         assert_true(made.sum.fragments >= (uint64_t)LAYERS * BAR_DRAWN);
         assert_true(made.sum.repeated_pixels >= BAR_DRAWN && made.sum.repeated_pixels <= made.sum.drawn_pixels);
         if (method != CAMBER_METHOD_STRIP) {
@@ -202,7 +204,7 @@ static void test_layers_of_one(void **state) {
                 camber_overdraw_desc apart = desc;
                 apart.ranges = &part;
                 apart.range_count = 1;
-                counts few = count(studio_any(s), apart);
+                counts few = count(fixture_any(s), apart);
                 sum += few.sum.fragments;
                 free(few.map);
             }
@@ -210,13 +212,13 @@ static void test_layers_of_one(void **state) {
         }
         free(made.map);
         camber_mesh_destroy(mesh);
-        scene_free(&lines);
+        camber_made_scene_free(&lines);
     }
 }
 
 /* The map stops at 255. */
 static void test_full_map(void **state) {
-    scene lines = {0};
+    camber_made_scene lines = {0};
     for (int i = 0; i < 300; i++)
         add(&lines, 0, (const double[]){10, 20, 50, 20, 20, 20}, 3);
     add(&lines, 0, (const double[]){10, 40, 50, 40, 20, 40}, 3);
@@ -232,13 +234,13 @@ static void test_full_map(void **state) {
 
 /* Two segments of a strip that lie on each other, apart and together. */
 static void test_ranges(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     const camber_stroke stroke = {4, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0};
     const camber_paint paint = {.width_px = 4, .color = {0, 0, 0, 1}};
-    scene lines = {0};
+    camber_made_scene lines = {0};
     add(&lines, 0, (const double[]){10, 20, 50, 20, 20, 20}, 3);
     camber_mesh *mesh =
-        studio_mesh(s, studio_any(s), &lines, &(camber_tessellation_desc){&stroke, 1, CAMBER_METHOD_STRIP, 0, false});
+        fixture_mesh(s, fixture_any(s), &lines, &(camber_tessellation_desc){&stroke, 1, CAMBER_METHOD_STRIP, 0, false});
     camber_mesh_data data;
     assert_int_equal(camber_mesh_read(mesh, &data), CAMBER_OK);
     size_t second = 2; /* where the strip breaks, behind its begin */
@@ -252,7 +254,7 @@ static void test_ranges(void **state) {
     for (size_t i = 0; i < 4; i++) {
         desc.range_count = i < 3 ? 1 : 4;
         desc.ranges = i < 3 ? ranges + i : ranges;
-        made[i] = count(studio_any(s), desc);
+        made[i] = count(fixture_any(s), desc);
         free(made[i].map);
     }
     assert_int_equal(made[0].sum.repeated_pixels, 0);
@@ -269,33 +271,33 @@ static void test_ranges(void **state) {
     for (size_t i = 0; i < 4; i++) {
         desc.ranges = outside + i;
         desc.range_count = 1;
-        assert_int_equal(camber_overdraw_count(studio_any(s), &desc, &sum), CAMBER_ERROR_ARGUMENT);
+        assert_int_equal(camber_renderer_count_overdraw(fixture_any(s), &desc, &sum), CAMBER_ERROR_ARGUMENT);
         assert_story(&s->h, "range 0");
     }
     desc.ranges = NULL;
     desc.width = 0;
-    assert_int_equal(camber_overdraw_count(studio_any(s), &desc, &sum), CAMBER_ERROR_ARGUMENT);
+    assert_int_equal(camber_renderer_count_overdraw(fixture_any(s), &desc, &sum), CAMBER_ERROR_ARGUMENT);
     assert_story(&s->h, "0 x 64");
     assert_int_equal(sum.fragments, 1);
-    camber_mesh_data_free(s->context, &data);
+    camber_mesh_data_destroy(&data);
     camber_mesh_destroy(mesh);
-    scene_free(&lines);
+    camber_made_scene_free(&lines);
 }
 
 /* Rows that are not drawn, whatever was drawn before, and rows drawn narrower than they were tessellated. */
 static void test_paints(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     const camber_stroke strokes[] = {{8, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0},
                                      {8, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0}};
     const camber_paint wide[] = {{.width_px = 8}, {.width_px = 8}}, narrow[] = {{.width_px = 4}, {.width_px = 0}};
-    scene lines = {0};
+    camber_made_scene lines = {0};
     add(&lines, 0, BAR, 2);
     add(&lines, 1, BAR, 2);
     camber_mesh *mesh =
-        studio_mesh(s, studio_any(s), &lines, &(camber_tessellation_desc){strokes, 2, CAMBER_METHOD_STRIP, 0, false});
+        fixture_mesh(s, fixture_any(s), &lines, &(camber_tessellation_desc){strokes, 2, CAMBER_METHOD_STRIP, 0, false});
     const camber_index_range all = {0, camber_mesh_get_info(mesh).index_count};
     camber_overdraw_desc desc = {.width = 64, .height = 64, .mesh = mesh, .paints = wide, .paint_count = 2};
-    counts made = count(studio_any(s), desc);
+    counts made = count(fixture_any(s), desc);
     assert_counts(&made, 2 * 42 * 10, 2 * 40 * 8, 0);
     for (int ranges = 0; ranges < 2; ranges++) {
         for (size_t paints = 1; paints <= 2; paints++) {
@@ -303,19 +305,19 @@ static void test_paints(void **state) {
                 .width = 64, .height = 64, .mesh = mesh, .paints = narrow, .paint_count = paints};
             desc.ranges = ranges ? &all : NULL;
             desc.range_count = (size_t)ranges;
-            made = count(studio_any(s), desc);
+            made = count(fixture_any(s), desc);
             assert_counts(&made, BAR_FRAGMENTS, BAR_DRAWN, 0);
         }
     }
     camber_mesh_destroy(mesh);
-    scene_free(&lines);
+    camber_made_scene_free(&lines);
 }
 
 static void test_nothing(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     camber_mesh *mesh = NULL;
-    assert_int_equal(camber_mesh_create(s->device, studio_any(s), &mesh), CAMBER_OK);
-    counts made = count(studio_any(s), (camber_overdraw_desc){.width = 8, .height = 8, .mesh = mesh});
+    assert_int_equal(camber_mesh_create(s->on.device, fixture_any(s), &mesh), CAMBER_OK);
+    counts made = count(fixture_any(s), (camber_overdraw_desc){.width = 8, .height = 8, .mesh = mesh});
     assert_int_equal(made.map[9], 0);
     assert_counts(&made, 0, 0, 0);
     assert_int_equal(made.sum.fragments, 0);
@@ -324,19 +326,19 @@ static void test_nothing(void **state) {
 
 /* Larger than a piece: across their borders nothing is lost and nothing counted twice. */
 static void test_pieces(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     enum { W = 5000, H = 2500 };
     const camber_stroke stroke = {4, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0};
     const camber_paint paint = {.width_px = 4, .color = {0, 0, 0, 1}};
-    scene lines = {0};
+    camber_made_scene lines = {0};
     add(&lines, 0, (const double[]){100, 2048, 4900, 2048}, 2);
     add(&lines, 0, (const double[]){4096, 100, 4096, 2400}, 2);
     add(&lines, 0, (const double[]){2000, 2046, 2100, 2046, 2050, 2046}, 3);
     camber_mesh *mesh =
-        studio_mesh(s, studio_any(s), &lines, &(camber_tessellation_desc){&stroke, 1, CAMBER_METHOD_STRIP, 0, false});
+        fixture_mesh(s, fixture_any(s), &lines, &(camber_tessellation_desc){&stroke, 1, CAMBER_METHOD_STRIP, 0, false});
     const camber_index_range two = {0, 12};
     camber_overdraw_desc desc = {.width = W, .height = H, .mesh = mesh, .paints = &paint, .paint_count = 1};
-    counts made = count(studio_any(s), desc);
+    counts made = count(fixture_any(s), desc);
     assert_int_equal(made.sum.repeated_pixels, 50 * 4);
     for (size_t y = 2040; y < 2056; y++)
         for (size_t x = 0; x < W; x++)
@@ -344,16 +346,16 @@ static void test_pieces(void **state) {
     free(made.map);
     desc.ranges = &two; /* the lines as one range: they cross once */
     desc.range_count = 1;
-    made = count(studio_any(s), desc);
+    made = count(fixture_any(s), desc);
     assert_counts(&made, 4802 * 6 + 2302 * 6, 4800 * 4 + 2300 * 4 - 16, 16);
     camber_mesh_destroy(mesh);
-    scene_free(&lines);
+    camber_made_scene_free(&lines);
 }
 
 /* Every join and cap, tight and split ones among them. */
 static void test_backends_agree(void **state) {
-    studio *s = *state;
-    if (!s->renderer[0] || !s->renderer[1])
+    fixture *s = *state;
+    if (!s->on.renderer[0] || !s->on.renderer[1])
         skip();
     camber_stroke strokes[9];
     camber_paint paints[9];
@@ -361,18 +363,18 @@ static void test_backends_agree(void **state) {
         strokes[i] = (camber_stroke){1.0f + (float)i, (camber_join)(i % 3), (camber_cap)(i / 3), 0};
         paints[i] = (camber_paint){.width_px = strokes[i].width_px, .color = {0, 0, 0, 1}};
     }
-    scene lines = {0};
+    camber_made_scene lines = {0};
     uint64_t seed = 17;
     for (size_t i = 0; i < 200; i++) {
-        scene_walk(&lines, &seed, 40, (const double[]){2, 30}, i % 3 ? 0.5 : 2.5);
-        scene_end(&lines, i % 9);
+        camber_made_scene_walk(&lines, &seed, 40, (const double[]){2, 30}, i % 3 ? 0.5 : 2.5);
+        camber_made_scene_end(&lines, i % 9);
     }
     for (int method = 0; method < 3; method++) {
         counts made[2];
         for (int i = 0; i < 2; i++) {
-            camber_mesh *mesh = studio_mesh(s, s->renderer[i], &lines,
-                                            &(camber_tessellation_desc){strokes, 9, (camber_method)method, 0, false});
-            made[i] = count(s->renderer[i],
+            camber_mesh *mesh = fixture_mesh(s, s->on.renderer[i], &lines,
+                                             &(camber_tessellation_desc){strokes, 9, (camber_method)method, 0, false});
+            made[i] = count(s->on.renderer[i],
                             (camber_overdraw_desc){
                                 .width = 1000, .height = 1000, .mesh = mesh, .paints = paints, .paint_count = 9});
             camber_mesh_destroy(mesh);
@@ -384,38 +386,37 @@ static void test_backends_agree(void **state) {
         free(made[0].map);
         free(made[1].map);
     }
-    scene_free(&lines);
+    camber_made_scene_free(&lines);
 }
 
 /* A mesh in parts counts like a whole one, by its polylines, by ranges across the parts, and by all at once. */
 static void test_parts(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     const camber_stroke stroke = {5, CAMBER_JOIN_ROUND, CAMBER_CAP_ROUND, 0};
     const camber_paint paint = {.width_px = 5, .color = {0, 0, 0, 1}};
-    scene lines = {0};
+    camber_made_scene lines = {0};
     uint64_t seed = 23;
     for (size_t i = 0; i < 300; i++) {
-        scene_walk(&lines, &seed, 60, (const double[]){2, 30}, 1);
-        scene_end(&lines, 0);
+        camber_made_scene_walk(&lines, &seed, 60, (const double[]){2, 30}, 1);
+        camber_made_scene_end(&lines, 0);
     }
     camber_device *small = NULL;
-    camber_renderer *renderers[2] = {studio_any(s), NULL};
+    camber_renderer *renderers[2] = {fixture_any(s), NULL};
     camber_surface *surface = NULL;
-    assert_int_equal(
-        camber_device_create(s->context, &(camber_device_desc){.largest_buffer_bytes = 1 << 15}, NULL, &small),
-        CAMBER_OK);
+    assert_int_equal(camber_device_create(s->context, &(camber_device_desc){.largest_buffer_bytes = 1 << 15}, &small),
+                     CAMBER_OK);
     assert_int_equal(camber_surface_create(s->context, NULL, &surface), CAMBER_OK);
-    assert_int_equal(
-        camber_renderer_create(small, surface, &(camber_renderer_desc){.draw = CAMBER_DRAW_GL}, &renderers[1]),
-        CAMBER_OK);
+    assert_int_equal(camber_renderer_create(small, surface, &(camber_renderer_desc){.rasterizer = CAMBER_RASTERIZER_GL},
+                                            &renderers[1]),
+                     CAMBER_OK);
     for (int method = 0; method < 3; method++) {
         counts made[2][3];
         for (int i = 0; i < 2; i++) {
             const camber_tessellation_desc desc = {&stroke, 1, (camber_method)method, 0, false};
             camber_polylines *polylines = scene_polylines(s->context, &lines);
             camber_mesh *mesh = NULL;
-            assert_int_equal(camber_mesh_create(i ? small : s->device, renderers[i], &mesh), CAMBER_OK);
-            assert_int_equal(camber_tessellate(mesh, polylines, &desc), CAMBER_OK);
+            assert_int_equal(camber_mesh_create(i ? small : s->on.device, renderers[i], &mesh), CAMBER_OK);
+            assert_int_equal(camber_mesh_tessellate(mesh, polylines, &desc), CAMBER_OK);
             assert_true(i == 0 ? mesh->part_count == 1 : mesh->part_count > 4);
             const uint64_t end = camber_mesh_get_info(mesh).index_count, third = end / 9 * 3;
             const camber_index_range all = {0, end},
@@ -443,36 +444,36 @@ static void test_parts(void **state) {
     camber_renderer_destroy(renderers[1]);
     camber_surface_destroy(surface);
     camber_device_destroy(small);
-    scene_free(&lines);
+    camber_made_scene_free(&lines);
 }
 
 /* Pictures drawn before and after a count are the same, on the same renderer. */
 static void test_pictures_after(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     const camber_stroke stroke = {6, CAMBER_JOIN_ROUND, CAMBER_CAP_ROUND, 0};
     const camber_paint paint = {.width_px = 6, .color = {1, 0.5f, 0, 0.5f}};
-    for (int i = 0; i < BACKENDS; i++) {
-        if (!s->renderer[i])
+    for (int i = 0; i < CAMBER_FIXTURE_BACKENDS; i++) {
+        if (!s->on.renderer[i])
             continue;
-        scene lines = {0};
+        camber_made_scene lines = {0};
         uint64_t seed = 4;
-        scene_walk(&lines, &seed, 100, (const double[]){5, 30}, 1);
-        scene_end(&lines, 0);
-        camber_mesh *mesh = studio_mesh(s, s->renderer[i], &lines,
-                                        &(camber_tessellation_desc){&stroke, 1, CAMBER_METHOD_KITE, 0, false});
+        camber_made_scene_walk(&lines, &seed, 100, (const double[]){5, 30}, 1);
+        camber_made_scene_end(&lines, 0);
+        camber_mesh *mesh = fixture_mesh(s, s->on.renderer[i], &lines,
+                                         &(camber_tessellation_desc){&stroke, 1, CAMBER_METHOD_KITE, 0, false});
         const camber_pass pass = {.mesh = mesh, .paints = &paint, .paint_count = 1};
         const camber_frame frame = {.width = 1000, .height = 1000, .passes = &pass, .pass_count = 1};
-        picture before = picture_draw(s->renderer[i], &frame);
+        picture before = picture_draw(s->on.renderer[i], &frame);
         counts made =
-            count(s->renderer[i],
+            count(s->on.renderer[i],
                   (camber_overdraw_desc){.width = 70, .height = 70, .mesh = mesh, .paints = &paint, .paint_count = 1});
-        picture after = picture_draw(s->renderer[i], &frame);
+        picture after = picture_draw(s->on.renderer[i], &frame);
         picture_assert_same(&before, &after);
         free(made.map);
         picture_free(&before);
         picture_free(&after);
         camber_mesh_destroy(mesh);
-        scene_free(&lines);
+        camber_made_scene_free(&lines);
     }
 }
 
@@ -485,22 +486,22 @@ static camber_status attempt_count(camber_context *context, void *user) {
     (void)context;
     const attempt *a = user;
     camber_overdraw sum;
-    return camber_overdraw_count(a->renderer, &a->desc, &sum);
+    return camber_renderer_count_overdraw(a->renderer, &a->desc, &sum);
 }
 
 static void test_no_memory(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     const camber_stroke stroke = {4, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0};
     const camber_paint paint = {.width_px = 4, .color = {0, 0, 0, 1}};
-    scene lines = {0};
+    camber_made_scene lines = {0};
     add(&lines, 0, BAR, 2);
-    attempt a = {.renderer = studio_any(s)};
+    attempt a = {.renderer = fixture_any(s)};
     camber_mesh *mesh =
-        studio_mesh(s, a.renderer, &lines, &(camber_tessellation_desc){&stroke, 1, CAMBER_METHOD_STRIP, 0, false});
+        fixture_mesh(s, a.renderer, &lines, &(camber_tessellation_desc){&stroke, 1, CAMBER_METHOD_STRIP, 0, false});
     a.desc = (camber_overdraw_desc){.width = 64, .height = 64, .mesh = mesh, .paints = &paint, .paint_count = 1};
     each_allocation_fails(&s->h, attempt_count, s->context, &a);
     camber_mesh_destroy(mesh);
-    scene_free(&lines);
+    camber_made_scene_free(&lines);
 }
 
 int main(void) {
@@ -515,5 +516,5 @@ int main(void) {
         cmocka_unit_test(test_parts),         cmocka_unit_test(test_pictures_after),
         cmocka_unit_test(test_no_memory),
     };
-    return STUDIO_RUN(tests);
+    return FIXTURE_RUN(tests);
 }

@@ -1,5 +1,5 @@
-/* What paints add to strokes: gaps, blurs and translations, and the opacity of a pass. */
-#include "picture.h"
+/* Paints add to strokes: gaps, blurs and translations, and the opacity of a pass. */
+#include "pictures.h"
 
 #include "validate/oracle.h"
 
@@ -22,13 +22,13 @@ typedef struct drawing {
     camber_coverage coverage;
 } drawing;
 
-static picture draw(studio *s, const drawing *d) {
+static picture draw(fixture *s, const drawing *d) {
     const camber_tessellation_desc tessellation = {.strokes = &d->stroke, .stroke_count = 1, .method = d->method};
-    camber_mesh *mesh = studio_line(s, d->points, d->count, &tessellation);
+    camber_mesh *mesh = fixture_line(s, d->points, d->count, &tessellation);
     const camber_pass pass = {
         .mesh = mesh, .paints = &d->paint, .paint_count = 1, .overlap = d->overlap, .opacity = d->opacity};
     picture p = picture_draw(
-        studio_any(s),
+        fixture_any(s),
         &(camber_frame){.width = SIDE, .height = SIDE, .passes = &pass, .pass_count = 1, .coverage = d->coverage});
     camber_mesh_destroy(mesh);
     return p;
@@ -51,7 +51,7 @@ static camber_oracle_window truth_of(const drawing *d, double width_px) {
 
 /* The whole stroke less that of the gap. */
 static void test_gap(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     static const struct { float width, gap; } sizes[] = {{3, 7}, {1, 1}, {0.5f, 4.6f}, {6, 0.8f}, {4.3f, 9.1f}};
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
         for (int join = 0; join < 3; join++)
@@ -88,7 +88,7 @@ static void test_gap(void **state) {
 
 /* Square caps leave a gap open: two rectangles. */
 static void test_gap_square(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     static const float straight[] = {30, 40.5f, 60, 40.5f};
     const drawing d = {.points = straight,
                        .count = 2,
@@ -121,7 +121,7 @@ static double distance(const float *points, size_t count, double x, double y) {
 /* The definition: from half a pixel outside the edge inwards, over the blur and a pixel; on the other side of a band
  * from half a pixel inside it into the gap. */
 static void test_blur(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     static const struct {
         float width, gap, blur;
     } sizes[] = {{9, 0, 1}, {9, 0, 4}, {6, 0, 11}, {4, 9, 2}, {3, 6, 7.5f}};
@@ -156,7 +156,7 @@ static void test_blur(void **state) {
 
 /* A mitred corner fades along both of its edges, a bevelled one along the cut as well. */
 static void test_blur_corner(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     static const float corner[] = {10.5f, 70.5f, 70.5f, 70.5f, 70.5f, 10.5f};
     drawing d = {.points = corner,
                  .count = 3,
@@ -176,7 +176,7 @@ static void test_blur_corner(void **state) {
 
 /* A whole number of pixels moves the picture and changes nothing in it. */
 static void test_translate(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     for (int kind = 0; kind < 4; kind++)
         for (int method = 0; method < 3; method++) {
             drawing d = {.points = bent,
@@ -206,7 +206,7 @@ static void test_translate(void **state) {
 /* An opaque pass with an opacity is a translucent colour; rows of different alphas, which draw over each other, have it
  * all together. */
 static void test_opacity(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     drawing d = {.points = bent,
                  .count = BENT,
                  .stroke = {11, CAMBER_JOIN_ROUND, CAMBER_CAP_ROUND, 0},
@@ -227,7 +227,7 @@ static void test_opacity(void **state) {
 }
 
 static void test_opacity_of_rows(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     static const float points[] = {10, 48, 86, 48, 48, 10, 48, 86};
     static const uint32_t offsets[] = {0, 2, 4}, rows[] = {0, 1};
     static const camber_stroke strokes[] = {{20, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0},
@@ -239,17 +239,17 @@ static void test_opacity_of_rows(void **state) {
     camber_polylines *polylines = NULL;
     camber_mesh *mesh = NULL;
     assert_int_equal(camber_polylines_create(s->context, &desc, &polylines), CAMBER_OK);
-    for (int b = 0; b < BACKENDS; b++) {
-        if (!s->renderer[b])
+    for (int b = 0; b < CAMBER_FIXTURE_DRAWERS; b++) {
+        if (!s->on.renderer[b])
             continue;
-        assert_int_equal(camber_mesh_create(s->device, s->renderer[b], &mesh), CAMBER_OK);
+        assert_int_equal(camber_mesh_create(s->on.device, s->on.renderer[b], &mesh), CAMBER_OK);
         assert_int_equal(
-            camber_tessellate(mesh, polylines, &(camber_tessellation_desc){.strokes = strokes, .stroke_count = 2}),
+            camber_mesh_tessellate(mesh, polylines, &(camber_tessellation_desc){.strokes = strokes, .stroke_count = 2}),
             CAMBER_OK);
         const camber_pass pass = {.mesh = mesh, .paints = paints, .paint_count = 2, .opacity = 0.6f};
         const camber_frame frame = {
             .width = SIDE, .height = SIDE, .background = {1, 1, 1, 1}, .passes = &pass, .pass_count = 1};
-        picture p = picture_draw(s->renderer[b], &frame);
+        picture p = picture_draw(s->on.renderer[b], &frame);
         /* On white: red alone, half blue alone, half blue over red, all at six tenths. */
         const double seen[3][3] = {{1, 0.4, 0.4}, {0.7, 0.7, 1}, {0.7, 0.4, 0.7}};
         const uint32_t places[3][2] = {{20, 48}, {48, 20}, {48, 48}};
@@ -263,7 +263,7 @@ static void test_opacity_of_rows(void **state) {
 }
 
 int main(void) {
-    if (!studio_begin())
+    if (!fixture_begin())
         return 77;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_gap),
@@ -274,6 +274,6 @@ int main(void) {
         cmocka_unit_test(test_opacity),
         cmocka_unit_test(test_opacity_of_rows),
     };
-    const int failed = cmocka_run_group_tests(tests, studio_set_up, studio_tear_down);
+    const int failed = cmocka_run_group_tests(tests, fixture_set_up, fixture_tear_down);
     return failed;
 }

@@ -1,28 +1,28 @@
 /* Passes: coverage by hand, translucent lines flattened or not, paints, casing and fill, parts of a mesh. */
-#include "picture.h"
+#include "pictures.h"
 
 #include "draw/renderer.h"
 
 enum { BENDS_PX = 512 };
 
-static camber_mesh *make_mesh(studio *s, const scene *lines, const camber_stroke *strokes, size_t stroke_count,
-                              camber_method method) {
-    return studio_mesh(s, studio_any(s), lines, &(camber_tessellation_desc){strokes, stroke_count, method, 0, false});
+static camber_mesh *make_mesh(fixture *s, const camber_made_scene *lines, const camber_stroke *strokes,
+                              size_t stroke_count, camber_method method) {
+    return fixture_mesh(s, fixture_any(s), lines, &(camber_tessellation_desc){strokes, stroke_count, method, 0, false});
 }
 
-static void line(scene *s, size_t row, double x0, double y0, double x1, double y1) {
-    scene_point(s, x0, y0);
-    scene_point(s, x1, y1);
-    scene_end(s, row);
+static void line(camber_made_scene *s, size_t row, double x0, double y0, double x1, double y1) {
+    camber_made_scene_point(s, x0, y0);
+    camber_made_scene_point(s, x1, y1);
+    camber_made_scene_end(s, row);
 }
 
-static picture draw(studio *s, const camber_pass *passes, size_t pass_count) {
-    return picture_draw(studio_any(s),
+static picture draw(fixture *s, const camber_pass *passes, size_t pass_count) {
+    return picture_draw(fixture_any(s),
                         &(camber_frame){.width = 64, .height = 64, .passes = passes, .pass_count = pass_count});
 }
 
 /* A picture of one pass over a mesh made for it; the strokes are as wide as the paints. */
-static picture draw_lines(studio *s, const scene *lines, const camber_paint *paints, size_t count,
+static picture draw_lines(fixture *s, const camber_made_scene *lines, const camber_paint *paints, size_t count,
                           camber_overlap overlap) {
     camber_stroke strokes[8];
     for (size_t i = 0; i < count; i++)
@@ -47,12 +47,12 @@ static double part(double at, double from, double to) {
 
 /* A line along an axis with butt caps is a rectangle: its area in each pixel is known. */
 static void test_rectangles(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     static const double widths[] = {0.3, 0.8, 1, 2.5, 4.5, 17};
     for (size_t w = 0; w < sizeof widths / sizeof *widths; w++) {
         for (int vertical = 0; vertical < 2; vertical++) {
             for (int method = 0; method < 3; method++) {
-                scene lines = {0};
+                camber_made_scene lines = {0};
                 const double from = 8.25, to = 50.5, middle = 20.25, half = widths[w] / 2;
                 if (vertical)
                     line(&lines, 0, middle, from, middle, to);
@@ -75,7 +75,7 @@ static void test_rectangles(void **state) {
                 }
                 picture_free(&p);
                 camber_mesh_destroy(mesh);
-                scene_free(&lines);
+                camber_made_scene_free(&lines);
             }
         }
     }
@@ -83,8 +83,8 @@ static void test_rectangles(void **state) {
 
 /* The linear ramp has the same area and the same inside; it differs along the edges. */
 static void test_coverages(void **state) {
-    studio *s = *state;
-    scene lines = {0};
+    fixture *s = *state;
+    camber_made_scene lines = {0};
     line(&lines, 0, 10, 12, 52, 45);
     const double length = hypot(42, 33), width = 7;
     const camber_stroke stroke = {(float)width, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0};
@@ -94,7 +94,7 @@ static void test_coverages(void **state) {
     picture pictures[2];
     for (int coverage = 0; coverage < 2; coverage++) {
         pictures[coverage] = picture_draw(
-            studio_any(s),
+            fixture_any(s),
             &(camber_frame){
                 .width = 64, .height = 64, .passes = &pass, .pass_count = 1, .coverage = (camber_coverage)coverage});
         double area = 0;
@@ -108,29 +108,29 @@ static void test_coverages(void **state) {
     picture_free(&pictures[0]);
     picture_free(&pictures[1]);
     camber_mesh_destroy(mesh);
-    scene_free(&lines);
+    camber_made_scene_free(&lines);
 }
 
 /* ---- Overlap ---- */
 
 /* A loop that crosses itself about 32, 32 and two lines that cross about 32, 12; no edge on a pixel's border, so that
  * partly covered pixels cross as well. */
-static scene crossing_scene(void) {
-    scene s = {0};
-    scene_point(&s, 10, 32.3);
-    scene_point(&s, 54.3, 32.3);
-    scene_point(&s, 54.3, 54.3);
-    scene_point(&s, 32.4, 54.3);
-    scene_point(&s, 32.4, 22);
-    scene_end(&s, 0);
+static camber_made_scene crossing_scene(void) {
+    camber_made_scene s = {0};
+    camber_made_scene_point(&s, 10, 32.3);
+    camber_made_scene_point(&s, 54.3, 32.3);
+    camber_made_scene_point(&s, 54.3, 54.3);
+    camber_made_scene_point(&s, 32.4, 54.3);
+    camber_made_scene_point(&s, 32.4, 22);
+    camber_made_scene_end(&s, 0);
     line(&s, 0, 10, 12.3, 54, 12.3);
     line(&s, 0, 32.4, 4, 32.4, 19);
     return s;
 }
 
 static void test_flatten_is_even(void **state) {
-    studio *s = *state;
-    scene lines = crossing_scene();
+    fixture *s = *state;
+    camber_made_scene lines = crossing_scene();
     const camber_paint paint = {.width_px = 8, .color = {1, 0.5f, 0, 0.4f}};
     picture opaque =
         draw_lines(s, &lines, &(camber_paint){.width_px = 8, .color = {1, 0.5f, 0, 1}}, 1, CAMBER_OVERLAP_FLATTEN);
@@ -154,18 +154,18 @@ static void test_flatten_is_even(void **state) {
     assert_value(&p, 32, 12, 1, 0.5 * twice);
     picture_free(&p);
     picture_free(&opaque);
-    scene_free(&lines);
+    camber_made_scene_free(&lines);
 }
 
 /* Equal alphas and two colours: one run, the later line hides the earlier where they cross. */
 /* Two strokes side by side, their common edge in the middle of a pixel: together they leave nothing of it, one over the
  * other a quarter. A third one over the second adds nothing to its edge. */
 static void test_united_edges(void **state) {
-    studio *s = *state;
-    const camber_surface *surface = studio_any(s)->share.surface;
+    fixture *s = *state;
+    const camber_surface *surface = fixture_any(s)->share.surface;
     if (surface && !surface->half_float_targets)
         skip();
-    scene lines = {0};
+    camber_made_scene lines = {0};
     line(&lines, 0, 4, 20.5, 60, 20.5); /* 15.5 to 25.5 */
     line(&lines, 0, 4, 30.5, 60, 30.5); /* 25.5 to 35.5 */
     line(&lines, 0, 10, 30.5, 50, 30.5);
@@ -179,40 +179,40 @@ static void test_united_edges(void **state) {
         assert_value(&p, 30, 20, 3, (double)alpha);
         picture_free(&p);
     }
-    scene_free(&lines);
+    camber_made_scene_free(&lines);
 }
 
 /* Where the driver has no such targets, one over the other. */
 static void test_without_half_floats(void **state) {
-    studio *s = *state;
-    camber_surface *surface = studio_any(s)->share.surface;
+    fixture *s = *state;
+    camber_surface *surface = fixture_any(s)->share.surface;
     if (!surface)
         skip();
     const bool had = surface->half_float_targets;
-    scene lines = {0};
+    camber_made_scene lines = {0};
     line(&lines, 0, 4, 20.5, 60, 20.5);
     line(&lines, 0, 4, 30.5, 60, 30.5);
-    camber_renderer *renderer = NULL, *old = studio_any(s);
+    camber_renderer *renderer = NULL, *old = fixture_any(s);
     surface->half_float_targets = false;
-    assert_int_equal(
-        camber_renderer_create(s->device, surface, &(camber_renderer_desc){.draw = CAMBER_DRAW_GL}, &renderer),
-        CAMBER_OK);
-    const int which = s->renderer[0] ? 0 : 1;
-    s->renderer[which] = renderer;
+    assert_int_equal(camber_renderer_create(s->on.device, surface,
+                                            &(camber_renderer_desc){.rasterizer = CAMBER_RASTERIZER_GL}, &renderer),
+                     CAMBER_OK);
+    const int which = s->on.renderer[0] ? 0 : 1;
+    s->on.renderer[which] = renderer;
     picture p =
         draw_lines(s, &lines, &(camber_paint){.width_px = 10, .color = {1, 1, 1, 0.5f}}, 1, CAMBER_OVERLAP_FLATTEN);
     assert_value(&p, 30, 25, 3, 0.375);
     assert_value(&p, 30, 20, 3, 0.5);
     picture_free(&p);
-    s->renderer[which] = old;
+    s->on.renderer[which] = old;
     surface->half_float_targets = had;
     camber_renderer_destroy(renderer);
-    scene_free(&lines);
+    camber_made_scene_free(&lines);
 }
 
 static void test_colors_of_one_run(void **state) {
-    studio *s = *state;
-    scene lines = {0};
+    fixture *s = *state;
+    camber_made_scene lines = {0};
     line(&lines, 0, 4, 32, 60, 32);
     line(&lines, 1, 32, 4, 32, 60);
     const camber_paint paints[] = {{.width_px = 8, .color = {1, 0, 0, 0.5f}},
@@ -230,13 +230,13 @@ static void test_colors_of_one_run(void **state) {
     for (int c = 0; c < 4; c++)
         assert_value(&p, 32, 32, c, crossing[c]);
     picture_free(&p);
-    scene_free(&lines);
+    camber_made_scene_free(&lines);
 }
 
 /* Different alphas in one pass: each run over what came before, in the order of the polylines. */
 static void test_alphas_keep_order(void **state) {
-    studio *s = *state;
-    scene lines = {0};
+    fixture *s = *state;
+    camber_made_scene lines = {0};
     line(&lines, 0, 4, 16, 60, 16); /* red, half */
     line(&lines, 1, 4, 48, 60, 48); /* green, opaque */
     line(&lines, 2, 16, 4, 16, 60); /* blue, a quarter: over both */
@@ -257,16 +257,16 @@ static void test_alphas_keep_order(void **state) {
         for (int c = 0; c < 4; c++)
             assert_value(&p, places[i].x, places[i].y, c, places[i].wanted[c]);
     picture_free(&p);
-    scene_free(&lines);
+    camber_made_scene_free(&lines);
 }
 
 enum { STRIPES = 63 };
 
 /* Stripes of the alphas that their rows have, in turn, and a line of the first row down over all of them; the calls
  * that they take. */
-static size_t draw_stripes(studio *s, const camber_paint *paints, size_t rows, picture *p) {
+static size_t draw_stripes(fixture *s, const camber_paint *paints, size_t rows, picture *p) {
     camber_stroke strokes[STRIPES];
-    scene lines = {0};
+    camber_made_scene lines = {0};
     for (size_t i = 0; i < rows; i++)
         strokes[i] = (camber_stroke){.width_px = 1};
     for (size_t i = 0; i < STRIPES; i++)
@@ -277,15 +277,15 @@ static size_t draw_stripes(studio *s, const camber_paint *paints, size_t rows, p
     const camber_frame frame = {.width = 64, .height = 64, .passes = &pass, .pass_count = 1};
     camber_frame_stats stats;
     *p = draw(s, &pass, 1);
-    assert_int_equal(camber_render(studio_any(s), &frame, NULL, NULL, &stats), CAMBER_OK);
+    assert_int_equal(camber_renderer_render(fixture_any(s), &frame, NULL, NULL, &stats), CAMBER_OK);
     camber_mesh_destroy(mesh);
-    scene_free(&lines);
+    camber_made_scene_free(&lines);
     return stats.draw_calls;
 }
 
 /* Alphas that change with every line take a layer each, not one a line; the faintest lies lowest. */
 static void test_alphas_in_turn(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     static const camber_paint paints[] = {{.width_px = 1, .color = {1, 0, 0, 0.25f}},
                                           {.width_px = 1, .color = {0, 1, 0, 1}},
                                           {.width_px = 1, .color = {0, 0, 1, 0.5f}}};
@@ -307,7 +307,7 @@ static void test_alphas_in_turn(void **state) {
 
 /* Past a number of alphas one layer has them all, and the line that is drawn last hides what lies below it there. */
 static void test_many_alphas(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     camber_paint paints[STRIPES];
     for (size_t i = 0; i < STRIPES; i++)
         paints[i] = (camber_paint){.width_px = 1, .color = {1, 1, 1, (float)(i + 1) / (STRIPES + 1)}};
@@ -324,8 +324,8 @@ static void test_many_alphas(void **state) {
 /* ---- Paints ---- */
 
 static void test_paints_that_draw_nothing(void **state) {
-    studio *s = *state;
-    scene lines = crossing_scene();
+    fixture *s = *state;
+    camber_made_scene lines = crossing_scene();
     const camber_stroke strokes[] = {{8, CAMBER_JOIN_ROUND, CAMBER_CAP_SQUARE, 0}};
     camber_mesh *mesh = make_mesh(s, &lines, strokes, 1, CAMBER_METHOD_STRIP);
     const camber_paint nothing[] = {{.width_px = 0, .color = {1, 1, 1, 1}}, {.width_px = 8, .color = {1, 1, 1, 0}}};
@@ -340,13 +340,13 @@ static void test_paints_that_draw_nothing(void **state) {
         assert_int_equal(p.rgba[i], 0);
     picture_free(&p);
     camber_mesh_destroy(mesh);
-    scene_free(&lines);
+    camber_made_scene_free(&lines);
 }
 
 /* A row past the paints between rows that are drawn: not drawn, whatever another picture drew it with. */
 static void test_row_past_the_paints(void **state) {
-    studio *s = *state;
-    scene lines = {0};
+    fixture *s = *state;
+    camber_made_scene lines = {0};
     for (size_t i = 0; i < 3; i++)
         line(&lines, i % 2, 4, 10 + 20 * (double)i, 60, 10 + 20 * (double)i);
     const camber_stroke strokes[] = {{8, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0},
@@ -363,13 +363,13 @@ static void test_row_past_the_paints(void **state) {
         picture_free(&p);
     }
     camber_mesh_destroy(mesh);
-    scene_free(&lines);
+    camber_made_scene_free(&lines);
 }
 
 /* Rows that a pass leaves out do not end a run, and their lines stay away. */
 static void test_some_rows(void **state) {
-    studio *s = *state;
-    scene lines = {0};
+    fixture *s = *state;
+    camber_made_scene lines = {0};
     line(&lines, 0, 4, 16, 60, 16);
     line(&lines, 1, 4, 32, 60, 32);
     line(&lines, 0, 4, 48, 60, 48);
@@ -378,27 +378,27 @@ static void test_some_rows(void **state) {
     const camber_paint paints[] = {{.width_px = 6, .color = {1, 1, 1, 0.5f}}, {.width_px = 0, .color = {1, 1, 1, 1}}};
     const camber_pass pass = {.mesh = mesh, .paints = paints, .paint_count = 2};
     const camber_frame frame = {.width = 64, .height = 64, .passes = &pass, .pass_count = 1};
-    picture p = picture_draw(studio_any(s), &frame);
+    picture p = picture_draw(fixture_any(s), &frame);
     camber_frame_stats stats;
-    assert_int_equal(camber_render(studio_any(s), &frame, NULL, NULL, &stats), CAMBER_OK);
+    assert_int_equal(camber_renderer_render(fixture_any(s), &frame, NULL, NULL, &stats), CAMBER_OK);
     assert_int_equal(stats.draw_calls, draws_in_cl() ? 0 : 2); /* the run and its flattening */
     assert_value(&p, 32, 16, 3, 0.5);
     assert_value(&p, 32, 32, 3, 0);
     assert_value(&p, 32, 48, 3, 0.5);
     picture_free(&p);
     camber_mesh_destroy(mesh);
-    scene_free(&lines);
+    camber_made_scene_free(&lines);
 }
 
 /* More rows than a row of the texture of rows holds: 1024. */
 static void test_thousands_of_rows(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     enum { ROWS = 5000 };
     camber_stroke *strokes = calloc(ROWS, sizeof *strokes);
     camber_paint *paints = calloc(ROWS, sizeof *paints);
     assert_true(strokes && paints);
     static const size_t rows[] = {0, 1, 1023, 1024, 1025, 2047, 2048, 4999};
-    scene lines = {0};
+    camber_made_scene lines = {0};
     for (size_t i = 0; i < ROWS; i++) {
         strokes[i].width_px = 4;
         paints[i] = (camber_paint){.width_px = 4, .color = {0, 1, 0, 1}};
@@ -417,7 +417,7 @@ static void test_thousands_of_rows(void **state) {
     }
     picture_free(&p);
     camber_mesh_destroy(mesh);
-    scene_free(&lines);
+    camber_made_scene_free(&lines);
     free(paints);
     free(strokes);
 }
@@ -425,14 +425,14 @@ static void test_thousands_of_rows(void **state) {
 /* A mesh that is wide enough for the casing draws the fill as one made for the fill does: to 1/255 where joins have
  * room. */
 static void test_casing_and_fill(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     for (int method = 0; method < 2; method++) {
         for (int sharp = 0; sharp < 3; sharp++) {
-            scene lines = {0};
-            scene_point(&lines, 6, 50);
-            scene_point(&lines, 30, 12);
-            scene_point(&lines, 56, 40);
-            scene_end(&lines, 0);
+            camber_made_scene lines = {0};
+            camber_made_scene_point(&lines, 6, 50);
+            camber_made_scene_point(&lines, 30, 12);
+            camber_made_scene_point(&lines, 56, 40);
+            camber_made_scene_end(&lines, 0);
             const camber_stroke wide = {12, (camber_join)sharp, (camber_cap)sharp, 0},
                                 narrow = {5, wide.join, wide.cap, 0};
             camber_mesh *both = make_mesh(s, &lines, &wide, 1, (camber_method)method);
@@ -461,17 +461,17 @@ static void test_casing_and_fill(void **state) {
             picture_free(&from_both);
             camber_mesh_destroy(fill);
             camber_mesh_destroy(both);
-            scene_free(&lines);
+            camber_made_scene_free(&lines);
         }
     }
 }
 
-static picture draw_fill_of(studio *s, const scene *lines, float mesh_px, float fill_px) {
+static picture draw_fill_of(fixture *s, const camber_made_scene *lines, float mesh_px, float fill_px) {
     const camber_stroke stroke = {mesh_px, CAMBER_JOIN_ROUND, CAMBER_CAP_ROUND, 0};
     const camber_paint paint = {.width_px = fill_px, .color = {1, 1, 1, 1}};
     camber_mesh *mesh = make_mesh(s, lines, &stroke, 1, CAMBER_METHOD_STRIP);
     const camber_pass pass = {.mesh = mesh, .paints = &paint, .paint_count = 1};
-    picture p = picture_draw(studio_any(s),
+    picture p = picture_draw(fixture_any(s),
                              &(camber_frame){.width = BENDS_PX, .height = BENDS_PX, .passes = &pass, .pass_count = 1});
     camber_mesh_destroy(mesh);
     return p;
@@ -480,15 +480,15 @@ static picture draw_fill_of(studio *s, const scene *lines, float mesh_px, float 
 /* The same of lines whose bends are closer together than they are wide: what makes room for the widest stroke leaves no
  * holes in a narrower one, but for a pixel that lies on the line where a join parts two segments. */
 static void test_fill_of_bends(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     static const float fills_px[] = {1, 1.8f, 3, 6}, ratios[] = {1.2f, 1.33f, 2, 4};
     for (size_t k = 0; k < 16; k++) {
         const float fill_px = fills_px[k / 4], mesh_px = ratios[k % 4] * fill_px;
         uint64_t seed = 11 + k;
-        scene lines = {0};
+        camber_made_scene lines = {0};
         for (int i = 0; i < 150; i++) {
-            scene_walk(&lines, &seed, 8, (const double[]){0.3, 3}, 1.2);
-            scene_end(&lines, 0);
+            camber_made_scene_walk(&lines, &seed, 8, (const double[]){0.3, 3}, 1.2);
+            camber_made_scene_end(&lines, 0);
         }
         for (size_t i = 0; i < 2 * lines.point_count; i++)
             lines.points[i] *= BENDS_PX / 1000.0f;
@@ -501,18 +501,18 @@ static void test_fill_of_bends(void **state) {
         assert_true(d.drawn > 500);
         picture_free(&from_fill);
         picture_free(&from_both);
-        scene_free(&lines);
+        camber_made_scene_free(&lines);
     }
 }
 
 /* ---- Parts of a mesh ---- */
 
 static void test_polyline_range(void **state) {
-    studio *s = *state;
-    scene lines = {0};
+    fixture *s = *state;
+    camber_made_scene lines = {0};
     for (int i = 0; i < 8; i++) {
         if (i % 3 == 1)
-            scene_end(&lines, 0); /* empty ones count as well */
+            camber_made_scene_end(&lines, 0); /* empty ones count as well */
         line(&lines, 0, 4, 4 + 8 * i, 60, 4 + 8 * i);
     }
     const camber_stroke stroke = {4, CAMBER_JOIN_ROUND, CAMBER_CAP_ROUND, 0};
@@ -536,28 +536,28 @@ static void test_polyline_range(void **state) {
         }
         camber_mesh_destroy(mesh);
     }
-    scene_free(&lines);
+    camber_made_scene_free(&lines);
 }
 
 /* Re-tessellating a mesh that has been drawn: smaller, larger, with other joins. */
 static void test_mesh_changes(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     const camber_paint paint = {.width_px = 6, .color = {1, 1, 1, 1}};
-    scene large = {0};
+    camber_made_scene large = {0};
     uint64_t seed = 3;
     for (int i = 0; i < 200; i++) {
-        scene_walk(&large, &seed, 30, (const double[]){1, 10}, 1);
-        scene_end(&large, 0);
+        camber_made_scene_walk(&large, &seed, 30, (const double[]){1, 10}, 1);
+        camber_made_scene_end(&large, 0);
     }
-    scene small = crossing_scene();
-    const scene *scenes[] = {&small, &large, &small, &large};
+    camber_made_scene small = crossing_scene();
+    const camber_made_scene *scenes[] = {&small, &large, &small, &large};
     camber_mesh *mesh = NULL;
-    assert_int_equal(camber_mesh_create(s->device, studio_any(s), &mesh), CAMBER_OK);
+    assert_int_equal(camber_mesh_create(s->on.device, fixture_any(s), &mesh), CAMBER_OK);
     for (int i = 0; i < 4; i++) {
         const camber_stroke stroke = {6, (camber_join)(i % 3), (camber_cap)(2 - i % 3), 0};
         const camber_tessellation_desc desc = {&stroke, 1, (camber_method)(i % 3), 0, false};
         camber_polylines *polylines = scene_polylines(s->context, scenes[i]);
-        assert_int_equal(camber_tessellate(mesh, polylines, &desc), CAMBER_OK);
+        assert_int_equal(camber_mesh_tessellate(mesh, polylines, &desc), CAMBER_OK);
         camber_mesh *fresh = make_mesh(s, scenes[i], &stroke, 1, desc.method);
         const camber_pass a = {.mesh = mesh, .paints = &paint, .paint_count = 1};
         const camber_pass b = {.mesh = fresh, .paints = &paint, .paint_count = 1};
@@ -569,16 +569,16 @@ static void test_mesh_changes(void **state) {
         camber_polylines_destroy(polylines);
     }
     camber_mesh_destroy(mesh);
-    scene_free(&small);
-    scene_free(&large);
+    camber_made_scene_free(&small);
+    camber_made_scene_free(&large);
 }
 
 /* Opaque passes of one mesh are one draw call, as many as passes where the driver has no multi-draw or the mesh is
  * indexed, and what is drawn is what meshes of their own, each drawn by itself, give. */
 static void test_passes_of_one_mesh(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     enum { PASSES = 6, ROWS = 3 };
-    scene lines = {0};
+    camber_made_scene lines = {0};
     for (size_t i = 0; i < 12; i++)
         line(&lines, i % ROWS, 3 + 5 * (double)i, 4, 60 - 4 * (double)i, 60);
     const camber_stroke strokes[ROWS] = {{9, 0, 0, 0}, {9, 0, 1, 0}, {9, 1, 0, 0}};
@@ -603,10 +603,10 @@ static void test_passes_of_one_mesh(void **state) {
         picture one = draw(s, together, PASSES), many = draw(s, apart, PASSES);
         assert_memory_equal(one.rgba, many.rgba, (size_t)4 * 64 * 64);
         const camber_frame frame = {.width = 64, .height = 64, .passes = together, .pass_count = PASSES};
-        camber_surface *surface = studio_any(s)->share.surface;
+        camber_surface *surface = fixture_any(s)->share.surface;
         camber_gl_multi_draw_arrays_fn *multi = surface ? surface->gl.MultiDrawArrays : NULL;
         camber_frame_stats stats;
-        assert_int_equal(camber_render(studio_any(s), &frame, NULL, NULL, &stats), CAMBER_OK);
+        assert_int_equal(camber_renderer_render(fixture_any(s), &frame, NULL, NULL, &stats), CAMBER_OK);
         assert_int_equal(stats.draw_calls, !surface ? 0 : multi && method == 0 ? 1 : PASSES);
         if (surface) {
             surface->gl.MultiDrawArrays = NULL;
@@ -621,7 +621,7 @@ static void test_passes_of_one_mesh(void **state) {
             camber_mesh_destroy(meshes[p]);
         camber_mesh_destroy(shared);
     }
-    scene_free(&lines);
+    camber_made_scene_free(&lines);
 }
 
 int main(void) {
@@ -636,5 +636,5 @@ int main(void) {
         cmocka_unit_test(test_polyline_range),      cmocka_unit_test(test_mesh_changes),
         cmocka_unit_test(test_row_past_the_paints), cmocka_unit_test(test_passes_of_one_mesh),
     };
-    return STUDIO_RUN(tests);
+    return FIXTURE_RUN(tests);
 }

@@ -1,5 +1,5 @@
 /* Lines and fills of images: against the image sampled where each pixel lies along and across its line. */
-#include "picture.h"
+#include "pictures.h"
 
 #include "base/perspective.h"
 #include "draw/renderer.h"
@@ -31,10 +31,10 @@ static void make_sheet(sheet *s, uint32_t width, uint32_t height, sheet_kind kin
     for (uint32_t i = 0; i < width * height; i++) {
         const uint32_t x = i % width, y = i / width;
         uint8_t *px = s->rgba + 4 * (size_t)i;
-        const uint8_t alpha = kind == CLEAR ? (uint8_t)random_below(&seed, 256) : 255;
+        const uint8_t alpha = kind == CLEAR ? (uint8_t)camber_random_below(&seed, 256) : 255;
         px[3] = alpha;
         for (int c = 0; c < 3; c++)
-            px[c] = (uint8_t)random_below(&seed, (size_t)alpha + 1);
+            px[c] = (uint8_t)camber_random_below(&seed, (size_t)alpha + 1);
         if (kind == CHECKED)
             px[0] = px[1] = px[2] = (x + y) % 2 ? 255 : 0;
         if (kind == HALVES) {
@@ -73,18 +73,18 @@ typedef struct drawing {
     uint32_t largest_piece_px;
 } drawing;
 
-static camber_mesh *make_mesh(studio *s, const drawing *d, bool measured) {
+static camber_mesh *make_mesh(fixture *s, const drawing *d, bool has_arc_length) {
     const camber_tessellation_desc tessellation = {
-        .strokes = &d->stroke, .stroke_count = 1, .method = d->method, .measured = measured};
-    return studio_line(s, d->points, d->count, &tessellation);
+        .strokes = &d->stroke, .stroke_count = 1, .method = d->method, .has_arc_length = has_arc_length};
+    return fixture_line(s, d->points, d->count, &tessellation);
 }
 
-static picture draw(studio *s, const drawing *d) {
+static picture draw(fixture *s, const drawing *d) {
     camber_mesh *mesh = make_mesh(s, d, true);
     const camber_pass pass = {
         .mesh = mesh, .paints = &d->paint, .paint_count = 1, .images = d->images, .image_count = d->image_count};
     picture p = picture_draw(
-        studio_any(s),
+        fixture_any(s),
         &(camber_frame){
             .width = SIDE, .height = SIDE, .passes = &pass, .pass_count = 1, .largest_piece_px = d->largest_piece_px});
     camber_mesh_destroy(mesh);
@@ -116,8 +116,8 @@ static spot find_spot(const drawing *d, double x, double y) {
     return found;
 }
 
-/* Of the pixels that lie in the line, two widths from its joints. */
-static void check(studio *s, const drawing *d, double mean_bound, double most_bound) {
+/* Compares the pixels that lie in the line, two widths from its joints. */
+static void check(fixture *s, const drawing *d, double mean_bound, double most_bound) {
     picture p = draw(s, d);
     const camber_image *image = d->images + d->paint.pattern - 1;
     const double whole = 2.0 * (double)camber_paint_half_width(&d->paint);
@@ -221,7 +221,7 @@ static void test_sides(void **state) {
     picture_free(&p);
 }
 
-/* What is much finer than pixels is its average, wherever it is. */
+/* A pattern that is much finer than pixels is its average, wherever it is. */
 static void test_fine(void **state) {
     sheet s;
     make_sheet(&s, 64, 64, CHECKED);
@@ -300,21 +300,22 @@ static void test_many(void **state) {
     camber_image images[COUNT];
     camber_stroke strokes[COUNT];
     camber_pass passes[COUNT];
-    studio *s = *state;
+    fixture *s = *state;
     uint64_t seed = 3;
     for (size_t i = 0; i < sizeof rgba; i++)
-        rgba[i] = i % 4 == 3 ? 255 : (uint8_t)random_below(&seed, 256);
-    scene lines = {0};
+        rgba[i] = i % 4 == 3 ? 255 : (uint8_t)camber_random_below(&seed, 256);
+    camber_made_scene lines = {0};
     for (size_t i = 0; i < COUNT; i++) {
         images[i] = (camber_image){rgba + 4 * i, PX, PX, 0};
         strokes[i] = (camber_stroke){600, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0};
         all[i] = (camber_paint){.width_px = 600, .color = {1, 1, 1, 1}, .pattern = (uint32_t)i + 1};
         paints[i][i] = all[i];
-        scene_point(&lines, 0, 48);
-        scene_point(&lines, SIDE, 48);
-        scene_end(&lines, i);
+        camber_made_scene_point(&lines, 0, 48);
+        camber_made_scene_point(&lines, SIDE, 48);
+        camber_made_scene_end(&lines, i);
     }
-    camber_mesh *mesh = studio_mesh(s, studio_any(s), &lines, &(camber_tessellation_desc){strokes, COUNT, 0, 0, true});
+    camber_mesh *mesh =
+        fixture_mesh(s, fixture_any(s), &lines, &(camber_tessellation_desc){strokes, COUNT, 0, 0, true});
     for (size_t i = 0; i < COUNT; i++)
         passes[i] = (camber_pass){.mesh = mesh,
                                   .first_polyline = i,
@@ -325,15 +326,15 @@ static void test_many(void **state) {
                                   .image_count = COUNT};
     camber_frame frame = {.width = SIDE, .height = SIDE, .passes = passes, .pass_count = COUNT};
     for (int round = 0; round < 2; round++) {
-        picture p = picture_draw(studio_any(s), &frame);
+        picture p = picture_draw(fixture_any(s), &frame);
         frame.passes = passes + COUNT - 1;
         frame.pass_count = 1;
-        picture q = picture_draw(studio_any(s), &frame);
+        picture q = picture_draw(fixture_any(s), &frame);
         picture_assert_same(&p, &q);
         frame.passes = passes;
         frame.pass_count = COUNT - 1;
         picture_free(&q);
-        q = picture_draw(studio_any(s), &frame);
+        q = picture_draw(fixture_any(s), &frame);
         assert_true(picture_compare(&p, &q).mean > 20);
         picture_free(&q);
         picture_free(&p);
@@ -341,24 +342,24 @@ static void test_many(void **state) {
     }
     passes[0].paints = all;
     if (draws_in_cl()) { /* which holds more, and all of a frame at once */
-        assert_int_equal(camber_render(studio_any(s), &frame, NULL, NULL, NULL), CAMBER_OK);
+        assert_int_equal(camber_renderer_render(fixture_any(s), &frame, NULL, NULL, NULL), CAMBER_OK);
     } else {
-        assert_int_equal(camber_render(studio_any(s), &frame, NULL, NULL, NULL), CAMBER_ERROR_LIMIT);
+        assert_int_equal(camber_renderer_render(fixture_any(s), &frame, NULL, NULL, NULL), CAMBER_ERROR_LIMIT);
         assert_story(&s->h, "fewer images");
     }
     camber_mesh_destroy(mesh);
-    scene_free(&lines);
+    camber_made_scene_free(&lines);
 }
 
 /* ---- Fills ---- */
 
-static picture fill(studio *s, const camber_pass *passes, size_t count, uint32_t piece_px) {
-    return picture_draw(studio_any(s), &(camber_frame){.width = SIDE,
-                                                       .height = SIDE,
-                                                       .passes = passes,
-                                                       .pass_count = count,
-                                                       .background = {0, 0, 1, 1},
-                                                       .largest_piece_px = piece_px});
+static picture fill(fixture *s, const camber_pass *passes, size_t count, uint32_t piece_px) {
+    return picture_draw(fixture_any(s), &(camber_frame){.width = SIDE,
+                                                        .height = SIDE,
+                                                        .passes = passes,
+                                                        .pass_count = count,
+                                                        .background = {0, 0, 1, 1},
+                                                        .largest_piece_px = piece_px});
 }
 
 static void assert_color(const picture *p, uint32_t at, const char *wanted) {
@@ -374,9 +375,10 @@ static void test_fill_color(void **state) {
     d.paint.pattern = 0;
     camber_mesh *mesh = make_mesh(*state, &d, true);
     const camber_pass line = {.mesh = mesh, .paints = &d.paint, .paint_count = 1};
-    const camber_pass veil = {.fill = {.color = {0, 1, 0, 0.5f}}}, nothing = {0};
-    const camber_pass passes[] = {line, veil, nothing};
-    picture p = fill(*state, passes, 3, 0), q = fill(*state, (const camber_pass[]){veil, line}, 2, 50);
+    const camber_pass overlay = {.kind = CAMBER_PASS_FILL, .fill = {.color = {0, 1, 0, 0.5f}}},
+                      nothing = {.kind = CAMBER_PASS_FILL};
+    const camber_pass passes[] = {line, overlay, nothing};
+    picture p = fill(*state, passes, 3, 0), q = fill(*state, (const camber_pass[]){overlay, line}, 2, 50);
     assert_color(&p, 1, "\x00\x80\x80");  /* over the background */
     assert_color(&p, 48, "\x80\x80\x00"); /* and over the line */
     assert_color(&q, 1, "\x00\x80\x80");
@@ -386,8 +388,8 @@ static void test_fill_color(void **state) {
     camber_mesh_destroy(mesh);
 }
 
-static void check_fill(studio *s, const camber_image *image, camber_fill fill_as, uint32_t piece_px) {
-    const camber_pass pass = {.images = image, .image_count = 1, .fill = fill_as};
+static void check_fill(fixture *s, const camber_image *image, camber_fill fill_as, uint32_t piece_px) {
+    const camber_pass pass = {.kind = CAMBER_PASS_FILL, .images = image, .image_count = 1, .fill = fill_as};
     picture p = fill(s, &pass, 1, piece_px);
     const double w = fill_as.width_px > 0 ? (double)fill_as.width_px : image->width;
     const double h = fill_as.height_px > 0 ? (double)fill_as.height_px : image->height;
@@ -429,7 +431,8 @@ static void test_fill_images(void **state) {
                    0);
     }
     make_sheet(&s, 64, 64, CHECKED);
-    const camber_pass fine = {.images = &s.image,
+    const camber_pass fine = {.kind = CAMBER_PASS_FILL,
+                              .images = &s.image,
                               .image_count = 1,
                               .fill = {.color = {0, 0, 0, 1}, .pattern = 1, .width_px = 13, .height_px = 9}};
     picture p = fill(*state, &fine, 1, 0);
@@ -451,14 +454,14 @@ static bool ground_of(double pitch_deg, uint32_t k, double ground[2], double *de
 }
 
 static void test_pitched_line(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     sheet made;
     make_sheet(&made, 4, 4, SMOOTH);
     const drawing d = drawing_of(slanted, 2, 40, &made);
     camber_mesh *mesh = make_mesh(s, &d, true);
     const camber_pass pass = {.mesh = mesh, .paints = &d.paint, .paint_count = 1, .images = d.images, .image_count = 1};
     picture p =
-        picture_draw(studio_any(s),
+        picture_draw(fixture_any(s),
                      &(camber_frame){.width = SIDE, .height = SIDE, .passes = &pass, .pass_count = 1, .pitch_deg = 60});
     size_t count = 0;
     for (uint32_t k = 0; k < SIDE * SIDE; k++) {
@@ -480,21 +483,22 @@ static void test_pitched_line(void **state) {
 
 /* Near the middle the images are where they lie, and far away they are their average. */
 static void test_pitched_fill(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     sheet made;
     for (int fine = 0; fine < 2; fine++) {
         const double pitch_deg = fine ? 75 : 60;
         make_sheet(&made, fine ? 64 : 4, fine ? 64 : 4, fine ? CHECKED : SMOOTH);
         const camber_pass pass = {
+            .kind = CAMBER_PASS_FILL,
             .images = &made.image,
             .image_count = 1,
             .fill = {.color = {0, 0, 0, 1}, .pattern = 1, .width_px = 32, .height_px = 32, .x_px = 5, .y_px = 9}};
-        picture p = picture_draw(studio_any(s), &(camber_frame){.width = SIDE,
-                                                                .height = SIDE,
-                                                                .passes = &pass,
-                                                                .pass_count = 1,
-                                                                .pitch_deg = pitch_deg,
-                                                                .largest_piece_px = 60});
+        picture p = picture_draw(fixture_any(s), &(camber_frame){.width = SIDE,
+                                                                 .height = SIDE,
+                                                                 .passes = &pass,
+                                                                 .pass_count = 1,
+                                                                 .pitch_deg = pitch_deg,
+                                                                 .largest_piece_px = 60});
         for (uint32_t k = 0; k < SIDE * SIDE; k++) {
             double ground[2], depth, wanted[4];
             if (!ground_of(pitch_deg, k, ground, &depth))
@@ -512,10 +516,10 @@ static void test_pitched_fill(void **state) {
     }
 }
 
-/* ---- What is refused, and what runs out ---- */
+/* ---- Refusals and limits ---- */
 
 static void test_misuse(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     sheet made;
     make_sheet(&made, 4, 4, SMOOTH);
     drawing d = drawing_of(level, 2, 8, &made);
@@ -524,12 +528,12 @@ static void test_misuse(void **state) {
     camber_pass pass = {
         .mesh = unmeasured, .paints = &d.paint, .paint_count = 1, .images = &made.image, .image_count = 1};
     const camber_frame frame = {.width = SIDE, .height = SIDE, .passes = &pass, .pass_count = 1};
-    assert_int_equal(camber_render(studio_any(s), &frame, NULL, NULL, NULL), CAMBER_ERROR_ARGUMENT);
-    assert_story(&s->h, "measured");
+    assert_int_equal(camber_renderer_render(fixture_any(s), &frame, NULL, NULL, NULL), CAMBER_ERROR_ARGUMENT);
+    assert_story(&s->h, "arc lengths");
     pass.mesh = mesh;
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         pass.images = bad + i;
-        assert_int_equal(camber_render(studio_any(s), &frame, NULL, NULL, NULL), CAMBER_ERROR_ARGUMENT);
+        assert_int_equal(camber_renderer_render(fixture_any(s), &frame, NULL, NULL, NULL), CAMBER_ERROR_ARGUMENT);
         assert_story(&s->h, "image 0");
     }
     camber_mesh_destroy(unmeasured);
@@ -537,35 +541,38 @@ static void test_misuse(void **state) {
 }
 
 typedef struct attempt {
-    studio *s;
+    fixture *s;
     const camber_frame *frame;
 } attempt;
 
 /* With a renderer of its own, which keeps the texture of images. */
 static camber_status try_frame(camber_context *context, void *user) {
     const attempt *a = user;
-    camber_surface *surface = a->s->surface[a->s->renderer[0] ? 0 : 1]; /* none, where OpenCL draws */
+    camber_surface *surface = a->s->on.surface[a->s->on.renderer[0] ? 0 : 1]; /* none, where OpenCL draws */
     camber_renderer *renderer = NULL;
     (void)context;
-    const camber_renderer_desc in_gl = {.sharing = CAMBER_SHARING_COPY, .draw = CAMBER_DRAW_GL}, in_cl = {0};
+    const camber_renderer_desc in_gl = {.sharing = CAMBER_SHARING_COPY, .rasterizer = CAMBER_RASTERIZER_GL},
+                               in_cl = {0};
     const camber_renderer_desc desc = surface ? in_gl : in_cl;
-    camber_status status = camber_renderer_create(a->s->device, surface, &desc, &renderer);
+    camber_status status = camber_renderer_create(a->s->on.device, surface, &desc, &renderer);
     if (status == CAMBER_OK)
-        status = camber_render(renderer, a->frame, NULL, NULL, NULL);
+        status = camber_renderer_render(renderer, a->frame, NULL, NULL, NULL);
     camber_renderer_destroy(renderer);
     return status;
 }
 
 static void test_memory(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     static sheet made[20];
     static camber_image images[20];
     camber_pass passes[20] = {{0}};
     for (uint32_t i = 0; i < 20; i++) {
         make_sheet(made + i, 11 + i, 9, CLEAR);
         images[i] = made[i].image;
-        passes[i] =
-            (camber_pass){.images = images, .image_count = 20, .fill = {.color = {0, 0, 0, 1}, .pattern = i + 1}};
+        passes[i] = (camber_pass){.kind = CAMBER_PASS_FILL,
+                                  .images = images,
+                                  .image_count = 20,
+                                  .fill = {.color = {0, 0, 0, 1}, .pattern = i + 1}};
     }
     const camber_frame frame = {.width = SIDE, .height = SIDE, .passes = passes, .pass_count = 20};
     attempt all = {s, &frame};
@@ -581,5 +588,5 @@ int main(void) {
         cmocka_unit_test(test_fill_color),   cmocka_unit_test(test_fill_images), cmocka_unit_test(test_pitched_line),
         cmocka_unit_test(test_pitched_fill), cmocka_unit_test(test_misuse),
     };
-    return STUDIO_RUN(tests);
+    return FIXTURE_RUN(tests);
 }

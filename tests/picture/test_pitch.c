@@ -1,6 +1,6 @@
 /* A plane that is seen at an angle: against rays from the camera through 16 x 16 places of each pixel. The rays share
  * nothing with the shaders and kernels but where the camera stands. */
-#include "picture.h"
+#include "pictures.h"
 
 enum { WIDE = 160, HIGH = 120, SAMPLES = 16, POINTS_MAX = 40 };
 static const double PITCHES[] = {30, 60, 80, 85};
@@ -147,16 +147,16 @@ typedef struct look {
     float alpha; /* 0: 1 */
 } look;
 
-static picture draw(const studio *s, camber_renderer *renderer, const figure *f, const look *l) {
-    scene lines = {0};
+static picture draw(const fixture *s, camber_renderer *renderer, const figure *f, const look *l) {
+    camber_made_scene lines = {0};
     for (size_t i = 0; i < f->count; i++)
-        scene_point(&lines, (double)f->points[2 * i], (double)f->points[2 * i + 1]);
-    scene_end(&lines, 0);
+        camber_made_scene_point(&lines, (double)f->points[2 * i], (double)f->points[2 * i + 1]);
+    camber_made_scene_end(&lines, 0);
     camber_stroke stroke = f->stroke;
     stroke.width_px = f->width_px;
     const camber_tessellation_desc desc = {
-        .strokes = &stroke, .stroke_count = 1, .method = l->method, .measured = l->dash.count > 0};
-    camber_mesh *mesh = studio_mesh(s, renderer, &lines, &desc);
+        .strokes = &stroke, .stroke_count = 1, .method = l->method, .has_arc_length = l->dash.count > 0};
+    camber_mesh *mesh = fixture_mesh(s, renderer, &lines, &desc);
     const camber_paint paint = {
         .width_px = f->width_px, .color = {1, 1, 1, l->alpha > 0 ? l->alpha : 1}, .dash = l->dash.count > 0};
     const camber_pass pass = {.mesh = mesh,
@@ -173,7 +173,7 @@ static picture draw(const studio *s, camber_renderer *renderer, const figure *f,
                                 .pitch_deg = l->pitch_deg};
     picture p = picture_draw(renderer, &frame);
     camber_mesh_destroy(mesh);
-    scene_free(&lines);
+    camber_made_scene_free(&lines);
     return p;
 }
 
@@ -237,7 +237,7 @@ static const figure FIGURES[] = {
 static const double MEAN_BOUNDS[PITCH_COUNT] = {1.5, 2.5, 6, 11}, MOST_BOUNDS[PITCH_COUNT] = {40, 60, 100, 140};
 
 static void test_oracle(void **state) {
-    const studio *s = *state;
+    const fixture *s = *state;
     static double truth[WIDE * HIGH];
     size_t failed = 0;
     for (size_t f = 0; f < sizeof FIGURES / sizeof *FIGURES; f++)
@@ -245,7 +245,7 @@ static void test_oracle(void **state) {
             make_truth(FIGURES + f, PITCHES[i], truth);
             for (int method = 0; method < 3; method++) {
                 const look l = {.pitch_deg = PITCHES[i], .method = (camber_method)method};
-                picture p = draw(s, studio_any(s), FIGURES + f, &l);
+                picture p = draw(s, fixture_any(s), FIGURES + f, &l);
                 const error e = compare(&p, truth);
                 const bool off = e.mean > MEAN_BOUNDS[i] || e.most > MOST_BOUNDS[i];
                 failed += off;
@@ -260,12 +260,12 @@ static void test_oracle(void **state) {
 
 /* Nearly no pitch shows what none does: the other shader, which decides by fragments what triangles decide without. */
 static void test_nearly_flat(void **state) {
-    const studio *s = *state;
+    const fixture *s = *state;
     for (size_t f = 0; f < sizeof FIGURES / sizeof *FIGURES; f++)
         for (int method = 0; method < 3; method++) {
-            picture flat = draw(s, studio_any(s), FIGURES + f, &(look){.method = (camber_method)method});
+            picture flat = draw(s, fixture_any(s), FIGURES + f, &(look){.method = (camber_method)method});
             picture tilted =
-                draw(s, studio_any(s), FIGURES + f, &(look){.pitch_deg = 1e-4, .method = (camber_method)method});
+                draw(s, fixture_any(s), FIGURES + f, &(look){.pitch_deg = 1e-4, .method = (camber_method)method});
             const difference d = picture_compare(&flat, &tilted);
             if (d.mean > 1.5 || d.most > 90)
                 fail_msg("%s, method %d: %.2f of 255 on average, %d at most", FIGURES[f].name, method, d.mean, d.most);
@@ -275,14 +275,14 @@ static void test_nearly_flat(void **state) {
 }
 
 static void test_pieces(void **state) {
-    const studio *s = *state;
+    const fixture *s = *state;
     for (size_t f = 0; f < sizeof FIGURES / sizeof *FIGURES; f++)
         for (int i = 0; i < PITCH_COUNT; i++)
             for (int flattened = 0; flattened < 2; flattened++) {
                 look l = {.pitch_deg = PITCHES[i], .alpha = flattened ? 0.5f : 1};
-                picture whole = draw(s, studio_any(s), FIGURES + f, &l);
+                picture whole = draw(s, fixture_any(s), FIGURES + f, &l);
                 l.largest_piece_px = 37;
-                picture pieces = draw(s, studio_any(s), FIGURES + f, &l);
+                picture pieces = draw(s, fixture_any(s), FIGURES + f, &l);
                 picture_assert_same(&whole, &pieces);
                 picture_free(&pieces);
                 picture_free(&whole);
@@ -290,25 +290,25 @@ static void test_pieces(void **state) {
 }
 
 static void test_backends(void **state) {
-    const studio *s = *state;
-    if (!s->renderer[0] || !s->renderer[1])
+    const fixture *s = *state;
+    if (!s->on.renderer[0] || !s->on.renderer[1])
         skip();
     for (size_t f = 0; f < sizeof FIGURES / sizeof *FIGURES; f++)
         for (int i = 0; i < PITCH_COUNT; i++) {
             const look l = {.pitch_deg = PITCHES[i]};
-            picture a = draw(s, s->renderer[0], FIGURES + f, &l), b = draw(s, s->renderer[1], FIGURES + f, &l);
+            picture a = draw(s, s->on.renderer[0], FIGURES + f, &l), b = draw(s, s->on.renderer[1], FIGURES + f, &l);
             picture_assert_same(&a, &b);
             picture_free(&b);
             picture_free(&a);
         }
 }
 
-/* What lies past the far plane, and all of the sky, is background. */
+/* All that lies past the far plane, and all of the sky, is background. */
 static void test_horizon(void **state) {
-    const studio *s = *state;
+    const fixture *s = *state;
     const figure wide = {"over all", {-20000, -3000, 20000, -3000, 20000, 400, -20000, 400}, 4, ROUND, 5000};
     for (int i = 0; i < PITCH_COUNT; i++) {
-        picture p = draw(s, studio_any(s), &wide, &(look){.pitch_deg = PITCHES[i]});
+        picture p = draw(s, fixture_any(s), &wide, &(look){.pitch_deg = PITCHES[i]});
         const uint32_t row = far_row(PITCHES[i]);
         assert_true(PITCHES[i] > 70 ? row > 10 : row == 0);
         for (uint32_t k = 0; k < WIDE * HIGH; k++)
@@ -321,7 +321,7 @@ static void test_horizon(void **state) {
 
 /* Each dash by itself. */
 static void test_dashes(void **state) {
-    const studio *s = *state;
+    const fixture *s = *state;
     static double truth[WIDE * HIGH], part[WIDE * HIGH];
     static const float lengths[] = {14, 10};
     const figure lines[] = {{"dashes across", {20, 75, 140, 50}, 2, BUTT, 8},
@@ -344,7 +344,7 @@ static void test_dashes(void **state) {
                     truth[k] += part[k];
             }
             const look l = {.pitch_deg = PITCHES[i], .dash = {lengths, 2}};
-            picture drawn = draw(s, studio_any(s), lines + n, &l);
+            picture drawn = draw(s, fixture_any(s), lines + n, &l);
             const error e = compare(&drawn, truth);
             printf("%s at %g degrees: %.2f of 255 on average, %.0f at %u, %u\n", lines[n].name, PITCHES[i], e.mean,
                    e.most, e.x, e.y);
@@ -355,11 +355,11 @@ static void test_dashes(void **state) {
 
 /* Far away, where a pixel holds many of them, dashes are their share of the line. */
 static void test_far_dashes(void **state) {
-    const studio *s = *state;
+    const fixture *s = *state;
     static const float fine[] = {1, 3};
     const figure line = {"far", {-300, -400, 500, -400}, 2, BUTT, 40};
-    picture whole = draw(s, studio_any(s), &line, &(look){.pitch_deg = 80});
-    picture dashed = draw(s, studio_any(s), &line, &(look){.pitch_deg = 80, .dash = {fine, 2}});
+    picture whole = draw(s, fixture_any(s), &line, &(look){.pitch_deg = 80});
+    picture dashed = draw(s, fixture_any(s), &line, &(look){.pitch_deg = 80, .dash = {fine, 2}});
     size_t seen = 0;
     for (uint32_t k = 0; k < WIDE * HIGH; k++) {
         const double a = picture_value(&whole, k % WIDE, k / WIDE, 3),
@@ -374,27 +374,27 @@ static void test_far_dashes(void **state) {
 
 /* ---- Networks ---- */
 
-static void walk_world(scene *s, uint64_t *seed) {
+static void walk_world(camber_made_scene *s, uint64_t *seed) {
     for (size_t i = 0; i < 60; i++) {
-        double x = random_between(seed, -900, 1000), y = random_between(seed, -1300, 400);
-        double direction = random_between(seed, -SCENE_PI, SCENE_PI);
+        double x = camber_random_between(seed, -900, 1000), y = camber_random_between(seed, -1300, 400);
+        double direction = camber_random_between(seed, -SCENE_PI, SCENE_PI);
         for (size_t k = 0; k < 12; k++) {
-            const double length = random_between(seed, 20, 400);
-            scene_point(s, x, y);
-            direction += random_between(seed, -0.8, 0.8);
+            const double length = camber_random_between(seed, 20, 400);
+            camber_made_scene_point(s, x, y);
+            direction += camber_random_between(seed, -0.8, 0.8);
             x += length * cos(direction);
             y += length * sin(direction);
         }
-        scene_end(s, i % 2);
+        camber_made_scene_end(s, i % 2);
     }
 }
 
 /* The same lines as a network, which is cut at what is seen, on the device and by the twin, and as they are. */
 static void test_network(void **state) {
-    const studio *s = *state;
-    camber_renderer *renderer = studio_any(s);
+    const fixture *s = *state;
+    camber_renderer *renderer = fixture_any(s);
     uint64_t seed = 20;
-    scene lines = {0};
+    camber_made_scene lines = {0};
     walk_world(&lines, &seed);
     double *points = malloc(2 * lines.point_count * sizeof *points);
     size_t offsets[64];
@@ -418,18 +418,18 @@ static void test_network(void **state) {
     const camber_tessellation_desc desc = {.strokes = wide, .stroke_count = 2};
     const camber_paint paints[] = {{.width_px = 6, .color = {1, 1, 1, 1}}, {.width_px = 3, .color = {1, 1, 1, 1}}};
     camber_network *network = NULL;
-    camber_mesh *mesh = NULL, *whole = studio_mesh(s, renderer, &lines, &desc);
+    camber_mesh *mesh = NULL, *whole = fixture_mesh(s, renderer, &lines, &desc);
     assert_int_equal(camber_network_create(s->context, &network_desc, &network), CAMBER_OK);
-    assert_int_equal(camber_mesh_create(s->device, renderer, &mesh), CAMBER_OK);
+    assert_int_equal(camber_mesh_create(s->on.device, renderer, &mesh), CAMBER_OK);
     for (int i = 0; i < PITCH_COUNT; i++) {
         const camber_camera camera = {
             .x = 0.5 * WIDE, .y = 0.5 * HIGH, .scale_px = 1, .width = WIDE, .height = HIGH, .pitch_deg = PITCHES[i]};
         camber_polylines *twin = NULL;
         camber_mesh_data of_device, of_twin;
-        assert_int_equal(camber_tessellate_network(mesh, network, &camera, &desc), CAMBER_OK);
+        assert_int_equal(camber_mesh_tessellate_network(mesh, network, &camera, &desc), CAMBER_OK);
         assert_int_equal(camber_network_project(network, &camera, &desc, &twin), CAMBER_OK);
         assert_int_equal(camber_mesh_read(mesh, &of_device), CAMBER_OK);
-        assert_int_equal(camber_tessellate_on_host(s->context, twin, &desc, &of_twin), CAMBER_OK);
+        assert_int_equal(camber_mesh_data_tessellate(s->context, twin, &desc, &of_twin), CAMBER_OK);
         assert_true(of_twin.info.record_count > 0);
         assert_int_equal(of_device.info.record_count, of_twin.info.record_count);
         assert_memory_equal(of_device.records, of_twin.records, of_twin.info.record_count * sizeof *of_twin.records);
@@ -446,20 +446,20 @@ static void test_network(void **state) {
         assert_true(d.drawn > 1000);
         picture_free(&uncut);
         picture_free(&cut);
-        camber_mesh_data_free(s->context, &of_twin);
-        camber_mesh_data_free(s->context, &of_device);
+        camber_mesh_data_destroy(&of_twin);
+        camber_mesh_data_destroy(&of_device);
         camber_polylines_destroy(twin);
     }
     camber_mesh_destroy(whole);
     camber_mesh_destroy(mesh);
     camber_network_destroy(network);
     free(points);
-    scene_free(&lines);
+    camber_made_scene_free(&lines);
 }
 
-/* Of a long line only what is seen is cut out: nothing lies behind the camera. */
+/* Only the part of a long line that is seen is cut out: nothing lies behind the camera. */
 static void test_window(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     const double points[] = {80, 1e7, 90, -1e7, -1e7, -200, 1e7, -210};
     const size_t offsets[] = {0, 2, 4};
     const camber_network_desc network_desc = {.points = points, .offsets = offsets, .polyline_count = 2};
@@ -471,8 +471,7 @@ static void test_window(void **state) {
         const camber_camera camera = {
             .x = 0.5 * WIDE, .y = 0.5 * HIGH, .scale_px = 1, .width = WIDE, .height = HIGH, .pitch_deg = PITCHES[i]};
         camber_lines lines;
-        uint32_t *entries;
-        assert_int_equal(camber_network_lines(network, &camera, &desc, &lines, &entries), CAMBER_OK);
+        assert_int_equal(camber_network_project_lines(network, &camera, &desc, &lines), CAMBER_OK);
         assert_int_equal(lines.polyline_count, PITCHES[i] > 50 ? 2 : 1); /* the second one lies farther */
         for (size_t k = 0; k < lines.point_count; k++) {
             const double x = (double)lines.points[2 * k], y = (double)lines.points[2 * k + 1];
@@ -480,14 +479,13 @@ static void test_window(void **state) {
             const double depth = 1 - (y - 0.5 * HIGH) * sin(angle) / distance;
             assert_true(depth > 0 && depth < 15 && fabs(x) < 15 * WIDE);
         }
-        camber_entries_free(s->context, entries);
-        camber_lines_free(s->context, &lines);
+        camber_lines_destroy(&lines);
     }
     camber_network_destroy(network);
 }
 
 static void test_bad_pitch(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     static const double bad[] = {-1, 85.001, 90, NAN, INFINITY};
     const double points[] = {0, 0, 10, 10};
     const size_t offsets[] = {0, 2};
@@ -497,13 +495,13 @@ static void test_bad_pitch(void **state) {
     camber_network *network = NULL;
     camber_mesh *mesh = NULL;
     assert_int_equal(camber_network_create(s->context, &network_desc, &network), CAMBER_OK);
-    assert_int_equal(camber_mesh_create(s->device, studio_any(s), &mesh), CAMBER_OK);
+    assert_int_equal(camber_mesh_create(s->on.device, fixture_any(s), &mesh), CAMBER_OK);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         const camber_camera camera = {.scale_px = 1, .width = WIDE, .height = HIGH, .pitch_deg = bad[i]};
         const camber_frame frame = {.width = WIDE, .height = HIGH, .pitch_deg = bad[i]};
-        assert_int_equal(camber_tessellate_network(mesh, network, &camera, &desc), CAMBER_ERROR_ARGUMENT);
+        assert_int_equal(camber_mesh_tessellate_network(mesh, network, &camera, &desc), CAMBER_ERROR_ARGUMENT);
         assert_story(&s->h, "pitch");
-        assert_int_equal(camber_render(studio_any(s), &frame, NULL, NULL, NULL), CAMBER_ERROR_ARGUMENT);
+        assert_int_equal(camber_renderer_render(fixture_any(s), &frame, NULL, NULL, NULL), CAMBER_ERROR_ARGUMENT);
         assert_story(&s->h, "pitch");
     }
     camber_mesh_destroy(mesh);
@@ -517,5 +515,5 @@ int main(void) {
         cmocka_unit_test(test_far_dashes), cmocka_unit_test(test_network),     cmocka_unit_test(test_window),
         cmocka_unit_test(test_bad_pitch),
     };
-    return STUDIO_RUN(tests);
+    return FIXTURE_RUN(tests);
 }

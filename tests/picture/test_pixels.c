@@ -70,7 +70,7 @@ static camber_oracle_style style_of(double width_px, int join, int cap) {
     return (camber_oracle_style){width_px, (camber_join)join, (camber_cap)cap, 2.2, false};
 }
 
-/* What a group of figures is held to, in 255ths. */
+/* The bounds of a group of figures, in 255ths. */
 typedef struct limits {
     double mean;
     int max;
@@ -111,8 +111,8 @@ static void add_twins(trial *t, tally tallies[2], const path *p, const path *q, 
 
 enum { TO_90, TO_150, TO_180, TURN_GROUPS };
 
-/* Of 0 to 180 degrees, to the left and to the right. Past 150 the arms lie over each other, each anti-aliased, and a +
- * b - ab is not their union. */
+/* Turns of 0 to 180 degrees, to the left and to the right. Past 150 the arms lie over each other, each anti-aliased,
+ * and a + b - ab is not their union. */
 static void add_turns(trial *t, int steps, int join, int cap, tally tallies[TURN_GROUPS]) {
     for (int w = 0; w < WIDTHS; w++) {
         const double h = widths_px[w] / 2;
@@ -141,8 +141,8 @@ static void check_turns(camber_method method, int steps, const limits bounds[TUR
         tally tallies[TURN_GROUPS] = {0};
         for (int k = 0; k < TURN_GROUPS; k++) {
             tallies[k].name = names[k];
-            snprintf(names[k], sizeof names[k], "%s, %s %s, turns of %s", camber_method_name(method), join_names[i / 3],
-                     cap_names[i % 3], ranges[k]);
+            snprintf(names[k], sizeof names[k], "%s, %s %s, turns of %s", camber_method_get_name(method),
+                     join_names[i / 3], cap_names[i % 3], ranges[k]);
         }
         add_turns(&t, steps, i / 3, i % 3, tallies);
         sheet_flush(t.sheet);
@@ -206,7 +206,7 @@ static void check_lengths(camber_method method, int copies, const limits bounds[
         for (int k = 0; k < PLACES * SPANS; k++) {
             tallies[k / SPANS][k % SPANS].name = names[k / SPANS][k % SPANS];
             snprintf(names[k / SPANS][k % SPANS], sizeof names[0][0], "%s, %s %s, %s segment %s",
-                     camber_method_name(method), join_names[i / 3], cap_names[i % 3], places[k / SPANS],
+                     camber_method_get_name(method), join_names[i / 3], cap_names[i % 3], places[k / SPANS],
                      spans[k % SPANS]);
         }
         for (int k = 0; k < LENGTHS * WIDTHS; k++) {

@@ -1,5 +1,5 @@
 /* Properties of pictures: the same stroke by other points, or elsewhere, is the same picture. */
-#include "easel.h"
+#include "property_picture.h"
 
 #include "kernels/join.h"
 #include "validate/oracle.h"
@@ -43,7 +43,7 @@ static bool is_on_edge(const camber_mesh_data *mesh, double width_px, double x, 
 
 /* Whether a pixel may be drawn by either of two segments: its centre lies on an edge of the mesh, or square to the end
  * of a segment, where the shader begins to look for the join. */
-static bool is_tied(easel *e, const property_case *c, int column, int row) {
+static bool is_tied(property_canvas *e, const property_case *c, int column, int row) {
     const double x = column + 0.5, y = row + 0.5;
     for (size_t i = 0; i + 1 < c->count; i++) {
         const float *p = c->points + 2 * i;
@@ -52,19 +52,19 @@ static bool is_tied(easel *e, const property_case *c, int column, int row) {
         if (fabs(along) < NEAR_PX || fabs(along - length) < NEAR_PX)
             return true;
     }
-    camber_mesh_data mesh = property_mesh(e->studio.context, c);
+    camber_mesh_data mesh = property_mesh(e->fixture.context, c);
     const bool tied = is_on_edge(&mesh, (double)c->stroke.width_px, x, y);
-    camber_mesh_data_free(e->studio.context, &mesh);
+    camber_mesh_data_destroy(&mesh);
     return tied;
 }
 
 typedef struct pair {
     const property_case *first, *second;
     mapping mapping;
-    easel_picture a, b;
+    property_picture a, b;
 } pair;
 
-static apart compare(easel *e, const pair *p, int levels) {
+static apart compare(property_canvas *e, const pair *p, int levels) {
     const mapping m = p->mapping;
     apart d = {0};
     for (int y = 0; y < SIDE; y++)
@@ -81,12 +81,12 @@ static apart compare(easel *e, const pair *p, int levels) {
     return d;
 }
 
-static property_outcome judge(easel *e, const property_case *c, const property_case *other, mapping m, int levels,
-                              char story[PROPERTY_STORY]) {
+static property_outcome judge(property_canvas *e, const property_case *c, const property_case *other, mapping m,
+                              int levels, char story[PROPERTY_STORY]) {
     static pair p;
     p.first = c, p.second = other, p.mapping = m;
-    easel_draw(e, c, &p.a);
-    easel_draw(e, other, &p.b);
+    property_draw(e, c, &p.a);
+    property_draw(e, other, &p.b);
     const apart d = compare(e, &p, levels);
     if (d.pixels == 0)
         return PROPERTY_HOLDS;
@@ -109,11 +109,11 @@ static property_outcome check_reversed(void *user, const property_case *c, char 
     return has_chords(c) ? PROPERTY_SILENT : judge(user, c, &other, (mapping){0}, 1, story);
 }
 
-static camber_stages stages_of(const easel *e, const property_case *c) {
+static camber_stages stages_of(const property_canvas *e, const property_case *c) {
     const camber_tessellation_desc desc = {&c->stroke, 1, c->method, 0, false};
-    camber_polylines *polylines = property_polylines(e->studio.context, c);
+    camber_polylines *polylines = property_polylines(e->fixture.context, c);
     camber_stages stages;
-    assert_int_equal(camber_stages_on_host(e->studio.context, polylines, &desc, &stages), CAMBER_OK);
+    assert_int_equal(camber_stages_tessellate(e->fixture.context, polylines, &desc, &stages), CAMBER_OK);
     camber_polylines_destroy(polylines);
     return stages;
 }
@@ -136,12 +136,12 @@ static size_t add_point(const property_case *c, property_case *other) {
 }
 
 /* Whether a line has joins with room only. */
-static bool is_plain(const easel *e, const property_case *c) {
+static bool is_plain(const property_canvas *e, const property_case *c) {
     camber_stages stages = stages_of(e, c);
     bool plain = true;
     for (size_t i = 0; i < stages.point_count; i++)
         plain = plain && camber_join_kind(stages.points[i].join) <= CAMBER_KIND_CUT;
-    camber_stages_free(e->studio.context, &stages);
+    camber_stages_destroy(&stages);
     return plain;
 }
 
@@ -173,7 +173,7 @@ static property_outcome check_ring_begun_elsewhere(void *user, const property_ca
 
 /* ---- The same stroke elsewhere ---- */
 
-static property_outcome judge_moved(easel *e, const property_case *c, int step_px, int levels,
+static property_outcome judge_moved(property_canvas *e, const property_case *c, int step_px, int levels,
                                     char story[PROPERTY_STORY]) {
     property_case other = *c;
     const mapping m = {.dx = step_px * ((int)(c->dice % 17) - 8), .dy = step_px * ((int)(c->dice / 17 % 17) - 8)};
@@ -211,16 +211,16 @@ static property_outcome check_turned(void *user, const property_case *c, char st
 /* ---- Device and twin, and method and method ---- */
 
 static property_outcome check_device(void *user, const property_case *c, char story[PROPERTY_STORY]) {
-    easel *e = user;
+    property_canvas *e = user;
     const uint32_t offsets[] = {0, (uint32_t)c->count};
     const camber_polylines_desc desc = {c->points, c->count, offsets, 1, NULL, false};
     const camber_tessellation_desc tessellation = {&c->stroke, 1, c->method, 0, false};
     camber_polylines *polylines = NULL;
     camber_mesh_data device, twin;
-    assert_int_equal(camber_polylines_create(e->studio.context, &desc, &polylines), CAMBER_OK);
-    assert_int_equal(camber_tessellate(e->mesh, polylines, &tessellation), CAMBER_OK);
+    assert_int_equal(camber_polylines_create(e->fixture.context, &desc, &polylines), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(e->mesh, polylines, &tessellation), CAMBER_OK);
     assert_int_equal(camber_mesh_read(e->mesh, &device), CAMBER_OK);
-    assert_int_equal(camber_tessellate_on_host(e->studio.context, polylines, &tessellation, &twin), CAMBER_OK);
+    assert_int_equal(camber_mesh_data_tessellate(e->fixture.context, polylines, &tessellation, &twin), CAMBER_OK);
     const bool same = device.info.vertex_count == twin.info.vertex_count &&
                       device.info.index_count == twin.info.index_count &&
                       (twin.info.vertex_count == 0 || /* a dot with butt caps: nothing */
@@ -229,8 +229,8 @@ static property_outcome check_device(void *user, const property_case *c, char st
                        memcmp(device.indices, twin.indices, twin.info.index_count * sizeof *twin.indices) == 0);
     if (!same)
         snprintf(story, PROPERTY_STORY, "device and twin differ");
-    camber_mesh_data_free(e->studio.context, &device);
-    camber_mesh_data_free(e->studio.context, &twin);
+    camber_mesh_data_destroy(&device);
+    camber_mesh_data_destroy(&twin);
     camber_polylines_destroy(polylines);
     return same ? PROPERTY_HOLDS : PROPERTY_BROKEN;
 }
@@ -248,16 +248,17 @@ static property_outcome check_methods(void *user, const property_case *c, char s
 /* ---- The truth ---- */
 
 /* No pixel is farther from the oracle than so many levels. */
-static property_outcome judge_truth(easel *e, const property_case *c, int levels, char story[PROPERTY_STORY]) {
-    static easel_picture drawn;
+static property_outcome judge_truth(property_canvas *e, const property_case *c, int levels,
+                                    char story[PROPERTY_STORY]) {
+    static property_picture drawn;
     const double limit = c->stroke.miter_limit > 0 ? (double)c->stroke.miter_limit : 2;
     const camber_oracle_style style = {(double)c->stroke.width_px, c->stroke.join, c->stroke.cap, limit, true};
     camber_oracle_window truth;
     int most = 0, x = 0, y = 0;
     assert_true(camber_oracle_open(&truth, 0, 0, SIDE, SIDE));
     assert_true(camber_oracle_stroke(&truth, c->points, c->count, &style));
-    easel_draw(e, c, &drawn);
-    for (int i = 0; i < EASEL_PIXELS; i++) {
+    property_draw(e, c, &drawn);
+    for (int i = 0; i < PROPERTY_PIXELS; i++) {
         const int off = drawn.level[i] - (int)lrint(255 * camber_oracle_coverage(&truth, i % SIDE, i / SIDE));
         if (abs(off) > abs(most))
             most = off, x = i % SIDE, y = i / SIDE;
@@ -279,7 +280,7 @@ static property_outcome check_truth_roughly(void *user, const property_case *c, 
 
 /* Known: single pixels at tight joins, and where two arms of a sharp turn part. */
 static void test_truth(void **state) {
-    easel *e = *state;
+    property_canvas *e = *state;
     e->overlap = CAMBER_OVERLAP_UNITE;
     property_check(&(property){"near the truth, plain joins", property_make_plain, check_truth, 300, 0}, e);
     property_check(&(property){"near the truth, any joins", property_make_any, check_truth_roughly, 300, 15}, e);
@@ -327,13 +328,13 @@ static void test_methods(void **state) {
 }
 
 int main(void) {
-    if (!studio_begin())
+    if (!fixture_begin())
         return 77;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_device),  cmocka_unit_test(test_reversed), cmocka_unit_test(test_point_added),
         cmocka_unit_test(test_ring),    cmocka_unit_test(test_moved),    cmocka_unit_test(test_turned),
         cmocka_unit_test(test_methods), cmocka_unit_test(test_truth),
     };
-    const int failed = cmocka_run_group_tests(tests, easel_open, easel_close);
+    const int failed = cmocka_run_group_tests(tests, property_open, property_close);
     return failed;
 }

@@ -1,5 +1,5 @@
 /* Ramps: colours along lines, against samples of what they should be. */
-#include "along.h"
+#include "along_picture.h"
 
 #include <stdio.h>
 
@@ -16,7 +16,7 @@ static drawing drawing_of(int line, float width_px, camber_method method, camber
                      .ramp = ramp};
 }
 
-static void check(studio *s, const drawing *d, double mean_bound, double most_bound) {
+static void check(fixture *s, const drawing *d, double mean_bound, double most_bound) {
     static along_truth truth;
     along_sample(d, truth);
     picture p = along_draw(s, d);
@@ -69,8 +69,9 @@ static void test_step_place(void **state) {
     const camber_ramp_stop stops[] = {{0.5f, {1, 0, 0, 1}}, {0.5f, {0, 0, 1, 1}}};
     uint64_t seed = 3;
     for (int i = 0; i < 40; i++) {
-        const double angle = i == 0 ? 0 : random_between(&seed, 0, 6.283), x = random_between(&seed, 45, 50),
-                     y = random_between(&seed, 45, 50), before = random_between(&seed, 20, 35);
+        const double angle = i == 0 ? 0 : camber_random_between(&seed, 0, 6.283),
+                     x = camber_random_between(&seed, 45, 50), y = camber_random_between(&seed, 45, 50),
+                     before = camber_random_between(&seed, 20, 35);
         const float points[] = {(float)(x - before * cos(angle)), (float)(y - before * sin(angle)),
                                 (float)(x + before * cos(angle)), (float)(y + before * sin(angle))};
         drawing d = drawing_of(0, 10, CAMBER_METHOD_STRIP, (camber_ramp){stops, 2});
@@ -162,7 +163,7 @@ static void test_translucent_folds(void **state) {
             }
 }
 
-/* What is farther along lies on top and hides what is below, translucent or not. */
+/* The part that is farther along lies on top and hides what is below, translucent or not. */
 static void test_crossing(void **state) {
     const float loop[] = {10, 48, 86, 48, 86, 86, 48, 86, 48, 10};
     const camber_ramp_stop stops[] = {{0.3f, {1, 0, 0, 0.6f}}, {0.7f, {0, 0, 1, 0.4f}}};
@@ -178,23 +179,23 @@ static void test_crossing(void **state) {
 
 /* A row without a ramp in a layer with one. */
 static void test_beside_plain(void **state) {
-    studio *s = *state;
-    scene lines = {0};
+    fixture *s = *state;
+    camber_made_scene lines = {0};
     for (int i = 0; i < 2; i++) {
-        scene_point(&lines, 10, 30 + 30 * i);
-        scene_point(&lines, 80, 30 + 30 * i);
-        scene_end(&lines, (size_t)i);
+        camber_made_scene_point(&lines, 10, 30 + 30 * i);
+        camber_made_scene_point(&lines, 80, 30 + 30 * i);
+        camber_made_scene_end(&lines, (size_t)i);
     }
     const camber_stroke strokes[] = {{10, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0},
                                      {10, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0}};
-    const camber_tessellation_desc desc = {.strokes = strokes, .stroke_count = 2, .measured = true};
-    camber_mesh *mesh = studio_mesh(s, studio_any(s), &lines, &desc);
+    const camber_tessellation_desc desc = {.strokes = strokes, .stroke_count = 2, .has_arc_length = true};
+    camber_mesh *mesh = fixture_mesh(s, fixture_any(s), &lines, &desc);
     const camber_paint paints[] = {{.width_px = 10, .color = GREEN}, {.width_px = 10, .color = WHITE, .ramp = 1}};
     const camber_ramp_stop stops[] = {{0, {1, 0, 0, 0.5f}}};
     const camber_ramp ramp = {stops, 1};
     const camber_pass pass = {.mesh = mesh, .paints = paints, .paint_count = 2, .ramps = &ramp, .ramp_count = 1};
     picture p =
-        picture_draw(studio_any(s), &(camber_frame){.width = SIDE, .height = SIDE, .passes = &pass, .pass_count = 1});
+        picture_draw(fixture_any(s), &(camber_frame){.width = SIDE, .height = SIDE, .passes = &pass, .pass_count = 1});
     for (int c = 0; c < 4; c++) {
         const double plain = picture_value(&p, 40, 30, c), ramped = picture_value(&p, 40, 60, c);
         assert_true(plain == (c == 1 || c == 3));
@@ -202,19 +203,20 @@ static void test_beside_plain(void **state) {
     }
     picture_free(&p);
     camber_mesh_destroy(mesh);
-    scene_free(&lines);
+    camber_made_scene_free(&lines);
 }
 
 /* ---- Networks ---- */
 
 /* The whole, and what two cameras see of its halves: the same colours at the same places, to the rounding of cuts. */
 static void test_halves(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     const double points[] = {-900, 20, -30, 60, 20, 30, 50, 130, 90, 20, 180, 110, 2000, 300};
     const size_t offsets[] = {0, 7};
-    const camber_network_desc desc = {.points = points, .offsets = offsets, .polyline_count = 1, .measured = true};
+    const camber_network_desc desc = {
+        .points = points, .offsets = offsets, .polyline_count = 1, .has_arc_length = true};
     const camber_stroke stroke = {12, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0};
-    const camber_tessellation_desc tessellation = {.strokes = &stroke, .stroke_count = 1, .measured = true};
+    const camber_tessellation_desc tessellation = {.strokes = &stroke, .stroke_count = 1, .has_arc_length = true};
     const camber_paint paint = {.width_px = 12, .color = WHITE, .ramp = 1};
     camber_ramp_stop stops[40];
     for (size_t i = 0; i < 40; i++) /* a step every 80 px, or so */
@@ -226,7 +228,7 @@ static void test_halves(void **state) {
     camber_mesh *mesh = NULL;
     picture pictures[3];
     assert_int_equal(camber_network_create(s->context, &desc, &network), CAMBER_OK);
-    assert_int_equal(camber_mesh_create(s->device, studio_any(s), &mesh), CAMBER_OK);
+    assert_int_equal(camber_mesh_create(s->on.device, fixture_any(s), &mesh), CAMBER_OK);
     for (int i = 0; i < 3; i++) {
         const camber_camera camera = {.x = i == 0   ? 100
                                            : i == 1 ? 50
@@ -235,10 +237,10 @@ static void test_halves(void **state) {
                                       .scale_px = 1,
                                       .width = i == 0 ? 200 : 100,
                                       .height = 160};
-        assert_int_equal(camber_tessellate_network(mesh, network, &camera, &tessellation), CAMBER_OK);
+        assert_int_equal(camber_mesh_tessellate_network(mesh, network, &camera, &tessellation), CAMBER_OK);
         const camber_pass pass = {.mesh = mesh, .paints = &paint, .paint_count = 1, .ramps = &ramp, .ramp_count = 1};
         pictures[i] = picture_draw(
-            studio_any(s), &(camber_frame){.width = camera.width, .height = 160, .passes = &pass, .pass_count = 1});
+            fixture_any(s), &(camber_frame){.width = camera.width, .height = 160, .passes = &pass, .pass_count = 1});
     }
     size_t drawn = 0;
     for (uint32_t y = 0; y < 160; y++)
@@ -257,10 +259,10 @@ static void test_halves(void **state) {
     camber_network_destroy(network);
 }
 
-/* ---- What is refused ---- */
+/* ---- Refusals ---- */
 
 static void test_refused(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     camber_ramp_stop nan_place[] = {{NAN, {1, 0, 0, 1}}}, back[] = {{0.5f, {1, 0, 0, 1}}, {0.4f, {1, 0, 0, 1}}},
                      nan_color[] = {{0, {1, NAN, 0, 1}}};
     const camber_ramp bad[] = {
@@ -272,16 +274,16 @@ static void test_refused(void **state) {
     camber_polylines *polylines = NULL;
     camber_mesh *mesh = NULL;
     assert_int_equal(camber_polylines_create(s->context, &desc, &polylines), CAMBER_OK);
-    assert_int_equal(camber_mesh_create(s->device, studio_any(s), &mesh), CAMBER_OK);
+    assert_int_equal(camber_mesh_create(s->on.device, fixture_any(s), &mesh), CAMBER_OK);
     for (size_t i = 0; i < 6; i++) {
-        const camber_tessellation_desc tessellation = {.strokes = &stroke, .stroke_count = 1, .measured = i < 5};
-        assert_int_equal(camber_tessellate(mesh, polylines, &tessellation), CAMBER_OK);
+        const camber_tessellation_desc tessellation = {.strokes = &stroke, .stroke_count = 1, .has_arc_length = i < 5};
+        assert_int_equal(camber_mesh_tessellate(mesh, polylines, &tessellation), CAMBER_OK);
         const camber_paint paint = {.width_px = 3, .color = WHITE, .ramp = 1};
         const camber_ramp ramp = i < 5 ? bad[i] : (camber_ramp){smooth, 4};
         const camber_pass pass = {.mesh = mesh, .paints = &paint, .paint_count = 1, .ramps = &ramp, .ramp_count = 1};
         const camber_frame frame = {.width = 64, .height = 64, .passes = &pass, .pass_count = 1};
-        assert_int_equal(camber_render(studio_any(s), &frame, NULL, NULL, NULL), CAMBER_ERROR_ARGUMENT);
-        assert_story(&s->h, i < 5 ? "ramp 0" : "ramps of a mesh that is not measured");
+        assert_int_equal(camber_renderer_render(fixture_any(s), &frame, NULL, NULL, NULL), CAMBER_ERROR_ARGUMENT);
+        assert_story(&s->h, i < 5 ? "ramp 0" : "ramps of a mesh without arc lengths");
     }
     camber_mesh_destroy(mesh);
     camber_polylines_destroy(polylines);
@@ -301,9 +303,9 @@ int main(void) {
         cmocka_unit_test(test_halves),
         cmocka_unit_test(test_refused),
     };
-    if (!studio_begin())
+    if (!fixture_begin())
         return 77;
     fill_many();
-    const int failed = cmocka_run_group_tests(tests, studio_set_up, studio_tear_down);
+    const int failed = cmocka_run_group_tests(tests, fixture_set_up, fixture_tear_down);
     return failed;
 }

@@ -1,14 +1,14 @@
 /* Drawing: back ends, methods, sharing paths and pieces give one picture; passes do what they say. */
-#include "picture.h"
+#include "pictures.h"
 
 #include "draw/renderer.h"
 
-static camber_mesh *make_mesh(studio *s, camber_renderer *renderer, const scene *lines,
+static camber_mesh *make_mesh(fixture *s, camber_renderer *renderer, const camber_made_scene *lines,
                               const camber_tessellation_desc *desc) {
     camber_mesh *mesh = NULL;
     camber_polylines *polylines = scene_polylines(s->context, lines);
-    assert_int_equal(camber_mesh_create(s->device, renderer, &mesh), CAMBER_OK);
-    assert_int_equal(camber_tessellate(mesh, polylines, desc), CAMBER_OK);
+    assert_int_equal(camber_mesh_create(s->on.device, renderer, &mesh), CAMBER_OK);
+    assert_int_equal(camber_mesh_tessellate(mesh, polylines, desc), CAMBER_OK);
     camber_polylines_destroy(polylines);
     return mesh;
 }
@@ -32,28 +32,28 @@ static map_style make_style(float alpha) {
 }
 
 /* Segments far longer than the widths, turns that can be cut: no tight joins. */
-static scene roomy_scene(void) {
-    scene s = {0};
+static camber_made_scene roomy_scene(void) {
+    camber_made_scene s = {0};
     uint64_t seed = 9;
     for (size_t i = 0; i < 60; i++) {
-        scene_walk(&s, &seed, 12, (const double[]){60, 150}, 2);
-        scene_end(&s, i % MAP_ROWS);
+        camber_made_scene_walk(&s, &seed, 12, (const double[]){60, 150}, 2);
+        camber_made_scene_end(&s, i % MAP_ROWS);
     }
     return s;
 }
 
 /* Winding roads, short segments and sharp turns among them. */
-static scene road_scene(void) {
-    scene s = {0};
+static camber_made_scene road_scene(void) {
+    camber_made_scene s = {0};
     uint64_t seed = 10;
     for (size_t i = 0; i < 90; i++) {
-        scene_walk(&s, &seed, 60, (const double[]){2, 25}, i % 3 ? 0.5 : 2.5);
-        scene_end(&s, i % MAP_ROWS);
+        camber_made_scene_walk(&s, &seed, 60, (const double[]){2, 25}, i % 3 ? 0.5 : 2.5);
+        camber_made_scene_end(&s, i % MAP_ROWS);
     }
     return s;
 }
 
-static picture draw_scene(studio *s, camber_renderer *renderer, const scene *lines, camber_method method,
+static picture draw_scene(fixture *s, camber_renderer *renderer, const camber_made_scene *lines, camber_method method,
                           const camber_frame *like) {
     const map_style style = make_style(1);
     camber_mesh *mesh =
@@ -73,21 +73,21 @@ static const camber_frame SQUARE = {.width = 768, .height = 768};
 
 /* Within 1/255: what rounding leaves open between GLES and desktop GL. */
 static void test_backends_agree(void **state) {
-    studio *s = *state;
-    if (!s->renderer[0] || !s->renderer[1])
+    fixture *s = *state;
+    if (!s->on.renderer[0] || !s->on.renderer[1])
         skip();
     for (int which = 0; which < 2; which++) {
-        scene lines = which ? road_scene() : roomy_scene();
+        camber_made_scene lines = which ? road_scene() : roomy_scene();
         for (int method = 0; method < 3; method++) {
-            picture a = draw_scene(s, s->renderer[0], &lines, (camber_method)method, &SQUARE);
-            picture b = draw_scene(s, s->renderer[1], &lines, (camber_method)method, &SQUARE);
+            picture a = draw_scene(s, s->on.renderer[0], &lines, (camber_method)method, &SQUARE);
+            picture b = draw_scene(s, s->on.renderer[1], &lines, (camber_method)method, &SQUARE);
             const difference d = picture_compare(&a, &b);
             assert_true(d.drawn > 50000);
             assert_in_range(d.most, 0, 1); /* measured with Mesa 22.3: 0 */
             picture_free(&b);
             picture_free(&a);
         }
-        scene_free(&lines);
+        camber_made_scene_free(&lines);
     }
 }
 
@@ -95,13 +95,13 @@ static void test_backends_agree(void **state) {
  * has up to a quarter more. Fan has no cut on the inner side, where both bodies draw the pixels on their edges:
  * 0.3/255 on average, a pixel in 80. Measured: 0.004 and 0.14, 31 and 1118 of 162,000 pixels. */
 static void test_methods_agree(void **state) {
-    studio *s = *state;
-    for (int i = 0; i < BACKENDS; i++) {
-        for (int which = 0; which < 2 && s->renderer[i]; which++) {
-            scene lines = which ? road_scene() : roomy_scene();
-            picture strip = draw_scene(s, s->renderer[i], &lines, CAMBER_METHOD_STRIP, &SQUARE);
+    fixture *s = *state;
+    for (int i = 0; i < CAMBER_FIXTURE_DRAWERS; i++) {
+        for (int which = 0; which < 2 && s->on.renderer[i]; which++) {
+            camber_made_scene lines = which ? road_scene() : roomy_scene();
+            picture strip = draw_scene(s, s->on.renderer[i], &lines, CAMBER_METHOD_STRIP, &SQUARE);
             for (int method = 1; method < 3; method++) {
-                picture other = draw_scene(s, s->renderer[i], &lines, (camber_method)method, &SQUARE);
+                picture other = draw_scene(s, s->on.renderer[i], &lines, (camber_method)method, &SQUARE);
                 const difference d = picture_compare(&strip, &other);
                 assert_true(d.drawn > 50000);
                 assert_in_range(d.most, 0, 80);
@@ -110,29 +110,29 @@ static void test_methods_agree(void **state) {
                 picture_free(&other);
             }
             picture_free(&strip);
-            scene_free(&lines);
+            camber_made_scene_free(&lines);
         }
     }
 }
 
 static void test_sharing_paths_agree(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     const camber_sharing paths[] = {CAMBER_SHARING_COPY, CAMBER_SHARING_ZERO_COPY, CAMBER_SHARING_GL};
     const map_style style = make_style(0.5f);
-    scene lines = road_scene();
+    camber_made_scene lines = road_scene();
     size_t compared = 0;
-    for (int i = 0; i < BACKENDS; i++) {
+    for (int i = 0; i < CAMBER_FIXTURE_BACKENDS; i++) {
         picture wanted = {0};
         camber_mesh_data wanted_mesh = {0};
-        for (int path = 0; path < 3 && s->surface[i]; path++) {
+        for (int path = 0; path < 3 && s->on.surface[i]; path++) {
             camber_renderer *renderer = NULL;
             s->h.errors = 0;
             const camber_status status = camber_renderer_create(
-                s->device, s->surface[i], &(camber_renderer_desc){.sharing = paths[path], .draw = CAMBER_DRAW_GL},
-                &renderer);
+                s->on.device, s->on.surface[i],
+                &(camber_renderer_desc){.sharing = paths[path], .rasterizer = CAMBER_RASTERIZER_GL}, &renderer);
             if (status != CAMBER_OK) {
                 assert_int_equal(status, CAMBER_ERROR_DEVICE);
-                assert_story(&s->h, camber_sharing_name(paths[path]));
+                assert_story(&s->h, camber_sharing_get_name(paths[path]));
                 assert_true(path > 0); /* a copy works anywhere */
                 assert_null(renderer);
                 continue;
@@ -155,7 +155,7 @@ static void test_sharing_paths_agree(void **state) {
                 picture_assert_same(&p, &wanted);
                 compared++;
                 picture_free(&p);
-                camber_mesh_data_free(s->context, &data);
+                camber_mesh_data_destroy(&data);
             } else {
                 wanted = p;
                 wanted_mesh = data;
@@ -164,35 +164,35 @@ static void test_sharing_paths_agree(void **state) {
             camber_renderer_destroy(renderer);
         }
         picture_free(&wanted);
-        camber_mesh_data_free(s->context, &wanted_mesh);
+        camber_mesh_data_destroy(&wanted_mesh);
     }
-    scene_free(&lines);
+    camber_made_scene_free(&lines);
     if (compared == 0)
         skip();
 }
 
 /* Whatever the pieces are, the same bytes; and the rows come whole. */
 static void test_pieces(void **state) {
-    studio *s = *state;
-    scene lines = road_scene();
-    for (int i = 0; i < BACKENDS; i++) {
-        if (!s->renderer[i])
+    fixture *s = *state;
+    camber_made_scene lines = road_scene();
+    for (int i = 0; i < CAMBER_FIXTURE_DRAWERS; i++) {
+        if (!s->on.renderer[i])
             continue;
         for (int alpha = 0; alpha < 2; alpha++) {
             const map_style style = make_style(alpha ? 0.5f : 1.0f);
             camber_mesh *mesh =
-                make_mesh(s, s->renderer[i], &lines,
+                make_mesh(s, s->on.renderer[i], &lines,
                           &(camber_tessellation_desc){style.strokes, MAP_ROWS, CAMBER_METHOD_STRIP, 0, false});
             const camber_pass pass = {.mesh = mesh, .paints = style.paints, .paint_count = MAP_ROWS};
             camber_frame frame = {.width = 300, .height = 200, .passes = &pass, .pass_count = 1};
-            picture whole = picture_draw(s->renderer[i], &frame);
+            picture whole = picture_draw(s->on.renderer[i], &frame);
             const uint32_t sides[] = {64, 61, 100, 299, 300, 70000, 17};
             for (size_t k = 0; k < sizeof sides / sizeof *sides; k++) {
                 frame.largest_piece_px = sides[k];
-                picture pieces = picture_draw(s->renderer[i], &frame);
+                picture pieces = picture_draw(s->on.renderer[i], &frame);
                 camber_frame_stats stats = {0};
-                assert_int_equal(camber_render(s->renderer[i], &frame, NULL, NULL, &stats), CAMBER_OK);
-                /* Of kernels' tiles, 32 px, pieces are whole ones. */
+                assert_int_equal(camber_renderer_render(s->on.renderer[i], &frame, NULL, NULL, &stats), CAMBER_OK);
+                /* Areas are whole tiles of the kernels, 32 px. */
                 const uint32_t side = !draws_in_cl() ? sides[k] : sides[k] < 32 ? 32 : sides[k] / 32 * 32;
                 assert_int_equal(stats.pieces, ((300 + side - 1) / side) * ((200 + side - 1) / side));
                 assert_int_equal(pieces.calls, (200 + side - 1) / side);
@@ -203,19 +203,19 @@ static void test_pieces(void **state) {
             camber_mesh_destroy(mesh);
         }
     }
-    scene_free(&lines);
+    camber_made_scene_free(&lines);
 }
 
 /* Surfaces share one dispatch: drawing with one, then the other, then the first again changes nothing. */
 static void test_surfaces_in_turn(void **state) {
-    studio *s = *state;
-    if (!s->renderer[0] || !s->renderer[1])
+    fixture *s = *state;
+    if (!s->on.renderer[0] || !s->on.renderer[1])
         skip();
-    scene lines = roomy_scene();
-    picture first[BACKENDS];
+    camber_made_scene lines = roomy_scene();
+    picture first[CAMBER_FIXTURE_BACKENDS];
     for (int round = 0; round < 3; round++) {
-        for (int i = 0; i < BACKENDS; i++) {
-            picture p = draw_scene(s, s->renderer[i], &lines, CAMBER_METHOD_STRIP, &SQUARE);
+        for (int i = 0; i < CAMBER_FIXTURE_BACKENDS; i++) {
+            picture p = draw_scene(s, s->on.renderer[i], &lines, CAMBER_METHOD_STRIP, &SQUARE);
             if (round == 0) {
                 first[i] = p;
             } else {
@@ -226,7 +226,7 @@ static void test_surfaces_in_turn(void **state) {
     }
     picture_free(&first[0]);
     picture_free(&first[1]);
-    scene_free(&lines);
+    camber_made_scene_free(&lines);
 }
 
 /* ---- Frames ---- */
@@ -239,14 +239,15 @@ static bool refuse_rows(void *user, const uint8_t *rgba, uint32_t first_row, uin
 }
 
 static void test_sizes(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     static const uint32_t bad[][2] = {{0, 1}, {1, 0}, {65536, 1}, {1, 65536}, {0, 0}, {0xffffffffu, 0xffffffffu}};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         camber_frame_stats stats = {.pieces = 77};
         int left = 2;
         s->h.errors = 0;
-        assert_int_equal(camber_render(studio_any(s), &(camber_frame){.width = bad[i][0], .height = bad[i][1]},
-                                       refuse_rows, &left, &stats),
+        assert_int_equal(camber_renderer_render(fixture_any(s),
+                                                &(camber_frame){.width = bad[i][0], .height = bad[i][1]}, refuse_rows,
+                                                &left, &stats),
                          CAMBER_ERROR_ARGUMENT);
         assert_story(&s->h, "; ");
         assert_int_equal(stats.pieces, 77);
@@ -256,7 +257,7 @@ static void test_sizes(void **state) {
     static const uint32_t good[][2] = {{1, 1}, {65535, 1}, {1, 65535}, {65535, 3}, {2, 40001}};
     for (size_t i = 0; i < sizeof good / sizeof *good; i++) {
         const camber_frame frame = {.width = good[i][0], .height = good[i][1], .background = {0, 1, 0, 1}};
-        picture p = picture_draw(studio_any(s), &frame);
+        picture p = picture_draw(fixture_any(s), &frame);
         for (size_t k = 0; k < (size_t)p.width * p.height; k++)
             assert_memory_equal(p.rgba + 4 * k, "\0\xff\0\xff", 4);
         picture_free(&p);
@@ -264,27 +265,27 @@ static void test_sizes(void **state) {
 }
 
 static void test_rows_refused(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     for (int after = 1; after < 4; after++) {
         int left = after;
         camber_frame_stats stats = {.pieces = 77};
         const camber_frame frame = {.width = 50, .height = 100, .largest_piece_px = 32}; /* four bands */
-        assert_int_equal(camber_render(studio_any(s), &frame, refuse_rows, &left, &stats), CAMBER_ERROR_IO);
+        assert_int_equal(camber_renderer_render(fixture_any(s), &frame, refuse_rows, &left, &stats), CAMBER_ERROR_IO);
         assert_int_equal(left, 0); /* not called again */
         assert_int_equal(stats.pieces, 77);
     }
     int left = 5;
     const camber_frame frame = {.width = 50, .height = 100, .largest_piece_px = 32};
-    assert_int_equal(camber_render(studio_any(s), &frame, refuse_rows, &left, NULL), CAMBER_OK);
+    assert_int_equal(camber_renderer_render(fixture_any(s), &frame, refuse_rows, &left, NULL), CAMBER_OK);
 }
 
 static void test_background_is_premultiplied(void **state) {
-    studio *s = *state;
-    for (int i = 0; i < BACKENDS; i++) {
-        if (!s->renderer[i])
+    fixture *s = *state;
+    for (int i = 0; i < CAMBER_FIXTURE_DRAWERS; i++) {
+        if (!s->on.renderer[i])
             continue;
         picture p =
-            picture_draw(s->renderer[i], &(camber_frame){.width = 5, .height = 4, .background = {1, 0.5f, 0, 0.5f}});
+            picture_draw(s->on.renderer[i], &(camber_frame){.width = 5, .height = 4, .background = {1, 0.5f, 0, 0.5f}});
         for (uint32_t k = 0; k < 20; k++) {
             const uint8_t *pixel = p.rgba + 4 * k;
             assert_in_range(pixel[0], 127, 128);
@@ -293,7 +294,7 @@ static void test_background_is_premultiplied(void **state) {
             assert_in_range(pixel[3], 127, 128);
         }
         picture_free(&p);
-        p = picture_draw(s->renderer[i], &(camber_frame){.width = 5, .height = 4}); /* zero: transparent */
+        p = picture_draw(s->on.renderer[i], &(camber_frame){.width = 5, .height = 4}); /* zero: transparent */
         for (uint32_t k = 0; k < 80; k++)
             assert_int_equal(p.rgba[k], 0);
         picture_free(&p);
@@ -301,22 +302,22 @@ static void test_background_is_premultiplied(void **state) {
 }
 
 static void test_empty_mesh(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     const camber_frame like = {.width = 8, .height = 8, .background = {0, 0, 1, 1}};
-    scene nothing = {0};
-    picture p = draw_scene(s, studio_any(s), &nothing, CAMBER_METHOD_STRIP, &like);
+    camber_made_scene nothing = {0};
+    picture p = draw_scene(s, fixture_any(s), &nothing, CAMBER_METHOD_STRIP, &like);
     for (uint32_t k = 0; k < 64; k++)
         assert_memory_equal(p.rgba + 4 * k, "\0\0\xff\xff", 4);
     picture_free(&p);
 }
 
 static void test_surface_info(void **state) {
-    studio *s = *state;
-    for (int i = 0; i < BACKENDS; i++) {
-        if (!s->surface[i])
+    fixture *s = *state;
+    for (int i = 0; i < CAMBER_FIXTURE_BACKENDS; i++) {
+        if (!s->on.surface[i])
             continue;
-        const camber_surface_info info = camber_surface_get_info(s->surface[i]);
-        assert_non_null(strstr(info.backend, BACKEND_NAME[i]));
+        const camber_surface_info info = camber_surface_get_info(s->on.surface[i]);
+        assert_non_null(strstr(info.backend, fixture_name(i)));
         assert_true(info.renderer[0] && info.version[0]);
         assert_true(info.largest_target_px >= 2048); /* what GLES 3.0 promises */
         assert_int_equal(info.software, strstr(info.renderer, "llvmpipe") || strstr(info.renderer, "softpipe"));
@@ -331,5 +332,5 @@ int main(void) {
         cmocka_unit_test(test_rows_refused),        cmocka_unit_test(test_background_is_premultiplied),
         cmocka_unit_test(test_empty_mesh),          cmocka_unit_test(test_surface_info),
     };
-    return STUDIO_RUN(tests);
+    return FIXTURE_RUN(tests);
 }

@@ -1,5 +1,5 @@
 /* Pictures of tiles beside pictures of what was not cut: no cap, no gap and nothing drawn twice at their borders. */
-#include "picture.h"
+#include "pictures.h"
 #include "tilemaker.h"
 
 #include "camber_map.h"
@@ -19,7 +19,7 @@ typedef struct sheet {
 } sheet;
 
 /* more: of the paint. */
-static void sheet_open(sheet *it, const studio *s, const char *source, const char *cap, int width_px,
+static void sheet_open(sheet *it, const fixture *s, const char *source, const char *cap, int width_px,
                        const char *more) {
     char text[4096], paint[1024];
     *it = (sheet){0};
@@ -33,13 +33,13 @@ static void sheet_open(sheet *it, const studio *s, const char *source, const cha
     assert_int_equal(camber_features_create(s->context, it->style, &it->features), CAMBER_OK);
 }
 
-static picture sheet_draw(sheet *it, const studio *s, const camber_view_desc *view) {
+static picture sheet_draw(sheet *it, const fixture *s, const camber_view_desc *view) {
     const camber_scene_desc desc = {.view = *view};
     assert_int_equal(camber_scene_create(it->features, &desc, &it->scene), CAMBER_OK);
-    assert_int_equal(camber_mesh_create(s->device, studio_any(s), &it->mesh), CAMBER_OK);
+    assert_int_equal(camber_mesh_create(s->on.device, fixture_any(s), &it->mesh), CAMBER_OK);
     assert_int_equal(camber_scene_tessellate(it->scene, it->mesh, CAMBER_METHOD_STRIP), CAMBER_OK);
-    const camber_frame frame = camber_scene_frame(it->scene, it->mesh);
-    return picture_draw(studio_any(s), &frame);
+    const camber_frame frame = camber_scene_get_frame(it->scene, it->mesh);
+    return picture_draw(fixture_any(s), &frame);
 }
 
 static void sheet_close(sheet *it) {
@@ -49,7 +49,7 @@ static void sheet_close(sheet *it) {
     camber_style_destroy(it->style);
 }
 
-static picture draw_sources(const studio *s, const char *source, const char *cap, const char *more,
+static picture draw_sources(const fixture *s, const char *source, const char *cap, const char *more,
                             const camber_view_desc *view) {
     sheet it;
     sheet_open(&it, s, source, cap, 40, more);
@@ -101,7 +101,7 @@ static void write_line(char *text, size_t size, const int *units, size_t count) 
 }
 
 static void test_uncut(void **state) {
-    const studio *s = *state;
+    const fixture *s = *state;
     static const char *const caps[] = {"butt", "round", "square"};
     char whole[1024], cut[256], path[64];
     write_line(whole, sizeof whole, BENT, 4);
@@ -166,7 +166,7 @@ static void write_progress_tiles(const char *path) {
 
 /* Gradients, trims and dashes run over what tiles cut, and tell the line that was there before. */
 static void test_progress(void **state) {
-    const studio *s = *state;
+    const fixture *s = *state;
     char whole[1024], cut[256], path[64];
     write_line(whole, sizeof whole, LONG, 6);
     snprintf(path, sizeof path, "/tmp/camber-test-%ld.mbtiles", (long)getpid());
@@ -191,9 +191,9 @@ static void test_progress(void **state) {
     unlink(path);
 }
 
-/* What a view sees of Santa Cruz's tiles, and all of them joined. */
+/* The lines of Santa Cruz's tiles that a view sees, and all of them joined. */
 static void test_all_tiles(void **state) {
-    const studio *s = *state;
+    const fixture *s = *state;
     static const char path[] = CAMBER_TEST_DATA "/santa_cruz/osm.mbtiles";
     const camber_source_desc all = {.path = path, .layer = "roads", .keep_apart = true};
     char source[512];
@@ -222,7 +222,7 @@ static void test_all_tiles(void **state) {
         const difference d = picture_compare(&a, &b);
         assert_true(d.drawn > 10000);
         /* Where the tile's buffer ends, its lines are rounded to 1/2048 of it, which turns them by a hair. */
-        /* Of a style's sources, features that go straight on are one line; ends of others leave seams. */
+        /* Features of a style's sources that go straight on are one line; ends of others leave seams. */
         const bool seams_only = i < 3 && d.past_8 <= d.drawn / 1000;
         if (d.most > (i == 3 ? 64 : 2) && !seams_only)
             fail_msg("view %d: %zu of %zu pixels differ by more than 8, by %d at most", i, d.past_8, d.drawn, d.most);
@@ -234,10 +234,10 @@ static void test_all_tiles(void **state) {
 }
 
 int main(void) {
-    if (!studio_begin())
+    if (!fixture_begin())
         return 77;
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_uncut), cmocka_unit_test(test_progress),
                                        cmocka_unit_test(test_all_tiles)};
-    const int failed = cmocka_run_group_tests(tests, studio_set_up, studio_tear_down);
+    const int failed = cmocka_run_group_tests(tests, fixture_set_up, fixture_tear_down);
     return failed;
 }

@@ -1,8 +1,6 @@
 /* The styles that ship: each layer by itself draws what it is for and nothing else, and all of them in their order. */
-#include "picture.h"
+#include "map_picture.h"
 #include "tilemaker.h"
-
-#include "camber_map.h"
 
 #include <jansson.h>
 #include <math.h>
@@ -11,7 +9,7 @@
 /* A picture of one tile's middle: lines from west to east, one under the other. */
 enum { ZOOM = 15, WIDE = 96, HIGH = 1024, EXTENT = 4096, TILE_ZOOM = 14, MIDDLE = 1 << (TILE_ZOOM - 1) };
 
-/* What a feature is, in tiles of the schema. */
+/* A feature in tiles of the schema. */
 typedef struct thing {
     const char *name, *layer, *tags;
 } thing;
@@ -65,7 +63,7 @@ static const thing things[] = {
 };
 enum { THINGS = sizeof things / sizeof *things };
 
-/* What each layer draws of these. */
+/* The features of these that each layer draws. */
 typedef struct drawn_by {
     const char *id, *draws;
 } drawn_by;
@@ -206,7 +204,7 @@ static void write_tiles(const char *path, const thing *list, size_t count, int (
 
 static json_t *style_of(const char *name, camber_theme theme) {
     size_t size_bytes;
-    const char *text = camber_style_text(name, theme, &size_bytes);
+    const char *text = camber_style_get_text(name, theme, &size_bytes);
     assert_non_null(text);
     json_t *style = json_loadb(text, size_bytes, 0, NULL);
     assert_non_null(style);
@@ -218,11 +216,8 @@ static void set_tiles(json_t *style, const char *path) {
     json_object_set_new(source, "url", json_sprintf("mbtiles://%s", path));
 }
 
-static picture draw(studio *s, json_t *json, double zoom, uint32_t width, uint32_t height) {
+static picture draw(fixture *s, json_t *json, double zoom, uint32_t width, uint32_t height) {
     camber_style *style = NULL;
-    camber_features *features = NULL;
-    camber_scene *map = NULL;
-    camber_mesh *mesh = NULL;
     char *text = json_dumps(json, JSON_COMPACT);
     if (camber_style_parse(s->context, text, strlen(text), "shipped", &style) != CAMBER_OK)
         fail_msg("%s", s->h.last);
@@ -235,19 +230,10 @@ static picture draw(studio *s, json_t *json, double zoom, uint32_t width, uint32
                                              .zoom = zoom,
                                              .width = width,
                                              .height = height}};
-    assert_int_equal(camber_features_create(s->context, style, &features), CAMBER_OK);
-    if (camber_features_read_sources(features, &desc.view, NULL) != CAMBER_OK)
-        fail_msg("%s", s->h.last);
-    assert_int_equal(camber_scene_create(features, &desc, &map), CAMBER_OK);
-    assert_int_equal(camber_mesh_create(s->device, studio_any(s), &mesh), CAMBER_OK);
-    assert_int_equal(camber_scene_tessellate(map, mesh, CAMBER_METHOD_STRIP), CAMBER_OK);
-    const camber_frame frame = camber_scene_frame(map, mesh);
-    picture p = picture_draw(studio_any(s), &frame);
-    camber_mesh_destroy(mesh);
-    camber_scene_destroy(map);
-    assert_non_null(strstr(camber_features_attribution(features), "OpenStreetMap")); /* the sources say so */
-    camber_features_destroy(features);
-    camber_style_destroy(style);
+    map m = map_open(s, style, &desc);
+    picture p = map_draw(s, &m);
+    assert_non_null(strstr(camber_features_get_attribution(m.features), "OpenStreetMap")); /* the sources say so */
+    map_close(&m);
     return p;
 }
 
@@ -284,7 +270,7 @@ typedef struct rows {
     size_t count;
 } rows;
 
-static void check_layer(studio *s, const rows *all, const drawn_by *expected) {
+static void check_layer(fixture *s, const rows *all, const drawn_by *expected) {
     json_t *one = json_deep_copy(all->style);
     json_t *layer = json_incref(layer_of(one, expected->id));
     const bool dashed = json_object_get(json_object_get(layer, "paint"), "line-dasharray") != NULL;
@@ -303,7 +289,7 @@ static void check_layer(studio *s, const rows *all, const drawn_by *expected) {
 }
 
 /* All layers but the background stand in the table. */
-static void check_layers(studio *s, const rows *all, const drawn_by *expected, size_t count) {
+static void check_layers(fixture *s, const rows *all, const drawn_by *expected, size_t count) {
     assert_int_equal(json_array_size(json_object_get(all->style, "layers")), count + 1);
     for (size_t i = 0; i < count; i++)
         check_layer(s, all, expected + i);
@@ -319,7 +305,7 @@ static void write_sheet(const char *path) {
 }
 
 static void test_layers(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     char folder[32], path[64];
     make_folder(folder, path);
     write_sheet(path);
@@ -364,7 +350,7 @@ static void set_lines(json_t *style, const thing *list, size_t count) {
 }
 
 static void test_line_layers(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     for (int theme = 0; theme < 2; theme++) {
         json_t *style = style_of("transit", theme ? CAMBER_THEME_DARK : CAMBER_THEME_LIGHT);
         set_lines(style, lines, LINES);
@@ -375,7 +361,7 @@ static void test_line_layers(void **state) {
 
 /* Lines have their own colours, and those without one, or with one that is none, the style's. */
 static void test_line_colors(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     json_t *style = style_of("transit", CAMBER_THEME_LIGHT);
     set_lines(style, lines, LINES);
     picture p = draw(s, style, ZOOM, WIDE, HIGH);
@@ -391,7 +377,7 @@ static void test_line_colors(void **state) {
 
 /* Lines of one street lie beside each other, from the left of their direction to its right. */
 static void test_slots(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     static const thing street[] = {
         {"left", NULL, "mode=tram colour=#f00 slot=-1"},
         {"middle", NULL, "mode=tram colour=#0f0 slot=0"},
@@ -435,7 +421,7 @@ static bool same(const picture *p, uint32_t x, uint32_t y, uint32_t other_x, uin
     return true;
 }
 
-/* What crosses in the middle of the picture: an upper line from west to east, a lower one from north to south. */
+/* Lines that cross in the middle of the picture: an upper line from west to east, a lower one from north to south. */
 static const struct {
     const char *upper, *lower;
 } crossings[] = {
@@ -454,7 +440,7 @@ static const thing *find_thing(const char *name) {
 }
 
 /* The column through the middle has the upper line's colours where the lines cross, as elsewhere along it. */
-static void check_crossing(studio *s, json_t *style, const char *path, size_t number) {
+static void check_crossing(fixture *s, json_t *style, const char *path, size_t number) {
     enum { SIDE = 256, REACH = 64 };
     const thing both[] = {*find_thing(crossings[number].upper), *find_thing(crossings[number].lower)};
     int units[2][4] = {{0, EXTENT / 2, EXTENT, EXTENT / 2}, {EXTENT / 2, 0, EXTENT / 2, EXTENT}};
@@ -483,7 +469,7 @@ static uint32_t height_of(const picture *p, const char *name) {
 }
 
 static void test_crossings(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     char folder[32], path[64];
     make_folder(folder, path);
     for (int theme = 0; theme < 2; theme++) {
@@ -498,7 +484,7 @@ static void test_crossings(void **state) {
 
 /* The more a road matters the wider it is, at any zoom; a ramp is narrower than its road. */
 static void test_widths(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     static const char *const roads[] = {"service", "minor", "tertiary", "secondary", "primary", "trunk", "motorway"};
     enum { ROADS = sizeof roads / sizeof *roads };
     char folder[32], path[64];
@@ -521,11 +507,11 @@ static void test_widths(void **state) {
 
 /* ---- The tiles as input ---- */
 
-static size_t read_file(studio *s, const char *path, const char *layer) {
+static size_t read_file(fixture *s, const char *path, const char *layer) {
     camber_style *style = NULL;
     camber_features *features = NULL;
     size_t size_bytes;
-    const char *text = camber_style_text("openmaptiles", CAMBER_THEME_LIGHT, &size_bytes);
+    const char *text = camber_style_get_text("openmaptiles", CAMBER_THEME_LIGHT, &size_bytes);
     assert_int_equal(camber_style_parse(s->context, text, size_bytes, "shipped", &style), CAMBER_OK);
     assert_int_equal(camber_features_create(s->context, style, &features), CAMBER_OK);
     const camber_source_desc desc = {.path = path, .layer = layer, .keep_apart = true};
@@ -538,7 +524,7 @@ static size_t read_file(studio *s, const char *path, const char *layer) {
 
 /* A file that is given beside the style has its layers read that the style names, all but transportation_name. */
 static void test_file(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     char folder[32], path[64];
     size_t rivers = 0;
     make_folder(folder, path);
@@ -554,11 +540,11 @@ static void test_file(void **state) {
 
 /* Nothing is wrong with them, and nothing of them is left out. */
 static void test_documents(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     size_t size_bytes, count = 0;
-    for (const char *name; (name = camber_style_name(count)) != NULL; count++)
+    for (const char *name; (name = camber_style_list(count)) != NULL; count++)
         for (int theme = 0; theme < 2; theme++) {
-            const char *text = camber_style_text(name, (camber_theme)theme, &size_bytes);
+            const char *text = camber_style_get_text(name, (camber_theme)theme, &size_bytes);
             camber_style_report *report = NULL;
             assert_non_null(text);
             assert_int_equal(camber_style_check(s->context, text, size_bytes, name, &report), CAMBER_OK);
@@ -572,18 +558,18 @@ static void test_documents(void **state) {
             camber_style_report_destroy(report);
         }
     assert_int_equal(count, 3);
-    assert_null(camber_style_name(count));
-    assert_null(camber_style_text("none", CAMBER_THEME_LIGHT, &size_bytes));
+    assert_null(camber_style_list(count));
+    assert_null(camber_style_get_text("none", CAMBER_THEME_LIGHT, &size_bytes));
 }
 
 int main(void) {
-    if (!studio_begin())
+    if (!fixture_begin())
         return 77;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_documents),   cmocka_unit_test(test_layers), cmocka_unit_test(test_line_layers),
         cmocka_unit_test(test_line_colors), cmocka_unit_test(test_slots),  cmocka_unit_test(test_crossings),
         cmocka_unit_test(test_widths),      cmocka_unit_test(test_file),
     };
-    const int failed = cmocka_run_group_tests(tests, studio_set_up, studio_tear_down);
+    const int failed = cmocka_run_group_tests(tests, fixture_set_up, fixture_tear_down);
     return failed;
 }

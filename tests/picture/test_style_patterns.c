@@ -1,5 +1,5 @@
 /* line-pattern and background-pattern of styles, from sprites in a folder to pixels. */
-#include "picture.h"
+#include "pictures.h"
 
 #include "camber_map.h"
 
@@ -102,16 +102,16 @@ static camber_view_desc view_at(double zoom) {
     return (camber_view_desc){.kind = CAMBER_VIEW_CENTER, .zoom = zoom, .width = SIDE, .height = SIDE, .ratio = 1};
 }
 
-static picture draw(studio *s, const map *m, size_t *calls) {
+static picture draw(fixture *s, const map *m, size_t *calls) {
     camber_mesh *mesh = NULL;
-    assert_int_equal(camber_mesh_create(s->device, studio_any(s), &mesh), CAMBER_OK);
+    assert_int_equal(camber_mesh_create(s->on.device, fixture_any(s), &mesh), CAMBER_OK);
     assert_int_equal(camber_scene_tessellate(m->scene, mesh, CAMBER_METHOD_STRIP), CAMBER_OK);
-    const camber_frame frame = camber_scene_frame(m->scene, mesh);
+    const camber_frame frame = camber_scene_get_frame(m->scene, mesh);
     camber_frame_stats stats;
     picture p = {.width = frame.width, .height = frame.height};
     p.rgba = calloc((size_t)p.width * p.height, 4);
     assert_non_null(p.rgba);
-    assert_int_equal(camber_render(studio_any(s), &frame, picture_rows, &p, &stats), CAMBER_OK);
+    assert_int_equal(camber_renderer_render(fixture_any(s), &frame, picture_rows, &p, &stats), CAMBER_OK);
     if (calls)
         *calls = stats.draw_calls;
     camber_mesh_destroy(mesh);
@@ -120,7 +120,7 @@ static picture draw(studio *s, const map *m, size_t *calls) {
 
 static folder *shared;
 
-static picture draw_layers(studio *s, const char *layers, camber_view_desc view) {
+static picture draw_layers(fixture *s, const char *layers, camber_view_desc view) {
     map m = open_with(s->context, shared->base, layers, view);
     assert_int_equal(m.status, CAMBER_OK);
     picture p = draw(s, &m, NULL);
@@ -162,7 +162,7 @@ static void test_line(void **state) {
     p = draw_layers(*state, LINE("\"line-width\":16,\"line-pattern\":\"a\""), fine);
     check_columns(&p, 16, 2);
     picture_free(&p);
-    /* What it replaces. */
+    /* The paint that it replaces. */
     p = draw_layers(*state, LINE("\"line-width\":16,\"line-pattern\":\"a\""), view_at(1));
     picture q = draw_layers(*state,
                             LINE("\"line-width\":16,\"line-pattern\":\"a\",\"line-dasharray\":[1,1],"
@@ -183,7 +183,7 @@ static void test_zooms(void **state) {
     static const char *const layer =
         LINE("\"line-width\":{\"stops\":[[1,16],[2,32]]},\"line-pattern\":{\"stops\":[[0,\"b\"],[1,\"a\"],[2,\"b\"]]}");
     camber_view_desc view = view_at(1.5);
-    map m = open_with(((studio *)*state)->context, shared->base, layer, view);
+    map m = open_with(((fixture *)*state)->context, shared->base, layer, view);
     assert_int_equal(m.status, CAMBER_OK);
     picture p = draw(*state, &m, NULL);
     size_t right = 0, wrong = 0;
@@ -238,7 +238,7 @@ static void test_expressions(void **state) {
         {"\"\"", false, 0},
         {"\"no such image\"", false, 1},
     };
-    studio *s = *state;
+    fixture *s = *state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char layer[1024];
         snprintf(layer, sizeof layer, LINE("\"line-width\":16,\"line-pattern\":%s"), cases[i].pattern);
@@ -255,7 +255,7 @@ static void test_expressions(void **state) {
 
 /* Features of different images, one of them missing, are one draw; what is missing is told once, in all views. */
 static void test_features(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     size_t calls = 0;
     map m =
         open_with(s->context, shared->base, BOTH("\"line-width\":16,\"line-pattern\":[\"get\",\"kind\"]"), view_at(1));
@@ -286,7 +286,7 @@ static void test_windows(void **state) {
         "{\"id\":\"l\",\"type\":\"line\",\"source\":\"g\",\"filter\":[\"==\",\"kind\",\"b\"],"
         "\"paint\":{\"line-width\":14,\"line-pattern\":\"a\"}}";
     camber_view_desc view = view_at(1);
-    map m = open_with(((studio *)*state)->context, shared->base, layer, view);
+    map m = open_with(((fixture *)*state)->context, shared->base, layer, view);
     picture p = draw(*state, &m, NULL);
     static const int shifts[] = {1, 37, 150, -90};
     for (size_t i = 0; i < 4; i++) {
@@ -335,7 +335,7 @@ static void test_background(void **state) {
             assert_in_range(abs(2 * picture_at(&p, x, 77)[c] - column_colors[x / 2 % 4][c]), 0, 4);
     picture_free(&p);
     /* One that is missing leaves what lies below. */
-    studio *s = *state;
+    fixture *s = *state;
     s->h.warnings = 0;
     p = draw_layers(s,
                     BACKGROUND("\"background-color\":\"#f00\"") ",{\"id\":\"c\",\"type\":\"background\",\"paint\":{"
@@ -368,7 +368,7 @@ static void test_order(void **state) {
 /* ---- Sprites ---- */
 
 static void test_sprites(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     static const char *const layer = LINE("\"line-width\":16,\"line-pattern\":\"a\""), *const plain =
                                                                                            LINE("\"line-width\":16");
     sprite = "https://example.org/sprite";
@@ -406,7 +406,7 @@ static camber_status try_map(camber_context *context, void *user) {
     const char *layers = user;
     map m = open_with(context, shared->base, layers, view_at(1));
     if (m.status == CAMBER_OK)
-        (void)camber_scene_frame(m.scene, NULL);
+        (void)camber_scene_get_frame(m.scene, NULL);
     close_map(&m);
     return m.status;
 }
@@ -429,11 +429,11 @@ int main(void) {
         cmocka_unit_test(test_order),    cmocka_unit_test(test_sprites), cmocka_unit_test(test_memory),
     };
     static folder f;
-    if (!studio_begin())
+    if (!fixture_begin())
         return 77;
     make_folder(&f);
     shared = &f;
-    const int failed = cmocka_run_group_tests(tests, studio_set_up, studio_tear_down);
+    const int failed = cmocka_run_group_tests(tests, fixture_set_up, fixture_tear_down);
     folder_remove(f.path);
     return failed;
 }

@@ -1,7 +1,7 @@
 /* Frames in textures: the bytes that rows have, by each way of sharing, in each kind of drawing; over what a texture
  * holds and upside down, as the host puts it together; in a context of the caller's; and what is refused or fails. */
 #include "gl_fault.h"
-#include "picture.h"
+#include "pictures.h"
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
@@ -9,10 +9,10 @@
 
 enum { WIDTH = 203, HEIGHT = 149, ROWS = 3, KINDS = 2 };
 
-static const camber_draw KIND[KINDS] = {CAMBER_DRAW_GL, CAMBER_DRAW_CL};
+static const camber_rasterizer KIND[KINDS] = {CAMBER_RASTERIZER_GL, CAMBER_RASTERIZER_OPENCL};
 static const camber_sharing PATH[] = {CAMBER_SHARING_GL, CAMBER_SHARING_ZERO_COPY, CAMBER_SHARING_COPY};
 
-/* ---- What is drawn ---- */
+/* ---- The pictures ---- */
 
 typedef struct drawing {
     camber_mesh *mesh;
@@ -22,20 +22,21 @@ typedef struct drawing {
 } drawing;
 
 /* Wide lines, and translucent ones over them, on nothing. */
-static void begin_drawing(const studio *s, camber_renderer *renderer, drawing *d) {
+static void begin_drawing(const fixture *s, camber_renderer *renderer, drawing *d) {
     static const camber_stroke strokes[ROWS] = {
         {.width_px = 9}, {.width_px = 5, .join = CAMBER_JOIN_MITER}, {.width_px = 2}};
     const camber_tessellation_desc desc = {.strokes = strokes, .stroke_count = ROWS};
-    scene lines = {0};
+    camber_made_scene lines = {0};
     uint64_t seed = 11;
     for (size_t i = 0; i < 30; i++) {
         for (int k = 0; k < 5; k++)
-            scene_point(&lines, random_between(&seed, -9, WIDTH + 9), random_between(&seed, -9, HEIGHT + 9));
-        scene_end(&lines, i % ROWS);
+            camber_made_scene_point(&lines, camber_random_between(&seed, -9, WIDTH + 9),
+                                    camber_random_between(&seed, -9, HEIGHT + 9));
+        camber_made_scene_end(&lines, i % ROWS);
     }
     *d = (drawing){.frame = {.width = WIDTH, .height = HEIGHT, .pass_count = 2}};
-    d->mesh = studio_mesh(s, renderer, &lines, &desc);
-    scene_free(&lines);
+    d->mesh = fixture_mesh(s, renderer, &lines, &desc);
+    camber_made_scene_free(&lines);
     for (size_t i = 0; i < ROWS; i++) {
         const float shade = 0.3f * (float)i, width = strokes[i].width_px;
         d->paints[0][i] = (camber_paint){.width_px = width, .color = {1 - shade, 0.2f, shade, 1}};
@@ -83,7 +84,7 @@ static void drop_texture(camber_surface *surface, GLuint name) {
 /* ---- The same bytes ---- */
 
 /* Frames of several sizes, in areas and at once, one behind the other and not waited for. */
-static void compare_frames(const studio *s, camber_surface *surface, camber_renderer *shared, camber_renderer *alone) {
+static void compare_frames(const fixture *s, camber_surface *surface, camber_renderer *shared, camber_renderer *alone) {
     static const struct {
         uint32_t width, height, piece_px;
         camber_color background;
@@ -106,8 +107,9 @@ static void compare_frames(const studio *s, camber_surface *surface, camber_rend
         d.frame.largest_piece_px = frames[i].piece_px;
         d.frame.background = frames[i].background;
         drawn[i] = NULL;
-        assert_int_equal(camber_render_texture(shared, &d.frame, &(camber_texture){.name = names[i]}, drawn + i),
-                         CAMBER_OK);
+        assert_int_equal(
+            camber_renderer_render_texture(shared, &d.frame, &(camber_texture){.name = names[i]}, drawn + i),
+            CAMBER_OK);
         reference.frame = d.frame;
         reference.frame.passes = reference.passes;
     }
@@ -132,23 +134,23 @@ static void compare_frames(const studio *s, camber_surface *surface, camber_rend
 
 /* Kernels draw the same with a surface as without, also as rows. */
 static void test_kernels(void **state) {
-    const studio *s = *state;
+    const fixture *s = *state;
     camber_renderer *alone = NULL;
     size_t found = 0;
-    assert_int_equal(camber_renderer_create(s->device, NULL, NULL, &alone), CAMBER_OK);
-    for (size_t k = 0; k < BACKENDS * 3; k++) {
-        camber_surface *surface = s->surface[k / 3];
-        const camber_renderer_desc desc = {.draw = CAMBER_DRAW_CL, .sharing = PATH[k % 3]};
+    assert_int_equal(camber_renderer_create(s->on.device, NULL, NULL, &alone), CAMBER_OK);
+    for (size_t k = 0; k < CAMBER_FIXTURE_BACKENDS * 3; k++) {
+        camber_surface *surface = s->on.surface[k / 3];
+        const camber_renderer_desc desc = {.rasterizer = CAMBER_RASTERIZER_OPENCL, .sharing = PATH[k % 3]};
         camber_renderer *shared = NULL;
         host *h = (host *)(uintptr_t)&s->h;
-        if (!surface || camber_renderer_create(s->device, surface, &desc, &shared) != CAMBER_OK) {
+        if (!surface || camber_renderer_create(s->on.device, surface, &desc, &shared) != CAMBER_OK) {
             h->errors = 0;
             continue;
         }
-        printf("# %s, %s\n", BACKEND_NAME[k / 3], camber_sharing_name(PATH[k % 3]));
+        printf("# %s, %s\n", fixture_name((int)k / 3), camber_sharing_get_name(PATH[k % 3]));
         found++;
         assert_int_equal(camber_renderer_get_sharing(shared), PATH[k % 3]);
-        assert_int_equal(camber_renderer_get_draw(shared), CAMBER_DRAW_CL);
+        assert_int_equal(camber_renderer_get_rasterizer(shared), CAMBER_RASTERIZER_OPENCL);
         compare_frames(s, surface, shared, alone);
         drawing d, reference;
         begin_drawing(s, shared, &d);
@@ -166,10 +168,10 @@ static void test_kernels(void **state) {
 }
 
 static void test_shaders(void **state) {
-    const studio *s = *state;
-    for (int i = 0; i < BACKENDS; i++)
-        if (s->renderer[i] && s->surface[i])
-            compare_frames(s, s->surface[i], s->renderer[i], s->renderer[i]);
+    const fixture *s = *state;
+    for (int i = 0; i < CAMBER_FIXTURE_BACKENDS; i++)
+        if (s->on.renderer[i] && s->on.surface[i])
+            compare_frames(s, s->on.surface[i], s->on.renderer[i], s->on.renderer[i]);
 }
 
 /* ---- Over what a texture holds ---- */
@@ -209,7 +211,7 @@ static picture put_over(const picture *below, const picture *above) {
     return p;
 }
 
-static void compare_over(const studio *s, camber_surface *surface, camber_renderer *renderer) {
+static void compare_over(const fixture *s, camber_surface *surface, camber_renderer *renderer) {
     drawing d;
     begin_drawing(s, renderer, &d);
     picture lines = picture_draw(renderer, &d.frame);
@@ -220,7 +222,7 @@ static void compare_over(const studio *s, camber_surface *surface, camber_render
             turn_over(&ground);
         const GLuint name = make_texture(surface, &ground, WIDTH, HEIGHT);
         const camber_texture texture = {.name = name, .keep = keep, .bottom_up = bottom_up};
-        assert_int_equal(camber_render_texture(renderer, &d.frame, &texture, NULL), CAMBER_OK);
+        assert_int_equal(camber_renderer_render_texture(renderer, &d.frame, &texture, NULL), CAMBER_OK);
         picture p = read_texture(surface, name, WIDTH, HEIGHT);
         if (bottom_up)
             turn_over(&p);
@@ -238,14 +240,14 @@ static void compare_over(const studio *s, camber_surface *surface, camber_render
 }
 
 static void test_over(void **state) {
-    const studio *s = *state;
-    for (int i = 0; i < BACKENDS * KINDS; i++) {
-        camber_surface *surface = s->surface[i / KINDS];
-        const camber_renderer_desc desc = {.draw = KIND[i % KINDS]};
+    const fixture *s = *state;
+    for (int i = 0; i < CAMBER_FIXTURE_BACKENDS * KINDS; i++) {
+        camber_surface *surface = s->on.surface[i / KINDS];
+        const camber_renderer_desc desc = {.rasterizer = KIND[i % KINDS]};
         camber_renderer *renderer = NULL;
         if (!surface)
             continue;
-        assert_int_equal(camber_renderer_create(s->device, surface, &desc, &renderer), CAMBER_OK);
+        assert_int_equal(camber_renderer_create(s->on.device, surface, &desc, &renderer), CAMBER_OK);
         compare_over(s, surface, renderer);
         camber_renderer_destroy(renderer);
     }
@@ -253,13 +255,13 @@ static void test_over(void **state) {
 
 /* GL's lines below those of kernels, below GL's again, with nothing read back between. */
 static void test_in_turn(void **state) {
-    const studio *s = *state;
-    camber_surface *surface = s->surface[0] ? s->surface[0] : s->surface[1];
-    const camber_renderer_desc desc = {.draw = CAMBER_DRAW_CL};
-    camber_renderer *turns[3] = {studio_any(s), NULL, studio_any(s)};
+    const fixture *s = *state;
+    camber_surface *surface = s->on.surface[0] ? s->on.surface[0] : s->on.surface[1];
+    const camber_renderer_desc desc = {.rasterizer = CAMBER_RASTERIZER_OPENCL};
+    camber_renderer *turns[3] = {fixture_any(s), NULL, fixture_any(s)};
     drawing d[3];
     picture wanted = {calloc(4, WIDTH * HEIGHT), WIDTH, HEIGHT, HEIGHT, 0};
-    assert_int_equal(camber_renderer_create(s->device, surface, &desc, &turns[1]), CAMBER_OK);
+    assert_int_equal(camber_renderer_create(s->on.device, surface, &desc, &turns[1]), CAMBER_OK);
     const GLuint name = make_texture(surface, &wanted, WIDTH, HEIGHT);
     for (int i = 0; i < 3; i++) {
         void *drawn = NULL;
@@ -270,9 +272,9 @@ static void test_in_turn(void **state) {
         picture_free(&wanted);
         picture_free(&lines);
         wanted = both;
-        assert_int_equal(
-            camber_render_texture(turns[i], &d[i].frame, &(camber_texture){.name = name, .keep = true}, &drawn),
-            CAMBER_OK);
+        assert_int_equal(camber_renderer_render_texture(turns[i], &d[i].frame,
+                                                        &(camber_texture){.name = name, .keep = true}, &drawn),
+                         CAMBER_OK);
         surface->gl.DeleteSync(drawn);
     }
     picture p = read_texture(surface, name, WIDTH, HEIGHT);
@@ -338,14 +340,14 @@ static void use_engine(const engine *e) {
 }
 
 /* The engine makes the texture and looks at it; between them are only fences. */
-static void draw_for_engine(const studio *s, const engine *e, camber_surface *surface, camber_draw kind) {
+static void draw_for_engine(const fixture *s, const engine *e, camber_surface *surface, camber_rasterizer kind) {
     const camber_gl *gl = &surface->gl; /* the same functions in any context of EGL's */
-    const camber_renderer_desc desc = {.draw = kind};
+    const camber_renderer_desc desc = {.rasterizer = kind};
     camber_renderer *renderer = NULL;
     drawing d;
     void *drawn = NULL;
     GLuint name = 0, framebuffer = 0;
-    assert_int_equal(camber_renderer_create(s->device, surface, &desc, &renderer), CAMBER_OK);
+    assert_int_equal(camber_renderer_create(s->on.device, surface, &desc, &renderer), CAMBER_OK);
     begin_drawing(s, renderer, &d);
     picture lines = picture_draw(renderer, &d.frame), ground = make_ground(), wanted = put_over(&ground, &lines);
     use_engine(e);
@@ -356,7 +358,7 @@ static void draw_for_engine(const studio *s, const engine *e, camber_surface *su
     GLsync ready = gl->FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
     gl->Flush();
     const camber_texture texture = {.name = name, .keep = true, .ready = (void *)ready};
-    assert_int_equal(camber_render_texture(renderer, &d.frame, &texture, &drawn), CAMBER_OK);
+    assert_int_equal(camber_renderer_render_texture(renderer, &d.frame, &texture, &drawn), CAMBER_OK);
     use_engine(e);
     gl->WaitSync(drawn, 0, GL_TIMEOUT_IGNORED);
     gl->GenFramebuffers(1, &framebuffer);
@@ -379,7 +381,7 @@ static void draw_for_engine(const studio *s, const engine *e, camber_surface *su
 }
 
 static void test_engine(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     engine e;
     camber_surface *surface = NULL;
     if (!open_engine(&e))
@@ -390,7 +392,7 @@ static void test_engine(void **state) {
     for (int i = 0; i < KINDS; i++)
         draw_for_engine(s, &e, surface, KIND[i]);
     camber_surface_destroy(surface);
-    /* What cannot be shared is told. */
+    /* The log tells what cannot be shared. */
     const camber_surface_desc osmesa = {CAMBER_BACKEND_OSMESA, e.context, e.display};
     assert_int_equal(camber_surface_create(s->context, &osmesa, &surface), CAMBER_ERROR_ARGUMENT);
     assert_story(&s->h, "use the back end EGL");
@@ -401,18 +403,18 @@ static void test_engine(void **state) {
     assert_true(e.destroy(e.display, e.context));
 }
 
-/* ---- What is refused ---- */
+/* ---- Refusals ---- */
 
 static void test_refused(void **state) {
-    studio *s = *state;
-    for (int i = 0; i < BACKENDS * KINDS; i++) {
-        camber_surface *surface = s->surface[i / KINDS];
-        const camber_renderer_desc desc = {.draw = KIND[i % KINDS]};
+    fixture *s = *state;
+    for (int i = 0; i < CAMBER_FIXTURE_BACKENDS * KINDS; i++) {
+        camber_surface *surface = s->on.surface[i / KINDS];
+        const camber_renderer_desc desc = {.rasterizer = KIND[i % KINDS]};
         camber_renderer *renderer = NULL;
         drawing d;
         if (!surface)
             continue;
-        assert_int_equal(camber_renderer_create(s->device, surface, &desc, &renderer), CAMBER_OK);
+        assert_int_equal(camber_renderer_create(s->on.device, surface, &desc, &renderer), CAMBER_OK);
         begin_drawing(s, renderer, &d);
         const GLuint small = make_texture(surface, NULL, WIDTH, HEIGHT - 1),
                      good = make_texture(surface, NULL, WIDTH, HEIGHT);
@@ -422,20 +424,22 @@ static void test_refused(void **state) {
         surface->gl.TexStorage2D(GL_TEXTURE_2D, 1, GL_R8, WIDTH, HEIGHT);
         const GLuint refused[] = {0, small, gray, 100000};
         for (size_t k = 0; k < sizeof refused / sizeof *refused; k++) {
-            assert_int_equal(camber_render_texture(renderer, &d.frame, &(camber_texture){.name = refused[k]}, NULL),
-                             CAMBER_ERROR_ARGUMENT);
+            assert_int_equal(
+                camber_renderer_render_texture(renderer, &d.frame, &(camber_texture){.name = refused[k]}, NULL),
+                CAMBER_ERROR_ARGUMENT);
             assert_story(&s->h, "203 x 149 px, like the frame");
         }
         const uint32_t longest = camber_surface_get_info(surface).largest_target_px;
         camber_frame wide = d.frame;
         wide.width = longest + 1;
         if (wide.width <= 65535) {
-            assert_int_equal(camber_render_texture(renderer, &wide, &(camber_texture){.name = good}, NULL),
+            assert_int_equal(camber_renderer_render_texture(renderer, &wide, &(camber_texture){.name = good}, NULL),
                              CAMBER_ERROR_LIMIT);
             assert_story(&s->h, "draw a smaller one");
         }
         /* And then it draws. */
-        assert_int_equal(camber_render_texture(renderer, &d.frame, &(camber_texture){.name = good}, NULL), CAMBER_OK);
+        assert_int_equal(camber_renderer_render_texture(renderer, &d.frame, &(camber_texture){.name = good}, NULL),
+                         CAMBER_OK);
         const GLuint names[] = {small, good, gray};
         surface->gl.DeleteTextures(3, names);
         camber_mesh_destroy(d.mesh);
@@ -444,12 +448,13 @@ static void test_refused(void **state) {
 }
 
 static void test_no_surface(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     camber_renderer *alone = NULL;
     drawing d;
-    assert_int_equal(camber_renderer_create(s->device, NULL, NULL, &alone), CAMBER_OK);
+    assert_int_equal(camber_renderer_create(s->on.device, NULL, NULL, &alone), CAMBER_OK);
     begin_drawing(s, alone, &d);
-    assert_int_equal(camber_render_texture(alone, &d.frame, &(camber_texture){.name = 1}, NULL), CAMBER_ERROR_ARGUMENT);
+    assert_int_equal(camber_renderer_render_texture(alone, &d.frame, &(camber_texture){.name = 1}, NULL),
+                     CAMBER_ERROR_ARGUMENT);
     assert_story(&s->h, "create it with a surface");
     camber_mesh_destroy(d.mesh);
     camber_renderer_destroy(alone);
@@ -458,7 +463,7 @@ static void test_no_surface(void **state) {
 /* ---- Faults ---- */
 
 typedef struct victim {
-    studio *s;
+    fixture *s;
     camber_surface *surface;
     camber_renderer *renderer;
     drawing d;
@@ -467,7 +472,8 @@ typedef struct victim {
 } victim;
 
 static camber_status attempt(const victim *v) {
-    return camber_render_texture(v->renderer, &v->d.frame, &(camber_texture){.name = v->name, .bottom_up = true}, NULL);
+    return camber_renderer_render_texture(v->renderer, &v->d.frame,
+                                          &(camber_texture){.name = v->name, .bottom_up = true}, NULL);
 }
 
 /* The n-th call fails for every n; what comes after is whole. */
@@ -506,7 +512,7 @@ static void check_loss(victim *v) {
     assert_story(&v->s->h, "lost");
     fault_off();
     /* Kernels still draw rows. */
-    if (camber_renderer_get_draw(v->renderer) == CAMBER_DRAW_CL) {
+    if (camber_renderer_get_rasterizer(v->renderer) == CAMBER_RASTERIZER_OPENCL) {
         picture p = picture_draw(v->renderer, &v->d.frame);
         turn_over(&p);
         picture_assert_same(&v->wanted, &p);
@@ -515,14 +521,14 @@ static void check_loss(victim *v) {
 }
 
 static void test_faults(void **state) {
-    studio *s = *state;
+    fixture *s = *state;
     for (size_t k = 0; k < KINDS * 2; k++) {
-        const camber_renderer_desc desc = {.draw = KIND[k % KINDS],
+        const camber_renderer_desc desc = {.rasterizer = KIND[k % KINDS],
                                            .sharing = k < KINDS ? CAMBER_SHARING_COPY : CAMBER_SHARING_AUTO};
         victim v = {.s = s};
         if (camber_surface_create(s->context, NULL, &v.surface) != CAMBER_OK)
             skip();
-        assert_int_equal(camber_renderer_create(s->device, v.surface, &desc, &v.renderer), CAMBER_OK);
+        assert_int_equal(camber_renderer_create(s->on.device, v.surface, &desc, &v.renderer), CAMBER_OK);
         begin_drawing(s, v.renderer, &v.d);
         v.name = make_texture(v.surface, NULL, WIDTH, HEIGHT);
         v.wanted = picture_draw(v.renderer, &v.d.frame);
@@ -540,25 +546,26 @@ static void test_faults(void **state) {
 
 static camber_status attempt_all(camber_context *context, void *user) {
     victim *v = user;
-    const camber_renderer_desc desc = {.draw = CAMBER_DRAW_CL};
+    const camber_renderer_desc desc = {.rasterizer = CAMBER_RASTERIZER_OPENCL};
     camber_renderer *renderer = NULL;
     camber_mesh *mesh = v->d.mesh;
     (void)context;
-    camber_status status = camber_renderer_create(v->s->device, v->surface, &desc, &renderer);
+    camber_status status = camber_renderer_create(v->s->on.device, v->surface, &desc, &renderer);
     if (status == CAMBER_OK) {
-        mesh->renderer = renderer; /* it is the kernels' alike */
-        status = camber_render_texture(renderer, &v->d.frame, &(camber_texture){.name = v->name, .keep = true}, NULL);
+        mesh->owner = renderer; /* it is the kernels' alike */
+        status = camber_renderer_render_texture(renderer, &v->d.frame, &(camber_texture){.name = v->name, .keep = true},
+                                                NULL);
     }
     camber_renderer_destroy(renderer);
-    mesh->renderer = v->renderer;
+    mesh->owner = v->renderer;
     return status;
 }
 
 static void test_memory(void **state) {
-    studio *s = *state;
-    const camber_renderer_desc desc = {.draw = CAMBER_DRAW_CL};
-    victim v = {.s = s, .surface = s->surface[0] ? s->surface[0] : s->surface[1]};
-    assert_int_equal(camber_renderer_create(s->device, v.surface, &desc, &v.renderer), CAMBER_OK);
+    fixture *s = *state;
+    const camber_renderer_desc desc = {.rasterizer = CAMBER_RASTERIZER_OPENCL};
+    victim v = {.s = s, .surface = s->on.surface[0] ? s->on.surface[0] : s->on.surface[1]};
+    assert_int_equal(camber_renderer_create(s->on.device, v.surface, &desc, &v.renderer), CAMBER_OK);
     begin_drawing(s, v.renderer, &v.d);
     v.name = make_texture(v.surface, NULL, WIDTH, HEIGHT);
     assert_int_equal(attempt_all(s->context, &v), CAMBER_OK);
@@ -574,5 +581,5 @@ int main(void) {
         cmocka_unit_test(test_in_turn),    cmocka_unit_test(test_engine),  cmocka_unit_test(test_refused),
         cmocka_unit_test(test_no_surface), cmocka_unit_test(test_faults),  cmocka_unit_test(test_memory),
     };
-    return STUDIO_RUN(tests);
+    return FIXTURE_RUN(tests);
 }

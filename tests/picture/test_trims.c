@@ -1,9 +1,9 @@
 /* Trims: the part of a line that is left out, against samples. */
-#include "along.h"
+#include "along_picture.h"
 
 #include <stdio.h>
 
-static void check(studio *s, const drawing *d, double mean_bound, double most_bound) {
+static void check(fixture *s, const drawing *d, double mean_bound, double most_bound) {
     static along_truth truth;
     along_sample(d, truth);
     picture p = along_draw(s, d);
@@ -17,7 +17,7 @@ static void check(studio *s, const drawing *d, double mean_bound, double most_bo
 
 static const float TRIMS[][2] = {{0, 0.4f}, {0.317f, 0.6f}, {0.71f, 1}, {0.5f, 0.505f}, {0.6f, 0.3f}};
 
-static void check_line(studio *s, int line, float width_px, camber_cap cap, int method, double most_bound) {
+static void check_line(fixture *s, int line, float width_px, camber_cap cap, int method, double most_bound) {
     for (size_t i = 0; i < sizeof TRIMS / sizeof *TRIMS; i++) {
         const drawing d = {
             .points = ALONG_LINES[line].points,
@@ -41,7 +41,7 @@ static void test_bent(void **state) {
             check_line(*state, line, 8, CAMBER_CAP_BUTT, method, 130);
 }
 
-/* What is trimmed at an end takes the cap; inside there are none. */
+/* A trim at an end takes the cap; inside there are none. */
 static void test_caps(void **state) {
     for (int method = 0; method < 3; method++)
         check_line(*state, 0, 12, CAMBER_CAP_ROUND, method, 24);
@@ -66,5 +66,5 @@ int main(void) {
         cmocka_unit_test(test_caps),
         cmocka_unit_test(test_whole),
     };
-    return STUDIO_RUN(tests);
+    return FIXTURE_RUN(tests);
 }

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# The README's recipes, each as it stands there, in a fresh Debian with the packages that it names and no other.
+# The documents' recipes, each as it stands there, in a fresh Debian with the packages that it names and no other.
 #
 #   recipes.sh [DEBIAN...]      bookworm and trixie where none is named; RECIPES="build ci" chooses from build, core, ci, demo
 #
-# A recipe is the block below a line <!-- recipe: NAME --> of README.md: shell, or steps of GitHub Actions, whose `run` is
-# run and whose `checkout` is a copy of this tree. Needs root, debootstrap and Debian's mirror; ends with 77 where one is
-# not to be had. Fresh systems and packages are kept in CAMBER_CHROOTS (/var/cache/camber-chroots) for the next time.
+# A recipe is the block below a line <!-- recipe: NAME --> of README.md or docs/*.md: shell, or steps of GitHub Actions,
+# whose `run` is run and whose `checkout` is a copy of this tree. Needs root, debootstrap and Debian's mirror; ends with
+# 77 where one is not to be had. Fresh systems and packages are kept in CAMBER_CHROOTS (/var/cache/camber-chroots) for the next time.
 # All mounts lie in a namespace of their own: they go with it, however this ends.
 set -euo pipefail
 source=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
@@ -56,14 +56,14 @@ inside() { unshare --mount --pid --fork --kill-child bash "${BASH_SOURCE[0]}" in
 
 # ---- Outside ----
 
-# The block of README.md below a recipe's mark.
+# The block of README.md or docs/*.md below a recipe's mark.
 block() { # NAME
     awk -v mark="<!-- recipe: $1 -->" '
         $0 == mark { found = 1; next }
         found && /^```/ { if (fenced) exit; fenced = 1; next }
         found && fenced { print; next }
         found && /^    / { print substr($0, 5); indented = 1; next }
-        found && indented { exit }' "$source/README.md"
+        found && indented { exit }' "$source/README.md" "$source"/docs/*.md
 }
 
 # Steps of GitHub Actions as shell.
@@ -82,7 +82,7 @@ steps() {
          END                               { flush() }'
 }
 
-# What is to be true after a recipe.
+# A recipe as a script, with the checks that follow it.
 script_of() { # NAME
     case $1 in
     build)
@@ -112,10 +112,10 @@ ROADS
     esac
 }
 
-[ "$(id -u)" = 0 ] || skip "the README's recipes: not root"
-command -v debootstrap >/dev/null || skip "the README's recipes: no debootstrap (Debian: debootstrap)"
-command -v git >/dev/null || skip "the README's recipes: no git"
-unshare --mount --pid --fork true 2>/dev/null || skip "the README's recipes: no right to mount"
+[ "$(id -u)" = 0 ] || skip "the documents' recipes: not root"
+command -v debootstrap >/dev/null || skip "the documents' recipes: no debootstrap (Debian: debootstrap)"
+command -v git >/dev/null || skip "the documents' recipes: no git"
+unshare --mount --pid --fork true 2>/dev/null || skip "the documents' recipes: no right to mount"
 mkdir -p "$kept"
 run=$(mktemp -d "$kept/run.XXXXXX")
 trap 'rm -rf --one-file-system "$run"' EXIT
@@ -134,11 +134,11 @@ failures=0
 for debian; do
     if [ ! -d "$kept/$debian" ]; then
         begun=$SECONDS
-        inside make_base "$debian" >"$run/log" 2>&1 || { tail -n 3 "$run/log"; skip "the README's recipes: debootstrap of $debian failed"; }
+        inside make_base "$debian" >"$run/log" 2>&1 || { tail -n 3 "$run/log"; skip "the documents' recipes: debootstrap of $debian failed"; }
         echo "$debian: a fresh system, $((SECONDS - begun)) s"
     fi
     echo 'apt-get -qq update -o APT::Update::Error-Mode=any' >"$run/update"
-    inside in_root "$debian" "$run/$debian.update" "$run/update" >"$run/log" 2>&1 || { tail -n 3 "$run/log"; skip "the README's recipes: no $mirror"; }
+    inside in_root "$debian" "$run/$debian.update" "$run/update" >"$run/log" 2>&1 || { tail -n 3 "$run/log"; skip "the documents' recipes: no $mirror"; }
     for recipe in ${RECIPES:-build core ci demo}; do
         begun=$SECONDS
         script_of "$recipe" >"$run/$recipe"

@@ -209,7 +209,7 @@ expect 0 "info on an unknown device" info --device 'no such device' --json
 has "$tmp/stdout" '"unavailable"'
 expect 0 "info on what draws" info --draw cl
 has "$tmp/stdout" '^draw *cl: asked for'
-# Of its own accord: OpenCL where GL is a software rasteriser, also where that has to be looked at.
+# Unasked it draws by OpenCL where GL is a software rasteriser, also where that has to be looked at.
 expect 0 "info on what draws by itself" info --json
 if grep -q '"software": false' "$tmp/stdout"; then own=gl; else own=cl; fi
 has "$tmp/stdout" "\"draw\": \"$own\"" '"draw_reason": ".*GL'
@@ -694,7 +694,7 @@ says '^1 feature, 1 polyline, 2 points, '
 lacks a.png OpenStreetMap # anyone's roads may have a key of theirs
 lacks "$tmp/stderr" OpenStreetMap
 rm -f a.png
-# What the style leaves out is told at length; where it leaves out everything, always.
+# Lines that the style leaves out are told at length; where it leaves out everything, always.
 rail=${line/highway/railway}
 echo "{\"type\":\"FeatureCollection\",\"features\":[$line,$rail]}" >"$tmp/in/rail.geojson"
 expect 0 "a line that the style leaves out" render "$tmp/in/rail.geojson" -o a.png --size 64x64
@@ -850,7 +850,7 @@ d.commit()' "$tmp/in/html.mbtiles"
     expect 65 "MBTiles whose tiles are none" render "$tmp/in/html.mbtiles" -qo a.png
     says 'html.mbtiles: no feature can be read: tile 0/0/0: '
 fi
-# What JSON has no word for, and a byte order mark: INPUT and a style's source read the same of them.
+# Numbers that JSON has no word for, and a byte order mark: INPUT and a style's source read the same of them.
 for odd in 2 NaN Infinity -Infinity 1e400; do
     { printf '\357\273\277'; sed "s/\[2,2\]/[1.5,$odd],[2,2],[3,1]/" "$tmp/in/line.geojson"; } >"$tmp/in/odd.geojson"
     sed 's/line.geojson/odd.geojson/' "$tmp/in/own.json" >"$tmp/in/odd.json"

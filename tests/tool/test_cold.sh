@@ -1,5 +1,5 @@
 #!/bin/bash
-# What a run compiles: with empty caches, with its own, with those that the machine's users share, and thirty runs at
+# Kernels that a run compiles: with empty caches, with its own, with those that the machine's users share, and thirty runs at
 # once. test_cold.sh TOOL CITY
 # PoCL's cache tells: a folder with program.bc is a program, a .so in it a kernel that is built for one kind of launch.
 set -u
@@ -121,7 +121,7 @@ programs=$(sed -n 's/^  "programs": \([0-9]*\),*/\1/p' "$tmp/warm.json")
 draw "$tmp/ahead.png" || fail "after info --warm: $(cat "$tmp/ahead.png.log")"
 [ "$(built "$tmp/ahead.png.log")" = 0 ] || fail "after info --warm: compiles $(built "$tmp/ahead.png.log") programs"
 
-# What this user has already is made for all, too; under any umask; and where nothing is kept that is no success.
+# Kernels that this user has already are made for all, too; under any umask; and where nothing is kept that is no success.
 export CAMBER_KERNELS=$tmp/all
 (umask 077 && "$tool" info --warm >"$tmp/warm.out" 2>"$tmp/warm.log") || fail "info --warm for all: $(cat "$tmp/warm.log")"
 [ "$(find "$CAMBER_KERNELS" -perm 644 -name 'kernels-*.bin' | wc -l)" = "$programs" ] || fail "info --warm for all: not $programs files"

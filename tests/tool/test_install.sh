@@ -13,9 +13,12 @@ manifest=$build/install_manifest.txt
 trap 'rm -f "$manifest"; [ ! -f "$folder/manifest" ] || mv "$folder/manifest" "$manifest"; rm -rf "$folder"' EXIT
 cmake --install "$build" --prefix "$folder/usr" >"$folder/log" || { cat "$folder/log"; exit 1; }
 cp -a "$folder/usr" "$folder/installed"
-for file in LICENSE README.md CHANGELOG.md; do
+for file in LICENSE README.md CHANGELOG.md docs/glossary.md; do
     cmp "$source/$file" "$folder/usr/share/doc/camber/$file"
 done
+# Completion, where the shells look for it.
+bash -n "$folder/usr/share/bash-completion/completions/camber"
+grep -qx '#compdef camber' "$folder/usr/share/zsh/site-functions/_camber"
 
 cat >"$folder/core.c" <<'C'
 #include <camber_proof.h>
@@ -29,7 +32,7 @@ int main(void) {
     camber_mesh_data mesh;
     if (camber_context_create(NULL, &context) != CAMBER_OK ||
         camber_polylines_create(context, &(camber_polylines_desc){points, 3, offsets, 1, NULL, false}, &lines) != CAMBER_OK ||
-        camber_tessellate_on_host(context, lines, &(camber_tessellation_desc){&stroke, 1, CAMBER_METHOD_STRIP, 0}, &mesh))
+        camber_mesh_data_tessellate(context, lines, &(camber_tessellation_desc){&stroke, 1, CAMBER_METHOD_STRIP, 0}, &mesh))
         return 1;
     printf("%s: %zu vertices\n", camber_version(), mesh.info.vertex_count);
     return mesh.info.vertex_count == 6 ? 0 : 1;
@@ -41,7 +44,7 @@ int main(void) {
     camber_context *context;
     camber_style *style;
     if (camber_context_create(NULL, &context) != CAMBER_OK ||
-        camber_style_builtin(context, CAMBER_THEME_DARK, &style) != CAMBER_OK)
+        camber_style_create_builtin(context, CAMBER_THEME_DARK, &style) != CAMBER_OK)
         return 1;
     camber_style_destroy(style);
     camber_context_destroy(context);

@@ -82,26 +82,26 @@ static void test_meshes(void **state) {
     (void)state;
     host h;
     camber_context *context = host_context(&h);
-    scene s = scene_make(1); /* over many blocks */
+    camber_made_scene s = scene_make(1); /* over many blocks */
     camber_polylines *polylines = scene_polylines(context, &s);
-    camber_stroke strokes[SCENE_ROWS];
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     scene_strokes(strokes);
     for (int method = 0; method < 3; method++) {
-        const camber_tessellation_desc desc = {strokes, SCENE_ROWS, (camber_method)method, 0, false};
+        const camber_tessellation_desc desc = {strokes, CAMBER_KERNEL_ROWS, (camber_method)method, 0, false};
         camber_mesh_data mesh;
-        assert_int_equal(camber_tessellate_on_host(context, polylines, &desc, &mesh), CAMBER_OK);
+        assert_int_equal(camber_mesh_data_tessellate(context, polylines, &desc, &mesh), CAMBER_OK);
         assert_true(mesh.info.vertex_count > 10000 && mesh.info.vertex_count < CAMBER_BATCH_VERTICES);
         assert_int_equal(camber_batches_count(&mesh, CAMBER_BATCH_VERTICES), 1);
         for (uint32_t most = 200; most < 12000; most = most * 3 / 2) {
             const size_t batches = camber_batches_count(&mesh, most), copied = copied_batches(&mesh, most);
-            assert_true(batches >= (mesh.info.vertex_count - 2 * SCENE_ROWS) / most);
+            assert_true(batches >= (mesh.info.vertex_count - 2 * CAMBER_KERNEL_ROWS) / most);
             assert_true(batches >= copied);
             assert_true(batches <= copied + copied / 50 + 1);
         }
-        camber_mesh_data_free(context, &mesh);
+        camber_mesh_data_destroy(&mesh);
     }
     camber_polylines_destroy(polylines);
-    scene_free(&s);
+    camber_made_scene_free(&s);
     host_done(&h, context);
 }
 

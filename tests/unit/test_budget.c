@@ -1,4 +1,4 @@
-/* What files may make a run take, and which files may be read. */
+/* Budgets: how much memory files may make a run take, and which files may be read. */
 #include "core.h"
 
 #include <fcntl.h>
@@ -33,24 +33,24 @@ static void test_memory(void **state) {
     assert_non_null(first);
     assert_null(second);
     assert_story(&h[1], "memory: 0.6 MB are held, 0.6 MB more are needed, and 1.0 MB are allowed");
-    assert_int_equal(camber_budget_held_bytes(budget), 600 << 10);
+    assert_int_equal(camber_budget_get_held_bytes(budget), 600 << 10);
     camber_free(one, first);
-    assert_int_equal(camber_budget_held_bytes(budget), 0);
+    assert_int_equal(camber_budget_get_held_bytes(budget), 0);
     second = camber_alloc(two, 600 << 10, 1);
     assert_non_null(second);
     size_t capacity = 600 << 10;
     assert_true(camber_grow(two, &second, &capacity, 700 << 10, 1));
     assert_true(capacity >= 700 << 10);
-    assert_int_equal(camber_budget_held_bytes(budget), capacity);
+    assert_int_equal(camber_budget_get_held_bytes(budget), capacity);
     assert_false(camber_grow(two, &second, &capacity, 2 << 20, 1));
     assert_story(&h[1], "memory:");
-    assert_int_equal(camber_budget_held_bytes(budget), capacity);
+    assert_int_equal(camber_budget_get_held_bytes(budget), capacity);
     camber_free(two, second);
     assert_null(camber_alloc(two, SIZE_MAX / 2, 4));
     assert_story(&h[1], "out of memory");
     host_done(&h[0], one);
     host_done(&h[1], two);
-    assert_int_equal(camber_budget_held_bytes(budget), 0);
+    assert_int_equal(camber_budget_get_held_bytes(budget), 0);
     camber_budget_destroy(budget);
 }
 
@@ -65,7 +65,7 @@ static void test_machine(void **state) {
     assert_true(atomic_load(&budget->most_bytes) == UINT64_MAX);
     camber_free(context, block);
     block = camber_alloc(context, 96 << 20, 1);
-    const uint64_t most = camber_budget_most_bytes(budget);
+    const uint64_t most = camber_budget_get_most_bytes(budget);
     assert_true(most < UINT64_MAX);
     assert_true(!block || most >= 96 << 20);
     assert_false(camber_budget_take(context, most));
@@ -74,7 +74,7 @@ static void test_machine(void **state) {
     camber_budget_destroy(budget);
 }
 
-/* ---- What one set reads ---- */
+/* ---- Reading one set ---- */
 
 static void test_reading(void **state) {
     (void)state;
@@ -172,7 +172,7 @@ static void test_root(void **state) {
     folder_remove(folder);
 }
 
-/* What is about to be replaced is not read, by any of its names. */
+/* A file that is about to be replaced is not read, by any of its names. */
 static void test_output(void **state) {
     (void)state;
     host h;

@@ -74,7 +74,7 @@ static void test_all_errors(void **state) {
     host_done(&h, context);
 }
 
-/* What styles have at their root beside what is drawn. */
+/* Styles have these at their root beside what is drawn. */
 static void test_root(void **state) {
     (void)state;
     static const struct {

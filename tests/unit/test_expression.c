@@ -246,7 +246,7 @@ static void test_filters(void **state) {
     check(samples, sizeof samples / sizeof *samples);
 }
 
-/* What does not compile, and where the log says it is. */
+/* Expressions that do not compile, and where the log says it is. */
 static const struct {
     const char *expression;
     camber_type type;
@@ -339,7 +339,7 @@ static void test_folding(void **state) {
     teardown(&f);
 }
 
-/* What an expression depends on, and what it makes a style ask for. */
+/* Whatever an expression depends on, and what it makes a style ask for. */
 static void test_reads(void **state) {
     (void)state;
     static const struct {

@@ -1,5 +1,5 @@
 /* The set of features: strings and classes are kept once, polylines where they were put; and memory that runs out. */
-#include "source/fill.h"
+#include "source/features.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -160,29 +160,30 @@ static void test_no_properties(void **state) {
 static void test_attribution(void **state) {
     fixture *it = *state;
     camber_features *set = it->features;
-    assert_null(camber_features_attribution(set));
+    assert_null(camber_features_get_attribution(set));
     static const char *const nothing[] = {NULL, "", " \n", "<br>"};
     for (size_t i = 0; i < sizeof nothing / sizeof *nothing; i++)
-        assert_int_equal(camber_features_sign(set, nothing[i]), CAMBER_OK);
-    assert_null(camber_features_attribution(set));
-    assert_int_equal(
-        camber_features_sign(set, " <a href=\"https://a.example/?b>c\" target='_blank'>&copy; A &amp; B</a>\n"),
-        CAMBER_OK);
-    assert_string_equal(camber_features_attribution(set), "\xc2\xa9 A & B");
-    camber_features_unsign(set, 0);
-    assert_null(camber_features_attribution(set));
-    assert_int_equal(camber_features_sign(set, "<a href=\"https://a.example\">&copy;  A</a> <i>1 < 2</i>"), CAMBER_OK);
-    assert_string_equal(camber_features_attribution(set), "\xc2\xa9 A 1 < 2");
+        assert_int_equal(camber_features_add_attribution(set, nothing[i]), CAMBER_OK);
+    assert_null(camber_features_get_attribution(set));
+    assert_int_equal(camber_features_add_attribution(
+                         set, " <a href=\"https://a.example/?b>c\" target='_blank'>&copy; A &amp; B</a>\n"),
+                     CAMBER_OK);
+    assert_string_equal(camber_features_get_attribution(set), "\xc2\xa9 A & B");
+    camber_features_cut_attribution(set, 0);
+    assert_null(camber_features_get_attribution(set));
+    assert_int_equal(camber_features_add_attribution(set, "<a href=\"https://a.example\">&copy;  A</a> <i>1 < 2</i>"),
+                     CAMBER_OK);
+    assert_string_equal(camber_features_get_attribution(set), "\xc2\xa9 A 1 < 2");
     const size_t size = set->attribution_size;
-    assert_int_equal(camber_features_sign(set, "B"), CAMBER_OK);
-    assert_int_equal(camber_features_sign(set, "\xc2\xa9 A"), CAMBER_OK);
-    assert_string_equal(camber_features_attribution(set), "\xc2\xa9 A 1 < 2, B");
-    camber_features_unsign(set, size);
-    assert_string_equal(camber_features_attribution(set), "\xc2\xa9 A 1 < 2");
+    assert_int_equal(camber_features_add_attribution(set, "B"), CAMBER_OK);
+    assert_int_equal(camber_features_add_attribution(set, "\xc2\xa9 A"), CAMBER_OK);
+    assert_string_equal(camber_features_get_attribution(set), "\xc2\xa9 A 1 < 2, B");
+    camber_features_cut_attribution(set, size);
+    assert_string_equal(camber_features_get_attribution(set), "\xc2\xa9 A 1 < 2");
     /* It goes to terminals and into files. */
-    camber_features_unsign(set, 0);
-    assert_int_equal(camber_features_sign(set, "\x01 C\x1b[2J\x7f\x08 D\a"), CAMBER_OK);
-    assert_string_equal(camber_features_attribution(set), "C [2J D");
+    camber_features_cut_attribution(set, 0);
+    assert_int_equal(camber_features_add_attribution(set, "\x01 C\x1b[2J\x7f\x08 D\a"), CAMBER_OK);
+    assert_string_equal(camber_features_get_attribution(set), "C [2J D");
 }
 
 static void *reallocate_some(void *user, void *block, size_t size) {

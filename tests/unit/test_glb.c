@@ -268,7 +268,7 @@ static camber_mesh_data tessellate(const fixture *f, const camber_polylines_desc
     assert_int_equal(camber_polylines_create(f->context, lines, &polylines), CAMBER_OK);
     camber_mesh_data mesh;
     const camber_tessellation_desc desc = {.strokes = strokes, .stroke_count = stroke_count, .method = method};
-    assert_int_equal(camber_tessellate_on_host(f->context, polylines, &desc, &mesh), CAMBER_OK);
+    assert_int_equal(camber_mesh_data_tessellate(f->context, polylines, &desc, &mesh), CAMBER_OK);
     camber_polylines_destroy(polylines);
     return mesh;
 }
@@ -320,7 +320,7 @@ static void test_random_lines(void **state) {
             json_decref(g.json);
             free(bytes.bytes);
         }
-        camber_mesh_data_free(f->context, &mesh);
+        camber_mesh_data_destroy(&mesh);
     }
 }
 
@@ -366,7 +366,7 @@ static void test_outline_by_hand(void **state) {
         assert_true(json_is_true(get(material, "doubleSided")));
         json_decref(g.json);
         free(bytes.bytes);
-        camber_mesh_data_free(f->context, &mesh);
+        camber_mesh_data_destroy(&mesh);
     }
 }
 
@@ -462,7 +462,7 @@ static void test_failures(void **state) {
     assert_int_equal(whole.size, before);
     free(whole.bytes);
     free(refused.bytes);
-    camber_mesh_data_free(f->context, &mesh);
+    camber_mesh_data_destroy(&mesh);
 }
 
 int main(int argc, char **argv) {

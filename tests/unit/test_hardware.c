@@ -1,4 +1,4 @@
-/* What GL can be told by, before it is opened. */
+/* Signs of GL hardware, before GL is opened. */
 #include "core.h"
 
 #include "gl/surface.h"

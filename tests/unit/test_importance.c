@@ -1,3 +1,4 @@
+/* The importance of points: what a tolerance keeps, against the book's recursive method. */
 #include "core.h"
 
 #include "lines/importance.h"
@@ -19,7 +20,7 @@ static double distance_to_segment(const double *p, const double *a, const double
     return hypot(a[0] + t * dx - p[0], a[1] + t * dy - p[1]);
 }
 
-/* What the method keeps for one tolerance, as the book has it. */
+/* The points that the method keeps for one tolerance, as the book has it. */
 static void keep_between(const double *points, size_t a, size_t b, double tolerance, bool *keep) {
     size_t at = a;
     double largest = 0;
@@ -113,8 +114,8 @@ static void test_brute_force(void **state) {
     }
 }
 
-/* What a range is split by never goes before what lies in the range: a smaller tolerance keeps no fewer points, and
- * the last to stay is the farthest from the ends. */
+/* The point that a range is split by never goes before what lies in the range: a smaller tolerance keeps no fewer
+ * points, and the last to stay is the farthest from the ends. */
 static void test_known_lines(void **state) {
     (void)state;
     host h;

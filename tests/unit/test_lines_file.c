@@ -29,7 +29,7 @@ static byte_list make_file(void) {
 }
 
 static void assert_refused(camber_context *context, host *h, const byte_list *file, const char *part) {
-    const camber_lines untouched = {NULL, NULL, 123, 456};
+    const camber_lines untouched = {.points = NULL, .offsets = NULL, .point_count = 123, .polyline_count = 456};
     camber_lines lines = untouched;
     /* A copy of the exact size: an overrun shows under a sanitizer. */
     unsigned char *exact = malloc(file->size ? file->size : 1);
@@ -62,7 +62,7 @@ static void test_parse(void **state) {
     assert_int_equal(camber_lines_write(context, &lines, (camber_sink){byte_list_write, &again}), CAMBER_OK);
     assert_int_equal(again.size, file.size);
     assert_memory_equal(again.bytes, file.bytes, file.size);
-    camber_lines_free(context, &lines);
+    camber_lines_destroy(&lines);
     assert_true(!lines.points && !lines.offsets && lines.point_count == 0);
     free(again.bytes);
     free(file.bytes);
@@ -76,20 +76,20 @@ static void test_round_trip(void **state) {
     camber_context *context = host_context(&h);
     uint64_t seed = 5;
     for (int round = 0; round < 20; round++) {
-        const size_t n = random_below(&seed, 3000);
+        const size_t n = camber_random_below(&seed, 3000);
         uint32_t *offsets = calloc(n + 1, sizeof *offsets);
         assert_non_null(offsets);
         for (size_t i = 0; i < n; i++)
-            offsets[i + 1] = offsets[i] + (uint32_t)random_below(&seed, 4);
+            offsets[i + 1] = offsets[i] + (uint32_t)camber_random_below(&seed, 4);
         const size_t p = offsets[n];
         float *points = calloc(2 * p + 1, sizeof *points);
         assert_non_null(points);
         for (size_t i = 0; i < 2 * p; i++) {
-            const uint32_t bits = (uint32_t)random_bits(&seed);
+            const uint32_t bits = (uint32_t)camber_random_bits(&seed);
             memcpy(points + i, &bits, 4);
         }
         byte_list file = {.refuse_at = SIZE_MAX};
-        const camber_lines lines = {points, offsets, p, n};
+        const camber_lines lines = {.points = points, .offsets = offsets, .point_count = p, .polyline_count = n};
         assert_int_equal(camber_lines_write(context, &lines, (camber_sink){byte_list_write, &file}), CAMBER_OK);
         assert_int_equal(file.size, HEAD_SIZE + 4 * (n + 1) + 8 * p);
         camber_lines back;
@@ -98,7 +98,7 @@ static void test_round_trip(void **state) {
         assert_memory_equal(back.offsets, offsets, 4 * (n + 1));
         if (p)
             assert_memory_equal(back.points, points, 8 * p);
-        camber_lines_free(context, &back);
+        camber_lines_destroy(&back);
         free(file.bytes);
         free(points);
         free(offsets);
@@ -118,7 +118,7 @@ static void test_nothing(void **state) {
     assert_int_equal(camber_lines_parse(context, file.bytes, file.size, "x", &lines), CAMBER_OK);
     assert_true(lines.polyline_count == 0 && lines.point_count == 0);
     assert_int_equal(lines.offsets[0], 0);
-    camber_lines_free(context, &lines);
+    camber_lines_destroy(&lines);
     free(file.bytes);
     host_done(&h, context);
 }
@@ -167,7 +167,7 @@ static void test_damaged(void **state) {
     }
     camber_lines lines;
     assert_int_equal(camber_lines_parse(context, file.bytes, file.size, "x", &lines), CAMBER_OK);
-    camber_lines_free(context, &lines);
+    camber_lines_destroy(&lines);
     free(file.bytes);
     host_done(&h, context);
 }
@@ -208,15 +208,15 @@ static void test_random_bytes(void **state) {
     memcpy(original, file.bytes, file.size);
     for (int round = 0; round < 20000; round++) {
         memcpy(file.bytes, original, file.size);
-        for (size_t i = 0; i < 1 + random_below(&seed, 3); i++)
-            file.bytes[random_below(&seed, HEAD_SIZE + 16)] = (unsigned char)random_bits(&seed);
+        for (size_t i = 0; i < 1 + camber_random_below(&seed, 3); i++)
+            file.bytes[camber_random_below(&seed, HEAD_SIZE + 16)] = (unsigned char)camber_random_bits(&seed);
         camber_lines lines;
         if (camber_lines_parse(context, file.bytes, file.size, "x", &lines) != CAMBER_OK)
             continue;
         for (size_t i = 0; i < lines.polyline_count; i++)
             assert_true(lines.offsets[i] <= lines.offsets[i + 1]);
         assert_int_equal(lines.offsets[lines.polyline_count], lines.point_count);
-        camber_lines_free(context, &lines);
+        camber_lines_destroy(&lines);
     }
     free(original);
     free(file.bytes);
@@ -231,7 +231,7 @@ static void test_sink_refuses(void **state) {
     float *points = calloc(2 * p, sizeof *points);
     assert_non_null(points);
     uint32_t offsets[] = {0, (uint32_t)p};
-    const camber_lines lines = {points, offsets, p, 1};
+    const camber_lines lines = {.points = points, .offsets = offsets, .point_count = p, .polyline_count = 1};
     const size_t whole = HEAD_SIZE + 8 + 8 * p;
     for (size_t at = 0; at <= whole; at += at < 32 ? 1 : 997) {
         byte_list file = {.refuse_at = at};
@@ -261,17 +261,17 @@ static void test_simplify(void **state) {
     const uint32_t wanted_offsets[] = {0, 6, 6, 9, 13};
     memcpy(&points[3][0], &signalling, sizeof signalling); /* compilers quieten it */
     memcpy(&wanted[2][0], &signalling, sizeof signalling);
-    const camber_lines lines = {points[0], offsets, 18, 4};
+    const camber_lines lines = {.points = points[0], .offsets = offsets, .point_count = 18, .polyline_count = 4};
     camber_lines made = {0};
     assert_int_equal(camber_lines_simplify(context, &lines, 1, &made), CAMBER_OK);
     assert_int_equal(made.polyline_count, 4);
     assert_int_equal(made.point_count, 13);
     assert_memory_equal(made.offsets, wanted_offsets, sizeof wanted_offsets);
     assert_memory_equal(made.points, wanted, sizeof wanted);
-    camber_lines_free(context, &made);
+    camber_lines_destroy(&made);
     assert_int_equal(camber_lines_simplify(context, &lines, 0, &made), CAMBER_OK);
     assert_memory_equal(made.points, points, sizeof points);
-    camber_lines_free(context, &made);
+    camber_lines_destroy(&made);
     assert_int_equal(camber_lines_simplify(context, &lines, -1, &made), CAMBER_ERROR_ARGUMENT);
     assert_story(&h, "tolerance");
     assert_int_equal(camber_lines_simplify(context, &lines, (double)NAN, &made), CAMBER_ERROR_ARGUMENT);

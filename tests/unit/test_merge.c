@@ -2,7 +2,7 @@
  * GEOS where it is there. */
 #include "core.h"
 
-#include "source/fill.h"
+#include "source/features.h"
 
 #include <math.h>
 
@@ -276,18 +276,18 @@ static void check_node(node_ends before, node_ends after, bool directed) {
 }
 
 static void make_network(const fixture *it, uint64_t *seed) {
-    const size_t lines = 2 + random_below(seed, 40), classes = 1 + random_below(seed, CLASSES);
+    const size_t lines = 2 + camber_random_below(seed, 40), classes = 1 + camber_random_below(seed, CLASSES);
     for (size_t i = 0; i < lines; i++) {
         double points[2 * 6];
-        const size_t count = 1 + random_below(seed, 6);
+        const size_t count = 1 + camber_random_below(seed, 6);
         for (size_t k = 0; k < count; k++) {
-            points[2 * k] = (double)random_below(seed, GRID);
-            points[2 * k + 1] = (double)random_below(seed, GRID);
+            points[2 * k] = (double)camber_random_below(seed, GRID);
+            points[2 * k + 1] = (double)camber_random_below(seed, GRID);
         }
-        if (i > 0 && random_below(seed, 8) == 0)
+        if (i > 0 && camber_random_below(seed, 8) == 0)
             add_part(it, count, points);
         else
-            add(it, (int)random_below(seed, classes), count, points);
+            add(it, (int)camber_random_below(seed, classes), count, points);
     }
 }
 

@@ -25,12 +25,12 @@ static double area2(place a, place b, place c) {
 static camber_mesh_data tessellate(camber_context *context, const camber_polylines *polylines,
                                    const camber_stroke *strokes, camber_method method) {
     camber_mesh_data data;
-    const camber_tessellation_desc desc = {strokes, SCENE_ROWS, method, 0, false};
-    assert_int_equal(camber_tessellate_on_host(context, polylines, &desc, &data), CAMBER_OK);
+    const camber_tessellation_desc desc = {strokes, CAMBER_KERNEL_ROWS, method, 0, false};
+    assert_int_equal(camber_mesh_data_tessellate(context, polylines, &desc, &data), CAMBER_OK);
     return data;
 }
 
-/* ---- What holds for any mesh ---- */
+/* ---- True of any mesh ---- */
 
 static bool is_near(float a, double b, double scale) {
     return fabs(a - b) <= 1e-6 * (fabs(b) + scale) + 1e-30;
@@ -107,19 +107,19 @@ static void test_any_mesh(void **state) {
     (void)state;
     host h;
     camber_context *context = host_context(&h);
-    camber_stroke strokes[SCENE_ROWS];
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     scene_strokes(strokes);
-    for (size_t which = 0; which < SCENE_COUNT; which++) {
-        scene s = scene_make(which);
+    for (size_t which = 0; which < CAMBER_KERNEL_SCENES; which++) {
+        camber_made_scene s = scene_make(which);
         camber_polylines *polylines = scene_polylines(context, &s);
         for (int method = 0; method < 3; method++) {
             camber_mesh_data mesh = tessellate(context, polylines, strokes, (camber_method)method);
             assert_int_equal(mesh.info.strips, method == CAMBER_METHOD_STRIP);
-            check_mesh(&mesh, SCENE_ROWS);
-            camber_mesh_data_free(context, &mesh);
+            check_mesh(&mesh, CAMBER_KERNEL_ROWS);
+            camber_mesh_data_destroy(&mesh);
         }
         camber_polylines_destroy(polylines);
-        scene_free(&s);
+        camber_made_scene_free(&s);
     }
     host_done(&h, context);
 }
@@ -129,10 +129,10 @@ static void test_input_order(void **state) {
     (void)state;
     host h;
     camber_context *context = host_context(&h);
-    camber_stroke strokes[SCENE_ROWS];
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     scene_strokes(strokes);
-    for (size_t which = 0; which < SCENE_COUNT; which++) {
-        scene s = scene_make(which);
+    for (size_t which = 0; which < CAMBER_KERNEL_SCENES; which++) {
+        camber_made_scene s = scene_make(which);
         camber_polylines *polylines = scene_polylines(context, &s);
         for (int method = 0; method < 3; method++) {
             camber_mesh_data all = tessellate(context, polylines, strokes, (camber_method)method);
@@ -141,13 +141,13 @@ static void test_input_order(void **state) {
                 camber_mesh_data first = tessellate(context, some, strokes, (camber_method)method);
                 assert_memory_equal(all.vertices, first.vertices, first.info.vertex_count * sizeof *all.vertices);
                 assert_memory_equal(all.indices, first.indices, first.info.index_count * sizeof *all.indices);
-                camber_mesh_data_free(context, &first);
+                camber_mesh_data_destroy(&first);
                 camber_polylines_destroy(some);
             }
-            camber_mesh_data_free(context, &all);
+            camber_mesh_data_destroy(&all);
         }
         camber_polylines_destroy(polylines);
-        scene_free(&s);
+        camber_made_scene_free(&s);
     }
     host_done(&h, context);
 }
@@ -180,11 +180,11 @@ static void test_join_counts(void **state) {
     (void)state;
     host h;
     camber_context *context = host_context(&h);
-    camber_stroke strokes[SCENE_ROWS];
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     scene_strokes(strokes);
     size_t kinds[3] = {0};
     for (size_t which = 0; which < 4; which++) {
-        scene s = scene_make(which);
+        camber_made_scene s = scene_make(which);
         camber_polylines *p = scene_polylines(context, &s);
         join_counts counts = {0};
         size_t undrawn = 0;
@@ -202,7 +202,7 @@ static void test_join_counts(void **state) {
             assert_int_equal(mesh.info.undrawn_dots, undrawn);
             assert_true(llabs((long long)mesh.info.tight_joins - (long long)counts.tight) <= (long long)counts.unsure);
             assert_true(llabs((long long)mesh.info.split_joins - (long long)counts.split) <= (long long)counts.unsure);
-            camber_mesh_data_free(context, &mesh);
+            camber_mesh_data_destroy(&mesh);
         }
         if (which != 3) /* there a third are exact reversals */
             assert_true(counts.unsure < 10 + counts.joins / 200);
@@ -210,7 +210,7 @@ static void test_join_counts(void **state) {
         kinds[1] += counts.tight;
         kinds[2] += counts.split;
         camber_polylines_destroy(p);
-        scene_free(&s);
+        camber_made_scene_free(&s);
     }
     assert_true(kinds[0] > 100 && kinds[1] > 100 && kinds[2] > 100);
     host_done(&h, context);
@@ -219,12 +219,12 @@ static void test_join_counts(void **state) {
 /* ---- Places ---- */
 
 /* Lines whose joins all have room: segments far longer than the widths, turns below 127 degrees. */
-static scene roomy_scene(void) {
-    scene s = {0};
+static camber_made_scene roomy_scene(void) {
+    camber_made_scene s = {0};
     uint64_t seed = 31;
     for (size_t i = 0; i < 90; i++) {
-        scene_walk(&s, &seed, 2 + i % 20, (const double[]){150, 300}, 2.15);
-        scene_end(&s, i % 6); /* rows up to 8 px */
+        camber_made_scene_walk(&s, &seed, 2 + i % 20, (const double[]){150, 300}, 2.15);
+        camber_made_scene_end(&s, i % 6); /* rows up to 8 px */
     }
     return s;
 }
@@ -252,9 +252,9 @@ static void test_winding(void **state) {
     (void)state;
     host h;
     camber_context *context = host_context(&h);
-    camber_stroke strokes[SCENE_ROWS];
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     scene_strokes(strokes);
-    scene s = roomy_scene();
+    camber_made_scene s = roomy_scene();
     camber_polylines *polylines = scene_polylines(context, &s);
     for (int method = 0; method < 3; method++) {
         camber_mesh_data mesh = tessellate(context, polylines, strokes, (camber_method)method);
@@ -263,10 +263,10 @@ static void test_winding(void **state) {
         const size_t count = each_triangle(&mesh, check_winding, &w);
         assert_int_equal(w.backward, 0);
         assert_true(w.flat < count / 50); /* joins that hardly turn */
-        camber_mesh_data_free(context, &mesh);
+        camber_mesh_data_destroy(&mesh);
     }
     camber_polylines_destroy(polylines);
-    scene_free(&s);
+    camber_made_scene_free(&s);
     host_done(&h, context);
 }
 
@@ -276,9 +276,9 @@ static void test_two_vertices_a_point(void **state) {
     (void)state;
     host h;
     camber_context *context = host_context(&h);
-    camber_stroke strokes[SCENE_ROWS];
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     scene_strokes(strokes);
-    scene s = roomy_scene();
+    camber_made_scene s = roomy_scene();
     camber_polylines *p = scene_polylines(context, &s);
     camber_mesh_data mesh = tessellate(context, p, strokes, CAMBER_METHOD_STRIP);
     assert_int_equal(mesh.info.vertex_count, 2 * camber_polylines_get_stats(p).kept_points);
@@ -298,9 +298,9 @@ static void test_two_vertices_a_point(void **state) {
             }
         }
     }
-    camber_mesh_data_free(context, &mesh);
+    camber_mesh_data_destroy(&mesh);
     camber_polylines_destroy(p);
-    scene_free(&s);
+    camber_made_scene_free(&s);
     host_done(&h, context);
 }
 
@@ -335,16 +335,16 @@ static void test_reversed_line(void **state) {
     (void)state;
     host h;
     camber_context *context = host_context(&h);
-    camber_stroke strokes[SCENE_ROWS];
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
     scene_strokes(strokes);
     uint64_t seed = 6;
     for (size_t round = 0; round < 60; round++) {
-        scene s = {0}, reversed = {0};
-        scene_walk(&s, &seed, 2 + round % 25, (const double[]){1, 60}, round % 2 ? 1 : 3);
-        scene_end(&s, round % 8);
+        camber_made_scene s = {0}, reversed = {0};
+        camber_made_scene_walk(&s, &seed, 2 + round % 25, (const double[]){1, 60}, round % 2 ? 1 : 3);
+        camber_made_scene_end(&s, round % 8);
         for (size_t i = s.point_count; i > 0; i--)
-            scene_point(&reversed, (double)s.points[2 * i - 2], (double)s.points[2 * i - 1]);
-        scene_end(&reversed, round % 8);
+            camber_made_scene_point(&reversed, (double)s.points[2 * i - 2], (double)s.points[2 * i - 1]);
+        camber_made_scene_end(&reversed, round % 8);
         camber_polylines *p = scene_polylines(context, &s), *r = scene_polylines(context, &reversed);
         for (int method = 0; method < 2; method++) { /* a fan's last step is shorter than its first */
             camber_mesh_data a = tessellate(context, p, strokes, (camber_method)method);
@@ -352,13 +352,13 @@ static void test_reversed_line(void **state) {
             assert_int_equal(a.info.tight_joins, b.info.tight_joins);
             assert_int_equal(a.info.split_joins, b.info.split_joins);
             assert_same_places(&a, &b, strokes);
-            camber_mesh_data_free(context, &a);
-            camber_mesh_data_free(context, &b);
+            camber_mesh_data_destroy(&a);
+            camber_mesh_data_destroy(&b);
         }
         camber_polylines_destroy(r);
         camber_polylines_destroy(p);
-        scene_free(&reversed);
-        scene_free(&s);
+        camber_made_scene_free(&reversed);
+        camber_made_scene_free(&s);
     }
     host_done(&h, context);
 }
@@ -369,17 +369,17 @@ static void test_fan_tolerance(void **state) {
     host h;
     camber_context *context = host_context(&h);
     const float tolerances[] = {0.0f, 0.05f, 0.25f, 1.0f};
-    scene s = {0};
-    scene_point(&s, 0, 0);
-    scene_point(&s, 1000, 0);
-    scene_point(&s, 1000, 1000);
-    scene_end(&s, 0);
+    camber_made_scene s = {0};
+    camber_made_scene_point(&s, 0, 0);
+    camber_made_scene_point(&s, 1000, 0);
+    camber_made_scene_point(&s, 1000, 1000);
+    camber_made_scene_end(&s, 0);
     camber_polylines *p = scene_polylines(context, &s);
     for (size_t i = 0; i < 4; i++) {
         const camber_stroke stroke = {60, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0};
         camber_mesh_data mesh;
         assert_int_equal(
-            camber_tessellate_on_host(
+            camber_mesh_data_tessellate(
                 context, p, &(camber_tessellation_desc){&stroke, 1, CAMBER_METHOD_FAN, tolerances[i], false}, &mesh),
             CAMBER_OK);
         const double reach = 30.75, tolerance = tolerances[i] > 0 ? (double)tolerances[i] : 0.25;
@@ -392,10 +392,10 @@ static void test_fan_tolerance(void **state) {
             assert_true(radius > reach - 1e-3 && radius < reach + 1.1 * tolerance);
             assert_true(at.x >= 1000 && at.y <= 0);
         }
-        camber_mesh_data_free(context, &mesh);
+        camber_mesh_data_destroy(&mesh);
     }
     camber_polylines_destroy(p);
-    scene_free(&s);
+    camber_made_scene_free(&s);
     host_done(&h, context);
 }
 

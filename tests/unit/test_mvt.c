@@ -17,22 +17,22 @@ typedef struct fixture {
     camber_context *context;
     struct camber_style style;
     camber_features *features;
-    camber_tiles *tiles;
+    camber_tile_stitcher *tiles;
     camber_mvt *mvt;
 } fixture;
 
 static void begin(fixture *it) {
     static const char *const layers[] = {"road"};
     assert_int_equal(camber_features_create(it->context, &it->style, &it->features), CAMBER_OK);
-    assert_int_equal(camber_tiles_create(it->context, ZOOM, &it->tiles), CAMBER_OK);
+    assert_int_equal(camber_tile_stitcher_create(it->context, ZOOM, &it->tiles), CAMBER_OK);
     const camber_mvt_desc desc = {
-        .features = it->features, .tiles = it->tiles, .layers = layers, .layer_count = 1, .wants_polygons = true};
+        .features = it->features, .stitcher = it->tiles, .layers = layers, .layer_count = 1, .wants_polygons = true};
     assert_int_equal(camber_mvt_create(it->context, &desc, &it->mvt), CAMBER_OK);
 }
 
 static void end(fixture *it) {
     camber_mvt_destroy(it->mvt);
-    camber_tiles_destroy(it->tiles);
+    camber_tile_stitcher_destroy(it->tiles);
     camber_features_destroy(it->features);
 }
 
@@ -61,9 +61,9 @@ static void start_again(fixture *it) {
 
 /* Reads the tile 2/1 and frees it. */
 static const camber_mvt_stats *read_tile(fixture *it, blob *tile) {
-    const camber_mvt_place place = {.zoom = ZOOM, .column = 2, .row = 1};
+    const camber_tile_address place = {.zoom = ZOOM, .column = 2, .row = 1};
     assert_int_equal(camber_mvt_read(it->mvt, &place, tile->bytes, tile->size), CAMBER_OK);
-    assert_int_equal(camber_tiles_finish(it->tiles, it->features), CAMBER_OK);
+    assert_int_equal(camber_tile_stitcher_finish(it->tiles, it->features), CAMBER_OK);
     blob_free(tile);
     return camber_mvt_get_stats(it->mvt);
 }
@@ -176,7 +176,7 @@ static void test_clips(void **state) {
     fixture *it = *state;
     static const char *const layers[] = {"road"};
     const camber_mvt_desc desc = {
-        .features = it->features, .tiles = it->tiles, .layers = layers, .layer_count = 1, .wants_progress = true};
+        .features = it->features, .stitcher = it->tiles, .layers = layers, .layer_count = 1, .wants_progress = true};
     camber_mvt_destroy(it->mvt);
     assert_int_equal(camber_mvt_create(it->context, &desc, &it->mvt), CAMBER_OK);
     blob tile = {0}, layer = begin_layer("road", 4096);
@@ -262,7 +262,7 @@ static void test_damaged_layers(void **state) {
 static void test_no_tiles(void **state) {
     fixture *it = *state;
     uint32_t random = 5;
-    const camber_mvt_place place = {.zoom = ZOOM};
+    const camber_tile_address place = {.zoom = ZOOM};
     for (size_t round = 0; round < 2000; round++) {
         unsigned char noise[200];
         for (size_t i = 0; i < sizeof noise; i++)

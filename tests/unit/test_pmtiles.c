@@ -61,7 +61,7 @@ static void test_numbers(void **state) {
     uint32_t before[2] = {0, 0};
     for (uint64_t i = 0; i < 4096; i++) {
         uint32_t column, row;
-        camber_pmtiles_place(i, 6, &column, &row);
+        camber_pmtiles_locate(i, 6, &column, &row);
         assert_int_equal(camber_pmtiles_number(6, column, row), 1365 + i);
         if (i)
             assert_int_equal(abs((int)column - (int)before[0]) + abs((int)row - (int)before[1]), 1);
@@ -71,7 +71,7 @@ static void test_numbers(void **state) {
     const uint32_t last = (UINT32_C(1) << 31) - 1;
     uint32_t column, row;
     const uint64_t first = camber_pmtiles_number(31, 0, 0);
-    camber_pmtiles_place(camber_pmtiles_number(31, last, 12345) - first, 31, &column, &row);
+    camber_pmtiles_locate(camber_pmtiles_number(31, last, 12345) - first, 31, &column, &row);
     assert_int_equal(column, last);
     assert_int_equal(row, 12345);
 }
@@ -96,7 +96,7 @@ static void free_archive(made_archive *a) {
 /* The text of a tile; "" for none. */
 static const char *text_of(fixture *it, camber_tile_set *set, int zoom, uint32_t column, uint32_t row) {
     const char *why;
-    assert_int_equal(camber_tile_set_get(set, zoom, (camber_tile_place){column, row}, &it->bytes, &why), CAMBER_OK);
+    assert_int_equal(camber_tile_set_get(set, zoom, (camber_tile_index){column, row}, &it->bytes, &why), CAMBER_OK);
     if (why)
         return why;
     assert_true(camber_bytes_resize(&it->bytes, it->bytes.size_bytes + 1));
@@ -164,7 +164,7 @@ static void test_archive(void **state) {
         assert_string_equal(text_of(it, set, 2, 0, 0), "@five");
         assert_string_equal(text_of(it, set, 2, 3, 0), "@leaf last");
         assert_string_equal(text_of(it, set, 2, 1, 1), "");
-        camber_tile_place *places;
+        camber_tile_index *places;
         size_t count;
         assert_int_equal(camber_tile_set_list(set, 1, &places, &count), CAMBER_OK);
         assert_int_equal(count, 3);
@@ -259,9 +259,9 @@ static void test_circles(void **state) {
     camber_tile_set *set = NULL;
     assert_int_equal(open_archive(it, &a, &set), CAMBER_OK);
     const char *why;
-    assert_int_equal(camber_tile_set_get(set, 2, (camber_tile_place){1, 1}, &it->bytes, &why), CAMBER_ERROR_INPUT);
+    assert_int_equal(camber_tile_set_get(set, 2, (camber_tile_index){1, 1}, &it->bytes, &why), CAMBER_ERROR_INPUT);
     assert_int_equal(it->errors, 1);
-    camber_tile_place *places;
+    camber_tile_index *places;
     size_t count;
     assert_int_equal(camber_tile_set_list(set, 2, &places, &count), CAMBER_ERROR_INPUT);
     assert_non_null(strstr(it->error, "circles"));
@@ -281,7 +281,7 @@ static void test_beyond(void **state) {
     assert_int_equal(open_archive(it, &a, &set), CAMBER_OK);
     assert_non_null(strstr(text_of(it, set, 0, 0, 0), "past the end"));
     assert_string_equal(text_of(it, set, 2, 3, 3), "@zero");
-    camber_tile_place *places;
+    camber_tile_index *places;
     size_t count;
     assert_int_equal(camber_tile_set_list(set, 2, &places, &count), CAMBER_OK);
     assert_int_equal(count, 16);
@@ -306,7 +306,7 @@ static void test_flipped(void **state) {
             const camber_status status = camber_tile_set_open(it->context, it->path, CAMBER_NAMED_BY_CALLER, &set);
             assert_int_equal(it->errors, status != CAMBER_OK);
             for (int zoom = 0; status == CAMBER_OK && zoom < 3; zoom++) {
-                camber_tile_place *places = NULL;
+                camber_tile_index *places = NULL;
                 size_t count = 0;
                 const char *why;
                 if (camber_tile_set_list(set, zoom, &places, &count) != CAMBER_OK)

@@ -81,7 +81,7 @@ static void test_opaque_is_rgb(void **state) {
     uint8_t rgba[4 * WIDTH * HEIGHT];
     uint64_t seed = 3;
     for (size_t i = 0; i < sizeof rgba; i++)
-        rgba[i] = i % 4 == 3 ? 255 : (uint8_t)random_bits(&seed);
+        rgba[i] = i % 4 == 3 ? 255 : (uint8_t)camber_random_bits(&seed);
     for (int compression = 0; compression <= 9; compression++) {
         for (uint32_t rows = 1; rows < 30; rows += 11) {
             for (int opaque = 0; opaque < 2; opaque++) {
@@ -207,7 +207,7 @@ static void test_sink_refuses(void **state) {
     uint8_t rgba[4 * SIDE * SIDE];
     uint64_t seed = 9;
     for (size_t i = 0; i < sizeof rgba; i++)
-        rgba[i] = (uint8_t)random_bits(&seed);
+        rgba[i] = (uint8_t)camber_random_bits(&seed);
     const camber_png_desc desc = {.width = SIDE, .height = SIDE, .texts = TEXTS, .text_count = 2, .compression = 1};
     byte_list whole = write_png(context, &desc, rgba, SIDE);
     for (size_t at = 0; at < whole.size; at += at < 300 || at + 60 > whole.size ? 1 : 211) {

@@ -25,7 +25,7 @@ enum {
     RING_LAST = LAST | CAMBER_POINT_RING
 };
 
-/* The slots are those wanted, and ghosts around and behind them. */
+/* The slots are those wanted, and sentinels around and behind them. */
 static void assert_slots(const camber_polylines *p, const slot *wanted, size_t count) {
     assert_int_equal(p->first_slots[p->polyline_count], count);
     assert_int_equal(p->slot_count, (count + CAMBER_BLOCK - 1) / CAMBER_BLOCK * CAMBER_BLOCK);
@@ -159,7 +159,7 @@ static void test_odd_rings(void **state) {
     camber_polylines *p = make(context, &(camber_polylines_desc){points, 23, offsets, 6, NULL, false});
     const slot wanted[] = {
         {2, 2, 0},     {1, 1, RING_FIRST}, {2, 2, REAL},  {1, 1, RING_LAST}, {2, 2, 0}, /* 0 */
-        {3, 3, 0},     {3, 3, DOT},                                                     /* 1: its ghost is unused */
+        {3, 3, 0},     {3, 3, DOT},                                                     /* 1: its sentinel is unused */
         {4, 4, FIRST}, {5, 4, LAST},       {5, 5, FIRST}, {4, 4, LAST},                 /* 2 */
         {7, 7, 0},     {6, 6, RING_FIRST}, {7, 6, REAL},  {7, 7, REAL},      {6, 6, RING_LAST}, {7, 6, 0}, /* 3 */
         {1, 1, 0},     {0, 0, RING_FIRST}, {1, 0, REAL},  {1, 1, REAL},      {0, 0, RING_LAST}, {1, 0, 0}, /* 4 */
@@ -246,10 +246,10 @@ static void test_serials_differ(void **state) {
 static float hostile_number(uint64_t *seed) {
     static const float odd[] = {0.0f,   -0.0f, NAN,     INFINITY, -INFINITY, 1e9f,
                                 1.1e9f, 3e38f, 0.5e-9f, 1.5e-9f,  1e-40f,    1.0f};
-    switch (random_below(seed, 6)) {
-    case 0: return odd[random_below(seed, sizeof odd / sizeof *odd)];
-    case 1: return (float)random_between(seed, -1e9, 1e9);
-    default: return (float)random_below(seed, 3); /* repeats and rings */
+    switch (camber_random_below(seed, 6)) {
+    case 0: return odd[camber_random_below(seed, sizeof odd / sizeof *odd)];
+    case 1: return (float)camber_random_between(seed, -1e9, 1e9);
+    default: return (float)camber_random_below(seed, 3); /* repeats and rings */
     }
 }
 
@@ -283,7 +283,7 @@ static void count_polyline(const float *points, size_t count, bool keep_open, ca
     }
 }
 
-/* Each run of slots of one polyline: first, ..., last, its row throughout; rings have their ghosts. */
+/* Each run of slots of one polyline: first, ..., last, its row throughout; rings have their sentinels. */
 static void check_slots(const camber_polylines *p, const uint32_t *rows) {
     for (size_t i = 0; i < p->polyline_count; i++) {
         bool inside = false;
@@ -318,17 +318,17 @@ static void test_hostile_input(void **state) {
     for (int round = 0; round < 3000; round++) {
         float points[2 * POINTS];
         uint32_t offsets[POLYLINES + 1] = {0}, rows[POLYLINES];
-        const size_t n = 1 + random_below(&seed, POLYLINES);
+        const size_t n = 1 + camber_random_below(&seed, POLYLINES);
         for (size_t i = 0; i < n; i++) {
-            offsets[i + 1] = offsets[i] + (uint32_t)random_below(&seed, 30);
-            rows[i] = (uint32_t)random_below(&seed, 1u << 24);
+            offsets[i + 1] = offsets[i] + (uint32_t)camber_random_below(&seed, 30);
+            rows[i] = (uint32_t)camber_random_below(&seed, 1u << 24);
         }
         for (size_t i = 0; i < 2 * (size_t)offsets[n]; i++)
             points[i] = hostile_number(&seed);
         for (size_t i = 0; i < n; i++) /* half of them close */
-            if (offsets[i + 1] > offsets[i] && random_below(&seed, 2))
+            if (offsets[i + 1] > offsets[i] && camber_random_below(&seed, 2))
                 memcpy(points + 2 * (offsets[i + 1] - 1), points + 2 * offsets[i], 2 * sizeof *points);
-        const camber_polylines_desc desc = {points, offsets[n], offsets, n, rows, random_below(&seed, 4) == 0};
+        const camber_polylines_desc desc = {points, offsets[n], offsets, n, rows, camber_random_below(&seed, 4) == 0};
         camber_polylines *p = make(context, &desc);
         const camber_polylines_stats s = camber_polylines_get_stats(p);
         camber_polylines_stats wanted = {.polylines = n, .points = offsets[n]};

@@ -10,7 +10,7 @@ static camber_stages stages_of(camber_context *context, const property_case *c) 
     const camber_tessellation_desc desc = {&c->stroke, 1, c->method, 0, false};
     camber_polylines *polylines = property_polylines(context, c);
     camber_stages stages;
-    assert_int_equal(camber_stages_on_host(context, polylines, &desc, &stages), CAMBER_OK);
+    assert_int_equal(camber_stages_tessellate(context, polylines, &desc, &stages), CAMBER_OK);
     camber_polylines_destroy(polylines);
     return stages;
 }
@@ -137,7 +137,7 @@ static property_outcome check_well_formed(void *user, const property_case *c, ch
         if (!is_segment(&kept, &data.vertices[triangles[i][2]]))
             bad = is_bad(story, "a triangle whose last vertex carries no segment of the line", i, triangles[i][2]);
     free(triangles);
-    camber_mesh_data_free(b->context, &data);
+    camber_mesh_data_destroy(&data);
     return bad ? PROPERTY_BROKEN : PROPERTY_HOLDS;
 }
 
@@ -168,7 +168,7 @@ static property_outcome check_winding(void *user, const property_case *c, char s
         }
     }
     free(triangles);
-    camber_mesh_data_free(b->context, &data);
+    camber_mesh_data_destroy(&data);
     return count == 0 ? PROPERTY_SILENT : bad ? PROPERTY_BROKEN : PROPERTY_HOLDS;
 }
 
@@ -178,7 +178,7 @@ typedef struct place {
     double x, y;
 } place;
 
-/* Of the vertices that triangles use. */
+/* The vertices that triangles use, and no others. */
 static size_t places_of(camber_context *context, const property_case *c, place **places) {
     camber_mesh_data data = property_mesh(context, c);
     const size_t count = data.info.vertex_count;
@@ -196,7 +196,7 @@ static size_t places_of(camber_context *context, const property_case *c, place *
             (*places)[written++] = (place){at[0], at[1]};
     }
     free(used);
-    camber_mesh_data_free(context, &data);
+    camber_mesh_data_destroy(&data);
     return written;
 }
 
@@ -206,7 +206,7 @@ static bool has_straight_join(camber_context *context, const property_case *c) {
     bool straight = false;
     for (size_t i = 0; i < stages.point_count && !straight; i++)
         straight = abs((int16_t)(stages.points[i].join & 0xffffu)) == 1;
-    camber_stages_free(context, &stages);
+    camber_stages_destroy(&stages);
     return straight;
 }
 
@@ -294,7 +294,7 @@ static bool differ(const property_case *c, const camber_stages *a, const camber_
 static property_outcome check_rotated(void *user, const property_case *c, char story[PROPERTY_STORY]) {
     const property_bench *b = user;
     uint64_t dice = c->dice | 1;
-    const double angle = random_between(&dice, -SCENE_PI, SCENE_PI);
+    const double angle = camber_random_between(&dice, -SCENE_PI, SCENE_PI);
     property_case turned = *c;
     for (size_t i = 0; i < c->count; i++) {
         const double x = (double)c->points[2 * i] - 64, y = (double)c->points[2 * i + 1] - 64;
@@ -306,8 +306,8 @@ static property_outcome check_rotated(void *user, const property_case *c, char s
     }
     camber_stages before = stages_of(b->context, c), after = stages_of(b->context, &turned);
     const bool bad = differ(c, &before, &after, 1, story);
-    camber_stages_free(b->context, &before);
-    camber_stages_free(b->context, &after);
+    camber_stages_destroy(&before);
+    camber_stages_destroy(&after);
     return bad ? PROPERTY_BROKEN : PROPERTY_HOLDS;
 }
 
@@ -327,8 +327,8 @@ static property_outcome check_scaled(void *user, const property_case *c, char st
         if ((small.points[i].join & 0xffffu) != (large.points[i].join & 0xffffu))
             bad = is_bad(story, "another turn", i, (double)(small.points[i].join & 0xffffu));
     }
-    camber_stages_free(b->context, &small);
-    camber_stages_free(b->context, &large);
+    camber_stages_destroy(&small);
+    camber_stages_destroy(&large);
     if (!same_kinds || c->method == CAMBER_METHOD_FAN) /* whose steps come from a tolerance in px */
         return bad ? PROPERTY_BROKEN : PROPERTY_SILENT;
     camber_mesh_data one = property_mesh(b->context, c), two = property_mesh(b->context, &twice);
@@ -343,8 +343,8 @@ static property_outcome check_scaled(void *user, const property_case *c, char st
                  (w->limit_px > 2 * v->limit_px + CAMBER_PAD_PX / 126 && w->limit_px != v->limit_px))
             bad = is_bad(story, "a limit that does not grow with the line", i, (double)w->limit_px);
     }
-    camber_mesh_data_free(b->context, &one);
-    camber_mesh_data_free(b->context, &two);
+    camber_mesh_data_destroy(&one);
+    camber_mesh_data_destroy(&two);
     return bad ? PROPERTY_BROKEN : PROPERTY_HOLDS;
 }
 

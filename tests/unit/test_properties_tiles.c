@@ -2,7 +2,7 @@
  * order, as if it had never been cut. */
 #include "property.h"
 
-#include "source/tiles.h"
+#include "source/tile_stitcher.h"
 
 enum { ZOOM = 2, TILES = 3, TILE = 4096, BUFFER = 128, UNITS_A_PX = 96, POINTS_MAX = 4 * PROPERTY_POINTS };
 
@@ -28,7 +28,7 @@ static line line_of(const property_case *c) {
     return l;
 }
 
-/* ---- What a tile holds ---- */
+/* ---- Contents of a tile ---- */
 
 typedef struct content {
     double points[2 * POINTS_MAX];
@@ -85,11 +85,11 @@ static content content_of(const line *l, uint32_t column, uint32_t row) {
 
 /* ---- Cut and joined ---- */
 
-static camber_status add_tile(camber_tiles *tiles, const line *l, uint32_t tile) {
+static camber_status add_tile(camber_tile_stitcher *tiles, const line *l, uint32_t tile) {
     content t = content_of(l, tile % TILES, tile / TILES);
-    const camber_tile_parts parts = {.points = t.points, .ends = t.ends, .part_count = t.parts};
+    const camber_tile_lines parts = {.points = t.points, .ends = t.ends, .line_count = t.parts};
     const camber_tile_feature feature = {.column = tile % TILES, .row = tile / TILES, .has_id = true, .id = 7};
-    return camber_tiles_add(tiles, &feature, &parts);
+    return camber_tile_stitcher_add(tiles, &feature, &parts);
 }
 
 static bool is_same(const double *points, const line *l, size_t count, size_t first, int step) {
@@ -159,16 +159,16 @@ static property_outcome check_joined(void *user, const property_case *c, char st
     struct camber_style style = {.context = b->context, .properties = names, .property_count = 1};
     const camber_value value = {.type = CAMBER_VALUE_NUMBER};
     camber_features *features = NULL;
-    camber_tiles *tiles = NULL;
+    camber_tile_stitcher *tiles = NULL;
     uint32_t class_index = 0;
     assert_int_equal(camber_features_create(b->context, &style, &features), CAMBER_OK);
     assert_int_equal(camber_features_find_class(features, 0, CAMBER_GEOMETRY_LINE, &value, &class_index), CAMBER_OK);
-    assert_int_equal(camber_tiles_create(b->context, ZOOM, &tiles), CAMBER_OK);
+    assert_int_equal(camber_tile_stitcher_create(b->context, ZOOM, &tiles), CAMBER_OK);
     for (size_t i = 0; i < TILES * TILES; i++)
         assert_int_equal(add_tile(tiles, &l, orders[c->dice % 2][i]), CAMBER_OK);
-    assert_int_equal(camber_tiles_finish(tiles, features), CAMBER_OK);
+    assert_int_equal(camber_tile_stitcher_finish(tiles, features), CAMBER_OK);
     const bool same = came_together(features, &l, story);
-    camber_tiles_destroy(tiles);
+    camber_tile_stitcher_destroy(tiles);
     camber_features_destroy(features);
     return same ? PROPERTY_HOLDS : PROPERTY_BROKEN;
 }

@@ -33,12 +33,12 @@ static void *work(void *user) {
     camber_style *style = NULL;
     camber_features *features = NULL;
     const bool made = camber_context_create(&(camber_context_desc){.log = say}, &context) == CAMBER_OK &&
-                      camber_style_builtin(context, CAMBER_THEME_LIGHT, &style) == CAMBER_OK &&
+                      camber_style_create_builtin(context, CAMBER_THEME_LIGHT, &style) == CAMBER_OK &&
                       camber_features_create(context, style, &features) == CAMBER_OK;
     pthread_barrier_wait(t->start);
     if (made && camber_features_read(features, &source) == CAMBER_OK)
         t->points = camber_features_get_stats(features).points;
-    while (camber_format_name(t->formats))
+    while (camber_format_list(t->formats))
         t->formats++;
     camber_features_destroy(features);
     camber_style_destroy(style);

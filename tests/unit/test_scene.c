@@ -1,3 +1,4 @@
+/* Scenes: features under a view become polylines, rows, strokes and networks. */
 #include "camber_map.h"
 #include "lines/importance.h"
 #include "map/view.h"
@@ -115,7 +116,7 @@ static camber_scene *make_scene(town *t, camber_view_desc view) {
 }
 
 static camber_frame frame_of(camber_scene *scene) {
-    return camber_scene_frame(scene, NULL);
+    return camber_scene_get_frame(scene, NULL);
 }
 
 static void assert_near(double a, double b, double tolerance) {
@@ -163,17 +164,17 @@ static void test_casings_and_fills_are_two_passes(void **state) {
     assert_true(info.opaque);
 
     /* Sets in the order of their first layers: minor, major; input order in a set. */
-    const camber_lines *lines = camber_scene_lines(scene);
+    const camber_lines *lines = camber_scene_get_lines(scene);
     const double wanted[7][2] = {{100, 200}, {200, 200}, {100, 100}, {200, 100}, {100, 400}, {200, 400}, {250, 450}};
     for (size_t i = 0; i < 7; i++) {
         assert_near((double)lines->points[2 * i], 1.5 * wanted[i][0], 1e-3);
         assert_near((double)lines->points[2 * i + 1], 1.5 * wanted[i][1], 1e-3);
     }
     assert_int_equal(lines->offsets[3], 7);
-    assert_int_equal(camber_polylines_get_stats(camber_scene_polylines(scene)).kept_segments, 4);
+    assert_int_equal(camber_polylines_get_stats(camber_scene_get_polylines(scene)).kept_segments, 4);
 
     size_t stroke_count;
-    const camber_stroke *strokes = camber_scene_strokes(scene, &stroke_count);
+    const camber_stroke *strokes = camber_scene_get_strokes(scene, &stroke_count);
     assert_int_equal(stroke_count, 2);
     assert_near((double)strokes[0].width_px, 12, 1e-6);
     assert_near((double)strokes[1].width_px, 18, 1e-6);
@@ -213,7 +214,7 @@ static void test_translucent_layers_stay_apart(void **state) {
     assert_int_equal(camber_scene_get_info(scene).layers, 4); /* a transparent layer draws nothing */
     assert_false(camber_scene_get_info(scene).opaque);
     size_t count;
-    assert_near((double)camber_scene_strokes(scene, &count)[2].width_px, 8, 0); /* and widens nothing */
+    assert_near((double)camber_scene_get_strokes(scene, &count)[2].width_px, 8, 0); /* and widens nothing */
     camber_scene_destroy(scene);
     close_town(&t);
 }
@@ -232,7 +233,7 @@ static void test_rows_follow_data(void **state) {
         add_px(&t, classes[i], (double[]){100, 100 + 20 * i, 200, 100 + 20 * i}, 2);
     camber_scene *scene = make_scene(&t, WORLD);
     size_t count;
-    const camber_stroke *strokes = camber_scene_strokes(scene, &count);
+    const camber_stroke *strokes = camber_scene_get_strokes(scene, &count);
     assert_int_equal(count, 2);
     assert_int_equal(camber_scene_get_info(scene).polylines, 4); /* a width of 0 draws nothing */
     assert_near((double)strokes[0].width_px + (double)strokes[1].width_px, 13, 1e-6);
@@ -242,7 +243,7 @@ static void test_rows_follow_data(void **state) {
         assert_near(width_in(&frame, 0, row), (double)strokes[row].width_px, 0);
     const double wanted_y[] = {100, 120, 160, 180};
     for (size_t i = 0; i < 4; i++)
-        assert_near((double)camber_scene_lines(scene)->points[4 * i + 1], wanted_y[i], 1e-3);
+        assert_near((double)camber_scene_get_lines(scene)->points[4 * i + 1], wanted_y[i], 1e-3);
     camber_scene_destroy(scene);
     close_town(&t);
 }
@@ -259,7 +260,7 @@ static void test_rows_are_distinct(void **state) {
     }
     camber_scene *scene = make_scene(&t, WORLD);
     size_t count;
-    const camber_stroke *strokes = camber_scene_strokes(scene, &count);
+    const camber_stroke *strokes = camber_scene_get_strokes(scene, &count);
     assert_int_equal(count, CLASSES);
     for (size_t i = 0; i < CLASSES; i++)
         assert_near((double)strokes[i].width_px, (double)i + 1, 0);
@@ -285,14 +286,14 @@ static void test_source_layers_zooms_and_caps(void **state) {
     assert_int_equal(info.layers, 3);
     assert_int_equal(info.polylines, 1 + 2 + 2);
     size_t count;
-    const camber_stroke *strokes = camber_scene_strokes(scene, &count);
+    const camber_stroke *strokes = camber_scene_get_strokes(scene, &count);
     assert_int_equal(count, 3);
     assert_int_equal(strokes[1].cap, CAMBER_CAP_SQUARE);
     assert_int_equal(strokes[1].join, CAMBER_JOIN_BEVEL);
     assert_near((double)strokes[1].width_px, 16384, 0);
     assert_int_equal(strokes[2].join, CAMBER_JOIN_MITER);
     assert_near((double)strokes[2].miter_limit, 1, 0);
-    assert_near((double)camber_scene_lines(scene)->points[1], 300, 1e-3);
+    assert_near((double)camber_scene_get_lines(scene)->points[1], 300, 1e-3);
     camber_scene_destroy(scene);
     close_town(&t);
 }
@@ -386,7 +387,7 @@ static void test_clipping_keeps_lines_in_place(void **state) {
                                    .latitude = atan(sinh(pi * (1 - 2 * y))) * 180 / pi,
                                    .bearing_deg = 20};
     camber_scene *scene = make_scene(&t, view);
-    const camber_lines *lines = camber_scene_lines(scene);
+    const camber_lines *lines = camber_scene_get_lines(scene);
     assert_int_equal(lines->polyline_count, 1);
     assert_int_equal(lines->point_count, 2);
     const double a[2] = {(double)lines->points[0], (double)lines->points[1]};
@@ -411,7 +412,7 @@ static void test_rings_stay_closed(void **state) {
     camber_view_desc view = WORLD;
     view.bearing_deg = 31.7;
     camber_scene *scene = make_scene(&t, view);
-    assert_int_equal(camber_polylines_get_stats(camber_scene_polylines(scene)).rings, 1);
+    assert_int_equal(camber_polylines_get_stats(camber_scene_get_polylines(scene)).rings, 1);
     camber_scene_destroy(scene);
     close_town(&t);
 }
@@ -428,7 +429,7 @@ static void test_antimeridian(void **state) {
     camber_scene *scene = make_scene(&t, view);
     const camber_scene_info info = camber_scene_get_info(scene);
     assert_near(fabs(info.longitude), 180, 1e-9);
-    const camber_lines *lines = camber_scene_lines(scene);
+    const camber_lines *lines = camber_scene_get_lines(scene);
     assert_int_equal(lines->polyline_count, 4); /* the third from both sides */
     const double scale = 512 * exp2(info.zoom);
     assert_near((double)lines->points[0], 512 - 0.01 * scale, 1e-2);
@@ -466,7 +467,7 @@ static void test_no_jitter_at_zoom_22(void **state) {
                                    .longitude = (x - 0.5) * 360,
                                    .latitude = atan(sinh(pi * (1 - 2 * y))) * 180 / pi};
     camber_scene *scene = make_scene(&t, view);
-    const camber_lines *lines = camber_scene_lines(scene);
+    const camber_lines *lines = camber_scene_get_lines(scene);
     assert_int_equal(lines->point_count, 1000);
     for (size_t i = 0; i + 1 < 1000; i++)
         for (size_t k = 0; k < 2; k++)
@@ -510,7 +511,7 @@ static void test_fit_is_to_what_is_drawn(void **state) {
     add_line(&t, a, (double[]){0.30, 0.40, 0.31, 0.402}, 2);
     add_line(&t, b, (double[]){0.1, 0.1, 0.9, 0.9}, 2); /* not drawn */
     camber_scene *scene = make_scene(&t, (camber_view_desc){.width = 500, .height = 700});
-    const camber_lines *lines = camber_scene_lines(scene);
+    const camber_lines *lines = camber_scene_get_lines(scene);
     assert_int_equal(lines->polyline_count, 1);
     assert_near((double)lines->points[0], 10, 1e-3);
     assert_near((double)lines->points[2], 490, 1e-3);
@@ -518,8 +519,8 @@ static void test_fit_is_to_what_is_drawn(void **state) {
     camber_scene_destroy(scene);
     /* Turned by a quarter it is as long the other way. */
     scene = make_scene(&t, (camber_view_desc){.width = 700, .height = 500, .bearing_deg = 90});
-    assert_near((double)camber_scene_lines(scene)->points[1], 490, 1e-3);
-    assert_near((double)camber_scene_lines(scene)->points[3], 10, 1e-3);
+    assert_near((double)camber_scene_get_lines(scene)->points[1], 490, 1e-3);
+    assert_near((double)camber_scene_get_lines(scene)->points[3], 10, 1e-3);
     camber_scene_destroy(scene);
     close_town(&t);
 }
@@ -556,7 +557,7 @@ static void test_nothing_to_draw(void **state) {
         assert_true(info.opaque);
         assert_int_equal(frame_of(scene).pass_count, 0);
         assert_int_equal(frame_of(scene).width, 1024);
-        assert_int_equal(camber_scene_lines(scene)->offsets[0], 0);
+        assert_int_equal(camber_scene_get_lines(scene)->offsets[0], 0);
         camber_scene_destroy(scene);
     }
     assert_int_equal(t.errors, 0);

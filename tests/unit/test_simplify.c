@@ -1,3 +1,4 @@
+/* Simplification of lines: which points stay, and how far those that go lie from what is left. */
 #include "lines/simplify.h"
 
 #include <math.h>
@@ -17,8 +18,8 @@ static double distance_to_segment(const double *p, const double *a, const double
     return hypot(a[0] + t * dx - p[0], a[1] + t * dy - p[1]);
 }
 
-/* What is left is a subsequence with the ends, and every dropped point lies within tolerance of the segment that
- * replaces it. */
+/* The points that are left are a subsequence with the ends, and every dropped point lies within tolerance of the
+ * segment that replaces it. */
 static size_t check(const double *points, size_t count, double tolerance) {
     double *left = malloc(2 * count * sizeof *left);
     unsigned char *keep = malloc(count);

@@ -266,7 +266,7 @@ static void test_builtin(void **state) {
         fixture f;
         setup(&f);
         const camber_theme which = theme ? CAMBER_THEME_DARK : CAMBER_THEME_LIGHT;
-        assert_int_equal(camber_style_builtin(f.context, which, &f.style), CAMBER_OK);
+        assert_int_equal(camber_style_create_builtin(f.context, which, &f.style), CAMBER_OK);
         assert_int_equal(f.error_count + f.warning_count, 0);
         assert_false(f.style->wants_polygons);
         check_order(f.style);
@@ -321,7 +321,7 @@ static void test_layer(void **state) {
     assert_int_equal(paint.join, CAMBER_JOIN_BEVEL);
     assert_true(fabs(paint.miter_limit - 5.0) < 1e-6);
     assert_true(fabs(paint.width - 7.0) < 1e-12 && fabsf(paint.color.a - 0.25f) < 1e-6f && paint.color.b >= 1.0f);
-    /* What cannot be evaluated, or is no width, is the specification's default, and below 0 is 0. */
+    /* A value that cannot be evaluated, or is no width, is the specification's default, and below 0 is 0. */
     values[1 - highway] = (camber_value){.type = CAMBER_VALUE_STRING, .string = "wide"};
     assert_true(fabs(camber_style_layer_paint(roads, 10.0, &view).width - 1.0) < 1e-12);
     values[1 - highway] = (camber_value){.type = CAMBER_VALUE_NUMBER, .number = NAN};
@@ -339,7 +339,7 @@ static void test_layer(void **state) {
     teardown(&f);
 }
 
-/* What the state of the style and of features says: the one its default, the other nothing. */
+/* The state of the style says its default, that of features nothing. */
 static void test_states(void **state) {
     (void)state;
     fixture f;
@@ -361,7 +361,7 @@ static void test_states(void **state) {
     teardown(&f);
 }
 
-/* What kernels it takes is known from the layers that a zoom shows. */
+/* The layers that a zoom shows tell which kernels it takes. */
 static void test_plain(void **state) {
     (void)state;
     static const char *const more[] = {
@@ -376,15 +376,15 @@ static void test_plain(void **state) {
                  "{\"id\": \"b\", \"type\": \"line\", \"minzoom\": 5, \"maxzoom\": 9, \"paint\": {%s}}]}",
                  more[i]);
         assert_int_equal(parse(&f, json), CAMBER_OK);
-        assert_false(camber_style_is_plain(f.style, (double)NAN));
-        assert_false(camber_style_is_plain(f.style, 5));
-        assert_true(camber_style_is_plain(f.style, 4.9));
-        assert_true(camber_style_is_plain(f.style, 9));
+        assert_int_not_equal(camber_style_get_effects(f.style, (double)NAN), 0);
+        assert_int_not_equal(camber_style_get_effects(f.style, 5), 0);
+        assert_int_equal(camber_style_get_effects(f.style, 4.9), 0);
+        assert_int_equal(camber_style_get_effects(f.style, 9), 0);
         teardown(&f);
     }
     setup(&f);
-    assert_int_equal(camber_style_builtin(f.context, CAMBER_THEME_LIGHT, &f.style), CAMBER_OK);
-    assert_true(camber_style_is_plain(f.style, (double)NAN));
+    assert_int_equal(camber_style_create_builtin(f.context, CAMBER_THEME_LIGHT, &f.style), CAMBER_OK);
+    assert_int_equal(camber_style_get_effects(f.style, (double)NAN), 0);
     teardown(&f);
 }
 

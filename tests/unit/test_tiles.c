@@ -1,5 +1,5 @@
 /* Pieces of vector tiles: cut at the border, joined across it, drawn once. */
-#include "source/tiles.h"
+#include "source/tile_stitcher.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -19,7 +19,7 @@ typedef struct fixture {
     camber_context *context;
     struct camber_style style;
     camber_features *features;
-    camber_tiles *tiles;
+    camber_tile_stitcher *tiles;
     uint32_t classes[2];
 } fixture;
 
@@ -30,7 +30,7 @@ static int set_up(void **state) {
     assert_int_equal(camber_context_create(NULL, &it->context), CAMBER_OK);
     it->style = (struct camber_style){.context = it->context, .properties = properties, .property_count = 1};
     assert_int_equal(camber_features_create(it->context, &it->style, &it->features), CAMBER_OK);
-    assert_int_equal(camber_tiles_create(it->context, ZOOM, &it->tiles), CAMBER_OK);
+    assert_int_equal(camber_tile_stitcher_create(it->context, ZOOM, &it->tiles), CAMBER_OK);
     for (int i = 0; i < 2; i++) {
         const camber_value value = {.type = CAMBER_VALUE_NUMBER, .number = i};
         assert_int_equal(camber_features_find_class(it->features, 0, CAMBER_GEOMETRY_LINE, &value, &it->classes[i]),
@@ -42,7 +42,7 @@ static int set_up(void **state) {
 
 static int tear_down(void **state) {
     fixture *it = *state;
-    camber_tiles_destroy(it->tiles);
+    camber_tile_stitcher_destroy(it->tiles);
     camber_features_destroy(it->features);
     camber_context_destroy(it->context);
     free(it);
@@ -57,17 +57,17 @@ static void add(fixture *it, uint32_t column, uint32_t row, uint64_t id, bool ou
     for (size_t i = 0; i < 2 * count; i++)
         points[i] = units[i] / WORLD;
     size_t end = count;
-    const camber_tile_parts parts = {.points = points, .ends = &end, .part_count = 1};
+    const camber_tile_lines parts = {.points = points, .ends = &end, .line_count = 1};
     const camber_tile_feature feature = {
         .column = column, .row = row, .class_index = it->classes[0], .outline = outline, .has_id = id != 0, .id = id};
-    assert_int_equal(camber_tiles_add(it->tiles, &feature, &parts), CAMBER_OK);
+    assert_int_equal(camber_tile_stitcher_add(it->tiles, &feature, &parts), CAMBER_OK);
 }
 
 #define ADD(it, column, row, id, ...)                                                                                  \
     add(it, column, row, id, false, sizeof((double[]){__VA_ARGS__}) / sizeof(double) / 2, (double[]){__VA_ARGS__})
 
 static void finish(fixture *it, size_t polylines, size_t joined) {
-    assert_int_equal(camber_tiles_finish(it->tiles, it->features), CAMBER_OK);
+    assert_int_equal(camber_tile_stitcher_finish(it->tiles, it->features), CAMBER_OK);
     assert_int_equal(it->features->polyline_count, polylines);
     assert_int_equal(it->features->stats.joined_pieces, joined);
 }
@@ -136,7 +136,7 @@ static void test_order_across_tiles(void **state) {
     EXPECT(it, 4, 5000, 300, 5100, 300);
 }
 
-/* What lies in the buffer only is the neighbour's. */
+/* A line that lies in the buffer only is the neighbour's. */
 static void test_buffer_is_dropped(void **state) {
     fixture *it = *state;
     ADD(it, 0, 0, 7, 4100, 100, 4150, 200);
@@ -218,7 +218,7 @@ static void test_outline(void **state) {
     const double right[] = {4096, 100, 4200, 100, 4200, 200, 4096, 200, 4096, 100};
     add(it, 0, 0, 7, true, 5, left);
     add(it, 1, 0, 7, true, 5, right);
-    assert_int_equal(camber_tiles_finish(it->tiles, it->features), CAMBER_OK);
+    assert_int_equal(camber_tile_stitcher_finish(it->tiles, it->features), CAMBER_OK);
     assert_int_equal(it->features->polyline_count, 1);
     double length = 0;
     const camber_features *set = it->features;
@@ -237,7 +237,7 @@ static void test_hostile(void **state) {
     fixture *it = *state;
     for (uint64_t i = 1; i <= 100000; i++)
         ADD(it, 0, 0, i % 2 ? i : 0, 4000, 100, 4096, 200);
-    assert_int_equal(camber_tiles_finish(it->tiles, it->features), CAMBER_OK);
+    assert_int_equal(camber_tile_stitcher_finish(it->tiles, it->features), CAMBER_OK);
     assert_int_equal(it->features->polyline_count, 100000);
 }
 
@@ -249,14 +249,14 @@ static void test_progress(void **state) {
             const double first = column ? 3996 : 0, last = column ? 8192 : 4196;
             const double points[] = {first / WORLD, 100 / WORLD, 4050 / WORLD, 100 / WORLD, last / WORLD, 100 / WORLD};
             const size_t end = 3;
-            const camber_tile_parts parts = {.points = points, .ends = &end, .part_count = 1};
+            const camber_tile_lines parts = {.points = points, .ends = &end, .line_count = 1};
             const camber_tile_feature feature = {.column = column,
                                                  .class_index = it->classes[0],
                                                  .has_id = true,
                                                  .id = (uint64_t)only_east + 1,
                                                  .has_progress = true,
                                                  .progress = {first / 8192, last / 8192}};
-            assert_int_equal(camber_tiles_add(it->tiles, &feature, &parts), CAMBER_OK);
+            assert_int_equal(camber_tile_stitcher_add(it->tiles, &feature, &parts), CAMBER_OK);
         }
     }
     ADD(it, 0, 0, 9, 100, 100, 200, 200);

@@ -1,3 +1,4 @@
+/* Views of maps: fitted, centred and bounded, between longitude, latitude and pixels. */
 #include "map/view.h"
 
 #include <math.h>

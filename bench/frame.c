@@ -1,0 +1,190 @@
+/* camber at work: everything opened once, and a frame from lines in memory to pixels in memory. */
+#include "bench.h"
+
+#include "base/base.h"
+#include "lines/importance.h"
+#include "validate/statistics.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static void on_log(void *user, camber_log_level level, const char *message) {
+    (void)user;
+    if (level == CAMBER_LOG_ERROR)
+        fprintf(stderr, "camber_bench: %s\n", message);
+}
+
+/* Both GL and OpenCL draw on one device, which shares its meshes with GL where it can. */
+static camber_status open_fixture(bench *b) {
+    static const camber_fixture_desc desc = {
+        .drawers = CAMBER_FIXTURE_IN_GL | CAMBER_FIXTURE_IN_OPENCL, .first_gl = true, .on_surface = true};
+    const camber_status status = camber_fixture_open(b->context, &desc, &b->opened);
+    const int gl = b->opened.surface[CAMBER_FIXTURE_EGL] ? CAMBER_FIXTURE_EGL : CAMBER_FIXTURE_OSMESA;
+    b->device = b->opened.device;
+    b->surface = b->opened.surface[gl];
+    b->renderer = b->opened.renderer[gl];
+    b->cl_renderer = b->opened.renderer[CAMBER_FIXTURE_OPENCL];
+    return status == CAMBER_OK && !(b->renderer && b->cl_renderer) ? CAMBER_ERROR_DEVICE : status;
+}
+
+bool bench_open(bench *b) {
+    const camber_context_desc desc = {.log = on_log};
+    camber_status status = camber_context_create(&desc, &b->context);
+    if (status == CAMBER_OK)
+        status = open_fixture(b);
+    if (status == CAMBER_OK)
+        status = camber_mesh_create(b->device, b->renderer, &b->mesh);
+    if (status == CAMBER_OK)
+        status = camber_mesh_create(b->device, b->cl_renderer, &b->cl_mesh);
+    if (status != CAMBER_OK)
+        return false;
+    b->picture = calloc((size_t)BENCH_SIDE_PX * BENCH_SIDE_PX, 4);
+    b->pictured = calloc((size_t)BENCH_SIDE_PX * BENCH_SIDE_PX, 4);
+    return b->picture && b->pictured;
+}
+
+void bench_close(bench *b) {
+    free(b->pictured);
+    free(b->picture);
+    camber_mesh_destroy(b->cl_mesh);
+    camber_mesh_destroy(b->mesh);
+    camber_fixture_close(&b->opened);
+    camber_context_destroy(b->context);
+}
+
+/* ---- A frame ---- */
+
+/* Rows that are taken are pixels in memory: to keep them is the bench's own business, and not counted. */
+typedef struct taking {
+    uint8_t *picture;
+    double kept_ms;
+} taking;
+
+static bool take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
+    taking *t = user;
+    const double begin = camber_now_ms();
+    memcpy(t->picture + 4 * (size_t)BENCH_SIDE_PX * first_row, rgba, 4 * (size_t)BENCH_SIDE_PX * row_count);
+    t->kept_ms += camber_now_ms() - begin;
+    return true;
+}
+
+static camber_status draw_mesh(bench *b, const bench_frame_desc *desc, taking *t, camber_frame_stats *stats) {
+    const camber_paint paint = {.width_px = desc->width_px, .color = {0, 0, 0, 1}};
+    const camber_pass pass = {
+        .mesh = desc->in_cl ? b->cl_mesh : b->mesh, .paints = &paint, .paint_count = 1, .overlap = desc->overlap};
+    const camber_frame frame = {
+        .width = BENCH_SIDE_PX, .height = BENCH_SIDE_PX, .background = {1, 1, 1, 1}, .passes = &pass, .pass_count = 1};
+    return camber_renderer_render(desc->in_cl ? b->cl_renderer : b->renderer, &frame, desc->picture ? take_rows : NULL,
+                                  t, stats);
+}
+
+static camber_status tessellate_lines(bench *b, const bench_frame_desc *desc, const camber_tessellation_desc *strokes) {
+    camber_polylines *polylines = NULL;
+    const camber_polylines_desc made = {.points = desc->lines->points,
+                                        .point_count = desc->lines->point_count,
+                                        .offsets = desc->lines->offsets,
+                                        .polyline_count = desc->lines->polyline_count,
+                                        .keep_open = true};
+    camber_status status = camber_polylines_create(b->context, &made, &polylines);
+    if (status == CAMBER_OK)
+        status = camber_mesh_tessellate(desc->in_cl ? b->cl_mesh : b->mesh, polylines, strokes);
+    camber_polylines_destroy(polylines);
+    return status;
+}
+
+static camber_status tessellate(bench *b, const bench_frame_desc *desc) {
+    const camber_stroke stroke = {.width_px = desc->width_px};
+    const camber_tessellation_desc strokes = {.strokes = &stroke, .stroke_count = 1};
+    camber_mesh *mesh = desc->in_cl ? b->cl_mesh : b->mesh;
+    return desc->network ? camber_mesh_tessellate_network(mesh, desc->network, &desc->camera, &strokes)
+                         : tessellate_lines(b, desc, &strokes);
+}
+
+camber_status bench_frame(bench *b, const bench_frame_desc *desc, bench_frame_times *times) {
+    camber_frame_stats stats = {0};
+    taking t = {.picture = desc->picture};
+    const double begin = camber_now_ms();
+    camber_status status = tessellate(b, desc);
+    times->tessellate_ms = camber_now_ms() - begin;
+    if (status == CAMBER_OK)
+        status = draw_mesh(b, desc, &t, &stats);
+    times->frame_ms = camber_now_ms() - begin - t.kept_ms;
+    times->draw_ms = stats.draw_ms;
+    return status;
+}
+
+/* ---- Networks ---- */
+
+camber_camera bench_camera(double simplify_px) {
+    return (camber_camera){.x = BENCH_SIDE_PX / 2.0,
+                           .y = BENCH_SIDE_PX / 2.0,
+                           .scale_px = 1,
+                           .width = BENCH_SIDE_PX,
+                           .height = BENCH_SIDE_PX,
+                           .simplify_px = simplify_px};
+}
+
+camber_status bench_network_make(bench *b, const bench_plane *plane, camber_network **network) {
+    float *importance = malloc((plane->offsets[plane->polyline_count] + 1) * sizeof *importance);
+    const camber_network_desc desc = {.points = plane->points,
+                                      .offsets = plane->offsets,
+                                      .polyline_count = plane->polyline_count,
+                                      .importance = importance,
+                                      .keep_open = true};
+    camber_status status = importance ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    if (status == CAMBER_OK)
+        status = camber_importance_weigh(b->context, plane->points, plane->offsets, plane->polyline_count, importance);
+    if (status == CAMBER_OK)
+        status = camber_network_create(b->context, &desc, network);
+    free(importance);
+    return status;
+}
+
+camber_status bench_network_of_lines(bench *b, const camber_lines *lines, camber_network **network) {
+    bench_plane plane = {.points = malloc(2 * sizeof(double) * (lines->point_count + 1)),
+                         .offsets = malloc(sizeof(size_t) * (lines->polyline_count + 1)),
+                         .polyline_count = lines->polyline_count};
+    camber_status status = plane.points && plane.offsets ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    if (status == CAMBER_OK) {
+        for (size_t i = 0; i < 2 * lines->point_count; i++)
+            plane.points[i] = (double)lines->points[i];
+        for (size_t i = 0; i <= lines->polyline_count; i++)
+            plane.offsets[i] = lines->offsets[i];
+        status = bench_network_make(b, &plane, network);
+    }
+    bench_plane_free(&plane);
+    return status;
+}
+
+void bench_plane_free(bench_plane *plane) {
+    free(plane->points);
+    free(plane->offsets);
+    *plane = (bench_plane){0};
+}
+
+/* ---- Series ---- */
+
+void bench_series_add(bench_series *series, double value) {
+    if (series->count < BENCH_RUNS_MAX)
+        series->values[series->count++] = value;
+}
+
+double bench_series_median(const bench_series *series) {
+    bench_series sorted = *series;
+    return sorted.count ? camber_statistics_median(sorted.values, sorted.count) : 0;
+}
+
+/* ---- The yardstick ---- */
+
+bench_yardstick bench_yardstick_measure(bench *b) {
+    enum { RUNS = 3 };
+    const bench_scene *walks = bench_scene_find(b, "zoom");
+    if (bench_peer_count == 0 || !walks)
+        return (bench_yardstick){"memcpy of 1 GB", 2e3 / bench_copy_gb_s(b)};
+    bench_series series = {.count = 0};
+    for (int run = 0; run < RUNS; run++)
+        bench_series_add(&series, bench_peers[0]->draw(&walks->lines, walks->width_px, b->pictured));
+    return (bench_yardstick){strcmp(bench_peers[0]->key, "cairo") == 0 ? "Cairo's long walks"
+                                                                       : "the first peer's long walks",
+                             bench_series_median(&series)};
+}

@@ -1,0 +1,4 @@
+/* The program that measures lines: how far along its line each slot lies. */
+#include "arc_length_sum.cl"
+
+#include "arc_length_scan.cl"

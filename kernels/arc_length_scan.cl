@@ -1,0 +1,27 @@
+/* arc_length_scan: how far along its line each slot lies, and how long the line is.
+ * Reads x, y, info[n + 2] and carries[2 * chunks]: what the chunk's first line has before the chunk, and what its last
+ * line has behind it. Writes measures[2 * n]: along and in all, px. A work-item takes a chunk of
+ * CAMBER_ARC_LENGTH_CHUNK slots; the host turns arc_length_sum's sums into the carries. */
+#include "arc_length.h"
+
+kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK / CAMBER_ARC_LENGTH_CHUNK, 1, 1))) void arc_length_scan(
+    global const float *restrict x, global const float *restrict y, global const camber_u32 *restrict info,
+    global const camber_u64 *restrict carries, global float *restrict arc_lengths) {
+    const size_t chunk = get_global_id(0), first = chunk * CAMBER_ARC_LENGTH_CHUNK + 1;
+    camber_u64 along[CAMBER_ARC_LENGTH_CHUNK];
+    camber_u64 sum = carries[2 * chunk];
+    for (size_t k = 0; k < CAMBER_ARC_LENGTH_CHUNK; k++) {
+        const size_t i = first + k;
+        sum = info[i] & CAMBER_POINT_FIRST ? 0 : sum + camber_length_into(x[i] - x[i - 1], y[i] - y[i - 1], info[i]);
+        along[k] = sum;
+    }
+    sum = carries[2 * chunk + 1];
+    for (size_t k = CAMBER_ARC_LENGTH_CHUNK; k-- > 0;) {
+        const size_t i = first + k;
+        sum = info[i] & CAMBER_POINT_LAST ? 0 : sum;
+        const camber_u32 real = info[i] & CAMBER_POINT_REAL;
+        arc_lengths[2 * (i - 1)] = real ? camber_length_px(along[k]) : 0.0f;
+        arc_lengths[2 * (i - 1) + 1] = real ? camber_length_px(along[k] + sum) : 0.0f;
+        sum += camber_length_into(x[i] - x[i - 1], y[i] - y[i - 1], info[i]);
+    }
+}

@@ -1,0 +1,22 @@
+/* arc_length_sum: how long the lines are within each chunk of slots.
+ * Reads x, y, info[n + 2]; writes sums[2 * chunks], a chunk being CAMBER_ARC_LENGTH_CHUNK slots, a work-item each. The
+ * first sum of a chunk has the segments into its points behind the last first point in it, the second those before the
+ * first last point. Both say in their lowest bit whether a line begins, or ends, in the chunk. */
+#include "arc_length.h"
+
+kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK / CAMBER_ARC_LENGTH_CHUNK, 1, 1))) void arc_length_sum(
+    global const float *restrict x, global const float *restrict y, global const camber_u32 *restrict info,
+    global camber_u64 *restrict sums) {
+    const size_t chunk = get_global_id(0), first = chunk * CAMBER_ARC_LENGTH_CHUNK + 1;
+    camber_u64 ahead = 0, behind = 0;
+    camber_u32 begins = 0, ends = 0;
+    for (size_t i = first; i < first + CAMBER_ARC_LENGTH_CHUNK; i++) {
+        const camber_u64 length = camber_length_into(x[i] - x[i - 1], y[i] - y[i - 1], info[i]);
+        ahead = info[i] & CAMBER_POINT_FIRST ? 0 : ahead + length;
+        behind += ends ? 0 : length;
+        begins |= info[i] & CAMBER_POINT_FIRST ? CAMBER_SUM_CLOSED : 0u;
+        ends |= info[i] & CAMBER_POINT_LAST ? CAMBER_SUM_CLOSED : 0u;
+    }
+    sums[2 * chunk] = ahead << CAMBER_SUM_SHIFT | begins;
+    sums[2 * chunk + 1] = behind << CAMBER_SUM_SHIFT | ends;
+}

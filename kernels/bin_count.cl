@@ -1,0 +1,32 @@
+/* bin_count: how many segments of each chunk each tile has; a chunk is a work-item.
+ * Reads segments[CAMBER_SEGMENT_WORDS * segment_count], boxes[segment_count]; writes counts[chunks * tiles].
+ * bin_gpu.cl does the same with a work-item a segment. */
+#include "segment.h"
+
+#if CAMBER_LANES == 16
+CAMBER_KERNEL(1, bin_count,
+              (global const float *restrict segments, global const camber_u32 *restrict boxes,
+               global camber_u32 *restrict counts, const camber_bin_args c),
+              (segments, boxes, counts, c)) {
+    const size_t chunk = CAMBER_WORK_ITEM, first = chunk * c.a_chunk;
+    const size_t end = first + c.a_chunk < c.segment_count ? first + c.a_chunk : c.segment_count;
+    const camber_tile_grid of = c.of;
+    global camber_u32 *own = counts + chunk * c.tiles;
+    for (size_t i = 0; i < c.tiles / 16; i++)
+        vstore16((uint16)(0u), i, own);
+    for (size_t i = first; i < end; i++) {
+        const camber_u32 box = boxes[i];
+        if (CAMBER_BOX_FIRST_X(box) > CAMBER_BOX_LAST_X(box))
+            continue;
+        if (camber_box_is_one_tile(box, of.columns)) {
+            own[CAMBER_BOX_FIRST_Y(box) * of.columns + CAMBER_BOX_FIRST_X(box)]++;
+            continue;
+        }
+        for (camber_u32 y = CAMBER_BOX_FIRST_Y(box); y <= CAMBER_BOX_LAST_Y(box); y++) {
+            const camber_u32 span = camber_tile_span(segments + CAMBER_SEGMENT_WORDS * i, box, y, &of);
+            for (camber_u32 x = span & 255u; x <= span >> 8; x++)
+                own[y * of.columns + x]++;
+        }
+    }
+}
+#endif

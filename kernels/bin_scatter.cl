@@ -1,0 +1,35 @@
+/* bin_scatter: the list of each tile, its segments in drawing order. A chunk, a work-item, puts its own where bin_count
+ * and bin_scan say, so that the order is the same however many chunks there are.
+ * Reads segments[CAMBER_SEGMENT_WORDS * segment_count], boxes[segment_count], starts[tiles]; moves
+ * counts[chunks * tiles] on to each chunk's end; writes lists[starts[tiles]]. */
+#include "segment.h"
+
+#if CAMBER_LANES == 16
+CAMBER_KERNEL(1, bin_scatter,
+              (global const float *restrict segments, global const camber_u32 *restrict boxes,
+               global const camber_u32 *restrict starts, global camber_u32 *restrict counts,
+               global camber_u32 *restrict lists, const camber_bin_args c),
+              (segments, boxes, starts, counts, lists, c)) {
+    const size_t chunk = CAMBER_WORK_ITEM, first = chunk * c.a_chunk;
+    const size_t end = first + c.a_chunk < c.segment_count ? first + c.a_chunk : c.segment_count;
+    const camber_tile_grid of = c.of;
+    global camber_u32 *own = counts + chunk * c.tiles;
+    for (size_t i = first; i < end; i++) {
+        const camber_u32 box = boxes[i];
+        if (CAMBER_BOX_FIRST_X(box) > CAMBER_BOX_LAST_X(box))
+            continue;
+        if (camber_box_is_one_tile(box, of.columns)) {
+            const camber_u32 tile = CAMBER_BOX_FIRST_Y(box) * of.columns + CAMBER_BOX_FIRST_X(box);
+            lists[starts[tile] + own[tile]++] = (camber_u32)i;
+            continue;
+        }
+        for (camber_u32 y = CAMBER_BOX_FIRST_Y(box); y <= CAMBER_BOX_LAST_Y(box); y++) {
+            const camber_u32 span = camber_tile_span(segments + CAMBER_SEGMENT_WORDS * i, box, y, &of);
+            for (camber_u32 x = span & 255u; x <= span >> 8; x++) {
+                const camber_u32 tile = y * of.columns + x;
+                lists[starts[tile] + own[tile]++] = (camber_u32)i;
+            }
+        }
+    }
+}
+#endif

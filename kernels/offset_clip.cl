@@ -1,0 +1,12 @@
+/* offset_clip: what is left of the segment that begins at each slot, and of the arc there, when both are moved aside.
+ * Reads x, y, info[n + 2] and the rows' offsets; writes clips[n + 2] but for the first and the last, which nobody
+ * reads. A work-item a slot. */
+#include "offset_clip.h"
+
+kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK, 1, 1))) void offset_clip(
+    global const float *restrict x, global const float *restrict y, global const camber_u32 *restrict info,
+    global const camber_offset_row *restrict offset_rows, global camber_offset_clip *restrict clips) {
+    const camber_source_line source_line = {x, y, info, offset_rows, clips, 0, (camber_u32)get_global_size(0)};
+    const camber_u32 slot = (camber_u32)get_global_id(0) + 1u;
+    clips[slot] = camber_offset_clip_of(&source_line, slot);
+}

@@ -1,0 +1,327 @@
+/* Drawing in OpenCL: a segment as tiles and pixels read it, and the tiles that it meets. Only + - * / sqrt and
+ * comparisons, so that device and twin agree to the last bit; a camber_real is sixteen segments, or the sixteen pixels
+ * of a cell, on the device and one of them in the twin. */
+#ifndef CAMBER_KERNELS_SEGMENT_H
+#define CAMBER_KERNELS_SEGMENT_H
+
+#include "raster_args.h"
+
+/* The host has all there is; what the device is built for, its build says. */
+#ifndef CAMBER_RASTER_RICH
+#define CAMBER_RASTER_RICH 0
+#endif
+#ifndef CAMBER_RASTER_PITCHED
+#define CAMBER_RASTER_PITCHED 0
+#endif
+
+/* Pixels a work-item of a device: 16 where one takes the pixels of a cell, 1 where it takes a pixel, as in the twin. */
+#ifndef CAMBER_LANES
+#define CAMBER_LANES 16
+#endif
+
+#if defined(CAMBER_DEVICE) && CAMBER_LANES == 16
+typedef float16 camber_real;
+typedef uint16 camber_words;
+typedef int16 camber_mask;
+#define CAMBER_TURNS(joins) convert_float16(as_int16((joins) << 16) >> 16)
+#else
+typedef float camber_real;
+typedef camber_u32 camber_words;
+typedef int camber_mask;
+#define CAMBER_TURNS(joins) ((float)((camber_i32)((joins) << 16) >> 16))
+#endif
+#define CAMBER_REAL(x) ((camber_real)(x))
+#define CAMBER_MORE(a, b) ((a) > (b) ? (a) : (b))
+#define CAMBER_LESS(a, b) ((a) < (b) ? (a) : (b))
+
+/* A picture is tiles, each of which is drawn by itself, and a tile is cells of 4 x 4 pixels. */
+#define CAMBER_TILE_PX 32
+#define CAMBER_CELL_PX 4
+#define CAMBER_TILE_CELLS 8               /* a side */
+#define CAMBER_TILES_MAX 256              /* a side of what is drawn at once: a box has a byte for each */
+#define CAMBER_LOOK_EVERY 16              /* segments of a cell: then it is looked whether it is full */
+#define CAMBER_NOTHING_PX (1.0f / 512.0f) /* of what lies below, less than this is not seen */
+#define CAMBER_NEVER_PX 1e6f
+#define CAMBER_ALWAYS_PX (-1e30f)
+#define CAMBER_TIPS_PX 1.85f /* half as wide, the ends of round caps are judged by themselves */
+#define CAMBER_FILL_PX 1e6f  /* a fill is a line along y = 0, so long to either side and half so wide */
+
+/* The bytes that a tile spills between slices of segments, at most: seventeen planes of its pixels, and a few words. */
+#define CAMBER_SPILL_BYTES (17 * 4096 + 192)
+
+/* The box of a segment that is not drawn: its first tile lies behind the last one. */
+#define CAMBER_NO_BOX 0xffu
+
+/* Words of the table of rows. */
+#define CAMBER_RASTER_ROW_WORDS 4 /* half the width, below 0 where nothing is drawn; x, y translation; the brush */
+
+/* How what is drawn lies over what is below. */
+#define CAMBER_BRUSH_OVER 0u  /* segments lie over each other */
+#define CAMBER_BRUSH_UNION 1u /* their areas are united first */
+#define CAMBER_BRUSH_MASKED                                                                                            \
+    2u /* of a layer in which what is translucent replaces what lies below it. CAMBER_RASTER_RICH */
+
+/* A colour that segments are drawn in. Layers and groups are put onto what lies below as a whole: 0 is none. A layer
+ * lies within its group. */
+typedef struct camber_brush {
+    float r, g, b, a; /* straight */
+    camber_u32 mode, layer, group, spare;
+    float layer_opacity, group_opacity, spares[2];
+} camber_brush;
+
+/* ---- A segment as tiles and pixels read it ---- */
+
+/* Ends that a second line cuts, a bit each. */
+#define CAMBER_SECOND_ENDS                                                                                             \
+    (1u << CAMBER_ENDS_MITER | 1u << CAMBER_ENDS_BEVEL | 1u << CAMBER_ENDS_SPLIT_BEVEL | 1u << CAMBER_ENDS_SPLIT_MITER)
+#define CAMBER_CLASS_CAP 0u
+#define CAMBER_CLASS_CUT 1u
+#define CAMBER_CLASS_TIGHT 2u
+#define CAMBER_CLASS_SPLIT 3u
+
+/* An end has 13 bits: camber_end 0-2, class 3-4, a tight join's limit 5-11, whether the line ends with the next segment
+ * 12. The end at A, then that at B, then: coverage is a ramp. */
+#define CAMBER_SEGMENT_END_BITS 13
+#define CAMBER_END_MASK 0x1fffu
+#define CAMBER_END_CLASS_SHIFT 3
+#define CAMBER_END_LIMIT_SHIFT 5
+#define CAMBER_END_LAST_SHIFT 12
+#define CAMBER_END_CLASS_BITS (3u << CAMBER_END_CLASS_SHIFT)
+#define CAMBER_END_OF_A(flags) ((flags)&CAMBER_END_MASK)
+#define CAMBER_END_OF_B(flags) ((flags) >> CAMBER_SEGMENT_END_BITS & CAMBER_END_MASK)
+#define CAMBER_END_KIND(end) ((end)&CAMBER_JOIN_END_MASK)
+#define CAMBER_END_CLASS(end) ((end) >> CAMBER_END_CLASS_SHIFT & 3u)
+#define CAMBER_END_LIMIT(end) ((end) >> CAMBER_END_LIMIT_SHIFT & 127u)
+#define CAMBER_END_IS_LAST(end) (((end) >> CAMBER_END_LAST_SHIFT & 1u) != 0u)
+#define CAMBER_END_IS_ROUND_CAP(end)                                                                                   \
+    (((end) & (CAMBER_JOIN_END_MASK | CAMBER_END_CLASS_BITS)) == (CAMBER_ENDS_ROUND | CAMBER_CLASS_CAP << 3))
+#define CAMBER_SEGMENT_LINEAR (1u << 26)
+/* Past a split end the segment has what is wide on its inner side too: camber_owner_side. */
+#define CAMBER_SEGMENT_OWNER_A (1u << 27)
+#define CAMBER_SEGMENT_OWNER_B (1u << 28)
+/* Flags of its ends: one is cut at a corner or tight, flat, a round cap. */
+#define CAMBER_SEGMENT_SHARP (1u << 29)
+#define CAMBER_SEGMENT_FLAT (1u << 30)
+#define CAMBER_SEGMENT_ROUNDED (1u << 31)
+
+/* The words of a segment. */
+#define CAMBER_SEGMENT_AX 0u
+#define CAMBER_SEGMENT_AY 1u
+#define CAMBER_SEGMENT_BX 2u
+#define CAMBER_SEGMENT_BY 3u
+#define CAMBER_SEGMENT_UX 4u
+#define CAMBER_SEGMENT_UY 5u
+#define CAMBER_SEGMENT_NAX 6u
+#define CAMBER_SEGMENT_NAY 7u
+#define CAMBER_SEGMENT_NBX 8u
+#define CAMBER_SEGMENT_NBY 9u
+#define CAMBER_SEGMENT_HALF_WIDTH 10u
+#define CAMBER_SEGMENT_REACH 11u
+#define CAMBER_SEGMENT_SLOPE 12u
+#define CAMBER_SEGMENT_CURVE 13u
+#define CAMBER_SEGMENT_FLAGS 14u
+#define CAMBER_SEGMENT_BRUSH 15u
+#define CAMBER_SEGMENT_WORDS 16u
+
+typedef struct camber_segment {
+    camber_real ax, ay, bx, by, ux, uy; /* from A to B, and the direction */
+    camber_real nax, nay, nbx, nby;     /* normals of the bisectors at A and B, along the line */
+    camber_real half_width, reach;      /* reach: no pixel farther out of the box of A and B is touched */
+    camber_real slope, curve;           /* of its edges' area: edge_of in shaders/edge.glsl */
+    camber_words flags;
+} camber_segment;
+
+/* camber_end, class, limit of a join word's end. kite and fan say at which joins they split by the kind alone. */
+CAMBER_FN camber_words camber_segment_end(camber_words join) {
+    const camber_words kind = join >> CAMBER_JOIN_KIND_SHIFT,
+                       end = join >> CAMBER_JOIN_END_SHIFT & CAMBER_JOIN_END_MASK;
+    const camber_words split = end == CAMBER_ENDS_ROUND   ? (camber_words)(CAMBER_ENDS_SPLIT_ROUND)
+                               : end == CAMBER_ENDS_BEVEL ? (camber_words)(CAMBER_ENDS_SPLIT_BEVEL)
+                                                          : (camber_words)(CAMBER_ENDS_SPLIT_MITER);
+    const camber_words drawn = ((kind >= CAMBER_KIND_TIGHT) & (end < CAMBER_ENDS_SPLIT_ROUND)) ? split : end;
+    const camber_words class = kind < CAMBER_KIND_CUT ? (camber_words)(0u) : kind - 2u;
+    const camber_words limit = kind == CAMBER_KIND_TIGHT ? join >> CAMBER_JOIN_LIMIT_SHIFT & 127u : (camber_words)(0u);
+    return drawn | class << CAMBER_END_CLASS_SHIFT | limit << CAMBER_END_LIMIT_SHIFT;
+}
+
+/* Whether a segment has more of a split end than its own side of the bisector: of what is wide, as stroke.vert has it.
+ * c and s: of half the turn. */
+CAMBER_FN camber_mask camber_owner_side(camber_words end, camber_real c, camber_real s, camber_real half_width) {
+    const camber_real bound = (CAMBER_END_IS_LAST(end) ? CAMBER_REAL(0.35f) : CAMBER_REAL(0.6f)) * c;
+    return (CAMBER_END_CLASS(end) > CAMBER_CLASS_CUT) & (half_width * CAMBER_FABS(s) > bound);
+}
+
+CAMBER_FN camber_words camber_end_flags(camber_words end) {
+    const camber_words none = (camber_words)(0u), kind = CAMBER_END_KIND(end), class = CAMBER_END_CLASS(end);
+    const camber_mask sharp = (kind == CAMBER_ENDS_MITER) | (kind == CAMBER_ENDS_BEVEL) |
+                              (kind > CAMBER_ENDS_SPLIT_ROUND) | (class == CAMBER_CLASS_TIGHT);
+    const camber_mask flat = (kind == CAMBER_ENDS_BUTT) | (kind == CAMBER_ENDS_SQUARE),
+                      rounded = (kind == CAMBER_ENDS_ROUND) & (class == CAMBER_CLASS_CAP);
+    return (sharp ? (camber_words)(CAMBER_SEGMENT_SHARP) : none) | (flat ? (camber_words)(CAMBER_SEGMENT_FLAT) : none) |
+           (rounded ? (camber_words)(CAMBER_SEGMENT_ROUNDED) : none);
+}
+
+/* Sets the flags that are known of the ends before any pixel is. */
+CAMBER_FN void camber_segment_judge(camber_segment *s) {
+    const camber_words none = (camber_words)(0u), end_a = CAMBER_END_OF_A(s->flags), end_b = CAMBER_END_OF_B(s->flags);
+    const camber_real ca = s->nax * s->ux + s->nay * s->uy, sa = s->nax * s->uy - s->nay * s->ux;
+    const camber_real cb = s->nbx * s->ux + s->nby * s->uy, sb = s->nby * s->ux - s->nbx * s->uy;
+    s->flags |= camber_owner_side(end_a, ca, sa, s->half_width) ? (camber_words)(CAMBER_SEGMENT_OWNER_A) : none;
+    s->flags |= camber_owner_side(end_b, cb, sb, s->half_width) ? (camber_words)(CAMBER_SEGMENT_OWNER_B) : none;
+    s->flags |= camber_end_flags(end_a) | camber_end_flags(end_b);
+}
+
+/* How far an end reaches out of the box of A and B, in units of half the width and the pad. */
+CAMBER_FN camber_real camber_segment_reach(camber_words join, camber_real q) {
+    const camber_words end = join >> CAMBER_JOIN_END_SHIFT & CAMBER_JOIN_END_MASK;
+    const camber_real below = 1.0f - q * q;
+    const camber_real miter = (1.0f + q * q) / CAMBER_MORE(below, CAMBER_REAL(1e-3f));
+    const camber_real corner = end == CAMBER_ENDS_ROUND || end == CAMBER_ENDS_BUTT || end == CAMBER_ENDS_SPLIT_ROUND
+                                   ? CAMBER_REAL(1.0f)
+                                   : CAMBER_REAL(1.4143f);
+    return ((end == CAMBER_ENDS_MITER) | (end == CAMBER_ENDS_SPLIT_MITER)) ? miter : corner;
+}
+
+/* Sets up the segment from A to B that is half_width wide; (px, py) is where the segment before it comes from. Both
+ * segments at a join turn the bisector from the direction of the one before: its normal is the same to the last bit. */
+CAMBER_FN camber_segment camber_segment_of(camber_real px, camber_real py, camber_real ax, camber_real ay,
+                                           camber_real bx, camber_real by, camber_words join_a, camber_words join_b,
+                                           camber_real half_width, camber_u32 linear) {
+    camber_segment s;
+    const camber_real one = CAMBER_REAL(1.0f), none = CAMBER_REAL(0.0f);
+    const camber_real dx = bx - ax, dy = by - ay, ex = ax - px, ey = ay - py;
+    const camber_real length = CAMBER_SQRT(dx * dx + dy * dy), before = CAMBER_SQRT(ex * ex + ey * ey);
+    const camber_real scale = one / (length > 0.0f ? length : one), scale_in = one / (before > 0.0f ? before : one);
+    s.ux = length > 0.0f ? dx * scale : one;
+    s.uy = length > 0.0f ? dy * scale : none;
+    const camber_real ix = before > 0.0f ? ex * scale_in : one, iy = before > 0.0f ? ey * scale_in : none;
+    const camber_real qa = CAMBER_TURNS(join_a) * (1.0f / 32767.0f), qb = CAMBER_TURNS(join_b) * (1.0f / 32767.0f);
+    const camber_real ta = one / (1.0f + qa * qa), tb = one / (1.0f + qb * qb);
+    const camber_real ca = (1.0f - qa * qa) * ta, sa = 2.0f * qa * ta;
+    const camber_real cb = (1.0f - qb * qb) * tb, sb = 2.0f * qb * tb;
+    const camber_words end_a = camber_segment_end(join_a), end_b = camber_segment_end(join_b);
+    const camber_mask cap_a = CAMBER_END_CLASS(end_a) == CAMBER_CLASS_CAP;
+    const camber_words soon_a = join_a & CAMBER_JOIN_AFTER_FIRST, soon_b = join_b & CAMBER_JOIN_BEFORE_LAST;
+    s.nax = cap_a ? s.ux : ix * ca - iy * sa;
+    s.nay = cap_a ? s.uy : ix * sa + iy * ca;
+    s.nbx = s.ux * cb - s.uy * sb;
+    s.nby = s.ux * sb + s.uy * cb;
+    s.ax = ax;
+    s.ay = ay;
+    s.bx = bx;
+    s.by = by;
+    s.half_width = half_width;
+    const camber_real reach_a = camber_segment_reach(join_a, qa), reach_b = camber_segment_reach(join_b, qb);
+    s.reach = (half_width + CAMBER_PAD_PX) * CAMBER_MORE(reach_a, reach_b);
+    const camber_real nx = CAMBER_FABS(s.ux), ny = CAMBER_FABS(s.uy);
+    const camber_real p = CAMBER_MORE(nx, ny), q = CAMBER_LESS(nx, ny), safe = q > 1e-4f ? q : one;
+    s.slope = linear ? one : one / p;
+    const camber_real curve = q > 1e-4f ? CAMBER_REAL(0.5f) / (p * safe) : none;
+    s.curve = linear ? none : curve;
+    /* from bits 26 and 27 of the join word to CAMBER_END_LAST_SHIFT */
+    s.flags = end_a | soon_a >> 14 | (end_b | soon_b >> 15) << CAMBER_SEGMENT_END_BITS;
+    s.flags |= linear ? CAMBER_SEGMENT_LINEAR : 0u;
+    camber_segment_judge(&s);
+    return s;
+}
+
+/* The tiles that the box of a segment meets: x and y of the first and of the last, a byte each. left and top: where the
+ * first tile of what is drawn lies in the picture, px. */
+CAMBER_FN camber_words camber_segment_box(const camber_segment *s, camber_mask drawn, float left, float top,
+                                          camber_u32 columns, camber_u32 rows) {
+    const float a_tile = 1.0f / CAMBER_TILE_PX, right = (float)(columns - 1u), bottom = (float)(rows - 1u);
+    /* To the middles of pixels, as cells have it, and a little farther: no cell's own box lies past its tile's. Tiles
+     * are counted from the picture's first one before the area's are, so that they are the same in every area. */
+    const float inset = 0.4375f, from_x = left * a_tile, from_y = top * a_tile;
+    const camber_real none = CAMBER_REAL(0.0f);
+    const camber_real x0 = (CAMBER_LESS(s->ax, s->bx) - s->reach + inset) * a_tile - from_x;
+    const camber_real x1 = (CAMBER_MORE(s->ax, s->bx) + s->reach - inset) * a_tile - from_x;
+    const camber_real y0 = (CAMBER_LESS(s->ay, s->by) - s->reach + inset) * a_tile - from_y;
+    const camber_real y1 = (CAMBER_MORE(s->ay, s->by) + s->reach - inset) * a_tile - from_y;
+    const camber_mask meets = drawn & (x0 < right + 1.0f) & (y0 < bottom + 1.0f) & (x1 >= 0.0f) & (y1 >= 0.0f);
+    const camber_real fx = CAMBER_MORE(x0, none), fy = CAMBER_MORE(y0, none);
+    const camber_real lx = x1 < right ? x1 : CAMBER_REAL(right), ly = y1 < bottom ? y1 : CAMBER_REAL(bottom);
+#if defined(CAMBER_DEVICE) && CAMBER_LANES == 16
+    const camber_words box = convert_uint16(meets ? fx : none) | convert_uint16(meets ? fy : none) << 8 |
+                             convert_uint16(meets ? lx : none) << 16 | convert_uint16(meets ? ly : none) << 24;
+#else
+    const camber_words box = (camber_u32)(meets ? fx : none) | (camber_u32)(meets ? fy : none) << 8 |
+                             (camber_u32)(meets ? lx : none) << 16 | (camber_u32)(meets ? ly : none) << 24;
+#endif
+    return meets ? box : (camber_words)(CAMBER_NO_BOX);
+}
+
+/* ---- Tiles ---- */
+
+/* The squares of a box in one row, tiles or cells of side px, that a segment's band meets: the first | the
+ * last << 8. middle: of the row, px; left: of the first square; segment: its words. */
+CAMBER_FN camber_u32 camber_row_span(CAMBER_GLOBAL const float *segment, float middle, float left, camber_u32 first,
+                                     camber_u32 last, float side) {
+    const float ax = segment[CAMBER_SEGMENT_AX], ay = segment[CAMBER_SEGMENT_AY], ux = segment[CAMBER_SEGMENT_UX],
+                uy = segment[CAMBER_SEGMENT_UY];
+    const float to_middle = 0.5f * side, a_square = 1.0f / side;
+    const float slack = 1e-6f * (CAMBER_FABS(ax) + CAMBER_FABS(ay));
+    const float reach =
+        segment[CAMBER_SEGMENT_HALF_WIDTH] + CAMBER_PAD_PX + to_middle * (CAMBER_FABS(ux) + CAMBER_FABS(uy)) + slack;
+    if (CAMBER_FABS(uy) < 1e-3f)
+        return first | last << 8;
+    const float scale = 1.0f / uy, across = (middle - ay) * ux;
+    const float one = ax + (across - reach) * scale, other = ax + (across + reach) * scale;
+    /* From the squares' middles. */
+    const float from = ((one < other ? one : other) - to_middle) * a_square - left * a_square;
+    const float to = ((one < other ? other : one) - to_middle) * a_square - left * a_square;
+    if (from > (float)last || to < (float)first)
+        return 1u; /* the last lies before the first */
+    const camber_u32 begin = from > (float)first ? (camber_u32)from : first;
+    return (from > (float)begin ? begin + 1u : begin) | (to < (float)last ? (camber_u32)to : last) << 8;
+}
+
+/* Whether the box of a segment lies in one column or in one row of tiles, as camber_segment_box has them before an
+ * area's edges cut it. */
+CAMBER_FN camber_u32 camber_same_tile(float from, float to) {
+    const float a_tile = 1.0f / CAMBER_TILE_PX, least = -1e9f, most = 1e9f, inset = 0.4375f;
+    const float a = (from + inset) * a_tile, b = (to - inset) * a_tile;
+    const float lower = a < least ? least : a > most ? most : a, upper = b < least ? least : b > most ? most : b;
+    const int first = (int)lower, last = (int)upper;
+    return first - (lower < (float)first) == last - (upper < (float)last);
+}
+
+CAMBER_FN camber_u32 camber_segment_is_narrow(CAMBER_GLOBAL const float *segment) {
+    const float ax = segment[CAMBER_SEGMENT_AX], ay = segment[CAMBER_SEGMENT_AY], bx = segment[CAMBER_SEGMENT_BX],
+                by = segment[CAMBER_SEGMENT_BY], reach = segment[CAMBER_SEGMENT_REACH];
+    return camber_same_tile(CAMBER_LESS(ax, bx) - reach, CAMBER_MORE(ax, bx) + reach) ||
+           camber_same_tile(CAMBER_LESS(ay, by) - reach, CAMBER_MORE(ay, by) + reach);
+}
+
+/* The tiles of a box: camber_segment_box. */
+#define CAMBER_BOX_FIRST_X(box) ((box)&255u)
+#define CAMBER_BOX_FIRST_Y(box) ((box) >> 8 & 255u)
+#define CAMBER_BOX_LAST_X(box) ((box) >> 16 & 255u)
+#define CAMBER_BOX_LAST_Y(box) ((box) >> 24)
+
+/* Whether a box is one tile that camber_tile_span says nothing of. */
+CAMBER_FN camber_u32 camber_box_is_one_tile(camber_u32 box, camber_u32 columns) {
+    return box >> 16 == (box & 0xffffu) && CAMBER_BOX_FIRST_X(box) - 1u < columns - 2u;
+}
+
+/* The tiles of a box in row y that a segment meets, as camber_row_span has them: boxes of one column or row have all.
+ * What lies at the area's edge may be cut, and must be as it is in any other area. */
+CAMBER_FN camber_u32 camber_tile_span(CAMBER_GLOBAL const float *segment, camber_u32 box, camber_u32 y,
+                                      const camber_tile_grid *of) {
+    const camber_u32 first = box & 255u, last = box >> 16 & 255u, top = box >> 8 & 255u, bottom = box >> 24;
+    const camber_u32 all = first | last << 8;
+    if ((first == last && first - 1u < of->columns - 2u) || (top == bottom && top - 1u < of->rows - 2u))
+        return all;
+    if ((first == last || top == bottom) && camber_segment_is_narrow(segment))
+        return all;
+    const float middle = of->top + ((float)y + 0.5f) * CAMBER_TILE_PX;
+    return camber_row_span(segment, middle, of->left, first, last, CAMBER_TILE_PX);
+}
+
+#ifdef CAMBER_DEVICE
+typedef char camber_brush_is_48_bytes[sizeof(camber_brush) == 48 ? 1 : -1];
+#else
+_Static_assert(sizeof(camber_brush) == 48, "the device reads brushes of 48 bytes");
+#endif
+
+#endif

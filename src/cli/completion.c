@@ -1,0 +1,253 @@
+/* Prints the completion scripts for bash and zsh from the table of options, so that they offer what the parser takes.
+ *
+ * The script for bash is three tables and a function. The tables are shell functions: the options of a verb, the values
+ * of an option, and the operands of a verb. The function finds out what the cursor is on, and looks that up. Two words
+ * stand for paths in the tables: @files and @folders.
+ *
+ * The script for zsh has one call of _arguments for each verb; zsh does the rest. */
+#include "cli/completion.h"
+
+#include "cli/options_table.h"
+
+#include <string.h>
+
+static const char style_actions[] = "check eval";
+
+/* The names of the styles that ship with camber. */
+static void print_styles(FILE *file) {
+#ifdef CAMBER_MAP
+    const char *name;
+    for (size_t i = 0; (name = camber_style_list(i)) != NULL; i++)
+        fprintf(file, "%s%s", i ? " " : "", name);
+#else
+    (void)file;
+#endif
+}
+
+static void print_verbs(FILE *file) {
+    for (size_t i = 0; i < camber_verb_count; i++)
+        fprintf(file, "%s ", camber_verb_specs[i].name);
+    fputs("help version", file);
+}
+
+/* The words of a choice, a|b|c, with blanks between them. */
+static void print_choice(const char *words, FILE *file) {
+    for (; *words; words++)
+        fputc(*words == '|' ? ' ' : *words, file);
+}
+
+static bool takes_files(const camber_verb_spec *verb) {
+    return strstr(verb->operands, "INPUT") != NULL;
+}
+
+/* Whether the completion for a verb offers an option: those that its help lists. */
+static bool is_offered(const camber_option_spec *spec, camber_verb verb) {
+    return spec->verbs & 1 << verb && *camber_option_help(spec, verb);
+}
+
+/* ---- bash ---- */
+
+static void print_bash_options(const char *name, camber_verb verb, FILE *file) {
+    fprintf(file, "    %s) echo '", name);
+    for (size_t i = 0; i < camber_option_count; i++) {
+        const camber_option_spec *spec = &camber_option_specs[i];
+        if (is_offered(spec, verb) && spec->letter)
+            fprintf(file, "-%c ", spec->letter);
+        if (is_offered(spec, verb))
+            fprintf(file, "--%s ", spec->name);
+    }
+    fputs("' ;;\n", file);
+}
+
+static void print_bash_value(const camber_option_spec *spec, FILE *file) {
+    if (!spec->argument)
+        return;
+    fputs("    ", file);
+    if (spec->letter)
+        fprintf(file, "-%c | ", spec->letter);
+    fprintf(file, "--%s) echo '", spec->name);
+    switch (spec->kind) {
+    case CAMBER_OPTION_FILE: fputs("@files", file); break;
+    case CAMBER_OPTION_FOLDER: fputs("@folders", file); break;
+    case CAMBER_OPTION_STYLE:
+        fputs("@files ", file);
+        print_styles(file);
+        break;
+    case CAMBER_OPTION_DEVICE: fputs("cpu gpu", file); break;
+    case CAMBER_OPTION_CHOICE: print_choice(spec->argument, file); break;
+    default: break; /* numbers and texts: the user knows them */
+    }
+    fputs("' ;;\n", file);
+}
+
+static void print_bash_operands(FILE *file) {
+    for (size_t i = 0; i < camber_verb_count; i++)
+        if (takes_files(&camber_verb_specs[i]))
+            fprintf(file, "    %s:*) echo '@files' ;;\n", camber_verb_specs[i].name);
+#ifdef CAMBER_MAP
+    fprintf(file, "    style:) echo '%s' ;;\n    style:check) echo '@files ", style_actions);
+    print_styles(file);
+    fputs("' ;;\n    style:*) echo '@files' ;;\n", file);
+#endif
+    fputs("    : | help:) echo '", file);
+    print_verbs(file);
+    fputs("' ;;\n", file);
+}
+
+static const char bash_function[] =
+    "_camber() {\n"
+    "    local word option='' verb='' operand='' only_operands='' words kind='' at\n"
+    "    for ((at = 1; at < COMP_CWORD; at++)); do\n"
+    "        word=${COMP_WORDS[at]}\n"
+    "        if [[ $only_operands || $word != -?* ]]; then\n"
+    "            if [[ ! $verb ]]; then verb=$word; elif [[ ! $operand ]]; then operand=$word; fi\n"
+    "        elif [[ $word == -- ]]; then\n"
+    "            only_operands=yes\n"
+    "        elif _camber_value \"$word\" >/dev/null; then\n"
+    "            # The value is the next word. To bash --option=value is three words.\n"
+    "            [[ ${COMP_WORDS[at + 1]} != = ]] || ((at += 1))\n"
+    "            ((at += 1))\n"
+    "            ((at < COMP_CWORD)) || option=$word\n"
+    "        fi\n"
+    "    done\n"
+    "    word=${COMP_WORDS[COMP_CWORD]}\n"
+    "    [[ $word != = ]] || word=\n"
+    "    if [[ $option ]]; then\n"
+    "        words=$(_camber_value \"$option\")\n"
+    "    elif [[ $word == -* && ! $only_operands ]]; then\n"
+    "        words=$(_camber_options \"$verb\")\n"
+    "    else\n"
+    "        words=$(_camber_operands \"$verb:$operand\")\n"
+    "    fi\n"
+    "    case $words in\n"
+    "    *@files*) kind=-f words=${words/@files/} ;;\n"
+    "    *@folders*) kind=-d words=${words/@folders/} ;;\n"
+    "    esac\n"
+    "    mapfile -t COMPREPLY < <(\n"
+    "        compgen -W \"$words\" -- \"$word\"\n"
+    "        [[ ! $kind ]] || compgen $kind -- \"$word\"\n"
+    "    )\n"
+    "    [[ ! $kind ]] || compopt -o filenames 2>/dev/null\n"
+    "}\n"
+    "complete -F _camber camber\n";
+
+static void print_bash(FILE *file) {
+    fputs("# bash completion of camber; made by `camber --completion bash`.\n\n"
+          "# The options of a verb; without one, those of camber itself.\n"
+          "_camber_options() {\n    case $1 in\n",
+          file);
+    for (size_t i = 0; i < camber_verb_count; i++)
+        print_bash_options(camber_verb_specs[i].name, camber_verb_specs[i].verb, file);
+    print_bash_options("*", CAMBER_VERB_NONE, file);
+    fputs(
+        "    esac\n}\n\n# The values of an option; status 1 where it takes none.\n_camber_value() {\n    case $1 in\n",
+        file);
+    for (size_t i = 0; i < camber_option_count; i++)
+        print_bash_value(&camber_option_specs[i], file);
+    fputs("    *) return 1 ;;\n    esac\n}\n\n# The operands behind VERB:OPERAND.\n_camber_operands() {\n    case $1 "
+          "in\n",
+          file);
+    print_bash_operands(file);
+    fputs("    esac\n}\n\n", file);
+    fputs(bash_function, file);
+}
+
+/* ---- zsh ---- */
+
+/* For the inside of single quotes in a description of _arguments or _describe. */
+static void print_escaped(const char *text, FILE *file) {
+    for (; *text; text++)
+        switch (*text) {
+        case '\'': fputs("'\\''", file); break;
+        case '[':
+        case ']':
+        case ':':
+        case '\\': fprintf(file, "\\%c", *text); break;
+        default: fputc(*text, file);
+        }
+}
+
+/* The action by which zsh completes an option's value. */
+static void print_zsh_value(const camber_option_spec *spec, FILE *file) {
+    if (!spec->argument)
+        return;
+    fputc(':', file);
+    print_escaped(spec->argument, file);
+    fputc(':', file);
+    switch (spec->kind) {
+    case CAMBER_OPTION_FILE: fputs("_files", file); break;
+    case CAMBER_OPTION_FOLDER: fputs("_files -/", file); break;
+    case CAMBER_OPTION_STYLE: fputs("_camber_styles", file); break;
+    case CAMBER_OPTION_DEVICE: fputs("(cpu gpu)", file); break;
+    case CAMBER_OPTION_CHOICE:
+        fputc('(', file);
+        print_choice(spec->argument, file);
+        fputc(')', file);
+        break;
+    default: break;
+    }
+}
+
+/* As in '(-o --output)'{-o+,--output=}'[file to write]:OUT:_files'. */
+static void print_zsh_option(const camber_option_spec *spec, camber_verb verb, FILE *file) {
+    const char *name = spec->name, *is = spec->argument ? "=" : "";
+    fputs(" \\\n            ", file);
+    if (spec->letter)
+        fprintf(file, "'(-%c --%s)'{-%c%s,--%s%s}'[", spec->letter, name, spec->letter, spec->argument ? "+" : "", name,
+                is);
+    else
+        fprintf(file, "'%s--%s%s[", spec->kind == CAMBER_OPTION_WHERES ? "*" : "", name, is);
+    print_escaped(camber_option_help(spec, verb), file);
+    fputc(']', file);
+    print_zsh_value(spec, file);
+    fputc('\'', file);
+}
+
+static void print_zsh_options(camber_verb verb, FILE *file) {
+    for (size_t i = 0; i < camber_option_count; i++)
+        if (is_offered(&camber_option_specs[i], verb))
+            print_zsh_option(&camber_option_specs[i], verb, file);
+}
+
+static void print_zsh_verb(const camber_verb_spec *verb, FILE *file) {
+    fprintf(file, "    %s)\n        _arguments -s -S", verb->name);
+    print_zsh_options(verb->verb, file);
+    if (takes_files(verb))
+        fputs(" \\\n            '*:INPUT:_files'", file);
+    if (verb->verb == CAMBER_VERB_STYLE)
+        fprintf(file, " \\\n            '1:action:(%s)' '2:style:_camber_styles'", style_actions);
+    fputs("\n        ;;\n", file);
+}
+
+static void print_zsh(FILE *file) {
+    fputs("#compdef camber\n# zsh completion of camber; made by `camber --completion zsh`.\n\n"
+          "_camber_verbs() {\n    local -a verbs=(",
+          file);
+    for (size_t i = 0; i < camber_verb_count; i++) {
+        fprintf(file, "\n        '%s:", camber_verb_specs[i].name);
+        print_escaped(camber_verb_specs[i].summary, file);
+        fputc('\'', file);
+    }
+    fputs("\n        'help:print the help of camber or of a verb'\n        'version:print the version'\n    )\n"
+          "    _describe verb verbs\n}\n\n_camber_styles() {\n    _alternative 'styles:built-in style:(",
+          file);
+    print_styles(file);
+    fputs(")' 'files:style document:_files'\n}\n\n"
+          "_camber() {\n    local curcontext=$curcontext state line\n    typeset -A opt_args\n    _arguments -s -S -C",
+          file);
+    print_zsh_options(CAMBER_VERB_NONE, file);
+    fputs(" \\\n            '1: :_camber_verbs' '*:: :->operands' && return\n    case $words[1] in\n", file);
+    for (size_t i = 0; i < camber_verb_count; i++)
+        print_zsh_verb(&camber_verb_specs[i], file);
+    fputs("    help) _arguments '1: :_camber_verbs' ;;\n    esac\n}\n\n"
+          "# The shell runs this file as the function _camber, or a user sources it.\n"
+          "if [[ $funcstack[1] == _camber ]]; then _camber \"$@\"; else compdef _camber camber; fi\n",
+          file);
+}
+
+void camber_completion_print(camber_shell shell, FILE *file) {
+    if (shell == CAMBER_SHELL_BASH)
+        print_bash(file);
+    else
+        print_zsh(file);
+}

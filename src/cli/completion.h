@@ -1,0 +1,17 @@
+/* Completion of the command line in shells. */
+#ifndef CAMBER_CLI_COMPLETION_H
+#define CAMBER_CLI_COMPLETION_H
+
+#include <stdio.h>
+
+/* In the order of --completion's words. */
+typedef enum camber_shell {
+    CAMBER_SHELL_BASH = 0,
+    CAMBER_SHELL_ZSH,
+} camber_shell;
+
+/* Prints a script that completes verbs, options, their values and files. A user's shell sources it, or finds it in the
+ * shell's folder of completions, where installing camber puts it. */
+void camber_completion_print(camber_shell shell, FILE *file);
+
+#endif

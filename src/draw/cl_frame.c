@@ -1,0 +1,166 @@
+/* Frames that OpenCL draws: the list becomes a scene, which the rasterizer draws one area after the other; their pixels
+ * are handed over as rows. */
+#include "draw/draw_cl.h"
+#include "draw/renderer.h"
+
+#include <string.h>
+
+/* Largest sizes of an area: the counts of its tiles and its pixels are what its memory goes by. */
+enum { AREA_PX = 16 * 1024 * 1024, AREA_SIDE_PX = CAMBER_TILE_PX * CAMBER_TILES_MAX };
+
+/* The area in the top left corner of the picture, as large as it can be: whole rows where they fit. */
+static camber_raster_area first_area(const camber_renderer *renderer, const camber_frame *frame) {
+    const camber_device *device = renderer->share.device;
+    uint32_t side = AREA_SIDE_PX;
+    if (frame->largest_piece_px && frame->largest_piece_px < side)
+        side = frame->largest_piece_px < CAMBER_TILE_PX ? CAMBER_TILE_PX
+                                                        : frame->largest_piece_px / CAMBER_TILE_PX * CAMBER_TILE_PX;
+    if (camber_raster_widest(renderer->raster) < side)
+        side = camber_raster_widest(renderer->raster);
+    const uint32_t width = frame->width < side ? frame->width : side;
+    const uint64_t most = device->info.largest_buffer_bytes / 4, pixels = most < AREA_PX ? most : AREA_PX;
+    const uint32_t fitting = (uint32_t)(pixels / (width + CAMBER_TILE_PX)) / CAMBER_TILE_PX * CAMBER_TILE_PX;
+    const uint32_t bound = fitting < side ? fitting : side, rows = bound > 0 ? bound : CAMBER_TILE_PX;
+    return (camber_raster_area){.width = width, .height = frame->height < rows ? frame->height : rows};
+}
+
+/* Where the areas of a frame go. */
+typedef struct destination {
+    camber_rows_fn *rows;
+    void *user;
+    camber_area_fn *draw; /* called in place of drawing. NULL: the rasterizer draws */
+    uint8_t *rgba; /* rows of the picture, put together of several areas. NULL: an area's own rows are handed over */
+    uint32_t width;
+    double user_ms; /* that the user took with an area, which is no part of reading back */
+} destination;
+
+/* Copies the area into rows of the picture, or hands it over as it is. */
+static camber_status take_area(camber_renderer *renderer, const camber_raster_area *area, destination *to) {
+    camber_raster_pixels pixels;
+    const size_t width_bytes = 4 * (size_t)area->width, row_bytes = 4 * (size_t)to->width;
+    const bool direct = !to->rgba;
+    camber_status status = camber_raster_map(renderer->raster, &pixels);
+    if (status != CAMBER_OK)
+        return status;
+    const double begin = camber_now_ms();
+    if (direct && !to->rows(to->user, pixels.rgba, area->y, area->height))
+        status = CAMBER_ERROR_IO;
+    to->user_ms += camber_now_ms() - begin;
+    for (size_t y = 0; !direct && y < area->height; y++)
+        memcpy(to->rgba + y * row_bytes + 4 * (size_t)area->x, pixels.rgba + y * pixels.row_bytes, width_bytes);
+    camber_raster_unmap(renderer->raster, pixels);
+    return status;
+}
+
+static void add_times(const camber_renderer *renderer, camber_frame_stats *stats) {
+    const camber_raster_times times = camber_raster_get_times(renderer->raster);
+    camber_stage_times_add(&stats->times, CAMBER_STAGE_SETUP, times.setup_ms);
+    camber_stage_times_add(&stats->times, CAMBER_STAGE_BIN_COUNT, times.bin_count_ms);
+    camber_stage_times_add(&stats->times, CAMBER_STAGE_BIN_SCAN, times.bin_scan_ms);
+    camber_stage_times_add(&stats->times, CAMBER_STAGE_BIN_SCATTER, times.bin_scatter_ms);
+    camber_stage_times_add(&stats->times, CAMBER_STAGE_RASTERIZE, times.rasterize_ms);
+}
+
+/* Draws areas from left to right, of which area is the first. */
+static camber_status draw_across(camber_renderer *renderer, const camber_raster_scene *scene, camber_raster_area area,
+                                 destination *to, camber_frame_stats *stats) {
+    const uint32_t widest = area.width;
+    camber_status status = CAMBER_OK;
+    for (area.x = 0; area.x < to->width && status == CAMBER_OK; area.x += widest) {
+        const double begin = camber_now_ms();
+        to->user_ms = 0;
+        area.width = to->width - area.x < widest ? to->width - area.x : widest;
+        status =
+            to->draw ? to->draw(renderer, scene, &area, to->user) : camber_raster_draw(renderer->raster, scene, &area);
+        const double drawn = camber_now_ms();
+        stats->draw_ms += drawn - begin;
+        stats->pieces++;
+        add_times(renderer, stats);
+        if (status == CAMBER_OK && to->rows)
+            status = take_area(renderer, &area, to);
+        stats->read_ms += camber_now_ms() - drawn - to->user_ms;
+    }
+    if (status == CAMBER_OK && to->rgba && to->rows && !to->rows(to->user, to->rgba, area.y, area.height))
+        status = CAMBER_ERROR_IO;
+    return status;
+}
+
+static camber_status draw_areas(camber_renderer *renderer, const camber_frame *frame, const camber_raster_scene *scene,
+                                destination *to, camber_frame_stats *stats) {
+    camber_context *context = renderer->share.device->context;
+    camber_raster_area area = first_area(renderer, frame);
+    const uint32_t tallest = area.height;
+    camber_status status = CAMBER_OK;
+    to->width = frame->width;
+    if (to->rows && (area.width < frame->width || frame->width % CAMBER_TILE_PX)) {
+        to->rgba = camber_alloc(context, (size_t)frame->width * tallest, 4);
+        status = to->rgba ? CAMBER_OK : CAMBER_ERROR_MEMORY;
+    }
+    for (; area.y < frame->height && status == CAMBER_OK; area.y += tallest) {
+        area.height = frame->height - area.y < tallest ? frame->height - area.y : tallest;
+        status = draw_across(renderer, scene, area, to, stats);
+        if (tallest < frame->height)
+            camber_progress(context, "drawing", (double)(area.y + area.height) / frame->height);
+    }
+    camber_free(context, to->rgba);
+    return status;
+}
+
+static camber_status render_to(camber_renderer *renderer, const camber_frame *frame, destination *to,
+                               camber_frame_stats *stats) {
+    camber_frame_stats made = {0};
+    camber_cl_tables tables;
+    camber_status status = camber_cl_tables_make(&renderer->list, frame, &tables);
+    if (status == CAMBER_OK)
+        status = draw_areas(renderer, frame, &tables.scene, to, &made);
+    if (status == CAMBER_OK)
+        *stats = made;
+    camber_cl_tables_free(&tables);
+    return status;
+}
+
+camber_status camber_cl_render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows, void *user,
+                               camber_frame_stats *stats) {
+    destination to = {.rows = rows, .user = user};
+    return render_to(renderer, frame, &to, stats);
+}
+
+camber_status camber_cl_each_area(camber_renderer *renderer, const camber_frame *frame, camber_area_fn *draw,
+                                  void *user) {
+    destination to = {.draw = draw, .user = user};
+    camber_frame_stats stats;
+    return render_to(renderer, frame, &to, &stats);
+}
+
+/* ---- Frames in two steps ---- */
+
+static bool keep_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
+    camber_flight *flight = user;
+    const size_t row_bytes = 4 * (size_t)flight->frame.width;
+    memcpy(flight->rgba + first_row * row_bytes, rgba, row_count * row_bytes);
+    return true;
+}
+
+camber_status camber_cl_begin_frame(camber_renderer *renderer, camber_flight *flight) {
+    camber_context *context = renderer->share.device->context;
+    const camber_frame *frame = &flight->frame;
+    const camber_raster_area area = first_area(renderer, frame);
+    if (area.width < frame->width || area.height < frame->height)
+        return CAMBER_OK; /* the end draws it */
+    flight->rgba = camber_alloc(context, (size_t)frame->width * frame->height, 4);
+    if (!flight->rgba)
+        return CAMBER_ERROR_MEMORY;
+    const camber_status status = camber_cl_render(renderer, frame, keep_rows, flight, &flight->stats);
+    flight->is_drawn = status == CAMBER_OK;
+    if (!flight->is_drawn) {
+        camber_free(context, flight->rgba);
+        flight->rgba = NULL;
+    }
+    return status;
+}
+
+camber_status camber_cl_end_frame(camber_renderer *renderer, camber_flight *flight, camber_rows_fn *rows, void *user) {
+    if (!flight->rgba)
+        return camber_cl_render(renderer, &flight->frame, rows, user, &flight->stats);
+    return !rows || rows(user, flight->rgba, 0, flight->frame.height) ? CAMBER_OK : CAMBER_ERROR_IO;
+}

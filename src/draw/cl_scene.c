@@ -1,0 +1,232 @@
+/* Makes the rasterizer's scene of a draw list. A command becomes a run of polylines, and a table with a row for each of
+ * its mesh's rows. A row names a brush: its colour, its layer and group, and, beside it, its features.
+ *
+ * Fills that lie below all lines become part of the background, and an opaque fill hides all runs below it. */
+#include "draw/draw_cl.h"
+
+#include <string.h>
+
+/* How far back a brush of the same colour is looked for. */
+enum { INKS_BACK = 16 };
+
+void camber_cl_tables_free(camber_cl_tables *t) {
+    camber_free(t->context, t->images.held);
+    camber_free(t->context, t->runs);
+    camber_free(t->context, t->brush_ext);
+    camber_free(t->context, t->brushes);
+    camber_free(t->context, t->rows);
+}
+
+/* Gives the number of a brush: that of an equal one from brush first on, or of a new one. */
+static camber_status use_brush(camber_cl_tables *t, size_t first, const camber_brush *brush,
+                               const camber_brush_ext *brush_ext, uint32_t *number) {
+    for (size_t i = t->brush_count; i > first && i + INKS_BACK > t->brush_count; i--)
+        if (memcmp(t->brushes + i - 1, brush, sizeof *brush) == 0 &&
+            memcmp(t->brush_ext + i - 1, brush_ext, sizeof *brush_ext) == 0) {
+            *number = (uint32_t)(i - 1);
+            return CAMBER_OK;
+        }
+    if (!camber_grow(t->context, &t->brushes, &t->brush_capacity, t->brush_count + 1, sizeof *t->brushes) ||
+        !camber_grow(t->context, &t->brush_ext, &t->more_capacity, t->brush_count + 1, sizeof *t->brush_ext))
+        return CAMBER_ERROR_MEMORY;
+    *number = (uint32_t)t->brush_count;
+    t->is_rich = t->is_rich || brush_ext->features || brush->mode == CAMBER_BRUSH_MASKED;
+    t->brush_ext[t->brush_count] = *brush_ext;
+    t->brushes[t->brush_count++] = *brush;
+    return CAMBER_OK;
+}
+
+/* ---- Lines ---- */
+
+static camber_status set_features(camber_cl_tables *t, const camber_draw_list *list, const camber_row_paint *paint,
+                                  camber_brush_ext *brush_ext) {
+    const unsigned features = paint->features;
+    *brush_ext = (camber_brush_ext){.features = features};
+    if (features & CAMBER_FEATURE_GAP)
+        brush_ext->half_gap = paint->half_gap_px;
+    if (features & CAMBER_FEATURE_BLUR)
+        brush_ext->blur = paint->blur_px;
+    if (features & CAMBER_FEATURE_TRIM) {
+        brush_ext->trim_from = paint->trim[0];
+        brush_ext->trim_to = paint->trim[1];
+    }
+    if (features & CAMBER_FEATURE_DASH) {
+        brush_ext->first_dash = paint->dashes.first;
+        brush_ext->dash_count = paint->dashes.count;
+        brush_ext->round_dashes = paint->dashes.are_round;
+        brush_ext->period = paint->dashes.period_px;
+    }
+    if (features & CAMBER_FEATURE_RAMP) {
+        brush_ext->first_stop = paint->first_stop;
+        brush_ext->stop_count = paint->stop_count;
+    }
+    return features & CAMBER_FEATURE_IMAGE
+               ? camber_cl_images_add_line(&t->images, list->image_uses + paint->image_use, &brush_ext->image)
+               : CAMBER_OK;
+}
+
+/* Fills in the parts of a brush that all brushes of a command share. The union needs no layer: its brush has the
+ * opacity. */
+static camber_brush ink_of_command(camber_cl_tables *t, const camber_draw_command *command) {
+    camber_brush brush = {.mode = CAMBER_BRUSH_OVER, .group = command->group};
+    if (command->group)
+        brush.group_opacity = command->group_opacity;
+    if (command->composite == CAMBER_COMPOSITE_UNION)
+        brush.mode = CAMBER_BRUSH_UNION;
+    if (command->composite == CAMBER_COMPOSITE_MASKED)
+        brush.mode = CAMBER_BRUSH_MASKED;
+    if (command->composite != CAMBER_COMPOSITE_STRAIGHT && command->composite != CAMBER_COMPOSITE_UNION) {
+        brush.layer = ++t->layers;
+        brush.layer_opacity = command->layer_opacity;
+    }
+    return brush;
+}
+
+/* Adds the table of a command, whose brushes are found from first_ink on. */
+static camber_status add_rows(camber_cl_tables *t, const camber_draw_list *list, const camber_draw_command *command) {
+    const size_t count = command->mesh->row_count, first_brush = t->brush_count;
+    const bool is_united = command->composite == CAMBER_COMPOSITE_UNION;
+    camber_brush brush = ink_of_command(t, command);
+    camber_status status = CAMBER_OK;
+    if (!camber_grow(t->context, &t->rows, &t->row_capacity, t->row_count + count,
+                     CAMBER_RASTER_ROW_WORDS * sizeof *t->rows))
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < count && status == CAMBER_OK; i++) {
+        const camber_row_paint *paint = list->rows + command->first_row + i;
+        const float alpha = camber_draw_command_alpha(command, paint);
+        float *row = t->rows + CAMBER_RASTER_ROW_WORDS * t->row_count++;
+        camber_brush_ext brush_ext;
+        uint32_t number = 0;
+        memset(row, 0, CAMBER_RASTER_ROW_WORDS * sizeof *row);
+        row[0] = -1.0f;
+        if (alpha < 0.0f)
+            continue;
+        brush.r = paint->color.r;
+        brush.g = paint->color.g;
+        brush.b = paint->color.b;
+        brush.a = is_united ? command->layer_opacity : alpha;
+        status = set_features(t, list, paint, &brush_ext);
+        if (status == CAMBER_OK)
+            status = use_brush(t, first_brush, &brush, &brush_ext, &number);
+        row[0] = paint->half_width_px;
+        row[1] = paint->translate_px[0];
+        row[2] = paint->translate_px[1];
+        memcpy(row + 3, &number, sizeof number);
+    }
+    return status;
+}
+
+static camber_status add_lines(camber_cl_tables *t, const camber_draw_list *list, const camber_draw_command *command) {
+    const camber_raster_input run = {command->mesh, command->first, command->end, t->row_count};
+    if (!camber_grow(t->context, &t->runs, &t->run_capacity, t->run_count + 1, sizeof *t->runs))
+        return CAMBER_ERROR_MEMORY;
+    t->runs[t->run_count++] = run;
+    return add_rows(t, list, command);
+}
+
+/* ---- Fills ---- */
+
+/* Adds a run that fills the picture, with a row of its own. */
+static camber_status add_fill_run(camber_cl_tables *t, const camber_brush *brush, const camber_brush_ext *brush_ext) {
+    uint32_t number = 0;
+    if (!camber_grow(t->context, &t->rows, &t->row_capacity, t->row_count + 1,
+                     CAMBER_RASTER_ROW_WORDS * sizeof *t->rows) ||
+        !camber_grow(t->context, &t->runs, &t->run_capacity, t->run_count + 1, sizeof *t->runs))
+        return CAMBER_ERROR_MEMORY;
+    const camber_status status = use_brush(t, 0, brush, brush_ext, &number);
+    if (status != CAMBER_OK)
+        return status;
+    float *row = t->rows + CAMBER_RASTER_ROW_WORDS * t->row_count;
+    row[0] = CAMBER_FILL_PX;
+    row[1] = row[2] = 0.0f;
+    memcpy(row + 3, &number, sizeof number);
+    t->runs[t->run_count++] = (camber_raster_input){.first_row = t->row_count++};
+    return CAMBER_OK;
+}
+
+/* Nothing that lies below is seen. */
+static void hide_runs(camber_cl_tables *t) {
+    t->run_count = 0;
+    t->is_rich = false;
+}
+
+static void put_over(const float color[4], float below[4]) {
+    for (int i = 0; i < 4; i++)
+        below[i] = color[i] + (1.0f - color[3]) * below[i];
+}
+
+static camber_status add_fill(camber_cl_tables *t, const camber_draw_list *list, const camber_fill_paint *fill) {
+    const camber_color c = fill->color;
+    const float color[4] = {c.r * c.a, c.g * c.a, c.b * c.a, c.a};
+    const camber_brush brush = {.r = c.r, .g = c.g, .b = c.b, .a = c.a};
+    camber_brush_ext brush_ext = {0};
+    bool is_opaque = true;
+    if (fill->has_image) {
+        brush_ext.features = CAMBER_FEATURE_IMAGE;
+        const camber_status status = camber_cl_images_add_fill(&t->images, list, fill, &brush_ext.image, &is_opaque);
+        if (status != CAMBER_OK)
+            return status;
+    } else {
+        put_over(color, t->sky);
+    }
+    if (is_opaque && c.a >= 1.0f)
+        hide_runs(t);
+    if (fill->has_image || t->run_count > 0)
+        return add_fill_run(t, &brush, &brush_ext);
+    put_over(color, t->background);
+    return CAMBER_OK;
+}
+
+/* ---- The scene ---- */
+
+static camber_status add_commands(camber_cl_tables *t, const camber_draw_list *list) {
+    const camber_brush no_ink = {0};
+    const camber_brush_ext no_more = {0};
+    uint32_t number;
+    camber_status status = use_brush(t, 0, &no_ink, &no_more, &number); /* there is one, also where nothing is drawn */
+    for (size_t i = 0; i < list->command_count && status == CAMBER_OK; i++) {
+        const camber_draw_command *command = list->commands + i;
+        status = command->mesh ? add_lines(t, list, command) : add_fill(t, list, &command->fill);
+    }
+    if (status == CAMBER_OK && !camber_grow(t->context, &t->rows, &t->row_capacity, t->row_count + 1,
+                                            CAMBER_RASTER_ROW_WORDS * sizeof *t->rows))
+        status = CAMBER_ERROR_MEMORY;
+    if (status == CAMBER_OK)
+        memset(t->rows + CAMBER_RASTER_ROW_WORDS * t->row_count, 0, CAMBER_RASTER_ROW_WORDS * sizeof *t->rows);
+    return status;
+}
+
+static void set_view(const camber_plane_view *view, const float sky[4], camber_raster_scene *scene) {
+    if (!view->pitched)
+        return;
+    scene->pitched = true;
+    scene->eye = (camber_eye){view->eye[0], view->eye[1], view->eye[2], view->eye[3]};
+    scene->horizon = view->horizon;
+    memcpy(scene->sky, sky, sizeof scene->sky);
+}
+
+camber_status camber_cl_tables_make(camber_draw_list *list, const camber_frame *frame, camber_cl_tables *tables) {
+    const camber_color back = frame->background;
+    camber_cl_tables *t = tables;
+    *t = (camber_cl_tables){.context = list->context,
+                            .images = {.table = &list->side_table, .nearest = list->view.nearest},
+                            .layers = list->group_count, /* layers and groups have numbers of their own */
+                            .background = {back.r * back.a, back.g * back.a, back.b * back.a, back.a}};
+    memcpy(t->sky, t->background, sizeof t->sky);
+    const camber_status status = add_commands(t, list);
+    t->scene = (camber_raster_scene){
+        .rows = t->rows,
+        .row_count = t->row_count + 1,
+        .brushes = t->brushes,
+        .brush_count = t->brush_count,
+        .inputs = t->runs,
+        .input_count = t->run_count,
+        .background = {t->background[0], t->background[1], t->background[2], t->background[3]},
+        .linear = frame->coverage == CAMBER_COVERAGE_LINEAR,
+        .brush_ext = t->is_rich || list->view.pitched ? t->brush_ext : NULL,
+        .side_table = list->side_table.texels,
+        .side_table_count = list->side_table.count,
+    };
+    set_view(&list->view, t->sky, &t->scene);
+    return status;
+}

@@ -1,0 +1,75 @@
+/* Drawing a list in OpenCL: it becomes a scene of the rasterizer, which draws it one area after the other.
+ *
+ *     cl_frame.c   areas of a frame, and their pixels
+ *     cl_scene.c   the list's commands as a scene: tables of rows, and brushes
+ *     cl_images.c  images in the side table
+ *     cl_stages.c  results of each kernel, for proofs */
+#ifndef CAMBER_DRAW_DRAW_CL_H
+#define CAMBER_DRAW_DRAW_CL_H
+
+#include "draw/draw_list.h"
+#include "raster/raster.h"
+
+/* ---- cl_frame.c ---- */
+
+struct camber_flight;
+/* Draws a frame, whose list the renderer has, and hands over its rows. */
+camber_status camber_cl_render(camber_renderer *renderer, const camber_frame *frame, camber_rows_fn *rows, void *user,
+                               camber_frame_stats *stats);
+/* Draws the frame of a flight and keeps the picture, where it is one area. */
+camber_status camber_cl_begin_frame(camber_renderer *renderer, struct camber_flight *flight);
+camber_status camber_cl_end_frame(camber_renderer *renderer, struct camber_flight *flight, camber_rows_fn *rows,
+                                  void *user);
+/* Calls draw for each area of a frame from the top down, in place of drawing it. */
+typedef camber_status camber_area_fn(camber_renderer *renderer, const camber_raster_scene *scene,
+                                     const camber_raster_area *area, void *user);
+camber_status camber_cl_each_area(camber_renderer *renderer, const camber_frame *frame, camber_area_fn *draw,
+                                  void *user);
+
+/* ---- cl_images.c ---- */
+
+/* An image in the side table. */
+typedef struct camber_cl_image {
+    camber_image image; /* of the caller */
+    camber_image_size size;
+    size_t first; /* texel of the side table; each holds four of the image's */
+    bool is_opaque;
+} camber_cl_image;
+
+typedef struct camber_cl_images {
+    camber_side_table *table;
+    camber_cl_image *held;
+    size_t count, capacity;
+    size_t last_words; /* texel of the side table with the words that were added last. 0: none yet */
+    double nearest;    /* px of the picture that a px of the plane takes at most */
+} camber_cl_images;
+
+/* Add the image of a line, of a fill, to the side table. *words is the texel there that a brush names. Return
+ * CAMBER_ERROR_LIMIT where the table is full, CAMBER_ERROR_MEMORY. */
+camber_status camber_cl_images_add_line(camber_cl_images *images, const camber_image_use *use, uint32_t *words);
+camber_status camber_cl_images_add_fill(camber_cl_images *images, const camber_draw_list *list,
+                                        const camber_fill_paint *fill, uint32_t *words, bool *is_opaque);
+
+/* ---- cl_scene.c ---- */
+
+/* A scene, and the tables that it points into. */
+typedef struct camber_cl_tables {
+    camber_raster_scene scene;
+    camber_context *context;
+    float *rows;
+    camber_brush *brushes;
+    camber_brush_ext *brush_ext; /* as many as brushes */
+    camber_raster_input *runs;
+    size_t row_count, row_capacity, brush_count, brush_capacity, more_capacity, run_count, run_capacity;
+    bool is_rich; /* a brush has features */
+    camber_cl_images images;
+    uint32_t layers;     /* so far */
+    float background[4]; /* premultiplied: what lies below the first run */
+    float sky[4];        /* premultiplied: what is seen where nothing but colours is drawn */
+} camber_cl_tables;
+
+/* Makes the scene of a frame's list. What it made must be freed on failure too. */
+camber_status camber_cl_tables_make(camber_draw_list *list, const camber_frame *frame, camber_cl_tables *tables);
+void camber_cl_tables_free(camber_cl_tables *tables);
+
+#endif

@@ -1,0 +1,183 @@
+/* Drawing a list in GL: draw calls of polylines, layers and groups that are flattened, fills, and counts of overdraw.
+ *
+ *     gl_frame.c     areas of a frame, one after the other, waited for and read back
+ *     gl_commands.c  the list's commands in one area
+ *     gl_batch.c     polylines in as few draw calls as the driver takes them in
+ *     gl_rows.c      the row texture: what the stroke shader knows of rows
+ *     gl_atlas.c     the texture of images
+ *     gl_targets.c   what is drawn into
+ *     gl_overdraw.c  how often pixels are covered */
+#ifndef CAMBER_DRAW_DRAW_GL_H
+#define CAMBER_DRAW_DRAW_GL_H
+
+#include "draw/draw_list.h"
+#include "gl/shaders.h"
+
+/* ---- State ---- */
+
+/* A texture to draw into, of the size of an area. */
+typedef struct camber_target {
+    GLuint texture, framebuffer;
+    GLuint stencil; /* of the counts only */
+    GLuint alphas;  /* of the masked layer only: the alpha in its texture is how much of a pixel is covered */
+    GLsizei width, height;
+} camber_target;
+
+enum {
+    CAMBER_TARGET_PICTURE,
+    CAMBER_TARGET_NEXT_PICTURE, /* of the second frame in flight */
+    CAMBER_TARGET_COVERAGE,     /* layers of one colour */
+    CAMBER_TARGET_LAYER,        /* layers of colours */
+    CAMBER_TARGET_MASKED,       /* layers of translucent colours */
+    CAMBER_TARGET_GROUP,
+    CAMBER_TARGET_COUNTS,
+    CAMBER_TARGET_GIVEN, /* the caller's texture, while a call draws into it */
+    CAMBER_TARGETS
+};
+
+/* The row texture: for each command that waits to be drawn a table with the rows of its mesh, then the side table. */
+typedef struct camber_row_texture {
+    GLuint texture; /* 0: none yet */
+    GLsizei height; /* texels */
+    float *texels;  /* 4 floats a texel */
+    size_t capacity;
+} camber_row_texture;
+
+/* Polylines that wait to be drawn. */
+typedef struct camber_batch_range {
+    size_t first, end; /* polylines */
+    size_t table;      /* of the row texture */
+} camber_batch_range;
+
+typedef struct camber_batch {
+    camber_mesh *mesh; /* of all ranges */
+    size_t table_count;
+    unsigned features; /* CAMBER_FEATURE_* of its commands */
+    camber_batch_range *ranges;
+    size_t range_count, range_capacity;
+    GLint *firsts; /* of the strips of a draw call */
+    GLsizei *counts;
+    size_t call_count, first_capacity, count_capacity;
+} camber_batch;
+
+/* An image in the atlas. */
+typedef struct camber_atlas_image {
+    uint64_t hash; /* of what it shows */
+    camber_image_size size;
+    GLint x, y; /* of its first texel */
+} camber_atlas_image;
+
+/* Images side by side in one texture, on shelves. */
+typedef struct camber_atlas {
+    GLuint texture; /* 0: none yet */
+    GLsizei height;
+    camber_atlas_image *images;
+    size_t count, capacity;
+    GLint shelf_x, shelf_y, shelf_height; /* where the next one goes */
+    uint64_t *hashes;                     /* of the frame's images, by their number. 0: not known yet */
+    size_t hash_count, hash_capacity;
+} camber_atlas;
+
+typedef struct camber_gl_drawing {
+    camber_shaders shaders;
+    camber_target targets[CAMBER_TARGETS];
+    GLuint vertex_array;
+    GLuint record_texture; /* the records of the mesh's part that is bound */
+    camber_row_texture rows;
+    camber_atlas atlas;
+    camber_batch batch;
+} camber_gl_drawing;
+
+/* An area of the picture that is drawn at once. */
+typedef struct camber_gl_area {
+    uint32_t x, y, width, height; /* in the picture, px */
+    int target;                   /* that commands are drawn into */
+    camber_coverage coverage;
+    float thinnest_px; /* width of the thinnest line of the frame */
+    camber_plane_view view;
+    size_t *draw_calls;
+} camber_gl_area;
+
+/* ---- gl_frame.c ---- */
+
+struct camber_flight;
+/* Frees all that GL draws with. is_current: the GL context is; else GL's own objects go with it. */
+void camber_gl_release(camber_renderer *renderer, bool is_current);
+/* Logs what GL reports; CAMBER_OK where it reports nothing. */
+camber_status camber_gl_check(camber_renderer *renderer, const char *what);
+/* Begins to draw the first area of a flight's frame, whose list the renderer has, into a target. */
+camber_status camber_gl_begin_frame(camber_renderer *renderer, int target, struct camber_flight *flight);
+/* Draws what is left of it and hands over its rows, which may be NULL. */
+camber_status camber_gl_end_frame(camber_renderer *renderer, struct camber_flight *flight, camber_rows_fn *rows,
+                                  void *user);
+/* Draws all of a frame, whose list the renderer has, as one area into a target. */
+camber_status camber_gl_draw_frame(camber_renderer *renderer, const camber_frame *frame, int target);
+void camber_gl_drop_fence(camber_renderer *renderer, struct camber_flight *flight);
+
+/* ---- gl_commands.c ---- */
+
+camber_status camber_gl_draw_commands(camber_renderer *renderer, const camber_gl_area *area);
+
+/* ---- gl_batch.c ---- */
+
+/* Lets the polylines of a command wait, and draws those that wait already where they cannot share a draw call. */
+camber_status camber_batch_add(camber_renderer *renderer, const camber_draw_command *command,
+                               const camber_gl_area *area);
+/* Draws all that wait. variant is added to the shader's. */
+camber_status camber_batch_draw(camber_renderer *renderer, unsigned variant, const camber_gl_area *area);
+/* Forgets all that wait. */
+void camber_batch_clear(camber_renderer *renderer);
+/* The stroke shader of a mesh for lines of this width at least, with variant's bits added. */
+camber_status camber_gl_stroke_shader(camber_renderer *renderer, const camber_mesh *mesh, float thinnest_px,
+                                      unsigned variant, const camber_shader **shader);
+/* Uses a shader, with its uniforms set for an area and a mesh that has one table. */
+void camber_gl_use_shader(camber_renderer *renderer, const camber_shader *shader, const camber_mesh *mesh,
+                          const camber_gl_area *area);
+/* Binds a part's records and indices, and the row texture. */
+void camber_gl_bind_part(camber_renderer *renderer, camber_mesh_part *part);
+/* Draws indices of the part that is bound. */
+void camber_gl_draw_indices(camber_renderer *renderer, const camber_mesh *mesh, uint64_t first, uint64_t count);
+/* From here on draws only rows of the picture before the far plane. */
+void camber_gl_hide_horizon(camber_renderer *renderer, const camber_gl_area *area);
+
+/* ---- gl_rows.c ---- */
+
+/* Whether the row texture can hold so many rows and so many texels of the side table. */
+bool camber_rows_fit(const camber_renderer *renderer, size_t row_count, size_t side_texels);
+/* Makes room for them. Returns CAMBER_ERROR_LIMIT where that cannot be. */
+camber_status camber_rows_reserve(camber_renderer *renderer, size_t row_count, size_t side_texels);
+/* Writes a command's table, for which there is room. */
+camber_status camber_rows_write(camber_renderer *renderer, const camber_draw_command *command, size_t table);
+/* Puts the side table behind the rows, and uploads all. */
+camber_status camber_rows_upload(camber_renderer *renderer, size_t row_count, size_t side_texels);
+/* Uploads one table of a mesh that has widths alone. Rows past the paints are not drawn. */
+camber_status camber_rows_upload_widths(camber_renderer *renderer, const camber_mesh *mesh, const camber_paint *paints,
+                                        size_t paint_count);
+
+/* ---- gl_atlas.c ---- */
+
+/* Forgets the images of the frame before, which the caller may have changed. Returns CAMBER_ERROR_MEMORY. */
+camber_status camber_atlas_begin(camber_renderer *renderer);
+/* Puts all images of a command into the atlas. Where another has to go, draws what waits before. Returns
+ * CAMBER_ERROR_LIMIT where they do not fit at once. */
+camber_status camber_atlas_hold(camber_renderer *renderer, const camber_draw_command *command,
+                                const camber_gl_area *area);
+/* Gives the rectangle of an image that the atlas holds: its corner and its size, in texture coordinates. */
+camber_status camber_atlas_find(camber_renderer *renderer, const camber_image_use *use, float rect[4]);
+void camber_atlas_bind(camber_renderer *renderer);
+void camber_atlas_release(camber_renderer *renderer, bool is_current);
+
+/* ---- gl_targets.c ---- */
+
+/* Binds a target of this size; what it holds is not defined. The viewport reaches past each of its sides by
+ * camber_target_guard, the scissor does not: a software driver clips a batch of triangles one by one where a single
+ * vertex lies outside the viewport. */
+camber_status camber_target_bind(camber_renderer *renderer, int which, GLsizei width, GLsizei height);
+/* px; axis: 0 for the width, 1 for the height. */
+GLsizei camber_target_guard(const camber_renderer *renderer, int axis, GLsizei side);
+/* Makes a caller's texture the given target, until it is taken back. */
+camber_status camber_target_give(camber_renderer *renderer, GLuint texture, GLsizei width, GLsizei height);
+void camber_target_take_back(camber_renderer *renderer);
+void camber_targets_release(camber_renderer *renderer);
+
+#endif

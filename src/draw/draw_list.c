@@ -1,0 +1,516 @@
+/* Makes the draw list of a frame. It alone reads passes and paints.
+ *
+ * A pass becomes rows, which are its paints with what they name put into the side table, and commands. Polylines whose
+ * rows have one alpha and follow each other make a span; a span becomes a command. A translucent span needs a layer, so
+ * that a pixel is covered once however often lines cross it. A layer costs as much as all of its pixels. Where a pass
+ * would need more than LAYERS_MAX of them, its lines are taken out of order, one command an alpha; and where it has
+ * more than ALPHAS_MAX alphas, one masked layer has all lines, each with its own.
+ *
+ * A pass with an opacity is put onto the picture as a whole: by the opacity of its one layer, or as a group. */
+#include "draw/draw_list.h"
+
+#include "base/perspective.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+enum { SIDE_MAX_PX = 65535, LAYERS_MAX = 32, ALPHAS_MAX = 16 };
+
+/* Past all lines' ends, in shares of their length. */
+static const float FAR_BEYOND = 1e9f;
+
+/* ---- Checks ---- */
+
+static camber_status check_images(camber_context *context, const camber_pass *pass) {
+    for (size_t i = 0; i < pass->image_count; i++)
+        if (!camber_image_is_valid(pass->images + i))
+            return camber_fail(context, CAMBER_ERROR_ARGUMENT,
+                               "image %zu: %u x %u px; give 1 to %d a side, and rows that do not overlap", i,
+                               pass->images[i].width, pass->images[i].height, CAMBER_IMAGE_SIDE_MAX);
+    assert(pass->fill.pattern <= pass->image_count);
+    return CAMBER_OK;
+}
+
+static camber_status check_patterns(camber_context *context, const camber_pass *pass) {
+    for (size_t i = 0; i < pass->dash_count; i++)
+        if (!camber_dash_is_valid(pass->dashes + i))
+            return camber_fail(context, CAMBER_ERROR_ARGUMENT,
+                               "dash %zu: %zu lengths; give up to %d of 0 and more, and one above 0", i,
+                               pass->dashes[i].count, CAMBER_DASH_LENGTHS_MAX);
+    for (size_t i = 0; i < pass->ramp_count; i++)
+        if (!camber_ramp_is_valid(pass->ramps + i))
+            return camber_fail(context, CAMBER_ERROR_ARGUMENT,
+                               "ramp %zu: %zu stops; give 1 to %d in ascending places, and finite colours", i,
+                               pass->ramps[i].count, CAMBER_RAMP_STOPS_MAX);
+    return CAMBER_OK;
+}
+
+/* Dashes, ramps, images and trims go by lengths along the line. */
+static camber_status check_paints(camber_context *context, const camber_pass *pass) {
+    const bool has_arc_length = pass->mesh->mesh_info.has_arc_length || pass->mesh->empty;
+    for (size_t i = 0; i < pass->paint_count; i++) {
+        const camber_paint *paint = pass->paints + i;
+        assert(paint->dash <= pass->dash_count && paint->ramp <= pass->ramp_count &&
+               paint->pattern <= pass->image_count);
+        const char *what = paint->pattern ? "patterns" : paint->dash ? "dashes" : paint->ramp ? "ramps" : "trims";
+        const bool trims = paint->trim_end > paint->trim_start;
+        if (!has_arc_length && (paint->dash || paint->ramp || paint->pattern || trims))
+            return camber_fail(context, CAMBER_ERROR_ARGUMENT,
+                               "%s of a mesh without arc lengths; tessellate it with has_arc_length", what);
+    }
+    return CAMBER_OK;
+}
+
+static camber_status check_pass(camber_context *context, const camber_pass *pass) {
+    assert(pass->paint_count == 0 || pass->paints);
+    camber_status status = check_images(context, pass);
+    if (status == CAMBER_OK && pass->kind == CAMBER_PASS_LINES)
+        status = check_patterns(context, pass);
+    if (status == CAMBER_OK && pass->kind == CAMBER_PASS_LINES)
+        status = check_paints(context, pass);
+    return status;
+}
+
+static camber_status check_frame(camber_context *context, const camber_frame *frame) {
+    if (frame->width < 1 || frame->width > SIDE_MAX_PX || frame->height < 1 || frame->height > SIDE_MAX_PX)
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "a picture of %u x %u px; each side must be 1 to %d",
+                           frame->width, frame->height, SIDE_MAX_PX);
+    if (!camber_pitch_is_valid(frame->pitch_deg))
+        return camber_fail(context, CAMBER_ERROR_ARGUMENT, "a picture with a pitch of %g degrees; choose 0 to %g",
+                           frame->pitch_deg, CAMBER_PITCH_MAX_DEG);
+    camber_status status = CAMBER_OK;
+    for (size_t i = 0; i < frame->pass_count && status == CAMBER_OK; i++)
+        status = check_pass(context, frame->passes + i);
+    return status;
+}
+
+/* ---- Rows ---- */
+
+/* Makes the rows of a pass. */
+typedef struct row_maker {
+    camber_draw_list *list;
+    const camber_pass *pass;
+    size_t first_image;      /* number of the pass's first image */
+    const camber_ramp *ramp; /* the last one that was looked at, and whether it has translucent colours */
+    bool is_translucent;
+} row_maker;
+
+/* *number is that of the use, which may be the last one again. */
+static camber_status add_image_use(camber_draw_list *list, const camber_image_use *use, size_t *number) {
+    const camber_image_use *last = list->use_count ? list->image_uses + list->use_count - 1 : NULL;
+    if (last && last->number == use->number && last->width_px == use->width_px && last->height_px == use->height_px &&
+        last->tiled == use->tiled) {
+        *number = list->use_count - 1;
+        return CAMBER_OK;
+    }
+    if (!camber_grow(list->context, &list->image_uses, &list->use_capacity, list->use_count + 1,
+                     sizeof *list->image_uses))
+        return CAMBER_ERROR_MEMORY;
+    *number = list->use_count;
+    list->image_uses[list->use_count++] = *use;
+    return CAMBER_OK;
+}
+
+static bool is_translucent(const camber_ramp *ramp) {
+    for (size_t i = 0; i < ramp->count; i++)
+        if (ramp->stops[i].color.a < 1.0f)
+            return true;
+    return false;
+}
+
+static bool is_drawn(const camber_pass *pass, size_t row) {
+    return row < pass->paint_count && pass->paints[row].width_px > 0.0f && pass->paints[row].color.a > 0.0f;
+}
+
+static unsigned features_of(const camber_paint *paint) {
+    return (paint->gap_px > 0.0f ? CAMBER_FEATURE_GAP : 0u) | (paint->blur_px > 0.0f ? CAMBER_FEATURE_BLUR : 0u) |
+           (paint->dash ? CAMBER_FEATURE_DASH : 0u) | (paint->trim_end > paint->trim_start ? CAMBER_FEATURE_TRIM : 0u) |
+           (paint->ramp ? CAMBER_FEATURE_RAMP : 0u) | (paint->pattern ? CAMBER_FEATURE_IMAGE : 0u);
+}
+
+static void set_trim(const camber_paint *paint, float trim[2]) {
+    const bool trims = paint->trim_end > paint->trim_start;
+    trim[0] = !trims ? FAR_BEYOND : paint->trim_start <= 0.0f ? -FAR_BEYOND : paint->trim_start;
+    trim[1] = !trims || paint->trim_end >= 1.0f ? FAR_BEYOND : paint->trim_end;
+}
+
+static camber_status set_ramp(row_maker *m, const camber_ramp *ramp, camber_row_paint *row) {
+    if (m->ramp != ramp) {
+        m->ramp = ramp;
+        m->is_translucent = is_translucent(ramp);
+    }
+    row->has_translucent_ramp = m->is_translucent;
+    row->stop_count = (uint32_t)ramp->count;
+    return camber_side_table_add_ramp(&m->list->side_table, ramp, &row->first_stop);
+}
+
+static camber_status make_row(row_maker *m, size_t number, camber_row_paint *row) {
+    static const camber_color white = {1, 1, 1, 1};
+    const camber_pass *pass = m->pass;
+    const camber_paint *paint = pass->paints + number;
+    camber_status status = CAMBER_OK;
+    *row = (camber_row_paint){.half_width_px = camber_paint_half_width(paint),
+                              .half_gap_px = paint->gap_px > 0.0f ? 0.5f * paint->gap_px : -1.0f,
+                              .blur_px = fmaxf(paint->blur_px, 0.0f),
+                              .translate_px = {paint->translate_x_px, paint->translate_y_px},
+                              .color = paint->pattern ? white : paint->color,
+                              .features = features_of(paint)};
+    row->color.a = paint->color.a;
+    set_trim(paint, row->trim);
+    if (paint->dash)
+        status = camber_side_table_add_dash(&m->list->side_table, pass->dashes + paint->dash - 1, paint->dash_unit_px,
+                                            pass->mesh->host_rows[number].cap == CAMBER_CAP_ROUND, &row->dashes);
+    if (paint->ramp && status == CAMBER_OK)
+        status = set_ramp(m, pass->ramps + paint->ramp - 1, row);
+    if (paint->pattern && status == CAMBER_OK) {
+        const camber_image_use use =
+            camber_image_use_on_line(pass->images + paint->pattern - 1, m->first_image + paint->pattern - 1,
+                                     2.0 * (double)row->half_width_px, (double)paint->pattern_px);
+        status = add_image_use(m->list, &use, &row->image_use);
+    }
+    return status;
+}
+
+/* Adds the rows of a pass to the list's, one for each of its mesh's. */
+static camber_status make_rows(row_maker *m) {
+    camber_draw_list *list = m->list;
+    const size_t count = m->pass->mesh->row_count;
+    camber_status status = CAMBER_OK;
+    if (!camber_grow(list->context, &list->rows, &list->row_capacity, list->row_count + count, sizeof *list->rows))
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < count && status == CAMBER_OK; i++) {
+        camber_row_paint *row = list->rows + list->row_count++;
+        if (is_drawn(m->pass, i))
+            status = make_row(m, i, row);
+        else
+            row->half_width_px = -1.0f;
+    }
+    return status;
+}
+
+/* ---- Spans: polylines of a pass that are drawn in one way ---- */
+
+typedef struct pass_lines {
+    const camber_mesh *mesh;
+    const camber_row_paint *rows; /* of the pass */
+    size_t first, end;            /* polylines of it */
+    camber_overlap overlap;
+} pass_lines;
+
+typedef struct span {
+    size_t first, end; /* polylines */
+    float alpha;       /* of its rows that are drawn. 0: there is none; 1 where overlaps accumulate */
+    bool one_alpha;    /* polylines of other alphas within it are not drawn */
+    bool is_layered, is_masked, is_one_color;
+    bool is_begun; /* one of its rows is drawn */
+    camber_color color;
+    unsigned features;
+} span;
+
+static span begin_span(size_t first, size_t end) {
+    return (span){.first = first, .end = end, .alpha = 1.0f, .is_one_color = true};
+}
+
+static void add_to_span(const pass_lines *lines, const camber_row_paint *row, span *s) {
+    const bool accumulates = lines->overlap == CAMBER_OVERLAP_ACCUMULATE;
+    const camber_color c = row->color;
+    if (!s->is_begun) {
+        s->alpha = accumulates ? 1.0f : c.a;
+        s->color = c;
+    }
+    s->is_one_color = s->is_one_color && c.r == s->color.r && c.g == s->color.g && c.b == s->color.b &&
+                      !(row->features & CAMBER_FEATURES_COLORS);
+    s->is_masked = s->is_masked || (row->has_translucent_ramp && !accumulates);
+    s->features |= row->features;
+    s->is_begun = true;
+}
+
+static void end_span(const pass_lines *lines, span *s) {
+    if (!s->is_begun)
+        s->alpha = 0.0f;
+    s->is_layered = s->alpha < 1.0f || s->is_masked || (lines->overlap == CAMBER_OVERLAP_UNITE && s->is_one_color);
+    s->one_alpha = s->one_alpha || s->is_layered;
+}
+
+static const camber_row_paint *row_of(const pass_lines *lines, size_t polyline) {
+    return lines->rows + lines->mesh->polyline_rows[polyline];
+}
+
+/* The longest span from a polyline on. Polylines that are not drawn may be in any. */
+static span find_span(const pass_lines *lines, size_t first) {
+    const bool accumulates = lines->overlap == CAMBER_OVERLAP_ACCUMULATE;
+    span s = begin_span(first, first);
+    for (; s.end < lines->end; s.end++) {
+        const camber_row_paint *row = row_of(lines, s.end);
+        if (row->half_width_px < 0.0f)
+            continue;
+        if (s.is_begun && !accumulates && row->color.a != s.alpha)
+            break;
+        add_to_span(lines, row, &s);
+    }
+    end_span(lines, &s);
+    return s;
+}
+
+/* All polylines of one alpha. */
+static span pick_alpha(const pass_lines *lines, float alpha) {
+    span s = begin_span(lines->first, lines->end);
+    s.one_alpha = true;
+    for (size_t i = lines->first; i < lines->end; i++) {
+        const camber_row_paint *row = row_of(lines, i);
+        if (row->half_width_px >= 0.0f && row->color.a == alpha)
+            add_to_span(lines, row, &s);
+    }
+    end_span(lines, &s);
+    return s;
+}
+
+/* All polylines, each with its own alpha, in one masked layer. */
+static span mask_all(const pass_lines *lines) {
+    span s = begin_span(lines->first, lines->end);
+    for (size_t i = lines->first; i < lines->end; i++)
+        if (row_of(lines, i)->half_width_px >= 0.0f)
+            add_to_span(lines, row_of(lines, i), &s);
+    s.alpha = 1.0f;
+    s.is_one_color = false;
+    s.is_masked = s.is_layered = true;
+    return s;
+}
+
+/* ---- Commands ---- */
+
+static camber_status add_command(camber_draw_list *list, const camber_draw_command *command) {
+    if (!camber_grow(list->context, &list->commands, &list->command_capacity, list->command_count + 1,
+                     sizeof *list->commands))
+        return CAMBER_ERROR_MEMORY;
+    list->commands[list->command_count++] = *command;
+    return CAMBER_OK;
+}
+
+static bool fades(const camber_pass *pass) {
+    return pass->opacity > 0.0f && pass->opacity < 1.0f;
+}
+
+/* A fill's opacity is in its colour: it needs no layer. */
+static camber_status add_fill(row_maker *m) {
+    const camber_fill *fill = &m->pass->fill;
+    camber_draw_list *list = m->list;
+    camber_draw_command command = {
+        .fill = {fill->color, fill->pattern != 0, 0, 0, fill->x_px, fill->y_px, fill->bearing_deg}};
+    camber_fill_paint *paint = &command.fill;
+    camber_status status = CAMBER_OK;
+    paint->color.a = fill->color.a * (m->pass->opacity > 0.0f ? m->pass->opacity : 1.0f);
+    if (!(paint->color.a > 0.0f))
+        return CAMBER_OK;
+    if (paint->has_image) {
+        const camber_image *image = m->pass->images + fill->pattern - 1;
+        const size_t number = m->first_image + fill->pattern - 1;
+        const camber_image_use mean = camber_image_use_as_mean(image, number);
+        const camber_image_use use =
+            camber_image_use_in_fill(image, number, (double)fill->width_px, (double)fill->height_px);
+        paint->color.r = paint->color.g = paint->color.b = 1.0f;
+        status = add_image_use(list, &mean, &paint->mean_use);
+        if (status == CAMBER_OK)
+            status = add_image_use(list, &use, &paint->image_use);
+    }
+    return status == CAMBER_OK ? add_command(list, &command) : status;
+}
+
+static camber_composite composite_of(const span *s) {
+    if (!s->is_layered)
+        return CAMBER_COMPOSITE_STRAIGHT;
+    if (s->is_masked)
+        return CAMBER_COMPOSITE_MASKED;
+    if (!s->is_one_color)
+        return CAMBER_COMPOSITE_COLORS;
+    /* The union is of strokes with one edge on each side. */
+    return s->features ? CAMBER_COMPOSITE_COVERAGE : CAMBER_COMPOSITE_UNION;
+}
+
+/* Makes the commands of a pass. */
+typedef struct command_maker {
+    camber_draw_list *list;
+    const camber_pass *pass;
+    const pass_lines *lines;
+    size_t first_row; /* of the list */
+    uint32_t group;   /* 0: none yet */
+} command_maker;
+
+/* Adds a span. is_whole: it has all lines of its pass, whose opacity one layer may take then. */
+static camber_status add_span(command_maker *m, span s, bool is_whole) {
+    float opacity = 1.0f;
+    if (s.alpha <= 0.0f)
+        return CAMBER_OK;
+    if (fades(m->pass) && is_whole && m->lines->overlap != CAMBER_OVERLAP_ACCUMULATE) {
+        opacity = m->pass->opacity;
+        s.one_alpha = s.one_alpha || !s.is_layered;
+        s.is_layered = true;
+    } else if (fades(m->pass) && m->group == 0) {
+        m->group = ++m->list->group_count;
+    }
+    const camber_draw_command command = {.mesh = m->pass->mesh,
+                                         .first = s.first,
+                                         .end = s.end,
+                                         .first_row = m->first_row,
+                                         .features = s.features,
+                                         .composite = composite_of(&s),
+                                         .one_alpha = s.one_alpha,
+                                         .alpha = s.alpha,
+                                         .color = s.color,
+                                         .layer_opacity = s.alpha * opacity,
+                                         .group = m->group,
+                                         .group_opacity = m->pass->opacity};
+    return add_command(m->list, &command);
+}
+
+/* Whether the spans from the pass's first one on are more layers than a pass may have. */
+static bool has_many_layers(const pass_lines *lines, const span *first) {
+    span s = *first;
+    size_t layers = s.is_layered && s.alpha > 0.0f;
+    while (s.end < lines->end && layers <= LAYERS_MAX) {
+        s = find_span(lines, s.end);
+        layers += s.is_layered && s.alpha > 0.0f;
+    }
+    return layers > LAYERS_MAX;
+}
+
+static camber_status add_in_order(command_maker *m, span s) {
+    camber_status status = add_span(m, s, s.end == m->lines->end);
+    while (s.end < m->lines->end && status == CAMBER_OK) {
+        s = find_span(m->lines, s.end);
+        status = add_span(m, s, false);
+    }
+    return status;
+}
+
+/* Gives the alphas of a pass, ascending, and how many; ALPHAS_MAX + 1: there are more than that. */
+static size_t list_alphas(const pass_lines *lines, float alphas[ALPHAS_MAX]) {
+    size_t count = 0;
+    for (size_t i = lines->first; i < lines->end; i++) {
+        const camber_row_paint *row = row_of(lines, i);
+        const float alpha = row->color.a;
+        if (row->half_width_px < 0.0f)
+            continue;
+        size_t at = 0;
+        while (at < count && alphas[at] < alpha)
+            at++;
+        if (at < count && alphas[at] <= alpha)
+            continue;
+        if (count == ALPHAS_MAX)
+            return ALPHAS_MAX + 1;
+        for (size_t k = count++; k > at; k--)
+            alphas[k] = alphas[k - 1];
+        alphas[at] = alpha;
+    }
+    return count;
+}
+
+/* The faintest lines come first. */
+static camber_status add_by_alpha(command_maker *m) {
+    float alphas[ALPHAS_MAX];
+    const size_t count = list_alphas(m->lines, alphas);
+    camber_status status = CAMBER_OK;
+    if (count > ALPHAS_MAX)
+        return add_span(m, mask_all(m->lines), true);
+    for (size_t i = 0; i < count && status == CAMBER_OK; i++)
+        status = add_span(m, pick_alpha(m->lines, alphas[i]), false);
+    return status;
+}
+
+static camber_status add_lines(row_maker *rows) {
+    const camber_pass *pass = rows->pass;
+    const camber_mesh *mesh = pass->mesh;
+    const size_t first_row = rows->list->row_count;
+    if (mesh->empty)
+        return CAMBER_OK;
+    const size_t end = pass->polyline_count ? pass->first_polyline + pass->polyline_count : mesh->polyline_count;
+    pass_lines lines = {mesh, NULL, pass->first_polyline, end < mesh->polyline_count ? end : mesh->polyline_count,
+                        pass->overlap};
+    if (lines.first >= lines.end)
+        return CAMBER_OK;
+    const camber_status status = make_rows(rows);
+    if (status != CAMBER_OK)
+        return status;
+    lines.rows = rows->list->rows + first_row;
+    command_maker m = {rows->list, pass, &lines, first_row, 0};
+    const span first = find_span(&lines, lines.first);
+    return has_many_layers(&lines, &first) ? add_by_alpha(&m) : add_in_order(&m, first);
+}
+
+/* ---- The list ---- */
+
+static float thinnest_of(const camber_frame *frame) {
+    float thinnest_px = INFINITY;
+    for (size_t p = 0; p < frame->pass_count; p++)
+        for (size_t i = 0; i < frame->passes[p].paint_count; i++) {
+            const float width_px = frame->passes[p].paints[i].width_px;
+            thinnest_px = width_px > 0.0f && width_px < thinnest_px ? width_px : thinnest_px;
+        }
+    return thinnest_px;
+}
+
+/* The pitch of the camera that the meshes were tessellated for, where there was one; else the frame's own. */
+static camber_status find_pitch(camber_context *context, const camber_frame *frame, double *pitch_deg) {
+    double pitch = frame->pitch_deg;
+    bool found = pitch > 0.0;
+    for (size_t i = 0; i < frame->pass_count; i++) {
+        const camber_pass *pass = frame->passes + i;
+        if (pass->kind != CAMBER_PASS_LINES || !pass->mesh->has_camera)
+            continue;
+        const double of_mesh = pass->mesh->pitch_deg;
+        if (found && (of_mesh < pitch || of_mesh > pitch))
+            return camber_fail(context, CAMBER_ERROR_ARGUMENT,
+                               "a mesh that was tessellated for a pitch of %g degrees, in a picture of %g; tessellate "
+                               "all meshes of a picture for one camera",
+                               of_mesh, pitch);
+        pitch = of_mesh;
+        found = true;
+    }
+    *pitch_deg = pitch;
+    return CAMBER_OK;
+}
+
+static camber_plane_view view_of(const camber_frame *frame, double pitch_deg) {
+    if (!(pitch_deg > 0.0))
+        return (camber_plane_view){.nearest = 1.0};
+    const camber_perspective p = camber_perspective_of(pitch_deg, frame->height);
+    return (camber_plane_view){
+        .pitched = true,
+        .eye = {0.5f * (float)frame->width, 0.5f * (float)frame->height, (float)p.cosine, (float)p.fall},
+        .horizon = camber_perspective_horizon(&p, frame->height),
+        .nearest = 1.0 / p.nearest};
+}
+
+camber_status camber_draw_list_build(camber_draw_list *list, const camber_frame *frame) {
+    double pitch_deg = 0.0;
+    camber_status status = check_frame(list->context, frame);
+    if (status == CAMBER_OK)
+        status = find_pitch(list->context, frame, &pitch_deg);
+    list->command_count = list->row_count = list->use_count = list->image_count = 0;
+    list->group_count = 0;
+    camber_side_table_clear(&list->side_table);
+    if (status != CAMBER_OK)
+        return status;
+    list->thinnest_px = thinnest_of(frame);
+    list->view = view_of(frame, pitch_deg);
+    row_maker m = {.list = list};
+    for (size_t i = 0; i < frame->pass_count && status == CAMBER_OK; i++) {
+        const camber_pass *before = m.pass;
+        m.pass = frame->passes + i;
+        /* Passes mostly share one array of images, whose numbers are the same then. */
+        if (!before || before->images != m.pass->images || before->image_count != m.pass->image_count) {
+            m.first_image = list->image_count;
+            list->image_count += m.pass->image_count;
+        }
+        status = m.pass->kind == CAMBER_PASS_LINES ? add_lines(&m) : add_fill(&m);
+    }
+    return status;
+}
+
+void camber_draw_list_free(camber_draw_list *list) {
+    camber_side_table_free(&list->side_table);
+    camber_free(list->context, list->image_uses);
+    camber_free(list->context, list->rows);
+    camber_free(list->context, list->commands);
+}

@@ -1,0 +1,38 @@
+/* The texels of images, for the size that they have in the picture. */
+#ifndef CAMBER_DRAW_IMAGES_H
+#define CAMBER_DRAW_IMAGES_H
+
+#include "base/base.h"
+#include "camber.h"
+
+enum { CAMBER_IMAGE_TEXELS_MAX = 2046 }; /* a side */
+
+/* An image at the size that a row or a fill draws it in. */
+typedef struct camber_image_use {
+    const camber_image *image;  /* of the caller */
+    size_t number;              /* of the image among all of the frame */
+    double width_px, height_px; /* 0: one texel, the image's mean */
+    bool tiled;                 /* follows upon itself downwards too; else only to the right */
+} camber_image_use;
+
+typedef struct camber_image_size {
+    uint32_t width, height; /* texels */
+    bool tiled;             /* beyond its upper edge lies its lower one */
+} camber_image_size;
+
+bool camber_image_is_valid(const camber_image *image);
+/* The use of an image by a line that is so wide, over a length of line (0: as the image's shape has it). */
+camber_image_use camber_image_use_on_line(const camber_image *image, size_t number, double stroke_px, double length_px);
+/* The use of an image by a fill, over so many px (0: as many as the image has). */
+camber_image_use camber_image_use_in_fill(const camber_image *image, size_t number, double width_px, double height_px);
+/* The use of an image as its mean colour. */
+camber_image_use camber_image_use_as_mean(const camber_image *image, size_t number);
+
+/* nearest: px of the picture that a px of the plane takes at most. */
+camber_image_size camber_image_texels(const camber_image_use *use, double nearest);
+/* Writes RGBA8 with one texel more on each side. Returns CAMBER_ERROR_MEMORY. */
+camber_status camber_image_shrink(camber_context *context, const camber_image *image, camber_image_size size,
+                                  uint8_t *texels);
+const uint8_t *camber_image_row(const camber_image *image, uint32_t y);
+
+#endif

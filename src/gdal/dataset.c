@@ -1,0 +1,381 @@
+/* for stat64, which VSIStatBufL is */
+#define _LARGEFILE64_SOURCE
+
+#include "base/embedded.h"
+#include "gdal/vector_file.h"
+#include "source/database.h"
+
+#include <cpl_conv.h>
+#include <cpl_string.h>
+#include <cpl_vsi.h>
+#include <ctype.h>
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+void CPL_STDCALL camber_gdal_collect(CPLErr level, CPLErrorNum number, const char *message) {
+    camber_gdal_errors *errors = CPLGetErrorHandlerUserData();
+    if (level < CE_Failure)
+        return;
+    if (errors->failures++ == 0) {
+        errors->number = number;
+        snprintf(errors->message, sizeof errors->message, "%s", message);
+        /* GDAL's message becomes part of a sentence of ours. */
+        size_t length = strlen(errors->message);
+        while (length && strchr(". \n", errors->message[length - 1]))
+            errors->message[--length] = 0;
+    }
+}
+
+/* ---- The OSM driver's configuration ---- */
+
+typedef struct key_list {
+    camber_context *context;
+    char *text; /* "highway,bridge" */
+    size_t size, capacity;
+} key_list;
+
+static bool has_key(const key_list *list, const char *key, size_t length) {
+    for (const char *at = list->text; at; at = strchr(at, ',') ? strchr(at, ',') + 1 : NULL)
+        if (strncmp(at, key, length) == 0 && (at[length] == ',' || at[length] == 0))
+            return true;
+    return false;
+}
+
+static bool add_key(key_list *list, const char *key, size_t length) {
+    /* The key goes into a comma-separated line of the configuration. */
+    if (!camber_where_is_key(key, length) || (list->size && has_key(list, key, length)))
+        return true;
+    if (!camber_grow(list->context, &list->text, &list->capacity, list->size + length + 2, 1))
+        return false;
+    if (list->size)
+        list->text[list->size++] = ',';
+    memcpy(list->text + list->size, key, length);
+    list->size += length;
+    list->text[list->size] = 0;
+    return true;
+}
+
+/* Columns that are not keys, and that the driver makes on demand. */
+static const char *const columns[] = {"osm_id",   "osm_version",   "osm_timestamp", "osm_uid",
+                                      "osm_user", "osm_changeset", "other_tags",    "all_tags"};
+
+enum { COLUMNS = sizeof columns / sizeof *columns };
+
+static bool take_column(bool named[COLUMNS], const char *word, size_t length) {
+    for (size_t i = 0; i < COLUMNS; i++)
+        if (strlen(columns[i]) == length && strncmp(columns[i], word, length) == 0)
+            return named[i] = true;
+    return false;
+}
+
+/* OGR's own names for every feature's properties, which are not keys. */
+static bool is_ogrs(const char *word, size_t length) {
+    return (length == 3 && EQUALN(word, "FID", 3)) || (length > 4 && EQUALN(word, "OGR_", 4));
+}
+
+/* Every word of an attribute filter may be a key; SQL's own words do no harm as keys. */
+static bool add_where_keys(key_list *list, const char *where, bool named[COLUMNS]) {
+    size_t length;
+    const char *word;
+    while ((word = camber_where_next(&where, &length)) != NULL)
+        if (!take_column(named, word, length) && !is_ogrs(word, length) && !add_key(list, word, length))
+            return false;
+    return true;
+}
+
+/* Replaces each mark of the template. */
+static char *fill_template(camber_context *context, const char *text, const char *mark, const char *keys) {
+    const size_t mark_size = strlen(mark), keys_size = strlen(keys);
+    size_t marks = 0;
+    for (const char *at = text; (at = strstr(at, mark)) != NULL; at += mark_size)
+        marks++;
+    char *filled = camber_alloc(context, strlen(text) + marks * keys_size + 1, 1);
+    if (!filled)
+        return NULL;
+    char *out = filled;
+    const char *from = text;
+    for (const char *at; (at = strstr(from, mark)) != NULL; from = at + mark_size) {
+        memcpy(out, from, (size_t)(at - from));
+        out += at - from;
+        memcpy(out, keys, keys_size);
+        out += keys_size;
+    }
+    memcpy(out, from, strlen(from) + 1);
+    return filled;
+}
+
+/* Writes each on a line of its own. */
+static void list_columns(const bool named[COLUMNS], char text[256]) {
+    size_t used = 0;
+    for (size_t i = 0; i < COLUMNS; i++)
+        used += (size_t)snprintf(text + used, 256 - used, "%s=%s\n", columns[i], named[i] ? "yes" : "no");
+}
+
+static char *make_conf(camber_context *context, const char *keys, const bool named[COLUMNS]) {
+    char columns_text[256];
+    list_columns(named, columns_text);
+    char *made = fill_template(context, camber_osmconf, "@attributes@", keys);
+    char *filled = made ? fill_template(context, made, "@columns@\n", columns_text) : NULL;
+    camber_free(context, made);
+    return filled;
+}
+
+static camber_status write_conf(camber_dataset *dataset, const camber_style *style) {
+    camber_context *context = dataset->context;
+    key_list list = {.context = context};
+    bool named[COLUMNS] = {false};
+    /* Never empty: the driver would fall back on nothing. */
+    bool made = add_key(&list, "highway", strlen("highway"));
+    for (size_t i = 0; made && i < style->property_count; i++)
+        made = strcmp(style->properties[i], CAMBER_PLAIN_PROPERTY) == 0 ||
+               add_key(&list, style->properties[i], strlen(style->properties[i]));
+    for (size_t i = 0; made && camber_osm_area_keys[i]; i++)
+        made = add_key(&list, camber_osm_area_keys[i], strlen(camber_osm_area_keys[i]));
+    if (made && dataset->desc->where)
+        made = add_where_keys(&list, dataset->desc->where, named);
+    if (made)
+        dataset->conf = make_conf(context, list.text, named);
+    camber_free(context, list.text);
+    if (!dataset->conf)
+        return CAMBER_ERROR_MEMORY;
+    snprintf(dataset->conf_path, sizeof dataset->conf_path, "/vsimem/camber-%p-%llu.ini", (void *)context,
+             (unsigned long long)context->next_serial++);
+    /* GDAL reads from our buffer, which lives as long as the dataset. */
+    VSILFILE *file = VSIFileFromMemBuffer(dataset->conf_path, (GByte *)dataset->conf, strlen(dataset->conf), FALSE);
+    if (!file)
+        return camber_fail(context, CAMBER_ERROR_MEMORY, "%s: out of memory for the OSM driver's configuration",
+                           dataset->desc->path);
+    VSIFCloseL(file);
+    return CAMBER_OK;
+}
+
+/* ---- Opening ---- */
+
+static bool ends_with(const char *text, const char *end) {
+    const size_t length = strlen(text), end_length = strlen(end);
+    return length >= end_length && EQUAL(text + length - end_length, end);
+}
+
+/* Whether this is not a path of the file system, as "PG:dbname=x" or standard input: only its driver knows whether
+ * it exists. */
+static bool is_connection(const char *path) {
+    const char *colon = strchr(path, ':'), *slash = strchr(path, '/');
+    return STARTS_WITH(path, "/vsistdin") || (colon && (!slash || colon < slash));
+}
+
+/* Finds the file behind GDAL's own file systems and prefixes: /a/b.zip for /vsizip//a/b.zip/c.shp, a for
+ * /vsisubfile/0_9,a and for GeoJSON:a. Files inside archives cannot be found. */
+static const char *find_file(const char *path) {
+    while (STARTS_WITH(path, "/vsi")) {
+        const char *slash = strchr(path + 1, '/');
+        if (!slash)
+            break;
+        const char *comma = STARTS_WITH(path, "/vsisubfile") ? strchr(slash, ',') : NULL;
+        path = (comma ? comma : slash) + 1;
+        path += *path == '{';
+    }
+    struct stat about;
+    const char *colon = strchr(path, ':');
+    if (colon && stat(path, &about) != 0 && stat(colon + 1, &about) == 0)
+        return colon + 1;
+    return path;
+}
+
+/* Refuses databases with a log, which GDAL would merge into the file, and virtual tables, which may open other
+ * files. */
+static camber_status check_database(camber_context *context, const char *path) {
+    const camber_database_kind kind = camber_database_get_kind(path);
+    if (kind == CAMBER_DATABASE_INTERRUPTED || kind == CAMBER_DATABASE_LOGGED)
+        return camber_fail(context, CAMBER_ERROR_INPUT,
+                           "%s: it has a log beside it: somebody writes, or was interrupted; close the one, or open it "
+                           "once with what may write (sqlite3 FILE .tables), which puts it right",
+                           path);
+    if (!context->desc.access.vrt && camber_database_is_virtual(path))
+        return camber_fail(
+            context, CAMBER_ERROR_INPUT,
+            "%s: it has virtual tables, which may name other files; allow it (--allow-vrt) if you trust it", path);
+    return CAMBER_OK;
+}
+
+static camber_status check_exists(camber_context *context, const char *path, bool *directory) {
+    VSIStatBufL about;
+    uint64_t size_bytes;
+    *directory = false;
+    if (!context->desc.access.remote && camber_gdal_is_remote(path))
+        return camber_fail(context, CAMBER_ERROR_INPUT,
+                           "%s: is on the network, which nothing is fetched from; download it, or allow it "
+                           "(--allow-remote)",
+                           path);
+    /* Devices and pipes may have no end. */
+    struct stat found;
+    const char *file = find_file(path);
+    if (!STARTS_WITH(path, "/vsistdin") && stat(file, &found) == 0 && !S_ISDIR(found.st_mode)) {
+        camber_status status = camber_file_check(context, file, CAMBER_NAMED_BY_CALLER, &size_bytes);
+        if (status == CAMBER_OK)
+            status = check_database(context, file);
+        if (status != CAMBER_OK)
+            return status;
+    }
+    if (VSIStatL(path, &about) == 0) {
+        *directory = VSI_ISDIR(about.st_mode);
+        return CAMBER_OK;
+    }
+    const int cause = errno;
+    if (cause == EACCES || cause == EMFILE || cause == ENFILE)
+        return camber_file_fail(context, path, cause);
+    if (strcmp(path, "-") == 0 || is_connection(path))
+        return CAMBER_OK;
+    return camber_fail(context, CAMBER_ERROR_NOT_FOUND, "%s: no such file; check the path", path);
+}
+
+/* Fails for a format that is known but reaches beyond its file. */
+static camber_status fail_driver(const camber_dataset *dataset, const char *driver) {
+    const bool describes = camber_gdal_describes(driver);
+    return camber_fail(dataset->context, CAMBER_ERROR_INPUT,
+                       describes ? "%s: is %s, which names other files; allow it (--allow-vrt) if you trust it"
+                                 : "%s: is %s, which reaches servers or programs; allow it (--allow-remote) if you "
+                                   "trust it",
+                       dataset->desc->path, driver);
+}
+
+/* Removes quotes from GDAL's message: it may quote any file that somebody named. */
+static void leave_out_quotes(char *message) {
+    char *out = message;
+    for (const char *at = message; *at; at++) {
+        const char *end = strchr("'\"`", *at) ? strchr(at + 1, *at == '`' ? '\'' : *at) : NULL;
+        const bool opens = end && (at == message || !isalnum((unsigned char)at[-1]));
+        *out++ = *at;
+        if (!opens)
+            continue;
+        for (int i = 0; i < 3 && out < end; i++)
+            *out++ = '.';
+        *out++ = *end;
+        at = end;
+    }
+    *out = 0;
+}
+
+static camber_status fail_open(camber_dataset *dataset, bool directory) {
+    const char *path = dataset->desc->path, *said = dataset->errors.message;
+    VSIStatBufL about;
+    if (directory)
+        return camber_fail(dataset->context, CAMBER_ERROR_INPUT,
+                           "%s: a directory without data that GDAL reads; name a file in it", path);
+    const char *driver = camber_gdal_refused(dataset->context, path);
+    if (driver)
+        return fail_driver(dataset, driver);
+    const bool there = VSIStatL(path, &about) == 0;
+    if (!there && strstr(said, "No such file"))
+        return camber_fail(dataset->context, CAMBER_ERROR_NOT_FOUND, "%s: no such file; check the path", path);
+    if (there && about.st_size == 0)
+        return camber_fail(dataset->context, CAMBER_ERROR_INPUT, "%s: the file is empty; get it again", path);
+    if (ends_with(path, ".pmtiles") && dataset->desc->where)
+        return camber_fail(dataset->context, CAMBER_ERROR_INPUT,
+                           "%s: this GDAL filters no PMTiles; leave out the filter, or convert them to MBTiles", path);
+    if (dataset->errors.failures == 0 || strstr(said, "not recognized as "))
+        return camber_fail(
+            dataset->context, CAMBER_ERROR_INPUT,
+            "%s: no map in a format that camber reads; name another file (camber info lists the formats)", path);
+    leave_out_quotes(dataset->errors.message);
+    return camber_fail(dataset->context, CAMBER_ERROR_INPUT, "%s: damaged or cut off: %s; get the file again", path,
+                       said);
+}
+
+/* The zoom of tiles: MBTiles say it; a directory of tiles is named by it. */
+static int zoom_of(const camber_dataset *dataset) {
+    const char *driver = GDALGetDriverShortName(GDALGetDatasetDriver(dataset->handle)), *text = NULL;
+    if (EQUAL(driver, "MBTiles"))
+        text = GDALGetMetadataItem(dataset->handle, "ZOOM_LEVEL", NULL);
+    else if (EQUAL(driver, "MVT"))
+        text = CPLGetFilename(dataset->desc->path);
+    char *end = NULL;
+    const long zoom = text && isdigit((unsigned char)*text) ? strtol(text, &end, 10) : -1;
+    return end && *end == 0 && zoom >= 0 && zoom <= 30 ? (int)zoom : -1;
+}
+
+/* The path as GDAL wants it: a .gz goes through its decompressor, - is standard input. */
+static char *gdal_path(camber_context *context, const char *path, bool directory) {
+    const size_t size = strlen(path) + sizeof "/vsistdin/";
+    char *made = camber_alloc(context, size, 1);
+    if (!made)
+        return NULL;
+    if (strcmp(path, "-") == 0)
+        snprintf(made, size, "/vsistdin/");
+    else if (ends_with(path, ".gz") && !STARTS_WITH(path, "/vsi") && !directory)
+        snprintf(made, size, "/vsigzip/%s", path);
+    else
+        snprintf(made, size, "%s", path);
+    return made;
+}
+
+camber_status camber_dataset_fail_elsewhere(camber_context *context, const char *name) {
+    return camber_fail(context, CAMBER_ERROR_INPUT,
+                       "%s: it or its coordinate system leads to another file; convert it to GeoJSON or GeoPackage",
+                       name);
+}
+
+camber_status camber_dataset_open(camber_context *context, const camber_source_desc *desc, const camber_style *style,
+                                  bool unsorted, camber_dataset *dataset) {
+    *dataset = (camber_dataset){.context = context, .desc = desc, .zoom = -1};
+    bool directory;
+    char *path = NULL, **options = NULL, **drivers = NULL;
+    camber_status status = check_exists(context, desc->path, &directory);
+    if (status == CAMBER_OK && camber_gdal_leads_elsewhere(desc->path))
+        status = camber_dataset_fail_elsewhere(context, desc->path);
+    if (status == CAMBER_OK)
+        status = write_conf(dataset, style);
+    if (status != CAMBER_OK)
+        goto done;
+    status = CAMBER_ERROR_MEMORY;
+    path = gdal_path(context, desc->path, directory);
+    if (!path)
+        goto done;
+    options = CSLSetNameValue(options, "CONFIG_FILE", dataset->conf_path);
+    if (unsorted)
+        options = CSLSetNameValue(options, "USE_CUSTOM_INDEXING", "NO");
+    /* CLIP=NO: the stitcher cuts lines exactly where it joins them, and needs the buffer. */
+    options = CSLSetNameValue(options, "CLIP", "NO");
+    /* GDAL must leave no file beside the one it reads. */
+    options = CSLSetNameValue(options, "WRITE_GFS", "NO");
+    if (camber_database_get_kind(desc->path) == CAMBER_DATABASE_AT_REST)
+        options = CSLSetNameValue(options, "IMMUTABLE", "YES");
+    drivers = camber_gdal_drivers(context, path);
+    CPLPushErrorHandlerEx(camber_gdal_collect, &dataset->errors);
+    /* A driver warns of options that it does not know; warnings are dropped, failures collected. */
+    dataset->handle = GDALOpenEx(path, GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
+                                 (const char *const *)drivers, (const char *const *)options, NULL);
+    CPLPopErrorHandler();
+    if (!dataset->handle) {
+        status = fail_open(dataset, directory);
+        goto done;
+    }
+    dataset->osm = EQUAL(GDALGetDriverShortName(GDALGetDatasetDriver(dataset->handle)), "OSM");
+    dataset->zoom = zoom_of(dataset);
+    status = CAMBER_OK;
+done:
+    CSLDestroy(drivers);
+    CSLDestroy(options);
+    camber_free(context, path);
+    if (status != CAMBER_OK)
+        camber_dataset_close(dataset);
+    return status;
+}
+
+void camber_dataset_close(camber_dataset *dataset) {
+    CPLPushErrorHandlerEx(camber_gdal_collect, &dataset->errors);
+    if (dataset->handle)
+        GDALClose(dataset->handle);
+    CPLPopErrorHandler();
+    dataset->handle = NULL;
+    if (dataset->conf)
+        VSIUnlink(dataset->conf_path);
+    camber_free(dataset->context, dataset->conf);
+    dataset->conf = NULL;
+}
+
+const char *camber_dataset_attribution(const camber_dataset *dataset) {
+    return dataset->osm ? "(c) OpenStreetMap contributors" : GDALGetMetadataItem(dataset->handle, "attribution", NULL);
+}

@@ -1,0 +1,327 @@
+/* Turns the geometry of a feature that OGR read into polylines in world coordinates.
+ *
+ * Input: any OGR geometry and the coordinate system of its layer. Output: points, and where each polyline ends. Lines
+ * that cross the antimeridian are split there; points that are not numbers split the line; latitudes beyond Web
+ * Mercator's limit are moved to it.
+ */
+#include "gdal/vector_file.h"
+#include "source/mercator.h"
+
+#include <cpl_conv.h>
+#include <math.h>
+#include <string.h>
+
+/* Deeper than any real collection; a file that nests deeper wants to exhaust the stack. */
+enum { MAX_DEPTH = 64 };
+
+/* ---- Projection of a layer ---- */
+
+/* Whether the first ordinate of a geographic system's data is the longitude; *known is false where the axes do
+ * not say. */
+static bool longitude_first(OGRSpatialReferenceH srs, bool *known) {
+    int count = 0;
+    const int *mapping = OSRGetDataAxisToSRSAxisMapping(srs, &count);
+    OGRAxisOrientation orientation = OAO_Other;
+    *known = mapping && count >= 2 && (mapping[0] == 1 || mapping[0] == 2) &&
+             OSRGetAxis(srs, NULL, mapping[0] - 1, &orientation) &&
+             (orientation == OAO_East || orientation == OAO_North);
+    return orientation == OAO_East;
+}
+
+static bool is_code(OGRSpatialReferenceH srs, const char *code) {
+    const char *authority = OSRGetAuthorityName(srs, NULL), *own = OSRGetAuthorityCode(srs, NULL);
+    return authority && own && strcmp(authority, "EPSG") == 0 && strcmp(own, code) == 0;
+}
+
+/* Whether this is WGS 84 by any of its names, CRS84 among them. */
+static bool is_wgs84(OGRSpatialReferenceH srs) {
+    if (!OSRIsGeographic(srs))
+        return false;
+    const char *authority = OSRGetAuthorityName(srs, NULL), *code = OSRGetAuthorityCode(srs, NULL);
+    if (authority && code)
+        return is_code(srs, "4326") || is_code(srs, "4979") ||
+               (strcmp(authority, "OGC") == 0 && strcmp(code, "CRS84") == 0);
+    OGRSpatialReferenceH wgs84 = OSRNewSpatialReference(NULL);
+    OSRImportFromEPSG(wgs84, 4326);
+    const char *const options[] = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES", "CRITERION=EQUIVALENT", NULL};
+    const bool same = OSRIsSameEx(srs, wgs84, options) != 0;
+    OSRDestroySpatialReference(wgs84);
+    return same;
+}
+
+static bool names_path(OGRSpatialReferenceH srs) {
+    static const char *const options[] = {"FORMAT=WKT1_GDAL", NULL};
+    char *text = NULL;
+    (void)OSRExportToWktEx(srs, &text, options);
+    const bool found = text && camber_gdal_names_path(text);
+    CPLFree(text);
+    return found;
+}
+
+static camber_status transform_to_degrees(camber_feature_lines *lines, OGRSpatialReferenceH srs, const char *name) {
+    OGRSpatialReferenceH degrees = OSRNewSpatialReference(NULL);
+    OSRImportFromEPSG(degrees, 4326);
+    OSRSetAxisMappingStrategy(degrees, OAMS_TRADITIONAL_GIS_ORDER);
+    lines->transform = OCTNewCoordinateTransformation(srs, degrees);
+    OSRDestroySpatialReference(degrees);
+    if (!lines->transform)
+        return camber_fail(lines->context, CAMBER_ERROR_INPUT,
+                           "%s: its coordinate system \"%s\" cannot be turned into longitude and latitude; convert "
+                           "the file to EPSG:4326",
+                           name, OSRGetName(srs) ? OSRGetName(srs) : "unnamed");
+    lines->projection = CAMBER_PROJECTION_TRANSFORM;
+    return CAMBER_OK;
+}
+
+camber_status camber_feature_lines_set_srs(camber_feature_lines *lines, OGRSpatialReferenceH srs, const char *name) {
+    OCTDestroyCoordinateTransformation(lines->transform);
+    lines->transform = NULL;
+    lines->projection = CAMBER_PROJECTION_DEGREES;
+    lines->latitude_first = false;
+    if (!srs)
+        return CAMBER_OK;
+    if (names_path(srs))
+        return camber_dataset_fail_elsewhere(lines->context, name);
+    int count = 0;
+    const int *mapping = OSRGetDataAxisToSRSAxisMapping(srs, &count);
+    if (OSRIsProjected(srs) && is_code(srs, "3857") && mapping && count >= 2 && mapping[0] == 1 && mapping[1] == 2) {
+        lines->projection = CAMBER_PROJECTION_METRES;
+        return CAMBER_OK;
+    }
+    if (is_wgs84(srs)) {
+        bool known;
+        lines->latitude_first = !longitude_first(srs, &known);
+        if (known)
+            return CAMBER_OK;
+        lines->latitude_first = false;
+    }
+    return transform_to_degrees(lines, srs, name);
+}
+
+void camber_feature_lines_free(camber_feature_lines *lines) {
+    OCTDestroyCoordinateTransformation(lines->transform);
+    camber_free(lines->context, lines->raw);
+    camber_free(lines->context, lines->ends);
+    camber_free(lines->context, lines->points);
+    lines->transform = NULL;
+    lines->raw = lines->points = NULL;
+    lines->ends = NULL;
+}
+
+/* ---- One line ---- */
+
+/* The state of the line under construction. A point alone between two cuts at the antimeridian lies on it and is
+ * left out: its neighbours draw it. */
+typedef struct line_state {
+    size_t first; /* the point that the open line begins with */
+    bool open;    /* a line is open and has a point */
+    bool begun_by_cut;
+    double x, y; /* the last point */
+} line_state;
+
+/* Adds a point; add_line has made room for all that a line can add. */
+static void push(camber_feature_lines *lines, line_state *line, double x, double y) {
+    if (!line->open) {
+        line->first = lines->point_count;
+        line->open = true;
+    }
+    lines->points[2 * lines->point_count] = x;
+    lines->points[2 * lines->point_count + 1] = y;
+    lines->point_count++;
+}
+
+static void end_line(camber_feature_lines *lines, line_state *line, bool cut) {
+    if (!line->open)
+        return;
+    if (lines->point_count - line->first == 1 && (cut || line->begun_by_cut))
+        lines->point_count = line->first;
+    else
+        lines->ends[lines->line_count++] = lines->point_count;
+    line->open = false;
+    line->begun_by_cut = cut;
+}
+
+/* Called where the short way from the last point to (x, y) crosses x = 0 or 1: ends the line there and begins one on
+ * the other side. Linear in world coordinates, as the segment is drawn. */
+static void cross_antimeridian(camber_feature_lines *lines, line_state *line, double x, double y) {
+    const double out = x < line->x ? 1.0 : 0.0; /* the edge it leaves by */
+    const double beyond = x < line->x ? x + 1.0 : x - 1.0;
+    const double length = beyond - line->x;
+    const double crossing = length != 0 ? line->y + (y - line->y) * ((out - line->x) / length) : y;
+    if (line->x != out)
+        push(lines, line, out, crossing);
+    end_line(lines, line, true);
+    if (x != 1.0 - out)
+        push(lines, line, 1.0 - out, crossing);
+    lines->antimeridian_splits++;
+}
+
+/* Converts the file's ordinates to world coordinates. false: not a number. */
+static bool to_world(camber_feature_lines *lines, double east, double north, double *x, double *y) {
+    if (!isfinite(east) || !isfinite(north))
+        return false;
+    if (lines->projection == CAMBER_PROJECTION_METRES) {
+        camber_mercator_from_metres(east, north, x, y);
+        if (lines->whole)
+            return true;
+        if (*y < 0 || *y > 1) {
+            lines->clamped_points++;
+            *y = *y < 0 ? 0 : 1;
+        }
+    } else {
+        double latitude = lines->latitude_first ? east : north;
+        const double longitude = lines->latitude_first ? north : east;
+        if (fabs(latitude) > 90 || fabs(longitude) > 360)
+            lines->strange_points++;
+        if (fabs(latitude) > CAMBER_MERCATOR_LATITUDE) {
+            lines->clamped_points++;
+            latitude = copysign(CAMBER_MERCATOR_LATITUDE, latitude);
+        }
+        camber_mercator_project(longitude, latitude, x, y);
+        /* The limit itself may come out a rounding error beyond the world. */
+        *y = fmin(fmax(*y, 0), 1);
+    }
+    *x = camber_mercator_wrap(*x);
+    return true;
+}
+
+/* Fetches the line's ordinates to raw: count of x, then count of y. */
+static bool fetch(camber_feature_lines *lines, OGRGeometryH geometry, size_t count) {
+    /* A line adds its points, two more for each crossing of the antimeridian, and no more lines than points. */
+    if (count > SIZE_MAX / 64 - lines->point_count ||
+        !camber_grow(lines->context, &lines->raw, &lines->raw_capacity, 2 * count, sizeof *lines->raw) ||
+        !camber_grow(lines->context, &lines->points, &lines->point_capacity, lines->point_count + 3 * count,
+                     2 * sizeof *lines->points) ||
+        !camber_grow(lines->context, &lines->ends, &lines->line_capacity, lines->line_count + count + 1,
+                     sizeof *lines->ends))
+        return false;
+    double *x = lines->raw, *y = lines->raw + count;
+    OGR_G_GetPoints(geometry, x, sizeof *x, y, sizeof *y, NULL, 0);
+    /* A point that PROJ cannot place comes back as infinite. */
+    if (lines->projection == CAMBER_PROJECTION_TRANSFORM)
+        OCTTransform(lines->transform, (int)count, x, y, NULL);
+    return true;
+}
+
+/* Whether the line fetched, which is closed, goes clockwise as seen. North is up in what was fetched. */
+static bool goes_clockwise(const camber_feature_lines *lines, size_t count) {
+    const double *x = lines->raw, *y = lines->raw + count;
+    double area = 0.0;
+    for (size_t i = 0; i + 1 < count; i++) {
+        const double part = (x[i] - x[0]) * (y[i + 1] - y[0]) - (x[i + 1] - x[0]) * (y[i] - y[0]);
+        area += isfinite(part) ? part : 0.0;
+    }
+    return (area < 0.0) != lines->latitude_first;
+}
+
+static void turn_back(double *numbers, size_t count) {
+    for (size_t i = 0; i < count / 2; i++) {
+        const double number = numbers[i];
+        numbers[i] = numbers[count - 1 - i];
+        numbers[count - 1 - i] = number;
+    }
+}
+
+/* clockwise: the direction that a ring is to have as seen; below 0: as it is. */
+static camber_status add_line(camber_feature_lines *lines, OGRGeometryH geometry, int clockwise) {
+    const int points = OGR_G_GetPointCount(geometry);
+    if (points <= 0) {
+        lines->left_out = true;
+        return CAMBER_OK;
+    }
+    const size_t count = (size_t)points;
+    if (!fetch(lines, geometry, count))
+        return CAMBER_ERROR_MEMORY;
+    if (clockwise >= 0 && goes_clockwise(lines, count) != (clockwise > 0)) {
+        turn_back(lines->raw, count);
+        turn_back(lines->raw + count, count);
+    }
+    lines->raw_points += count;
+    line_state line = {0};
+    for (size_t i = 0; i < count; i++) {
+        double x, y;
+        if (!to_world(lines, lines->raw[i], lines->raw[count + i], &x, &y)) {
+            lines->invalid_points++;
+            end_line(lines, &line, false);
+            continue;
+        }
+        if (line.open && !lines->whole && fabs(x - line.x) > 0.5)
+            cross_antimeridian(lines, &line, x, y);
+        push(lines, &line, x, y);
+        line.x = x;
+        line.y = y;
+    }
+    end_line(lines, &line, false);
+    return CAMBER_OK;
+}
+
+/* ---- Any geometry ---- */
+
+static camber_status collect(camber_feature_lines *lines, OGRGeometryH geometry, camber_geometry_kind kind, int depth);
+
+static camber_status collect_members(camber_feature_lines *lines, OGRGeometryH geometry, camber_geometry_kind kind,
+                                     int depth) {
+    const int count = OGR_G_GetGeometryCount(geometry);
+    for (int i = 0; i < count; i++) {
+        const camber_status status = collect(lines, OGR_G_GetGeometryRef(geometry, i), kind, depth + 1);
+        if (status != CAMBER_OK)
+            return status;
+    }
+    lines->left_out |= count == 0;
+    return CAMBER_OK;
+}
+
+static camber_status collect_rings(camber_feature_lines *lines, OGRGeometryH polygon) {
+    const int count = OGR_G_GetGeometryCount(polygon);
+    for (int i = 0; i < count; i++) {
+        const camber_status status = add_line(lines, OGR_G_GetGeometryRef(polygon, i), lines->directed ? i == 0 : -1);
+        if (status != CAMBER_OK)
+            return status;
+    }
+    lines->left_out |= count == 0;
+    return CAMBER_OK;
+}
+
+/* Arcs become chords, by OGR's default of 4 degrees. */
+static camber_status collect_curve(camber_feature_lines *lines, OGRGeometryH geometry, camber_geometry_kind kind,
+                                   int depth) {
+    OGRGeometryH linear = OGR_G_GetLinearGeometry(geometry, 0, NULL);
+    camber_status status = CAMBER_OK;
+    if (!linear || OGR_GT_IsNonLinear(OGR_G_GetGeometryType(linear)))
+        lines->damaged = true;
+    else
+        status = collect(lines, linear, kind, depth + 1);
+    OGR_G_DestroyGeometry(linear);
+    return status;
+}
+
+static camber_status collect(camber_feature_lines *lines, OGRGeometryH geometry, camber_geometry_kind kind, int depth) {
+    if (!geometry || depth > MAX_DEPTH) {
+        lines->damaged = true;
+        return CAMBER_OK;
+    }
+    const OGRwkbGeometryType type = wkbFlatten(OGR_G_GetGeometryType(geometry));
+    if (OGR_GT_IsNonLinear(type))
+        return collect_curve(lines, geometry, kind, depth);
+    switch (type) {
+    case wkbLineString: return kind == CAMBER_GEOMETRY_LINE ? add_line(lines, geometry, -1) : CAMBER_OK;
+    case wkbPolygon:
+    case wkbTriangle:
+        if (kind == CAMBER_GEOMETRY_POLYGON)
+            return collect_rings(lines, geometry);
+        lines->left_out |= !lines->wants_polygons;
+        return CAMBER_OK;
+    case wkbMultiLineString:
+    case wkbMultiPolygon:
+    case wkbPolyhedralSurface:
+    case wkbTIN:
+    case wkbGeometryCollection: return collect_members(lines, geometry, kind, depth);
+    default: lines->left_out = true; return CAMBER_OK;
+    }
+}
+
+camber_status camber_feature_lines_collect(camber_feature_lines *lines, OGRGeometryH geometry,
+                                           camber_geometry_kind kind) {
+    lines->point_count = lines->line_count = 0;
+    return collect(lines, geometry, kind, 0);
+}

@@ -1,0 +1,473 @@
+/* Streams the features of a file that GDAL opens into a set of features.
+ *
+ * Input: a path and a selection (layer, attribute filter). Output: features with polylines, merged and weighed, or an
+ * error after which the set is as before. This is the module's entry: camber_gdal.
+ */
+#include "gdal/vector_file.h"
+#include "source/gdal_calls.h"
+
+#include <cpl_conv.h>
+#include <cpl_string.h>
+#include <limits.h>
+#include <math.h>
+#include <pthread.h>
+#include <string.h>
+
+static const double PROGRESS_MS = 50;
+/* The clock is read once in this many features. */
+enum { PROGRESS_FEATURES = 64 };
+
+typedef struct reader {
+    camber_context *context;
+    camber_features *features;
+    const camber_source_desc *desc;
+    camber_dataset dataset;
+    camber_feature_lines lines;
+    camber_tile_stitcher *stitcher; /* NULL: no vector tiles */
+
+    /* The layer being read. */
+    OGRLayerH layer;
+    uint32_t layer_index;
+    camber_columns columns;
+
+    camber_features_stats stats; /* counts of this file */
+    char damage[512];            /* a message about the first damage */
+    size_t read;                 /* features of the layer so far */
+    size_t passed;               /* features of all layers so far */
+    double shown_ms;
+} reader;
+
+/* ---- Set-up for a layer ---- */
+
+/* CAMBER_ERROR_ARGUMENT: the attribute filter does not fit the layer; nothing is logged then. */
+static camber_status begin_layer(reader *self, int index) {
+    self->layer = GDALDatasetGetLayer(self->dataset.handle, index);
+    OGRFeatureDefnH schema = OGR_L_GetLayerDefn(self->layer);
+    camber_status status = camber_features_find_layer(self->features, OGR_L_GetName(self->layer), &self->layer_index);
+    if (status == CAMBER_OK)
+        status = camber_feature_lines_set_srs(&self->lines, OGR_L_GetSpatialRef(self->layer), self->desc->path);
+    if (status == CAMBER_OK)
+        status = camber_columns_find(&self->columns, self->features, schema, self->stitcher, self->dataset.osm);
+    if (status != CAMBER_OK)
+        return status;
+    /* A filter may read any field, so none is ignored then. */
+    if (!self->desc->where)
+        camber_columns_ignore_others(&self->columns, self->layer);
+    self->dataset.errors = (camber_gdal_errors){0};
+    if (self->desc->where && OGR_L_SetAttributeFilter(self->layer, self->desc->where) != OGRERR_NONE)
+        return CAMBER_ERROR_ARGUMENT;
+    OGR_L_ResetReading(self->layer);
+    return CAMBER_OK;
+}
+
+/* ---- One feature ---- */
+
+/* Finds the tile that a feature comes from. OGR's drivers put it into the feature's number: column in the low bits,
+ * then row, then the feature. Where that does not fit the coordinates, the middle of the feature decides. */
+static void find_tile(const reader *self, OGRFeatureH feature, camber_tile_feature *tile) {
+    const int zoom = self->dataset.zoom;
+    const double side = ldexp(1.0, zoom);
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (size_t i = 0; i < self->lines.point_count; i++) {
+        for (int axis = 0; axis < 2; axis++) {
+            low[axis] = fmin(low[axis], self->lines.points[2 * i + (size_t)axis] * side);
+            high[axis] = fmax(high[axis], self->lines.points[2 * i + (size_t)axis] * side);
+        }
+    }
+    const GIntBig number = OGR_F_GetFID(feature), mask = ((GIntBig)1 << zoom) - 1;
+    tile->column = (uint32_t)(number & mask);
+    tile->row = (uint32_t)(number >> zoom & mask);
+    /* Buffers are half a tile wide at most. */
+    if (number >= 0 && low[0] <= tile->column + 1.5 && high[0] >= tile->column - 0.5 && low[1] <= tile->row + 1.5 &&
+        high[1] >= tile->row - 0.5)
+        return;
+    tile->column = (uint32_t)fmin(fmax(floor((low[0] + high[0]) / 2), 0), side - 1);
+    tile->row = (uint32_t)fmin(fmax(floor((low[1] + high[1]) / 2), 0), side - 1);
+}
+
+static camber_status add_to_features(reader *self, OGRFeatureH feature, camber_geometry_kind kind) {
+    uint32_t index;
+    camber_status status = camber_columns_class(&self->columns, feature, self->layer_index, kind, &index);
+    if (status != CAMBER_OK)
+        return status;
+    if (self->stitcher) {
+        camber_tile_feature tile = {.class_index = index, .outline = kind == CAMBER_GEOMETRY_POLYGON};
+        find_tile(self, feature, &tile);
+        tile.has_id = camber_columns_id(&self->columns, feature, &tile.id);
+        const camber_tile_lines lines = {self->lines.points, self->lines.ends, self->lines.line_count};
+        return camber_tile_stitcher_add(self->stitcher, &tile, &lines);
+    }
+    status = camber_features_add_feature(self->features, index);
+    size_t first = 0;
+    for (size_t i = 0; i < self->lines.line_count && status == CAMBER_OK; i++) {
+        status =
+            camber_features_add_polyline(self->features, self->lines.points + 2 * first, self->lines.ends[i] - first);
+        first = self->lines.ends[i];
+    }
+    return status;
+}
+
+/* failed: OGR reported a failure with this feature. */
+static camber_status read_feature(reader *self, OGRFeatureH feature, bool failed) {
+    camber_feature_lines *lines = &self->lines;
+    OGRGeometryH geometry = OGR_F_GetGeometryRef(feature);
+    lines->left_out = !geometry && !failed;
+    lines->damaged = failed;
+    const bool area = geometry && camber_columns_is_area(&self->columns, feature, geometry);
+    camber_status status = CAMBER_OK;
+    for (int kind = 0; geometry && kind < 2 && status == CAMBER_OK; kind++) {
+        const bool wanted = kind == CAMBER_GEOMETRY_LINE ? !area : lines->wants_polygons;
+        if (!wanted)
+            continue;
+        /* An area's ring is a line to OGR. */
+        const camber_geometry_kind collected = area ? CAMBER_GEOMETRY_LINE : (camber_geometry_kind)kind;
+        status = camber_feature_lines_collect(lines, geometry, collected);
+        if (status == CAMBER_OK && lines->line_count)
+            status = add_to_features(self, feature, (camber_geometry_kind)kind);
+    }
+    self->stats.skipped_features += lines->left_out || (area && !lines->wants_polygons);
+    self->stats.damaged_features += lines->damaged;
+    if (lines->damaged && self->damage[0] == 0)
+        snprintf(self->damage, sizeof self->damage, "%s",
+                 failed ? self->dataset.errors.message : "a geometry that does not parse");
+    return status;
+}
+
+/* ---- The stream ---- */
+
+/* A shapefile gives a record that lies past the end of a cut file as a feature with a failure, one after the other:
+ * that is a read error, and no damage to a feature. */
+static bool is_read_error(const camber_gdal_errors *errors) {
+    return errors->number == CPLE_FileIO || strstr(errors->message, "fread(") != NULL;
+}
+
+/* The message names OSM_USE_CUSTOM_INDEXING; the driver's option is USE_CUSTOM_INDEXING. */
+static bool is_unsorted(const camber_gdal_errors *errors) {
+    return strstr(errors->message, "USE_CUSTOM_INDEXING=NO") != NULL;
+}
+
+static camber_status fail_stream(reader *self, const char *cause) {
+    return camber_fail(self->context, CAMBER_ERROR_INPUT,
+                       "%s: cut off or damaged after %zu features: %s; get the file "
+                       "again",
+                       self->desc->path, self->read, cause);
+}
+
+static void show_progress(reader *self, double fraction) {
+    if (self->read % PROGRESS_FEATURES)
+        return;
+    const double now = camber_now_ms();
+    if (now - self->shown_ms < PROGRESS_MS)
+        return;
+    self->shown_ms = now;
+    camber_progress(self->context, "reading", fraction);
+}
+
+/* Shows progress while OpenStreetMap's nodes are read, which are not features. */
+static int CPL_STDCALL show_node_progress(double fraction, const char *message, void *user) {
+    reader *self = user;
+    (void)message;
+    const double now = camber_now_ms();
+    if (now - self->shown_ms >= PROGRESS_MS) {
+        self->shown_ms = now;
+        camber_progress(self->context, "reading", fraction);
+    }
+    return TRUE;
+}
+
+static OGRFeatureH next_feature(reader *self, double *fraction) {
+    if (self->dataset.errors.failures) {
+        self->dataset.errors = (camber_gdal_errors){0};
+        CPLErrorReset();
+    }
+    if (!self->dataset.osm)
+        return OGR_L_GetNextFeature(self->layer);
+    OGRLayerH layer = NULL;
+    return GDALDatasetGetNextFeature(self->dataset.handle, &layer, fraction, show_node_progress, self);
+}
+
+/* expected: features that the layer announces, below 0 where it does not know. *unsorted: start again with nodes in
+ * no order; nothing is logged then. */
+static camber_status read_layer(reader *self, GIntBig expected, bool *unsorted) {
+    camber_status status = CAMBER_OK;
+    double fraction = -1;
+    self->read = 0;
+    while (status == CAMBER_OK) {
+        OGRFeatureH feature = next_feature(self, &fraction);
+        const camber_gdal_errors *errors = &self->dataset.errors;
+        const bool failed = errors->failures && CPLGetLastErrorType() >= CE_Failure;
+        if (failed && self->dataset.osm && is_unsorted(errors) && !*unsorted) {
+            *unsorted = true;
+            OGR_F_Destroy(feature);
+            return CAMBER_ERROR_INPUT;
+        }
+        if (failed && (!feature || is_read_error(errors)))
+            status = fail_stream(self, errors->message);
+        if (!feature)
+            break;
+        if (status == CAMBER_OK) {
+            if (!self->dataset.osm && expected > 0)
+                fraction = fmin((double)++self->read / (double)expected, 1);
+            else
+                self->read++;
+            self->passed++;
+            status = read_feature(self, feature, failed);
+            show_progress(self, fraction);
+        }
+        OGR_F_Destroy(feature);
+    }
+    return status;
+}
+
+/* A FlatGeobuf that is cut off just ends; its header says how many features there are. */
+static camber_status check_count(reader *self, GIntBig expected) {
+    const char *driver = GDALGetDriverShortName(GDALGetDatasetDriver(self->dataset.handle));
+    if (self->desc->where || !EQUAL(driver, "FlatGeobuf") || expected < 0 || self->read >= (size_t)expected)
+        return CAMBER_OK;
+    return fail_stream(self, "its header announces more");
+}
+
+/* Fails for a filter that does not fit the layer. For OpenStreetMap every key is a field. */
+static camber_status fail_where(const reader *self) {
+    char fields[512] = "keys of OpenStreetMap, as in highway = 'primary'";
+    if (!self->dataset.osm)
+        camber_where_list_fields(self->layer, fields, sizeof fields);
+    return camber_fail(self->context, CAMBER_ERROR_ARGUMENT,
+                       "%s: the filter \"%s\" does not fit: %s; put values in single quotes, and compare what layer "
+                       "\"%s\" has: %s",
+                       self->desc->path, self->desc->where,
+                       self->dataset.errors.failures ? self->dataset.errors.message : "it does not parse",
+                       OGR_L_GetName(self->layer), fields);
+}
+
+/* A key that no feature has is mostly one that is spelt wrong, or a value in double quotes. */
+static void warn_where(const reader *self) {
+    char key[256];
+    if (self->dataset.osm && camber_where_find_unknown(&self->dataset, self->layer, key, sizeof key))
+        camber_log(self->context, CAMBER_LOG_WARNING,
+                   "%s: nothing passes the filter \"%s\": no line has the key \"%s\"; check it, and put values in "
+                   "single quotes, as in highway = 'primary'",
+                   self->desc->path, self->desc->where, key);
+    else
+        camber_log(self->context, CAMBER_LOG_WARNING,
+                   "%s: nothing passes the filter \"%s\"; check the values that it compares with", self->desc->path,
+                   self->desc->where);
+}
+
+static camber_status read_layers(reader *self, const int *layers, size_t count, bool *unsorted) {
+    bool any = false;
+    for (size_t i = 0; i < count; i++) {
+        camber_status status = begin_layer(self, layers[i]);
+        if (status == CAMBER_ERROR_ARGUMENT && count > 1)
+            continue;
+        if (status == CAMBER_ERROR_ARGUMENT)
+            break;
+        if (status != CAMBER_OK)
+            return status;
+        any = true;
+        const bool counts = !self->desc->where && OGR_L_TestCapability(self->layer, OLCFastFeatureCount);
+        const GIntBig expected = counts && !self->dataset.osm ? OGR_L_GetFeatureCount(self->layer, FALSE) : -1;
+        status = read_layer(self, expected, unsorted);
+        if (status == CAMBER_OK)
+            status = check_count(self, expected);
+        if (status != CAMBER_OK)
+            return status;
+    }
+    return any ? CAMBER_OK : fail_where(self);
+}
+
+/* ---- A file ---- */
+
+/* Warns of losses. Points and areas are not mentioned as such: nobody asked for them. */
+static void warn_of_losses(const reader *self) {
+    const camber_features_stats *stats = &self->stats;
+    const char *path = self->desc->path;
+    if (stats->damaged_features)
+        camber_log(self->context, CAMBER_LOG_WARNING,
+                   "%s: %zu damaged features (the first: %s); what of them reads is kept", path,
+                   stats->damaged_features, self->damage);
+    if (stats->skipped_features)
+        camber_log(self->context, CAMBER_LOG_INFO,
+                   "%s: left out what is no line (points, areas, empty geometry) of %zu features", path,
+                   stats->skipped_features);
+    if (stats->invalid_points)
+        camber_log(self->context, CAMBER_LOG_WARNING,
+                   "%s: %zu points are not numbers and are left out; their lines are split there", path,
+                   stats->invalid_points);
+    if (stats->clamped_points)
+        camber_log(self->context, CAMBER_LOG_WARNING, "%s: %zu points beyond latitude 85.051129 are moved there", path,
+                   stats->clamped_points);
+}
+
+/* Fails where the file as a whole gave nothing that can be drawn. */
+static camber_status check_result(reader *self, size_t features_before) {
+    const camber_feature_lines *lines = &self->lines;
+    if (lines->strange_points > lines->raw_points / 2)
+        return camber_fail(self->context, CAMBER_ERROR_INPUT,
+                           "%s: its coordinates are not degrees, and it names no other coordinate system; add one (a "
+                           ".prj beside a shapefile) or convert the file with ogr2ogr -s_srs EPSG:... -t_srs EPSG:4326",
+                           self->desc->path);
+    if (self->features->feature_count == features_before && !self->stitcher && self->stats.damaged_features)
+        return camber_fail(self->context, CAMBER_ERROR_INPUT, "%s: no feature can be read: %s; get the file again",
+                           self->desc->path, self->damage);
+    if (self->features->feature_count == features_before && self->stats.skipped_features)
+        return camber_fail(self->context, CAMBER_ERROR_INPUT,
+                           "%s: no lines: %zu features have other geometry (points, areas, nothing); name another "
+                           "--layer, or a style that draws outlines of polygons",
+                           self->desc->path, self->stats.skipped_features);
+    return CAMBER_OK;
+}
+
+static camber_status read_dataset(reader *self, bool *unsorted) {
+    camber_context *context = self->context;
+    const camber_style *style = self->features->style;
+    const size_t features_before = self->features->feature_count;
+    int *layers = NULL;
+    size_t count = 0;
+    camber_status status = camber_dataset_layers(&self->dataset, style->wants_polygons, &layers, &count);
+    if (status == CAMBER_OK && self->dataset.zoom >= 0)
+        status = camber_tile_stitcher_create(context, self->dataset.zoom, &self->stitcher);
+    if (status != CAMBER_OK)
+        goto done;
+    if (self->dataset.osm) {
+        /* The driver then skips what belongs to its other layers: twice as fast. */
+        const char *name = OGR_L_GetName(GDALDatasetGetLayer(self->dataset.handle, layers[0]));
+        GDALDatasetReleaseResultSet(
+            self->dataset.handle,
+            GDALDatasetExecuteSQL(self->dataset.handle, CPLSPrintf("SET interest_layers = %s", name), NULL, NULL));
+    }
+    self->lines = (camber_feature_lines){.context = context,
+                                         .whole = self->stitcher,
+                                         .wants_polygons = style->wants_polygons,
+                                         .directed = style->directed};
+    status = read_layers(self, layers, count, unsorted);
+    if (status == CAMBER_OK && self->stitcher)
+        status = camber_tile_stitcher_finish(self->stitcher, self->features);
+    if (status == CAMBER_OK)
+        status = check_result(self, features_before);
+    if (status == CAMBER_OK && self->desc->where && self->passed == 0)
+        warn_where(self);
+    if (status == CAMBER_OK)
+        status = camber_features_add_attribution(self->features, camber_dataset_attribution(&self->dataset));
+done:
+    camber_free(context, layers);
+    return status;
+}
+
+static void close_reader(reader *self) {
+    camber_feature_lines_free(&self->lines);
+    camber_tile_stitcher_destroy(self->stitcher);
+    camber_columns_free(&self->columns, self->context);
+    camber_dataset_close(&self->dataset);
+}
+
+static void add_stats(camber_features *features, const reader *self) {
+    camber_features_stats *sum = &features->stats;
+    sum->features = features->feature_count;
+    sum->polylines = features->polyline_count;
+    sum->points = features->point_count;
+    sum->skipped_features += self->stats.skipped_features;
+    sum->damaged_features += self->stats.damaged_features;
+    sum->invalid_points += self->stats.invalid_points;
+    sum->clamped_points += self->stats.clamped_points;
+    sum->antimeridian_splits += self->stats.antimeridian_splits;
+}
+
+/* Merges and weighs the file's lines, from first_polyline on. */
+static camber_status merge_and_weigh(camber_features *features, const camber_source_desc *desc, size_t first_polyline) {
+    const double start_ms = camber_now_ms();
+    camber_status status = CAMBER_OK;
+    if (!desc->keep_apart)
+        status = camber_features_merge(features, first_polyline,
+                                       features->style->directed ? CAMBER_MERGE_DIRECTED : CAMBER_MERGE_ANY);
+    const double merged_ms = camber_now_ms();
+    if (status == CAMBER_OK)
+        status = camber_features_set_importance(features, first_polyline);
+    features->times.merge_ms += merged_ms - start_ms;
+    features->times.weigh_ms += camber_now_ms() - merged_ms;
+    return status;
+}
+
+/* One attempt; on failure the set is as before but for spare classes. */
+static camber_status read_once(camber_features *features, const camber_source_desc *desc, bool *unsorted) {
+    reader self = {
+        .context = features->context, .features = features, .desc = desc, .lines.context = features->context};
+    const size_t points = features->point_count, polylines = features->polyline_count, count = features->feature_count;
+    const size_t signed_size = features->attribution_size;
+    const camber_features_stats stats = features->stats;
+    const double start_ms = camber_now_ms();
+    camber_status status = camber_dataset_open(features->context, desc, features->style, *unsorted, &self.dataset);
+    if (status != CAMBER_OK)
+        return status;
+    CPLPushErrorHandlerEx(camber_gdal_collect, &self.dataset.errors);
+    status = read_dataset(&self, unsorted);
+    CPLPopErrorHandler();
+    self.stats.invalid_points = self.lines.invalid_points;
+    self.stats.clamped_points = self.lines.clamped_points;
+    self.stats.antimeridian_splits = self.lines.antimeridian_splits;
+    /* GDAL's memory is freed before the lines are copied. */
+    close_reader(&self);
+    features->times.file_ms += camber_now_ms() - start_ms;
+    if (status == CAMBER_OK)
+        status = merge_and_weigh(features, desc, polylines);
+    if (status == CAMBER_OK) {
+        add_stats(features, &self);
+        warn_of_losses(&self);
+        camber_progress(features->context, "reading", 1);
+    } else {
+        features->point_count = points;
+        features->polyline_count = polylines;
+        features->feature_count = count;
+        camber_features_cut_attribution(features, signed_size);
+        features->stats = stats;
+    }
+    return status;
+}
+
+/* Once for the whole process, as the list of drivers is the process's: GDAL is not safe where two threads register at
+ * once, and says so. */
+static void register_drivers(void) {
+    static pthread_once_t registered = PTHREAD_ONCE_INIT;
+    pthread_once(&registered, GDALAllRegister);
+}
+
+static camber_status read_file(camber_features *features, const camber_source_desc *desc) {
+    camber_gdal_confined confined;
+    register_drivers();
+    camber_status status = camber_gdal_confine(features->context, &confined);
+    if (status != CAMBER_OK)
+        return status;
+    bool unsorted = false;
+    status = read_once(features, desc, &unsorted);
+    if (status != CAMBER_OK && unsorted)
+        status = read_once(features, desc, &unsorted);
+    camber_gdal_release(features->context, &confined);
+    if (status == CAMBER_OK && confined.refused)
+        camber_log(
+            features->context, CAMBER_LOG_WARNING,
+            "%s: leads to the network, which nothing is fetched from; what it wants from there is left out: allow "
+            "it (--allow-remote) if you trust it",
+            desc->path);
+    return status;
+}
+
+/* ---- Formats ---- */
+
+static const char *format_name(size_t n) {
+    register_drivers();
+    const int count = GDALGetDriverCount();
+    for (int i = 0; i < count; i++) {
+        GDALDriverH driver = GDALGetDriver(i);
+        const char *name = GDALGetDriverShortName(driver);
+        if (GDALGetMetadataItem(driver, GDAL_DCAP_VECTOR, NULL) && GDALGetMetadataItem(driver, GDAL_DCAP_OPEN, NULL) &&
+            camber_gdal_reads_file(name) && n-- == 0)
+            return name;
+    }
+    return NULL;
+}
+
+static const char *version(void) {
+    return GDALVersionInfo("--version");
+}
+
+const camber_gdal_calls camber_gdal = {read_file, format_name, version};

@@ -1,0 +1,167 @@
+/* Shared by the files that need GDAL: the geometry of one feature, an open file, what GDAL may reach, fields. */
+#ifndef CAMBER_GDAL_VECTOR_FILE_H
+#define CAMBER_GDAL_VECTOR_FILE_H
+
+#include "source/features.h"
+#include "source/tile_stitcher.h"
+
+#include <gdal.h>
+#include <ogr_api.h>
+#include <ogr_srs_api.h>
+
+/* ---- polylines.c: a feature's geometry as world polylines ---- */
+
+typedef enum camber_projection_kind {
+    CAMBER_PROJECTION_DEGREES = 0, /* longitude and latitude of WGS 84 */
+    CAMBER_PROJECTION_METRES,      /* EPSG:3857 */
+    CAMBER_PROJECTION_TRANSFORM,   /* anything else, through PROJ to degrees */
+} camber_projection_kind;
+
+typedef struct camber_feature_lines {
+    camber_context *context;
+    camber_projection_kind projection;
+    bool latitude_first;                    /* degrees come as latitude, longitude */
+    OGRCoordinateTransformationH transform; /* owned */
+    /* of tiles: coordinates stay where they are, beyond the world's edges too; they are cut later */
+    bool whole;
+    bool wants_polygons;
+    bool directed; /* outlines go clockwise as seen, those of holes the other way */
+
+    /* The last feature's polylines: line i ends before point ends[i]. */
+    double *points;
+    size_t point_count, point_capacity;
+    size_t *ends;
+    size_t line_count, line_capacity;
+    bool left_out; /* some of its geometry is not drawn */
+    bool damaged;
+
+    /* Sums over all features. */
+    size_t raw_points, strange_points; /* strange: not degrees on Earth */
+    size_t invalid_points, clamped_points, antimeridian_splits;
+
+    double *raw; /* x of all points of a line, then y */
+    size_t raw_capacity;
+} camber_feature_lines;
+
+/* Sets the projection for a layer; srs may be NULL: degrees. name stands in messages. */
+camber_status camber_feature_lines_set_srs(camber_feature_lines *lines, OGRSpatialReferenceH srs, const char *name);
+/* Collects the lines of a geometry, or the rings of its polygons. */
+camber_status camber_feature_lines_collect(camber_feature_lines *lines, OGRGeometryH geometry,
+                                           camber_geometry_kind kind);
+void camber_feature_lines_free(camber_feature_lines *lines);
+
+/* ---- dataset.c: an open file ---- */
+
+/* CAMBER_ERROR_INPUT: a file, or its coordinate system, leads to another file. */
+camber_status camber_dataset_fail_elsewhere(camber_context *context, const char *name);
+
+/* GDAL's failures since the last reset. */
+typedef struct camber_gdal_errors {
+    size_t failures;
+    CPLErrorNum number; /* number of the first failure */
+    char message[512];  /* the first */
+} camber_gdal_errors;
+
+typedef struct camber_dataset {
+    camber_context *context;
+    const camber_source_desc *desc;
+    GDALDatasetH handle;
+    bool osm;   /* the OSM driver */
+    int zoom;   /* the zoom of vector tiles, below 0 for anything else */
+    char *conf; /* OSM: the configuration, and where GDAL sees it */
+    char conf_path[64];
+    camber_gdal_errors errors;
+} camber_dataset;
+
+/* Opens desc->path, which stays named by the dataset. unsorted: OSM nodes come in no order. */
+camber_status camber_dataset_open(camber_context *context, const camber_source_desc *desc, const camber_style *style,
+                                  bool unsorted, camber_dataset *dataset);
+void camber_dataset_close(camber_dataset *dataset);
+/* The attribution: for OpenStreetMap's own formats what its licence asks for, for others what the file says. NULL:
+ * none. */
+const char *camber_dataset_attribution(const camber_dataset *dataset);
+/* Indices of the layers to read; freed with camber_free. */
+camber_status camber_dataset_layers(camber_dataset *dataset, bool wants_polygons, int **layers, size_t *count);
+/* CPLErrorHandler whose user data is a camber_gdal_errors. */
+void CPL_STDCALL camber_gdal_collect(CPLErr level, CPLErrorNum number, const char *message);
+
+/* ---- confine.c: what GDAL may reach ---- */
+
+/* Until the end nothing is fetched on this thread, unless the context's access has it, and nothing is written beside
+ * files. */
+typedef struct camber_gdal_confined {
+    char *kept[3]; /* former values of the thread's options */
+    bool http;
+    size_t refused; /* fetches */
+} camber_gdal_confined;
+camber_status camber_gdal_confine(camber_context *context, camber_gdal_confined *confined);
+void camber_gdal_release(camber_context *context, camber_gdal_confined *confined);
+/* Names of the drivers that the context's access has, for GDALOpenEx; freed with CSLDestroy. */
+char **camber_gdal_drivers(const camber_context *context, const char *path);
+bool camber_gdal_has_driver(const camber_context *context, const char *name);
+/* The driver of a file, where the context's access does not allow it. NULL: it does, or no driver knows the file. */
+const char *camber_gdal_refused(const camber_context *context, const char *path);
+/* Whether a driver reads files that have their data in themselves. */
+bool camber_gdal_reads_file(const char *driver);
+/* Whether a driver reads descriptions of what lies in other files. */
+bool camber_gdal_describes(const char *driver);
+/* Whether the text of a coordinate system leads to another file: PROJ opens the grids that it names, by their names
+ * among its own, by a path anywhere. */
+bool camber_gdal_names_path(const char *srs);
+/* Whether GDAL would open other files before it tells of them: by the .prj beside a shapefile, as a MapInfo table of
+ * tables. */
+bool camber_gdal_leads_elsewhere(const char *path);
+/* Whether a path leads to the network. */
+bool camber_gdal_is_remote(const char *path);
+
+/* ---- where.c: attribute filters ---- */
+
+/* The next word of a filter outside '...': it may be a key. *at moves behind it. NULL: there is no more. */
+const char *camber_where_next(const char **at, size_t *length);
+/* Whether the text consists of the characters of such words. */
+bool camber_where_is_key(const char *text, size_t length);
+/* Finds the first key of a filter that no feature of the layer has, for OpenStreetMap data where nothing passes the
+ * filter. Reads the file again, without the filter. false: all keys are there. */
+bool camber_where_find_unknown(const camber_dataset *dataset, OGRLayerH layer, char *key, size_t size);
+/* "class, name, ...": the fields that a filter of the layer can compare. */
+void camber_where_list_fields(OGRLayerH layer, char *text, size_t size);
+
+/* ---- fields.c: the fields of a layer that are read ---- */
+
+/* The field that a property of the style is read from. */
+typedef struct camber_column {
+    int field; /* below 0: the layer does not have it */
+    OGRFieldType type;
+    bool boolean;
+} camber_column;
+
+typedef struct camber_columns {
+    camber_features *features;
+    camber_column *items; /* style->property_count */
+    camber_value *values; /* style->property_count */
+    bool plain;           /* the layer has none of the style's properties */
+    int ids[4];           /* vector tiles: fields with an id, the best first */
+    size_t id_count;
+    int highway;
+    int *areas; /* OSM: fields of camber_osm_area_keys */
+    size_t area_count;
+} camber_columns;
+
+/* Keys that make a closed way without a highway an area; NULL at the end. */
+extern const char *const camber_osm_area_keys[];
+
+/* Finds the fields of a layer; again for the next layer. */
+camber_status camber_columns_find(camber_columns *columns, camber_features *features, OGRFeatureDefnH schema,
+                                  bool tiles, bool osm);
+void camber_columns_free(camber_columns *columns, camber_context *context);
+/* Tells OGR that the other fields need not be decoded. */
+void camber_columns_ignore_others(const camber_columns *columns, OGRLayerH layer);
+camber_status camber_columns_class(camber_columns *columns, OGRFeatureH feature, uint32_t layer,
+                                   camber_geometry_kind kind, uint32_t *class_index);
+/* A hash of the feature's id, the same in every tile; false: it has none. */
+bool camber_columns_id(const camber_columns *columns, OGRFeatureH feature, uint64_t *id);
+/* OSM: a closed way that is no highway and has a key of areas. The driver is told to leave them to us, for it takes
+ * closed highways with such a key for areas as well. */
+bool camber_columns_is_area(const camber_columns *columns, OGRFeatureH feature, OGRGeometryH geometry);
+
+#endif

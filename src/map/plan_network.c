@@ -1,0 +1,233 @@
+/* Makes a network of what a plan draws, and on the host projects the lines of it that a camera sees.
+ *
+ * Input: features, a view and its plan. Output: a network whose rows are the plan's pairs. Near the antimeridian, and
+ * where the picture is wider than the world, a polyline has several entries: one for each copy of the world. The
+ * network serves other views as long as their plans draw the same entries.
+ */
+#include "map/plan_network.h"
+
+#include "camber_proof.h"
+
+#include <math.h>
+
+/* A miter limit without reason must not undo the culling. */
+static const double LARGEST_REACH_PX = 65536.0;
+
+static double reach_of(const camber_stroke *stroke) {
+    const double half = 0.5 * (double)stroke->width_px;
+    double factor = stroke->cap == CAMBER_CAP_SQUARE ? 1.5 : 1.0; /* a corner lies sqrt(2) away */
+    if (stroke->join == CAMBER_JOIN_MITER)
+        factor = fmax(factor, (double)stroke->miter_limit);
+    if (stroke->join == CAMBER_JOIN_ROUND)
+        factor =
+            fmax(factor, (double)fminf(stroke->round_limit, stroke->miter_limit > 0.0f ? stroke->miter_limit : 2.0f));
+    return fmin(half * factor, fmax(half, LARGEST_REACH_PX));
+}
+
+double camber_plan_reach(const camber_plan *plan) {
+    double reach = 0.0;
+    for (size_t row = 0; row < plan->row_count; row++)
+        reach = fmax(reach, reach_of(plan->strokes + row));
+    return reach + (double)plan->translate_px;
+}
+
+/* ---- Copies of the world ---- */
+
+/* Copies of the world, from the first to the last in the picture. Where the picture is about as wide as a world,
+ * first lies behind last: then each polyline is drawn within half a world of the centre, in one copy, or in two
+ * where it crosses that line. */
+typedef struct copies {
+    double first, last, centre;
+} copies;
+
+static copies copies_in(const camber_view *view, const camber_plan *plan) {
+    double corners[8], radius = 0.0;
+    camber_view_corners(view, corners);
+    for (int i = 0; i < 4; i++)
+        radius = fmax(radius, hypot(corners[2 * i] - view->x, corners[2 * i + 1] - view->y));
+    radius += (camber_plan_reach(plan) + 1.0) / view->scale_px;
+    if (radius >= 0.5)
+        return (copies){0.0, -1.0, view->x};
+    return (copies){floor(view->x - radius), floor(view->x + radius), 0.0};
+}
+
+static camber_box world_box(const double *points, size_t count) {
+    camber_box box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+    for (size_t i = 0; i < count; i++) {
+        const double x = points[2 * i], y = points[2 * i + 1];
+        box.x0 = x < box.x0 ? x : box.x0;
+        box.x1 = x > box.x1 ? x : box.x1;
+        box.y0 = y < box.y0 ? y : box.y0;
+        box.y1 = y > box.y1 ? y : box.y1;
+    }
+    return box;
+}
+
+/* The first and the last shift of a polyline; false where it has no points or is no place on earth. */
+static bool find_shifts(const camber_features *features, const copies *worlds, size_t polyline, double *first,
+                        double *last) {
+    const size_t begin = features->offsets[polyline], end = features->offsets[polyline + 1];
+    const camber_box box = world_box(features->points + 2 * begin, end - begin);
+    if (!(box.x0 <= box.x1 && box.y0 <= box.y1 && box.x1 - box.x0 <= 2.0))
+        return false;
+    if (worlds->first > worlds->last) {
+        *first = floor(worlds->centre - 0.5 - box.x1) + 1.0;
+        *last = fmax(*first, ceil(worlds->centre + 0.5 - box.x0) - 1.0);
+        return true;
+    }
+    /* A line that ends on the border of two worlds lies in the western one. */
+    *first = worlds->first - fmax(ceil(box.x1) - 1.0, floor(box.x0));
+    *last = worlds->last - floor(box.x0);
+    return true;
+}
+
+static uint64_t key_of(const camber_view *view, const camber_plan *plan) {
+    const copies worlds = copies_in(view, plan);
+    return camber_hash(plan->key, &worlds, sizeof worlds);
+}
+
+bool camber_plan_network_serves(const camber_plan_network *geometry, const camber_view *view, const camber_plan *plan) {
+    return geometry->network && geometry->key == key_of(view, plan) &&
+           (geometry->has_arc_length || !plan->has_arc_length);
+}
+
+/* ---- The network ---- */
+
+typedef struct entry_list {
+    camber_network_entry *entries;
+    size_t count, capacity;
+} entry_list;
+
+static camber_status list_set(const camber_features *features, const camber_plan *plan, const camber_plan_set *set,
+                              const copies *worlds, entry_list *list) {
+    for (size_t i = 0; i < set->entry_count; i++) {
+        const camber_plan_entry entry = plan->entries[set->first_entry + i];
+        double first, last;
+        if (!find_shifts(features, worlds, entry.polyline, &first, &last))
+            continue;
+        for (double shift = first; shift <= last; shift += 1.0) {
+            if (!camber_grow(features->context, &list->entries, &list->capacity, list->count + 1,
+                             sizeof *list->entries) ||
+                !list->entries)
+                return CAMBER_ERROR_MEMORY;
+            list->entries[list->count++] = (camber_network_entry){entry.polyline, entry.pair, shift};
+        }
+    }
+    return CAMBER_OK;
+}
+
+static camber_status make_network(const camber_features *features, const entry_list *list,
+                                  camber_plan_network *geometry) {
+    static const size_t none[1] = {0};
+    static const camber_network_entry nothing;
+    const camber_network_entry *entries = list->entries ? list->entries : &nothing;
+    const camber_network_desc desc = {.points = features->points,
+                                      .offsets = features->offsets ? features->offsets : none,
+                                      .polyline_count = features->polyline_count,
+                                      .importance = features->importance,
+                                      .entries = entries,
+                                      .entry_count = list->count,
+                                      .progress = geometry->has_arc_length ? features->progress : NULL,
+                                      .has_arc_length = geometry->has_arc_length};
+    camber_context *context = geometry->context;
+    if (!(geometry->polylines = camber_alloc(context, list->count, sizeof *geometry->polylines)) ||
+        !(geometry->pairs = camber_alloc(context, list->count, sizeof *geometry->pairs)))
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < list->count; i++) {
+        geometry->polylines[i] = entries[i].polyline;
+        geometry->pairs[i] = entries[i].row;
+    }
+    return camber_network_create(geometry->context, &desc, &geometry->network);
+}
+
+camber_status camber_plan_network_create(const camber_features *features, const camber_view *view,
+                                         const camber_plan *plan, camber_plan_network *geometry) {
+    *geometry = (camber_plan_network){.context = features->context,
+                                      .set_count = plan->set_count,
+                                      .has_arc_length = plan->has_arc_length,
+                                      .key = key_of(view, plan)};
+    const copies worlds = copies_in(view, plan);
+    entry_list list = {0};
+    camber_status status = CAMBER_OK;
+    geometry->first_entries = camber_alloc(geometry->context, plan->set_count + 1, sizeof *geometry->first_entries);
+    if (!geometry->first_entries)
+        return CAMBER_ERROR_MEMORY;
+    for (size_t s = 0; status == CAMBER_OK && s < plan->set_count; s++) {
+        geometry->first_entries[s] = list.count;
+        status = list_set(features, plan, plan->sets + s, &worlds, &list);
+    }
+    geometry->first_entries[plan->set_count] = list.count;
+    if (status == CAMBER_OK)
+        status = make_network(features, &list, geometry);
+    camber_free(geometry->context, list.entries);
+    return status;
+}
+
+void camber_plan_network_destroy(camber_plan_network *geometry) {
+    if (!geometry->context)
+        return;
+    camber_network_destroy(geometry->network);
+    camber_free(geometry->context, geometry->first_entries);
+    camber_free(geometry->context, geometry->pairs);
+    camber_free(geometry->context, geometry->polylines);
+    *geometry = (camber_plan_network){0};
+}
+
+/* ---- The visible part ---- */
+
+/* Counts polylines once a set, however often the world repeats and however many lines the camera cuts them into. */
+static void count_set(const camber_features *features, const camber_plan_network *geometry, size_t first, size_t end,
+                      camber_visible_lines *seen) {
+    uint32_t before = UINT32_MAX, counted = UINT32_MAX;
+    for (size_t i = first; i < end; i++) {
+        const uint32_t polyline = geometry->polylines[seen->lines.entries[i]];
+        if (polyline == before)
+            continue;
+        before = polyline;
+        seen->points_in += features->offsets[polyline + 1] - features->offsets[polyline];
+        /* A later line of a feature counts where its first line is not seen. */
+        const uint32_t feature = features->polyline_feature[polyline], count = features->feature_counts[polyline];
+        seen->feature_count += count || feature == counted ? count : 1;
+        counted = feature;
+    }
+}
+
+/* Fills in the row of each polyline, and where each set begins. */
+static camber_status fill_rows(const camber_plan_network *geometry, const camber_plan *plan,
+                               camber_visible_lines *seen) {
+    const size_t count = seen->lines.polyline_count;
+    if (!(seen->rows = camber_alloc(geometry->context, count, sizeof *seen->rows)) ||
+        !(seen->first_polylines =
+              camber_alloc(geometry->context, geometry->set_count + 1, sizeof *seen->first_polylines)))
+        return CAMBER_ERROR_MEMORY;
+    for (size_t i = 0; i < count; i++)
+        seen->rows[i] = plan->pair_rows[geometry->pairs[seen->lines.entries[i]]];
+    size_t at = 0;
+    for (size_t s = 0; s <= geometry->set_count; s++) {
+        while (at < count && seen->lines.entries[at] < geometry->first_entries[s])
+            at++;
+        seen->first_polylines[s] = at;
+    }
+    return CAMBER_OK;
+}
+
+camber_status camber_plan_network_project(const camber_features *features, const camber_plan_network *geometry,
+                                          const camber_plan *plan, const camber_camera *camera,
+                                          const camber_tessellation_desc *desc, camber_visible_lines *seen) {
+    *seen = (camber_visible_lines){.context = geometry->context};
+    camber_status status = camber_network_project_lines(geometry->network, camera, desc, &seen->lines);
+    if (status == CAMBER_OK)
+        status = fill_rows(geometry, plan, seen);
+    for (size_t s = 0; status == CAMBER_OK && s < geometry->set_count; s++)
+        count_set(features, geometry, seen->first_polylines[s], seen->first_polylines[s + 1], seen);
+    return status;
+}
+
+void camber_visible_lines_destroy(camber_visible_lines *seen) {
+    if (!seen->context)
+        return;
+    camber_free(seen->context, seen->first_polylines);
+    camber_free(seen->context, seen->rows);
+    camber_lines_destroy(&seen->lines);
+    *seen = (camber_visible_lines){0};
+}

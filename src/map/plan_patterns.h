@@ -1,0 +1,38 @@
+/* The images that a plan draws with, and the backgrounds that stand above lines or are of images. */
+#ifndef CAMBER_MAP_PLAN_PATTERNS_H
+#define CAMBER_MAP_PLAN_PATTERNS_H
+
+#include "map/view.h"
+#include "source/sprite.h"
+
+/* Drawn before a layer of the plan. */
+typedef struct camber_plan_fill {
+    size_t before; /* layer_count: behind the last */
+    camber_fill fill;
+} camber_plan_fill;
+
+typedef struct camber_plan_patterns {
+    camber_context *context;
+    camber_sprites *sprites; /* NULL: not read */
+    bool failed;             /* no memory */
+    bool unread;             /* a pattern was asked for, and no sprites are read */
+    camber_image *images;    /* count: the images that are drawn, each once */
+    size_t *numbers;         /* count: their numbers among the sprites' images */
+    size_t count, image_capacity, number_capacity;
+    camber_plan_fill *fills;
+    size_t fill_count, fill_capacity;
+} camber_plan_patterns;
+
+void camber_plan_patterns_free(camber_plan_patterns *patterns);
+
+/* Finds the image of a layer for a feature, from 1, and the ratio of its width to its height. false: the layer has
+ * no pattern; 0: it is not drawn. Sets failed where memory runs out. */
+bool camber_plan_patterns_find(camber_plan_patterns *patterns, const camber_style_layer *layer, double zoom,
+                               const camber_feature_view *feature, uint32_t *image, float *aspect);
+
+/* Adds a background: to the colour below everything where nothing else is drawn so far, else as a fill before the
+ * layer that comes next. */
+void camber_plan_patterns_add_background(camber_plan_patterns *patterns, const camber_style_layer *layer,
+                                         const camber_view *view, size_t layers_so_far, camber_color *below);
+
+#endif

@@ -1,0 +1,50 @@
+/* A style's own sources, as a view sees them. */
+#include "map/view.h"
+#include "source/sources.h"
+#include "source/tile_reader.h"
+
+/* The same as in fit.c. */
+static const double FILL = 0.96, LARGEST_FIT_ZOOM = 22.0;
+
+/* Moves the view, where no camera is given, over all that the sources say they have. */
+static void fit_bounds(const camber_sources *sources, camber_view *view) {
+    double world[4];
+    if (!camber_sources_bounds(sources, world))
+        return;
+    camber_box bounds = CAMBER_BOX_EMPTY;
+    for (int i = 0; i < 4; i++) {
+        const double x = world[2 * (i & 1)], y = world[1 + 2 * (i >> 1)];
+        camber_box_add(&bounds, x * view->cosine + y * view->sine, y * view->cosine - x * view->sine);
+    }
+    camber_view_frame(view, bounds, FILL, LARGEST_FIT_ZOOM);
+}
+
+static camber_tile_cover cover_of(const camber_view *view) {
+    camber_tile_cover cover = {.zoom = view->zoom};
+    camber_view_corners(view, cover.corners);
+    return cover;
+}
+
+camber_status camber_features_read_sources(camber_features *features, const camber_view_desc *view,
+                                           const char *base_path) {
+    const camber_features_mark before = camber_features_get_mark(features);
+    camber_view seen;
+    camber_sources *sources = NULL;
+    camber_status status = camber_view_create(features->context, view, &seen);
+    if (status != CAMBER_OK)
+        return status;
+    const camber_sources_desc desc = {.base_path = base_path, .ratio = seen.ratio};
+    status = camber_sources_open(features, &desc, &sources);
+    if (status == CAMBER_OK) {
+        if (view->kind == CAMBER_VIEW_FIT)
+            fit_bounds(sources, &seen);
+        const camber_tile_cover cover = cover_of(&seen);
+        status = camber_sources_read(sources, &cover);
+    }
+    camber_sources_close(sources);
+    if (status != CAMBER_OK)
+        camber_features_reset(features, &before);
+    else
+        camber_progress(features->context, "reading", 1);
+    return status;
+}

@@ -1,0 +1,133 @@
+/* Texts that an evaluation makes: they grow in its memory, and every kind of value can be added to one. Numbers and
+ * JSON are written as ECMAScript writes them.
+ */
+#include "style/text.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool camber_text_add(camber_text *text, const char *bytes, size_t length) {
+    if (length >= text->capacity - text->length) {
+        const size_t capacity = 2 * (text->length + length) + 32;
+        char *grown = camber_arena_alloc(text->e->arena, capacity);
+        if (!grown)
+            return camber_evaluate_no_memory(text->e);
+        if (text->length)
+            memcpy(grown, text->bytes, text->length);
+        text->bytes = grown;
+        text->capacity = capacity;
+    }
+    if (length)
+        memcpy(text->bytes + text->length, bytes, length);
+    text->length += length;
+    return camber_evaluate_work(text->e, length);
+}
+
+bool camber_text_end(camber_text *text, camber_value *value) {
+    const char end = 0;
+    if (!camber_text_add(text, &end, 1))
+        return false;
+    *value = camber_value_string(text->bytes);
+    return true;
+}
+
+static bool add(camber_text *text, const char *string) {
+    return camber_text_add(text, string, strlen(string));
+}
+
+static bool add_number(camber_text *text, double number) {
+    char digits[CAMBER_NUMBER_TEXT_SIZE];
+    camber_number_format(number, digits);
+    return add(text, digits);
+}
+
+/* Alpha is a float: it is written as the 255th that it is, or with six digits. */
+static double true_alpha(double alpha) {
+    const double step = round(alpha * 255.0) / 255.0;
+    return fabs(alpha - step) < 1e-7 ? step : round(alpha * 1e6) / 1e6;
+}
+
+static bool add_color(camber_text *text, camber_color color) {
+    char rgb[64];
+    snprintf(rgb, sizeof rgb, "rgba(%.0f,%.0f,%.0f,", round((double)color.r * 255.0), round((double)color.g * 255.0),
+             round((double)color.b * 255.0));
+    return add(text, rgb) && add_number(text, true_alpha((double)color.a)) && add(text, ")");
+}
+
+/* ---- JSON, as ECMAScript's JSON.stringify ---- */
+
+static bool add_json(camber_text *text, const camber_value *value);
+
+static bool add_quoted(camber_text *text, const char *string) {
+    static const char plain[] = "\"\\\b\f\n\r\t", letters[] = "\"\\bfnrt";
+    if (!add(text, "\""))
+        return false;
+    for (const char *c = string; *c; c++) {
+        const char *escaped = strchr(plain, *c);
+        char escape[8] = {'\\', escaped ? letters[escaped - plain] : 0, 0};
+        if (!escaped && (unsigned char)*c < ' ')
+            snprintf(escape, sizeof escape, "\\u%04x", (unsigned)*c);
+        if (!(escaped || (unsigned char)*c < ' ' ? add(text, escape) : camber_text_add(text, c, 1)))
+            return false;
+    }
+    return add(text, "\"");
+}
+
+static int compare_positions(const void *left, const void *right) {
+    const camber_member *a = *(const camber_member *const *)left, *b = *(const camber_member *const *)right;
+    return a->position < b->position ? -1 : a->position > b->position;
+}
+
+static bool add_object(camber_text *text, const camber_value *object) {
+    const camber_member **members = camber_arena_alloc(text->e->arena, object->count * sizeof *members);
+    if (!members)
+        return camber_evaluate_no_memory(text->e);
+    for (uint32_t i = 0; i < object->count; i++)
+        members[i] = &object->members[i];
+    qsort(members, object->count, sizeof *members, compare_positions);
+    if (!add(text, "{"))
+        return false;
+    for (uint32_t i = 0; i < object->count; i++)
+        if ((i > 0 && !add(text, ",")) || !add_quoted(text, members[i]->key) || !add(text, ":") ||
+            !add_json(text, &members[i]->value))
+            return false;
+    return add(text, "}");
+}
+
+static bool add_array(camber_text *text, const camber_value *array) {
+    if (!add(text, "["))
+        return false;
+    for (uint32_t i = 0; i < array->count; i++)
+        if ((i > 0 && !add(text, ",")) || !add_json(text, &array->items[i]))
+            return false;
+    return add(text, "]");
+}
+
+/* The recursion is limited, since documents and calls that make values have a limited depth. */
+static bool add_json(camber_text *text, const camber_value *value) {
+    switch (value->type) {
+    case CAMBER_VALUE_NULL: return add(text, "null");
+    case CAMBER_VALUE_BOOL: return add(text, value->boolean ? "true" : "false");
+    case CAMBER_VALUE_NUMBER: return isfinite(value->number) ? add_number(text, value->number) : add(text, "null");
+    case CAMBER_VALUE_STRING: return add_quoted(text, value->string);
+    case CAMBER_VALUE_COLOR: return add(text, "\"") && add_color(text, value->color) && add(text, "\"");
+    case CAMBER_VALUE_ARRAY: return add_array(text, value);
+    case CAMBER_VALUE_OBJECT: break;
+    }
+    return add_object(text, value);
+}
+
+bool camber_text_add_value(camber_text *text, const camber_value *value) {
+    switch (value->type) {
+    case CAMBER_VALUE_NULL: return true;
+    case CAMBER_VALUE_STRING: return add(text, value->string);
+    case CAMBER_VALUE_NUMBER: return add_number(text, value->number);
+    case CAMBER_VALUE_COLOR: return add_color(text, value->color);
+    case CAMBER_VALUE_BOOL:
+    case CAMBER_VALUE_ARRAY:
+    case CAMBER_VALUE_OBJECT: break;
+    }
+    return add_json(text, value);
+}

@@ -1,0 +1,13 @@
+/* Arc lengths: how far along its polyline each point lies. */
+#ifndef CAMBER_TESS_ARC_LENGTH_H
+#define CAMBER_TESS_ARC_LENGTH_H
+
+#include "tess/mesh.h"
+
+/* Makes the arc lengths of a part's slots on the device. Parts of polylines only: a network knows its own. */
+camber_status camber_part_sum_arc_lengths(camber_mesh *mesh, camber_mesh_part *part);
+
+/* The CPU twin: one for each slot, 0 for sentinels; freed with camber_free. */
+camber_status camber_polylines_sum_arc_lengths(const camber_polylines *polylines, camber_arc_length **arc_lengths);
+
+#endif

@@ -1,0 +1,131 @@
+/* Each pixel's 256 samples find the nearest point of the line, their foot on it, and take the colour that the paint has
+ * there: the gap between the line's two sides, its blur, dashes, trim and ramp. No formula is shared with kernels and
+ * shaders. */
+#include "validate/along_truth.h"
+
+#include <math.h>
+
+enum { SAMPLES = 16 }; /* across and down */
+
+/* Where a sample lies. */
+typedef struct foot {
+    double along, distance; /* px */
+    bool is_past;           /* an end */
+} foot;
+
+double camber_along_length(const float *points, size_t count) {
+    double total = 0;
+    for (size_t i = 1; i < count; i++)
+        total += hypot((double)points[2 * i] - (double)points[2 * i - 2],
+                       (double)points[2 * i + 1] - (double)points[2 * i - 1]);
+    return total;
+}
+
+static foot foot_of(const camber_along_desc *d, double x, double y) {
+    foot nearest = {.distance = INFINITY};
+    double before = 0;
+    for (size_t i = 0; i + 1 < d->count; i++) {
+        const double ax = (double)d->points[2 * i], ay = (double)d->points[2 * i + 1];
+        const double dx = (double)d->points[2 * i + 2] - ax, dy = (double)d->points[2 * i + 3] - ay;
+        const double length = hypot(dx, dy), at = ((x - ax) * dx + (y - ay) * dy) / length;
+        const double within = fmin(fmax(at, 0), length);
+        const double distance = hypot(x - ax - within * dx / length, y - ay - within * dy / length);
+        if (distance < nearest.distance)
+            nearest = (foot){before + within, distance, (i == 0 && at < 0) || (i + 2 == d->count && at > length)};
+        before += length;
+    }
+    return nearest;
+}
+
+/* How far along the line the nearest dash is. */
+static double dash_distance(const camber_along_desc *d, double along) {
+    const double unit = d->paint->dash_unit_px > 0.0f ? (double)d->paint->dash_unit_px : 1;
+    const size_t count = d->dash->count * (d->dash->count % 2 ? 2 : 1);
+    double period = 0, nearest = INFINITY;
+    for (size_t i = 0; i < count; i++)
+        period += (double)d->dash->lengths[i % d->dash->count] * unit;
+    for (double at = period * (floor(along / period) - 1); at < along + 2 * period; at += period) {
+        double from = at;
+        for (size_t i = 0; i < count; i++) {
+            const double to = from + (double)d->dash->lengths[i % d->dash->count] * unit;
+            if (i % 2 == 0)
+                nearest = fmin(nearest, fmax(fmax(from - along, along - to), 0));
+            from = to;
+        }
+    }
+    return nearest;
+}
+
+/* How much of the paint there is at a foot. */
+static double share_at(const camber_along_desc *d, foot p, double progress) {
+    const camber_paint *paint = d->paint;
+    const double width = (double)paint->width_px, gap = (double)paint->gap_px, blur = (double)paint->blur_px;
+    const double outer = gap > 0 ? 0.5 * gap + width : 0.5 * width;
+    if (p.is_past && d->cap == CAMBER_CAP_BUTT)
+        return 0;
+    if (paint->trim_end > paint->trim_start && progress >= (double)paint->trim_start &&
+        progress <= (double)paint->trim_end)
+        return 0;
+    if (paint->dash) {
+        const double dash = dash_distance(d, p.along);
+        if (d->cap == CAMBER_CAP_BUTT && dash > 0)
+            return 0;
+        p.distance = hypot(p.distance, dash);
+    }
+    if (blur > 0) {
+        const double rim = outer - p.distance, inner = gap > 0 ? p.distance - 0.5 * gap + blur : rim;
+        return fmin(fmax((fmin(rim, inner) + 0.5) / (blur + 1), 0), 1);
+    }
+    return p.distance <= outer && (gap <= 0 || p.distance >= 0.5 * gap) ? 1 : 0;
+}
+
+/* Premultiplied. */
+static void color_at(const camber_ramp *ramp, double progress, double color[4]) {
+    const camber_ramp_stop *stops = ramp->stops;
+    size_t i = 0;
+    while (i + 1 < ramp->count && (double)stops[i + 1].place <= progress)
+        i++;
+    const camber_ramp_stop ends[2] = {stops[i], stops[i + 1 < ramp->count ? i + 1 : i]};
+    const double span = (double)ends[1].place - (double)ends[0].place;
+    const double t = span > 0 ? fmin(fmax((progress - (double)ends[0].place) / span, 0), 1) : 0;
+    for (int c = 0; c < 4; c++)
+        color[c] = 0;
+    for (int e = 0; e < 2; e++) {
+        const double a = (double)ends[e].color.a * (e ? t : 1 - t);
+        color[0] += (double)ends[e].color.r * a;
+        color[1] += (double)ends[e].color.g * a;
+        color[2] += (double)ends[e].color.b * a;
+        color[3] += a;
+    }
+}
+
+static void add_sample(const camber_along_desc *d, double total, double x, double y, double sum[4]) {
+    double color[4] = {1, 1, 1, 1};
+    const foot p = foot_of(d, x, y);
+    const double progress = p.along / total, share = share_at(d, p, progress);
+    if (share <= 0)
+        return;
+    if (d->paint->ramp)
+        color_at(d->ramp, progress, color);
+    const camber_color c = d->paint->color;
+    const double by[] = {(double)c.r, (double)c.g, (double)c.b, 1};
+    for (int i = 0; i < 4; i++)
+        sum[i] += share * color[i] * by[i] * (double)c.a;
+}
+
+void camber_along_add(const camber_along_desc *d, camber_window window, float *rgba) {
+    const double total = camber_along_length(d->points, d->count);
+    const double reach = (double)d->paint->width_px + 0.5 * (double)d->paint->gap_px + 2;
+    for (int y = 0; y < window.height; y++)
+        for (int x = 0; x < window.width; x++) {
+            const double left = window.x0 + x, top = window.y0 + y;
+            float *pixel = rgba + 4 * ((size_t)y * (size_t)window.width + (size_t)x);
+            double sum[4] = {0};
+            if (foot_of(d, left + 0.5, top + 0.5).distance > reach)
+                continue;
+            for (int s = 0; s < SAMPLES * SAMPLES; s++)
+                add_sample(d, total, left + (s % SAMPLES + 0.5) / SAMPLES, top + (s / SAMPLES + 0.5) / SAMPLES, sum);
+            for (int c = 0; c < 4; c++)
+                pixel[c] += (float)(sum[c] / (SAMPLES * SAMPLES));
+        }
+}

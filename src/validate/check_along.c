@@ -1,0 +1,164 @@
+/* Lines that have two sides and a gap, fade, are dashed, drawn in part or change their colour: against samples. */
+#include "validate/along_truth.h"
+#include "validate/checks.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SIDE_PX = 96, LINES = 3, PIXELS = SIDE_PX * SIDE_PX };
+
+/* Apart from each other: straight, bent, curved. */
+static const float points[] = {6.3f,  9.6f,  89.1f, 20.2f, 10.3f, 34.6f, 38.1f, 30.2f, 60.8f, 47.4f,
+                               86.7f, 43.9f, 8.0f,  66.f,  18.0f, 58.0f, 28.0f, 56.0f, 38.0f, 60.0f,
+                               46.0f, 68.0f, 56.0f, 76.0f, 68.0f, 80.0f, 80.f,  78.0f, 88.0f, 70.0f};
+static const uint32_t offsets[] = {0, 2, 6, 15};
+
+static const float even[] = {9.3f, 6.1f}, roomy[] = {7, 10.5f, 0, 9};
+static const camber_dash dashes[] = {{even, 2}, {roomy, 4}};
+static const camber_ramp_stop shades[] = {{0.1f, {1, 0, 0, 1}},    {0.4f, {0.2f, 0, 0, 1}}, {0.4f, {0.8f, 0, 0, 1}},
+                                          {0.6f, {0.8f, 0, 0, 1}}, {0.6f, {0.1f, 0, 0, 1}}, {0.9f, {1, 0, 0, 1}}};
+static const camber_ramp_stop panes[] = {
+    {0.1f, {1, 0, 0, 0.2f}}, {0.5f, {0.5f, 0, 0, 0.9f}}, {0.5f, {1, 0, 0, 0.4f}}, {1, {1, 0, 0, 1}}};
+static const camber_ramp ramps[] = {{shades, 6}, {panes, 4}};
+
+#define WHITE .color = {1, 1, 1, 1}
+
+/* Lines as they are drawn, and the bounds of their pixels: measured with llvmpipe, with a third on top. */
+static const struct {
+    const char *name;
+    camber_cap cap;
+    camber_paint paint;
+    camber_pixel_bounds bounds;
+} rows[] = {
+    {"a gap", CAMBER_CAP_BUTT, {.width_px = 3, .gap_px = 4, WHITE}, {0.6, 0.002, 0.0005}},
+    {"a blur", CAMBER_CAP_BUTT, {.width_px = 10, .blur_px = 3, WHITE}, {1.2, 0.001, 0.0005}},
+    {"dashes", CAMBER_CAP_BUTT, {.width_px = 5, .dash = 1, WHITE}, {0.7, 0.004, 0.0005}},
+    {"round dashes", CAMBER_CAP_ROUND, {.width_px = 5, .dash = 2, WHITE}, {2.4, 0.004, 0.0005}},
+    {"a trim", CAMBER_CAP_ROUND, {.width_px = 7, .trim_start = 0.31f, .trim_end = 0.62f, WHITE}, {0.7, 0.004, 0.0005}},
+    {"a ramp", CAMBER_CAP_BUTT, {.width_px = 8, .ramp = 1, WHITE}, {0.3, 0.002, 0.0005}},
+    {"a translucent ramp", CAMBER_CAP_BUTT, {.width_px = 8, .ramp = 2, WHITE}, {0.3, 0.002, 0.0005}},
+};
+
+/* Red, then alpha. */
+typedef struct channels {
+    uint8_t levels[2 * PIXELS];
+} channels;
+
+static bool take(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count) {
+    channels *to = user;
+    for (size_t i = 0; i < (size_t)row_count * SIDE_PX; i++) {
+        to->levels[(size_t)first_row * SIDE_PX + i] = rgba[4 * i];
+        to->levels[PIXELS + (size_t)first_row * SIDE_PX + i] = rgba[4 * i + 3];
+    }
+    return true;
+}
+
+static void make_truth(size_t number, float truth[2 * PIXELS]) {
+    static const camber_window window = {0, 0, SIDE_PX, SIDE_PX};
+    const camber_paint *paint = &rows[number].paint;
+    float *rgba = calloc(PIXELS, 4 * sizeof *rgba);
+    for (size_t i = 0; i < LINES && rgba; i++) {
+        const camber_along_desc desc = {.points = points + 2 * offsets[i],
+                                        .count = offsets[i + 1] - offsets[i],
+                                        .cap = rows[number].cap,
+                                        .paint = paint,
+                                        .dash = paint->dash ? dashes + paint->dash - 1 : NULL,
+                                        .ramp = paint->ramp ? ramps + paint->ramp - 1 : NULL};
+        camber_along_add(&desc, window, rgba);
+    }
+    for (size_t i = 0; i < PIXELS && rgba; i++) {
+        truth[i] = rgba[4 * i];
+        truth[PIXELS + i] = rgba[4 * i + 3];
+    }
+    free(rgba);
+}
+
+static camber_status draw(camber_context *context, const camber_drawing_path *path, size_t number, camber_method method,
+                          channels *drawn) {
+    const camber_paint *paint = &rows[number].paint;
+    const camber_stroke stroke = {.width_px = 2 * paint->width_px + paint->gap_px, .cap = rows[number].cap};
+    const camber_polylines_desc desc = {
+        .points = points, .point_count = offsets[LINES], .offsets = offsets, .polyline_count = LINES};
+    const camber_tessellation_desc tessellation = {
+        .strokes = &stroke, .stroke_count = 1, .method = method, .has_arc_length = true};
+    const camber_pass pass = {.mesh = path->mesh,
+                              .paints = paint,
+                              .paint_count = 1,
+                              .dashes = dashes,
+                              .dash_count = 2,
+                              .ramps = ramps,
+                              .ramp_count = 2};
+    const camber_frame frame = {.width = SIDE_PX, .height = SIDE_PX, .passes = &pass, .pass_count = 1};
+    camber_polylines *polylines = NULL;
+    camber_status status = camber_polylines_create(context, &desc, &polylines);
+    if (status == CAMBER_OK)
+        status = camber_mesh_tessellate(path->mesh, polylines, &tessellation);
+    if (status == CAMBER_OK)
+        status = camber_renderer_render(path->renderer, &frame, take, drawn, NULL);
+    camber_polylines_destroy(polylines);
+    return status;
+}
+
+/* The pixel that is farthest off, and what passes the bounds. */
+static bool find(const float *truth, const channels *drawn, camber_check *check) {
+    const camber_difference d = camber_difference_of(truth, drawn->levels, 2 * PIXELS);
+    const camber_pixel_bounds is = {camber_difference_mean(&d), (double)d.past_16 / (double)(d.touched ? d.touched : 1),
+                                    (double)d.past_64 / (double)(d.touched ? d.touched : 1)};
+    camber_finding *finding = &check->finding;
+    check->has_error = true;
+    check->error = (camber_pixel_error){.of = is, .windows = 1, .pixels = d.touched, .max = d.max};
+    finding->field = !(is.mean <= check->most.mean)         ? "mean"
+                     : !(is.past_16 <= check->most.past_16) ? "past_16"
+                     : !(is.past_64 <= check->most.past_64) ? "past_64"
+                                                            : NULL;
+    if (!finding->field)
+        return false;
+    const bool by_mean = finding->field[0] == 'm', by_64 = finding->field[5] == '6' && finding->field[6] == '4';
+    finding->stage = "pixels";
+    finding->got = by_mean ? is.mean : by_64 ? is.past_64 : is.past_16;
+    finding->expected = by_mean ? check->most.mean : by_64 ? check->most.past_64 : check->most.past_16;
+    snprintf(finding->what, sizeof finding->what, "pixels: %s is %.4g, at most %.4g; most at %zu, %zu", finding->field,
+             finding->got, finding->expected, d.max_at % PIXELS % SIDE_PX, d.max_at % PIXELS / SIDE_PX);
+    return true;
+}
+
+static camber_status check_row(camber_validation *v, const camber_checked_device *checked,
+                               const camber_checked_drawer *drawer, camber_method method, size_t number) {
+    static const camber_window window = {0, 0, SIDE_PX, SIDE_PX};
+    camber_check check =
+        camber_check_start(checked->name, drawer->name, "along lines: %s: %s: pixels, on %s, %s",
+                           camber_method_get_name(method), rows[number].name, checked->name, drawer->name);
+    float *truth = calloc(2 * PIXELS, sizeof *truth);
+    channels *drawn = calloc(1, sizeof *drawn);
+    check.most = rows[number].bounds;
+    camber_status made = CAMBER_ERROR_MEMORY;
+    if (truth && drawn) {
+        make_truth(number, truth);
+        made = draw(v->desc->context, &drawer->paths[0], number, method, drawn);
+    }
+    camber_status status = made;
+    if (status == CAMBER_OK && find(truth, drawn, &check)) {
+        check.result = CAMBER_RESULT_FAILED;
+        status = camber_failure_image_write(v, window, truth, drawn->levels, &check.finding);
+    }
+    if (status == CAMBER_OK)
+        camber_results_add(&v->results, &check);
+    free(drawn);
+    free(truth);
+    return status;
+}
+
+camber_status camber_check_along(camber_validation *v) {
+    const camber_validation_desc *desc = v->desc;
+    camber_status status = CAMBER_OK;
+    for (size_t r = 0; r < v->devices.count; r++)
+        for (size_t e = 0; e < v->devices.list[r].drawer_count && v->devices.list[r].drawers[e].in_gl; e++)
+            for (int method = 0; method < 3; method++)
+                for (size_t i = 0; i < sizeof rows / sizeof *rows && status == CAMBER_OK; i++)
+                    if ((desc->method < 0 || desc->method == method) &&
+                        camber_draws_method(desc, (camber_method)method) && !v->devices.list[r].broken[method])
+                        status =
+                            check_row(v, &v->devices.list[r], &v->devices.list[r].drawers[e], (camber_method)method, i);
+    return status;
+}

@@ -1,0 +1,242 @@
+/* The kernels that draw against their CPU twin, stage by stage and byte for byte. */
+#include "validate/checks.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PASSES = 3, SIDE_PX = 2048, RECORDS_MAX = 1 << 20 };
+/* Side of the picture of a made-up scene, unless the checks are full: the twin takes longer than all else. */
+enum { PART_PX = 512 };
+
+/* ---- The picture: lines over each other, united, and in a group ---- */
+
+/* Kernels are built in variants: without sides beside lines, with them, and for planes that are seen at an angle. */
+static const struct {
+    const char *name;
+    float gap_px, blur_px;
+    double pitch_deg;
+} variants[] = {{"", 0, 0, 0}, {", gaps and blurs", 1.5f, 0.8f, 0}, {", at 40 degrees", 0, 0, 40}};
+enum { VARIANTS = sizeof variants / sizeof *variants };
+
+typedef struct drawn {
+    camber_paint *paints; /* of a pass, stroke_count each */
+    camber_pass passes[PASSES];
+    camber_frame frame;
+} drawn;
+
+static camber_color color_of(size_t row, size_t pass) {
+    const size_t i = row + 2 * pass;
+    const float alphas[PASSES] = {1.0f, 0.5f, row % 2 ? 1.0f : 0.6f};
+    return (camber_color){0.2f * (float)(i % 6), 1.0f - 0.2f * (float)(i % 5), 0.25f * (float)(i % 4), alphas[pass]};
+}
+
+static bool make_frame(const camber_subject *s, const camber_validation_desc *desc, camber_mesh *mesh, int variant,
+                       drawn *d) {
+    static const float widths[PASSES] = {1.0f, 0.6f, 0.3f};
+    const uint32_t side = s->scene && !desc->full ? PART_PX : SIDE_PX;
+    *d = (drawn){.paints = calloc(PASSES * s->stroke_count + 1, sizeof *d->paints)};
+    if (!d->paints)
+        return false;
+    for (size_t pass = 0; pass < PASSES; pass++) {
+        camber_paint *paints = d->paints + pass * s->stroke_count;
+        for (size_t row = 0; row < s->stroke_count; row++)
+            paints[row] = (camber_paint){.width_px = widths[pass] * s->strokes[row].width_px,
+                                         .color = pass == 1 ? color_of(0, 1) : color_of(row, pass),
+                                         .translate_x_px = pass == 2 ? 1.5f : 0.0f,
+                                         .gap_px = row % 2 ? variants[variant].gap_px : 0.0f,
+                                         .blur_px = pass == 2 ? variants[variant].blur_px : 0.0f};
+        d->passes[pass] = (camber_pass){.mesh = mesh, .paints = paints, .paint_count = s->stroke_count};
+    }
+    d->passes[1].overlap = CAMBER_OVERLAP_UNITE;
+    d->passes[2].overlap = CAMBER_OVERLAP_ACCUMULATE;
+    d->passes[2].opacity = 0.7f;
+    d->frame = (camber_frame){.width = s->width < side ? s->width : side,
+                              .height = s->height < side ? s->height : side,
+                              .background = {0.2f, 0.3f, 0.4f, 0.5f},
+                              .passes = d->passes,
+                              .pass_count = PASSES,
+                              .coverage = (camber_coverage)desc->coverage,
+                              .pitch_deg = variants[variant].pitch_deg};
+    return true;
+}
+
+/* ---- Differences ---- */
+
+static bool tell(camber_finding *finding, const char *stage, const char *where, double got, double expected) {
+    finding->stage = stage;
+    finding->got = got;
+    finding->expected = expected;
+    snprintf(finding->what, sizeof finding->what, "%s: %s is %s, not %s", stage, where, camber_value_print(got).text,
+             camber_value_print(expected).text);
+    return true;
+}
+
+static bool boxes_differ(const camber_drawing_stages *got, const camber_drawing_stages *expected,
+                         camber_finding *finding) {
+    char where[96];
+    finding->field = "tiles";
+    if (got->segment_count != expected->segment_count)
+        return tell(finding, "setup", "the number of segments", (double)got->segment_count,
+                    (double)expected->segment_count);
+    for (size_t i = 0; i < expected->segment_count; i++)
+        if (got->boxes[i] != expected->boxes[i]) {
+            snprintf(where, sizeof where, "the box of segment %zu", i);
+            return tell(finding, "setup", where, got->boxes[i], expected->boxes[i]);
+        }
+    return false;
+}
+
+/* Compares words that each segment has so many of. Segments that are not drawn have whatever lay there. */
+static bool words_differ(const char *field, const float *got, const float *expected, size_t words,
+                         const camber_drawing_stages *of, camber_finding *finding) {
+    char where[96];
+    finding->field = field;
+    for (size_t i = 0; i < words * of->segment_count; i++) {
+        const uint32_t box = of->boxes[i / words];
+        if ((box & 255u) > (box >> 16 & 255u) || memcmp(got + i, expected + i, sizeof(float)) == 0)
+            continue;
+        snprintf(where, sizeof where, "word %zu of segment %zu's %s", i % words, i / words, field);
+        return tell(finding, "setup", where, (double)got[i], (double)expected[i]);
+    }
+    return false;
+}
+
+static bool shapes_differ(const camber_drawing_stages *got, const camber_drawing_stages *expected,
+                          camber_finding *finding) {
+    return words_differ("setup", got->segments, expected->segments, expected->segment_words, expected, finding) ||
+           (expected->arc_lengths && words_differ("measures", got->arc_lengths, expected->arc_lengths,
+                                                  expected->measure_words, expected, finding)) ||
+           (expected->planes &&
+            words_differ("plane", got->planes, expected->planes, expected->plane_words, expected, finding));
+}
+
+static bool lists_differ(const camber_drawing_stages *got, const camber_drawing_stages *expected,
+                         camber_finding *finding) {
+    const size_t tiles = (size_t)expected->columns * expected->rows;
+    char where[96];
+    for (size_t i = 0; i <= tiles; i++)
+        if (got->starts[i] != expected->starts[i]) {
+            finding->field = "starts";
+            snprintf(where, sizeof where, "where the list of tile %zu, %zu begins", i % expected->columns,
+                     i / expected->columns);
+            return tell(finding, "count", where, got->starts[i], expected->starts[i]);
+        }
+    for (size_t i = 0; i < expected->starts[tiles]; i++)
+        if (got->lists[i] != expected->lists[i]) {
+            finding->field = "lists";
+            snprintf(where, sizeof where, "entry %zu of all lists", i);
+            return tell(finding, "fill", where, got->lists[i], expected->lists[i]);
+        }
+    return false;
+}
+
+static bool pixels_differ(const camber_drawing_stages *got, const camber_drawing_stages *expected,
+                          camber_finding *finding) {
+    char where[96];
+    finding->field = "rgba";
+    for (size_t i = 0; i < 4 * (size_t)expected->width * expected->height; i++)
+        if (got->rgba[i] != expected->rgba[i]) {
+            snprintf(where, sizeof where, "channel %zu of pixel %zu, %zu", i % 4, i / 4 % expected->width,
+                     i / 4 / expected->width);
+            return tell(finding, "cover", where, got->rgba[i], expected->rgba[i]);
+        }
+    return false;
+}
+
+/* Stage by stage, since what one gets wrong the next ones inherit. */
+static bool stages_differ(const camber_drawing_stages *got, const camber_drawing_stages *expected,
+                          camber_finding *finding) {
+    return boxes_differ(got, expected, finding) || shapes_differ(got, expected, finding) ||
+           lists_differ(got, expected, finding) || pixels_differ(got, expected, finding);
+}
+
+/* ---- The check ---- */
+
+static camber_status compare(const camber_validation *v, const camber_subject *s, const camber_drawing_path *path,
+                             int variant, camber_check *check) {
+    camber_drawing_stages got = {0}, expected = {0};
+    drawn d;
+    if (!make_frame(s, v->desc, path->mesh, variant, &d))
+        return CAMBER_ERROR_MEMORY;
+    camber_status status = camber_renderer_read_stages(path->renderer, &d.frame, &got);
+    if (status == CAMBER_OK)
+        status = camber_drawing_stages_rasterize(path->renderer, &d.frame, &expected);
+    if (status == CAMBER_OK && stages_differ(&got, &expected, &check->finding))
+        check->result = CAMBER_RESULT_FAILED;
+    camber_drawing_stages_destroy(&got);
+    camber_drawing_stages_destroy(&expected);
+    free(d.paints);
+    return status;
+}
+
+/* Kernels that draw: the device's own, or those in the shape that a GPU's have, as other work-groups do. */
+typedef struct kernels {
+    const char *name, *how;
+    camber_drawing_path path;
+    int variant;
+} kernels;
+
+static camber_status check_method(camber_validation *v, const camber_subject *s, const camber_checked_device *checked,
+                                  const kernels *on, camber_method method) {
+    const camber_tessellation_desc desc = {s->strokes, s->stroke_count, method, 0, false};
+    camber_check check =
+        camber_check_start(checked->name, on->name, "%s: %s%s: drawn as by the CPU twin%s, on %s", s->name,
+                           camber_method_get_name(method), variants[on->variant].name, on->how, checked->name);
+    if (checked->broken[method]) {
+        camber_results_skip(&v->results, check, "the mesh is not the CPU twin's");
+        return CAMBER_OK;
+    }
+    camber_status made = camber_subject_tessellate(s, on->path.mesh, &desc);
+    if (made == CAMBER_OK && camber_mesh_get_info(on->path.mesh).record_count > RECORDS_MAX) {
+        camber_results_skip(&v->results, check, "there are more than a million points, which take the twin minutes");
+        return CAMBER_OK;
+    }
+    if (made == CAMBER_OK)
+        made = compare(v, s, &on->path, on->variant, &check);
+    const camber_status status = made;
+    if (status == CAMBER_OK)
+        camber_results_add(&v->results, &check);
+    return status;
+}
+
+static camber_status check_methods(camber_validation *v, const camber_subject *s, const camber_checked_device *checked,
+                                   const kernels *on) {
+    camber_status status = CAMBER_OK;
+    for (int m = CAMBER_METHOD_STRIP; m <= CAMBER_METHOD_FAN && status == CAMBER_OK; m++)
+        if (camber_subject_takes(s, v->desc, (camber_method)m) && camber_draws_method(v->desc, (camber_method)m))
+            status = check_method(v, s, checked, on, (camber_method)m);
+    return status;
+}
+
+static camber_status check_groups(camber_validation *v, const camber_subject *s, const camber_checked_device *checked,
+                                  const char *name) {
+    camber_device *device = checked->groups[0].device;
+    kernels on = {.name = name, .how = ", a pixel a work-item"};
+    camber_status made = camber_renderer_create(device, NULL, NULL, &on.path.renderer);
+    if (made == CAMBER_OK)
+        made = camber_mesh_create(device, on.path.renderer, &on.path.mesh);
+    camber_status status = made;
+    if (status == CAMBER_OK)
+        status = check_methods(v, s, checked, &on);
+    camber_mesh_destroy(on.path.mesh);
+    camber_renderer_destroy(on.path.renderer);
+    return status;
+}
+
+camber_status camber_check_drawing(camber_validation *v, const camber_subject *s) {
+    camber_status status = CAMBER_OK;
+    for (size_t r = 0; r < v->devices.count; r++)
+        for (size_t e = 0; e < v->devices.list[r].drawer_count && status == CAMBER_OK; e++) {
+            const camber_checked_device *checked = v->devices.list + r;
+            const camber_checked_drawer *drawer = checked->drawers + e;
+            if (drawer->in_gl)
+                continue;
+            for (int i = 0; i < VARIANTS && status == CAMBER_OK; i++)
+                status = check_methods(v, s, checked, &(kernels){drawer->name, "", drawer->paths[0], i});
+            const bool is_cpu = camber_device_get_info(checked->device).type == CAMBER_DEVICE_TYPE_CPU;
+            if (status == CAMBER_OK && (!is_cpu || v->desc->full))
+                status = check_groups(v, s, checked, drawer->name);
+        }
+    return status;
+}

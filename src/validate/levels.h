@@ -1,0 +1,29 @@
+/* One channel of a picture, in memory: a mesh drawn opaque, white on black. */
+#ifndef CAMBER_VALIDATE_LEVELS_H
+#define CAMBER_VALIDATE_LEVELS_H
+
+#include "validate/devices.h"
+
+typedef struct camber_levels {
+    uint8_t *levels;
+    size_t width;
+    int channel; /* 0 to 3: red to alpha */
+} camber_levels;
+
+/* A camber_rows_fn; user is a camber_levels. */
+bool camber_levels_take(void *user, const uint8_t *rgba, uint32_t first_row, uint32_t row_count);
+
+typedef struct camber_drawing {
+    const camber_stroke *strokes; /* stroke_count: all rows are drawn, at their full widths */
+    size_t stroke_count;
+    uint32_t width, height; /* px */
+    camber_coverage coverage;
+    camber_overlap overlap;
+} camber_drawing;
+
+/* Draws the path's mesh in one pass. levels takes width * height. */
+camber_status camber_draw_levels(const camber_drawing_path *path, const camber_drawing *drawing, uint8_t *levels);
+/* Counts the overdraw of the same, line by line. */
+camber_status camber_draw_count(const camber_drawing_path *path, const camber_drawing *drawing, camber_overdraw *sum);
+
+#endif

@@ -1,0 +1,15 @@
+/* Random numbers that are the same on every machine: xorshift64*, S. Vigna, "An experimental exploration of Marsaglia's
+ * xorshift generators, scrambled". */
+#ifndef CAMBER_VALIDATE_RANDOM_H
+#define CAMBER_VALIDATE_RANDOM_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* 53 bits. seed: not 0; changed by every call. */
+uint64_t camber_random_bits(uint64_t *seed);
+double camber_random_between(uint64_t *seed, double least, double most);
+/* 0 to bound - 1. */
+size_t camber_random_below(uint64_t *seed, size_t bound);
+
+#endif

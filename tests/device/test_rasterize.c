@@ -1,0 +1,454 @@
+/* Drawing in OpenCL: the device against the twin to the last bit, stage by stage; GL's pictures; the same bytes again
+ * and in areas of any size; loads that lie in one tile or in one polyline. */
+#include "raster_twin.h"
+
+#include "draw/renderer.h"
+
+enum { SIDE_PX = 600 };
+
+/* ---- Scenes ---- */
+
+typedef struct drawing {
+    camber_made_scene lines;
+    camber_stroke strokes[CAMBER_KERNEL_ROWS];
+    camber_paint paints[3][CAMBER_KERNEL_ROWS];
+    camber_pass passes[3];
+    camber_frame frame;
+    bool has_arc_length;
+} drawing;
+
+static camber_color color_of(size_t i, float alpha) {
+    return (camber_color){0.2f * (float)(i % 6), 1.0f - 0.2f * (float)(i % 5), 0.2f * (float)(i % 4), alpha};
+}
+
+/* Casing, fill, and a pass that a caller makes translucent; all joins and caps. */
+static drawing begin_drawing(void) {
+    drawing d = {.frame = {.width = SIDE_PX, .height = SIDE_PX - 37, .background = {0.8f, 0.6f, 1, 1}}};
+    scene_strokes(d.strokes);
+    for (size_t i = 0; i < CAMBER_KERNEL_ROWS; i++) {
+        const float width = d.strokes[i].width_px;
+        d.paints[0][i] = (camber_paint){.width_px = width, .color = {0, 0, 0, 1}};
+        d.paints[1][i] = (camber_paint){.width_px = 0.6f * width, .color = color_of(i, 1), .translate_x_px = 3};
+        d.paints[2][i] = (camber_paint){.width_px = 0.3f * width, .color = color_of(i + 2, 0.4f)};
+    }
+    return d;
+}
+
+static const camber_frame *end_drawing(drawing *d, camber_mesh *mesh, size_t pass_count) {
+    for (size_t i = 0; i < 3; i++) {
+        d->passes[i].mesh = mesh;
+        d->passes[i].paints = d->paints[i];
+        d->passes[i].paint_count = CAMBER_KERNEL_ROWS;
+    }
+    d->frame.passes = d->passes;
+    d->frame.pass_count = pass_count;
+    return &d->frame;
+}
+
+static void fill_scene(camber_made_scene *lines, int which) {
+    uint64_t seed = 77 + (uint64_t)which;
+    static void (*const fills[])(camber_made_scene *, uint64_t *) = {camber_scene_add_walks, camber_scene_add_blocks,
+                                                                     camber_scene_add_rings, camber_scene_add_turns,
+                                                                     camber_scene_add_degenerate};
+    fills[which](lines, &seed);
+}
+
+enum { SCENES = 5 };
+
+static camber_mesh *make_mesh(const fixture *e, camber_renderer *renderer, const drawing *d, camber_method method) {
+    const camber_tessellation_desc desc = {d->strokes, CAMBER_KERNEL_ROWS, method, 0, d->has_arc_length};
+    return fixture_mesh(e, renderer, &d->lines, &desc);
+}
+
+/* ---- Device and twin ---- */
+
+static const double PITCHES[] = {1, 30, 60, 85};
+
+/* A scene of the stages alone: one table, a brush a row, with layers and a group among them, and a fill. The rich
+ * variant makes the same of what is plain. */
+static void compare_with_twin(const fixture *e, const drawing *d, camber_mesh *mesh, bool linear,
+                              camber_raster_area area) {
+    static const camber_brush_ext nothing[2 * CAMBER_KERNEL_ROWS + 1];
+    const uint32_t fill = 2 * CAMBER_KERNEL_ROWS;
+    float rows[2 * CAMBER_KERNEL_ROWS + 1][CAMBER_RASTER_ROW_WORDS] = {{0}};
+    camber_brush brushes[2 * CAMBER_KERNEL_ROWS + 1] = {{0}};
+    for (uint32_t i = 0; i < 2 * CAMBER_KERNEL_ROWS; i++) {
+        const bool over = i >= CAMBER_KERNEL_ROWS;
+        const float width = d->strokes[i % CAMBER_KERNEL_ROWS].width_px;
+        rows[i][0] = width > 0.0f ? (over ? 0.3f : 0.5f) * width : -1.0f;
+        rows[i][1] = over ? 1.5f : 0.0f;
+        memcpy(rows[i] + 3, &i, sizeof i);
+        const camber_color c = color_of(i, over ? 1.0f : 0.5f);
+        brushes[i] =
+            (camber_brush){.r = c.r, .g = c.g, .b = c.b, .a = c.a, .layer_opacity = 0.7f, .group_opacity = 0.6f};
+        brushes[i].mode = i % 3 == 0 && !over ? CAMBER_BRUSH_UNION : CAMBER_BRUSH_OVER;
+        brushes[i].group = over ? 1 : 0;
+        brushes[i].layer = i % 4 == 1 ? i : 0;
+    }
+    rows[fill][0] = CAMBER_FILL_PX;
+    memcpy(rows[fill] + 3, &fill, sizeof fill);
+    brushes[fill] =
+        (camber_brush){.r = 0.1f, .g = 0.9f, .b = 0.4f, .a = linear ? 1 : 0.3f, .group = 1, .group_opacity = 0.6f};
+    const size_t count = mesh->polyline_count;
+    const camber_raster_input runs[] = {
+        {mesh, 0, count, 0}, {NULL, 0, 0, fill}, {mesh, count / 3, count, CAMBER_KERNEL_ROWS}};
+    camber_raster_scene drawn = {rows[0], fill + 1, brushes, fill + 1, runs, 3, {0.2f, 0.3f, 0.4f, 1}, linear};
+    uint8_t *plain = raster_draw_twice(e, &drawn, area);
+    drawn.brush_ext = nothing;
+    uint8_t *rich = raster_draw_twice(e, &drawn, area);
+    assert_memory_equal(plain, rich, 4 * (size_t)area.width * area.height);
+    camber_free(e->context, rich);
+    camber_free(e->context, plain);
+    for (size_t i = 0; i < sizeof PITCHES / sizeof *PITCHES; i++) {
+        raster_tilt(&drawn, PITCHES[i], SIDE_PX, SIDE_PX);
+        camber_free(e->context, raster_draw_twice(e, &drawn, area));
+    }
+}
+
+static void test_twin(void **state) {
+    const fixture *e = *state;
+    static const camber_method methods[] = {CAMBER_METHOD_STRIP, CAMBER_METHOD_KITE, CAMBER_METHOD_FAN};
+    for (int which = 0; which < SCENES; which++)
+        for (int m = 0; m < 3; m++) {
+            drawing d = begin_drawing();
+            fill_scene(&d.lines, which);
+            d.has_arc_length = (which + m) % 2;
+            camber_mesh *mesh = make_mesh(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], &d, methods[m]);
+            compare_with_twin(e, &d, mesh, which % 2, (camber_raster_area){32 * (uint32_t)m, 64, 500, 333});
+            camber_mesh_destroy(mesh);
+            camber_made_scene_free(&d.lines);
+        }
+}
+
+/* ---- GL ---- */
+
+static picture draw_with(const fixture *e, camber_renderer *renderer, drawing *d, size_t pass_count,
+                         camber_method method) {
+    camber_mesh *mesh = make_mesh(e, renderer, d, method);
+    picture p = picture_draw(renderer, end_drawing(d, mesh, pass_count));
+    camber_mesh_destroy(mesh);
+    return p;
+}
+
+/* GL rounds to 8 bits at each line, which is a level or two. And it says by triangles which segment has a pixel,
+ * kernels by the bisector itself: on it single pixels belong to another, which shows where joins are sharp and lines
+ * wide. */
+enum { MOST = 200, PIXELS_PAST_8 = 1000 };
+static void compare_with_gl(const fixture *e, drawing *d, size_t pass_count, const char *what) {
+    const double bound = d->passes[1].opacity > 0 ? 0.3 : 0.2; /* a group is rounded twice more */
+    camber_renderer *gl = fixture_gl(e);
+    picture a = draw_with(e, gl, d, pass_count, CAMBER_METHOD_STRIP),
+            b = draw_with(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], d, pass_count, CAMBER_METHOD_STRIP);
+    const difference apart = picture_compare(&a, &b);
+    printf("# %-40s %.4f of 255 on average, %d at most, %zu pixels past 8\n", what, apart.mean, apart.most,
+           apart.past_8);
+
+    assert_true(apart.drawn > 0 && apart.mean < bound && apart.most <= (d->frame.pitch_deg > 0 ? 255 : MOST));
+
+    assert_true(apart.past_8 <= apart.drawn / PIXELS_PAST_8);
+    picture_free(&a);
+    picture_free(&b);
+}
+
+static void test_gl(void **state) {
+    const fixture *e = *state;
+    static const char *const names[SCENES] = {"walks", "blocks", "rings", "turns", "degenerate"};
+    if (!fixture_gl(e))
+        skip();
+    for (int which = 0; which < SCENES; which++) {
+        drawing d = begin_drawing();
+        fill_scene(&d.lines, which);
+        compare_with_gl(e, &d, 2, names[which]);
+        d.passes[2].overlap = CAMBER_OVERLAP_FLATTEN;
+        compare_with_gl(e, &d, 3, "  with a translucent pass");
+        d.passes[0].overlap = CAMBER_OVERLAP_UNITE;
+        d.passes[1].opacity = 0.5f;
+        d.passes[2].overlap = CAMBER_OVERLAP_ACCUMULATE;
+        d.passes[2].opacity = 0.8f;
+        d.paints[1][3].color.a = 0.3f;
+        compare_with_gl(e, &d, 3, "  with layers in groups");
+        d.frame.coverage = CAMBER_COVERAGE_LINEAR;
+        d.frame.background = (camber_color){0, 0, 0, 0};
+        compare_with_gl(e, &d, 3, "  with ramps, on nothing");
+        camber_made_scene_free(&d.lines);
+    }
+}
+
+/* GL's segments do not agree to the last bit where a join parts them: single pixels of wide lines stay empty. */
+static void test_gl_tilted(void **state) {
+    const fixture *e = *state;
+    static const char *const names[SCENES] = {"walks", "blocks", "rings", "turns", "degenerate"};
+    if (!fixture_gl(e))
+        skip();
+    for (int which = 0; which < SCENES; which++)
+        for (size_t i = 0; i < sizeof PITCHES / sizeof *PITCHES; i++) {
+            char what[64];
+            drawing d = begin_drawing();
+            fill_scene(&d.lines, which);
+            d.frame.pitch_deg = PITCHES[i];
+            snprintf(what, sizeof what, "%s at %g degrees", names[which], PITCHES[i]);
+            compare_with_gl(e, &d, 2, what);
+            d.passes[2].overlap = CAMBER_OVERLAP_FLATTEN;
+            compare_with_gl(e, &d, 3, "  with a translucent pass");
+            d.passes[0].overlap = CAMBER_OVERLAP_UNITE;
+            d.passes[1].opacity = 0.5f;
+            d.frame.coverage = CAMBER_COVERAGE_LINEAR;
+            compare_with_gl(e, &d, 3, "  united, with ramps");
+            camber_made_scene_free(&d.lines);
+        }
+}
+
+/* ---- The same bytes ---- */
+
+static void compare_areas(const fixture *e, double pitch_deg) {
+    static const uint32_t sides[] = {0, 33, 64, 320, 599};
+    for (int which = 0; which < SCENES; which++) {
+        drawing d = begin_drawing();
+        fill_scene(&d.lines, which);
+        d.passes[0].overlap = which % 2 ? CAMBER_OVERLAP_UNITE : CAMBER_OVERLAP_ACCUMULATE;
+        d.passes[1].opacity = 0.5f;
+        d.frame.pitch_deg = pitch_deg;
+        picture whole = draw_with(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], &d, 3, CAMBER_METHOD_STRIP);
+        for (size_t i = 0; i < sizeof sides / sizeof *sides; i++) {
+            d.frame.largest_piece_px = sides[i];
+            picture p = draw_with(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], &d, 3, CAMBER_METHOD_STRIP);
+            picture_assert_same(&whole, &p);
+            picture_free(&p);
+        }
+        picture_free(&whole);
+        camber_made_scene_free(&d.lines);
+    }
+}
+
+/* The same picture on another device; gives the slices of its last area. */
+static uint32_t compare_on(const fixture *e, const camber_device_desc *desc, drawing *d, size_t pass_count,
+                           const picture *whole) {
+    fixture small = {.context = e->context};
+    assert_int_equal(camber_device_create(e->context, desc, &small.on.device), CAMBER_OK);
+    assert_int_equal(camber_renderer_create(small.on.device, NULL, NULL, &small.on.renderer[CAMBER_FIXTURE_OPENCL]),
+                     CAMBER_OK);
+    picture p = draw_with(&small, small.on.renderer[CAMBER_FIXTURE_OPENCL], d, pass_count, CAMBER_METHOD_STRIP);
+    const uint32_t slices = camber_raster_slice_count(small.on.renderer[CAMBER_FIXTURE_OPENCL]->raster);
+    picture_assert_same(whole, &p);
+    picture_free(&p);
+    camber_renderer_destroy(small.on.renderer[CAMBER_FIXTURE_OPENCL]);
+    camber_device_destroy(small.on.device);
+    return slices;
+}
+
+static void test_areas(void **state) {
+    compare_areas(*state, 0);
+    compare_areas(*state, 50);
+    compare_areas(*state, 80);
+}
+
+/* Where lists and pixels may take little, rows of tiles are drawn by halves. */
+static void test_little_memory(void **state) {
+    const fixture *e = *state;
+    drawing d = begin_drawing();
+    uint64_t seed = 8;
+    for (int i = 0; i < 60; i++) {
+        camber_made_scene_walk(&d.lines, &seed, 12, (const double[]){20, 90}, 1);
+        camber_made_scene_end(&d.lines, i % 2 ? 8 : (size_t)i % CAMBER_KERNEL_ROWS); /* every other one very wide */
+    }
+    picture whole = draw_with(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], &d, 3, CAMBER_METHOD_STRIP);
+    static const uint64_t largest[] = {2048 * 1024, 256 * 1024, 96 * 1024};
+    for (size_t i = 0; i < sizeof largest / sizeof *largest; i++) {
+        const camber_device_desc desc = {.largest_buffer_bytes = largest[i], .memory_bytes = 1 << (19 - i)};
+        compare_on(e, &desc, &d, 3, &whole);
+    }
+    picture_free(&whole);
+    camber_made_scene_free(&d.lines);
+}
+
+/* Shapes that no buffer has room for are drawn in slices: with layers, unions and groups open between them, in tiles
+ * that are heavy in some slices only, and where nothing of a slice is. */
+static void test_slices(void **state) {
+    const fixture *e = *state;
+    static const uint64_t largest[] = {1024 * 1024, 300 * 1024, 140 * 1024};
+    for (int which = 0; which < 4; which++) {
+        drawing d = begin_drawing();
+        uint64_t seed = 21;
+        if (which == 3)
+            for (int i = 0; i < 1500; i++) {
+                camber_made_scene_walk(&d.lines, &seed, 7, (const double[]){66, 90}, 1);
+                camber_made_scene_end(&d.lines, 1 + (size_t)i % 2);
+            }
+        fill_scene(&d.lines, which);
+        d.passes[0].overlap = which == 0 ? CAMBER_OVERLAP_UNITE : CAMBER_OVERLAP_ACCUMULATE;
+        d.passes[1].opacity = which % 2 ? 0.5f : 1.0f;
+        d.passes[2].overlap = which < 2 ? CAMBER_OVERLAP_FLATTEN : CAMBER_OVERLAP_UNITE;
+        d.passes[2].opacity = 0.8f;
+        d.paints[1][3].color.a = 0.3f;
+        d.frame.pitch_deg = which == 2 ? 60 : 0;
+        d.paints[1][2].blur_px = which == 1 ? 2.0f : 0.0f;
+        d.paints[0][1].gap_px = which == 1 ? 1.5f : 0.0f;
+        d.frame.pitch_deg = which == 2 ? 30.0 : 0.0;
+        picture whole = draw_with(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], &d, 3, CAMBER_METHOD_STRIP);
+        assert_int_equal(camber_raster_slice_count(e->on.renderer[CAMBER_FIXTURE_OPENCL]->raster), 1);
+        uint32_t most = 0;
+        for (size_t i = 0; i < sizeof largest / sizeof *largest; i++) {
+            const camber_device_desc desc = {.largest_buffer_bytes = largest[i]};
+            const uint32_t slices = compare_on(e, &desc, &d, 3, &whole);
+            most = slices > most ? slices : most;
+        }
+        printf("# %u slices at most\n", most);
+        assert_true(most > 3);
+        picture_free(&whole);
+        camber_made_scene_free(&d.lines);
+    }
+}
+
+/* Memory that drawing holds counts: a quarter of what is allowed, and meshes have the rest. */
+static void test_bound(void **state) {
+    const fixture *e = *state;
+    const uint64_t allowed = 24 * 1024 * 1024;
+    const camber_device_desc desc = {.memory_bytes = allowed};
+    fixture bound = {.context = e->context};
+    drawing d = begin_drawing();
+    uint64_t seed = 4;
+    for (int i = 0; i < 3000; i++) {
+        camber_made_scene_walk(&d.lines, &seed, 40, (const double[]){20, 500}, 1);
+        camber_made_scene_end(&d.lines, (size_t)i % 3);
+    }
+    picture whole = draw_with(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], &d, 3, CAMBER_METHOD_STRIP);
+    assert_int_equal(camber_device_create(e->context, &desc, &bound.on.device), CAMBER_OK);
+    assert_int_equal(camber_renderer_create(bound.on.device, NULL, NULL, &bound.on.renderer[CAMBER_FIXTURE_OPENCL]),
+                     CAMBER_OK);
+    assert_true(camber_device_get_memory(bound.on.device).allowed_bytes == allowed);
+    picture p = draw_with(&bound, bound.on.renderer[CAMBER_FIXTURE_OPENCL], &d, 3, CAMBER_METHOD_STRIP);
+    picture_assert_same(&whole, &p);
+    const camber_device_memory memory = camber_device_get_memory(bound.on.device);
+    printf("# %u slices, %llu of %llu bytes at most\n",
+           camber_raster_slice_count(bound.on.renderer[CAMBER_FIXTURE_OPENCL]->raster),
+           (unsigned long long)memory.most_bytes, (unsigned long long)memory.allowed_bytes);
+    assert_true(camber_raster_slice_count(bound.on.renderer[CAMBER_FIXTURE_OPENCL]->raster) > 3);
+    assert_true(memory.held_bytes > allowed / 16 && memory.most_bytes <= allowed);
+    camber_renderer_destroy(bound.on.renderer[CAMBER_FIXTURE_OPENCL]);
+    assert_true(camber_device_get_memory(bound.on.device).held_bytes == 0);
+    assert_true(camber_device_get_memory(bound.on.device).allowed_bytes == allowed);
+    camber_device_destroy(bound.on.device);
+    picture_free(&p);
+    picture_free(&whole);
+    camber_made_scene_free(&d.lines);
+}
+
+static void test_steps(void **state) {
+    const fixture *e = *state;
+    drawing d = begin_drawing();
+    camber_scene_add_rings(&d.lines, &(uint64_t){5});
+    for (int i = 0; i < 2; i++) {
+        camber_mesh *mesh = make_mesh(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], &d, CAMBER_METHOD_STRIP);
+        d.frame.largest_piece_px = i ? 96 : 0;
+        const camber_frame *frame = end_drawing(&d, mesh, 2);
+        picture whole = picture_draw(e->on.renderer[CAMBER_FIXTURE_OPENCL], frame), p = whole;
+        p.rgba = malloc(4 * (size_t)p.width * p.height);
+        p.rows = 0;
+        assert_non_null(p.rgba);
+        assert_int_equal(camber_renderer_begin(e->on.renderer[CAMBER_FIXTURE_OPENCL], frame), CAMBER_OK);
+        assert_int_equal(camber_renderer_begin(e->on.renderer[CAMBER_FIXTURE_OPENCL], frame), CAMBER_OK);
+        assert_int_equal(camber_renderer_end(e->on.renderer[CAMBER_FIXTURE_OPENCL], picture_rows, &p, NULL), CAMBER_OK);
+        picture_assert_same(&whole, &p);
+        assert_int_equal(camber_renderer_end(e->on.renderer[CAMBER_FIXTURE_OPENCL], NULL, NULL, NULL), CAMBER_OK);
+        picture_free(&whole);
+        picture_free(&p);
+        camber_mesh_destroy(mesh);
+    }
+    camber_made_scene_free(&d.lines);
+}
+
+/* The shape that kernels have on a GPU, on whatever device there is: the twin's bytes, and the same picture, in slices
+ * too. */
+static void test_lanes(void **state) {
+    const fixture *e = *state;
+    fixture lanes = {.context = e->context};
+    const camber_device_desc desc = {.work_group_size = 64},
+                             small = {.work_group_size = 64, .largest_buffer_bytes = 300 * 1024};
+    assert_int_equal(camber_device_create(e->context, &desc, &lanes.on.device), CAMBER_OK);
+    assert_int_equal(lanes.on.device->lanes, 1);
+    assert_int_equal(camber_renderer_create(lanes.on.device, NULL, NULL, &lanes.on.renderer[CAMBER_FIXTURE_OPENCL]),
+                     CAMBER_OK);
+    for (int which = 0; which < SCENES; which++) {
+        drawing d = begin_drawing();
+        fill_scene(&d.lines, which);
+        camber_mesh *mesh = make_mesh(&lanes, lanes.on.renderer[CAMBER_FIXTURE_OPENCL], &d, (camber_method)(which % 3));
+        compare_with_twin(&lanes, &d, mesh, which % 2, (camber_raster_area){32 * (uint32_t)which, 64, 500, 333});
+        camber_mesh_destroy(mesh);
+        d.passes[0].overlap = which % 2 ? CAMBER_OVERLAP_ACCUMULATE : CAMBER_OVERLAP_UNITE;
+        d.passes[1].opacity = 0.5f;
+        d.passes[2].overlap = which < 2 ? CAMBER_OVERLAP_FLATTEN : CAMBER_OVERLAP_UNITE;
+        d.passes[2].opacity = 0.8f;
+        d.paints[1][3].color.a = 0.3f;
+        picture whole = draw_with(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], &d, 3, CAMBER_METHOD_STRIP);
+        assert_int_equal(compare_on(e, &desc, &d, 3, &whole), 1);
+        assert_true(compare_on(e, &small, &d, 3, &whole) > 1);
+        d.frame.pitch_deg = 50; /* which falls back to the other shape */
+        picture tilted = draw_with(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], &d, 3, CAMBER_METHOD_STRIP);
+        assert_int_equal(compare_on(e, &desc, &d, 3, &tilted), 1);
+        picture_free(&tilted);
+        picture_free(&whole);
+        camber_made_scene_free(&d.lines);
+    }
+    camber_renderer_destroy(lanes.on.renderer[CAMBER_FIXTURE_OPENCL]);
+    camber_device_destroy(lanes.on.device);
+}
+
+/* ---- Loads ---- */
+
+/* All in one tile, and one polyline over all: both take many work-items. */
+static void test_loads(void **state) {
+    const fixture *e = *state;
+    drawing d = begin_drawing();
+    uint64_t seed = 3;
+    for (int i = 0; i < 20000; i++) {
+        for (int k = 0; k < 5; k++)
+            camber_made_scene_point(&d.lines, camber_random_between(&seed, 66, 94),
+                                    camber_random_between(&seed, 66, 94));
+        camber_made_scene_end(&d.lines, 1 + (size_t)i % 2);
+    }
+    for (int i = 0; i < 1000000; i++)
+        camber_made_scene_point(&d.lines, 300 + 2e-4 * i * cos(1e-2 * i), 280 + 2e-4 * i * sin(1e-2 * i));
+    camber_made_scene_end(&d.lines, 2);
+    for (size_t i = 0; i < CAMBER_KERNEL_ROWS; i++)
+        d.paints[0][i].color.a = 0.5f;
+    d.passes[0].overlap = CAMBER_OVERLAP_ACCUMULATE;
+    camber_mesh *mesh = make_mesh(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], &d, CAMBER_METHOD_STRIP);
+    picture p = picture_draw(e->on.renderer[CAMBER_FIXTURE_OPENCL], end_drawing(&d, mesh, 1)),
+            q = picture_draw(e->on.renderer[CAMBER_FIXTURE_OPENCL], &d.frame);
+    picture_assert_same(&p, &q);
+    assert_true(picture_at(&p, 80, 80)[0] < 2); /* the background does not show */
+    picture_free(&p);
+    picture_free(&q);
+    camber_mesh_destroy(mesh);
+    camber_made_scene_free(&d.lines);
+}
+
+/* ---- Refusals ---- */
+
+static void test_refused(void **state) {
+    fixture *e = *state;
+    drawing d = begin_drawing();
+    camber_made_scene_point(&d.lines, 10, 10);
+    camber_made_scene_point(&d.lines, 90, 10);
+    camber_made_scene_end(&d.lines, 5);
+    camber_mesh *mesh = make_mesh(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], &d, CAMBER_METHOD_STRIP);
+    d.frame.pitch_deg = 30;
+    d.paints[0][5].blur_px = 2;
+    assert_int_equal(
+        camber_renderer_render(e->on.renderer[CAMBER_FIXTURE_OPENCL], end_drawing(&d, mesh, 1), NULL, NULL, NULL),
+        CAMBER_OK);
+    assert_int_equal(camber_renderer_get_rasterizer(e->on.renderer[CAMBER_FIXTURE_OPENCL]), CAMBER_RASTERIZER_OPENCL);
+    assert_int_equal(camber_renderer_get_sharing(e->on.renderer[CAMBER_FIXTURE_OPENCL]), CAMBER_SHARING_AUTO);
+    camber_mesh_destroy(mesh);
+    camber_made_scene_free(&d.lines);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_twin),          cmocka_unit_test(test_lanes),   cmocka_unit_test(test_gl),
+        cmocka_unit_test(test_gl_tilted),     cmocka_unit_test(test_areas),   cmocka_unit_test(test_steps),
+        cmocka_unit_test(test_little_memory), cmocka_unit_test(test_loads),   cmocka_unit_test(test_slices),
+        cmocka_unit_test(test_bound),         cmocka_unit_test(test_refused),
+    };
+    return FIXTURE_CL_RUN(tests);
+}

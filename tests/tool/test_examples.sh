@@ -1,0 +1,49 @@
+#!/usr/bin/env bash
+# The examples, built without a warning against the installed tree, and run; and README.md quotes the first one:
+# test_examples.sh SOURCE BUILD MAP [OUT]
+# The pictures that they draw stay in OUT.
+set -eu
+source=$1
+build=$2
+map=$3
+folder=$(mktemp -d)
+out=${4:-$folder/pictures}
+mkdir -p "$out"
+trap 'rm -rf "$folder"' EXIT
+# Another test installs from the same folder; its list of files is put back.
+manifest=$build/install_manifest.txt
+[ ! -f "$manifest" ] || cp "$manifest" "$folder/manifest"
+cmake --install "$build" --prefix "$folder/usr" >"$folder/log" || { cat "$folder/log"; exit 1; }
+rm -f "$manifest"
+[ ! -f "$folder/manifest" ] || mv "$folder/manifest" "$manifest"
+unset LD_PRELOAD
+
+cmake -S "$source/examples" -B "$folder/build" -G Ninja -DCMAKE_PREFIX_PATH="$folder/usr" -DCMAKE_C_FLAGS=-Werror \
+    >"$folder/log" 2>&1 && cmake --build "$folder/build" >>"$folder/log" 2>&1 || { cat "$folder/log"; exit 1; }
+for file in "$source"/examples/*.c; do
+    [ "$(wc -l <"$file")" -lt 80 ] || { echo "$file is too long for an example"; exit 1; }
+done
+
+# README.md quotes what stands in the file between its marks.
+marked=$(sed -n '/^\/\* README begins \*\/$/,/^\/\* README ends \*\/$/p' "$source/examples/hello.c" | sed '1d;$d')
+quoted=$(sed -n '/^<!-- examples\/hello\.c -->$/,/^<!-- end -->$/p' "$source/README.md" | sed '1,2d' | sed '$d' | sed '$d')
+if grep -q 'examples/hello\.c' "$source/README.md"; then
+    [ -n "$marked" ] && [ "$marked" = "$quoted" ] || {
+        diff <(echo "$marked") <(echo "$quoted")
+        echo "README.md does not quote examples/hello.c between <!-- examples/hello.c --> and <!-- end -->"
+        exit 1
+    }
+fi
+
+if "$folder/usr/bin/camber" info | grep -q '^device *none'; then
+    echo "built, not run: no OpenCL device"
+    exit 77
+fi
+cd "$out"
+"$folder/build/hello"
+"$folder/build/validate"
+[ "$map" != ON ] || "$folder/build/map" "$source/tests/data/santa_cruz/osm.mbtiles"
+status=0
+[ ! -x "$folder/build/texture" ] || "$folder/build/texture" || status=$?
+[ "$status" = 0 ] || [ "$status" = 77 ] || exit "$status"
+ls -l

@@ -1,0 +1,248 @@
+#!/usr/bin/env python3
+"""The lint of the tree finds what it is for: each rule is broken in a small tree of its own, and nothing else is found.
+
+    test_lint.py
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "lint"))
+import lint_tree  # noqa: E402
+
+HEAD = "/* A file. */\n"
+
+
+def header(guard, body=""):
+    return HEAD + "#ifndef %s\n#define %s\n%s\n#endif\n" % (guard, guard, body)
+
+
+CLEAN = {
+    "src/CMakeLists.txt": "# The layers.\nfunction(camber_layer name)\nendfunction()\n"
+                          "camber_layer(base)\ncamber_layer(io LINKS base PNG::PNG)\n"
+                          "camber_layer(draw LINKS io # drawn\n  EXTRA base)\n",
+    "src/camber.h": header("CAMBER_H", "typedef struct camber_context camber_context;"),
+    "src/base/base.h": header("CAMBER_BASE_BASE_H", '#include "camber.h"\n'
+                              "struct camber_context { int size; };\n"
+                              "typedef enum camber_kind { CAMBER_KIND_ONE } camber_kind;\n"
+                              "typedef void camber_log_fn(void *user, const char *text);\n"
+                              "int camber_base(void);"),
+    "src/base/base.c": HEAD + '#include "base/base.h"\ntypedef struct place { int x; } place;\n'
+                              "int camber_base(void) { return 0; }\n",
+    "src/io/png.c": HEAD + '#include "base/base.h"\n#include "kernels/layout.h"\n'
+                           "typedef struct place { int x; } place;\n"
+                           'static const char text[] = "typedef struct camber_kind { } /* Of */";\n'
+                           "int camber_png(void);\nint camber_png(void) { return camber_base() + (int)text[0]; }\n",
+    "src/draw/draw.c": HEAD + '#include "base/base.h" /* by way of io */\nint camber_png(void);\n'
+                              "int camber_rasterizer(void);\nint camber_rasterizer(void) { return camber_png(); }\n",
+    "kernels/layout.h": header("CAMBER_KERNELS_LAYOUT_H", "#define CAMBER_BLOCK 256"),
+    "kernels/scan.cl": HEAD + '#include "kernels/layout.h"\nkernel void scan(void) { int x = CAMBER_BLOCK; }\n',
+    "shaders/stroke.vert": "// Made of triangles.\nvoid main() {}\n",
+    "tests/fixtures/scene.h": header("CAMBER_TESTS_FIXTURES_SCENE_H", "typedef struct scene { int x; } scene;"),
+    "tests/unit/test_png.c": HEAD + "typedef struct scene { int other; } scene;\n",
+    "bench/bench.c": HEAD + "int main(void) { return 0; }\n",
+    "README.md": "# camber\n\n| %s |\n%s\n" % ("a row " * 40, "https://example.org/" + "long" * 40),
+    "docs/glossary.md": "# Words\n\n## Words that are gone\n\n- `camber_edge`: camber_edge\n"
+                        "- prowl, veil (of a layer): neighbour walk\n\n## Others\n\n- ink: brush\n",
+}
+
+
+class Lint(unittest.TestCase):
+    def setUp(self):
+        self.root = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.root)
+        for path, text in CLEAN.items():
+            self.write(path, text)
+
+    def write(self, path, text):
+        path = os.path.join(self.root, path)
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+
+    def append(self, path, text):
+        self.write(path, CLEAN[path] + text)
+
+    def findings(self, build=None):
+        tree = lint_tree.Tree(self.root, build)
+        return [finding for rule in lint_tree.RULES for finding in rule(tree)]
+
+    def finds(self, place, what, build=None):
+        """There is one finding, at place (file:line), and it says what."""
+        found = self.findings(build)
+        self.assertEqual(["%s:%d" % finding[:2] for finding in found], [place], found)
+        self.assertIn(what, found[0].what)
+
+    def compile(self):
+        """A build folder as CMake lays it out."""
+        build = os.path.join(self.root, "build")
+        for folder, _, names in os.walk(os.path.join(self.root, "src")):
+            for name in names:
+                if not name.endswith(".c"):
+                    continue
+                source = os.path.join(folder, name)
+                made = os.path.join(build, "src/CMakeFiles/objects.dir",
+                                    os.path.relpath(source, os.path.join(self.root, "src")) + ".o")
+                os.makedirs(os.path.dirname(made), exist_ok=True)
+                subprocess.run(["cc", "-c", "-I", os.path.join(self.root, "src"), "-I", self.root, "-o", made, source],
+                               check=True)
+        return build
+
+    def test_clean(self):
+        self.assertEqual(self.findings(), [])
+
+    def test_clean_objects(self):
+        self.assertEqual(self.findings(self.compile()), [])
+
+    # ---- Types ----
+
+    def test_type_of_two_headers(self):
+        self.append("tests/fixtures/scene.h", "struct camber_context { int other; };\n#endif\n")
+        self.finds("tests/fixtures/scene.h:6", "camber_context is defined in src/base/base.h:5")
+
+    def test_type_of_header_and_source(self):
+        self.append("src/draw/draw.c", "typedef int (*scene)(void);\n")
+        self.finds("src/draw/draw.c:6", "type scene")
+
+    def test_type_of_header_and_kernel(self):
+        self.append("kernels/scan.cl", "typedef float camber_kind[4];\n")
+        self.finds("kernels/scan.cl:4", "type camber_kind")
+
+    def test_type_of_two_sources_with_prefix(self):
+        self.append("src/io/png.c", "enum camber_way { UP };\n")
+        self.append("src/draw/draw.c", "typedef int first, camber_way;\n")
+        self.finds("src/io/png.c:8", "type camber_way")
+
+    # ---- Guards ----
+
+    def test_guard_missing(self):
+        self.write("src/io/io.h", HEAD + "int camber_io(void);\n")
+        self.finds("src/io/io.h:1", "no include guard")
+
+    def test_guard_repeated(self):
+        self.write("src/io/io.h", header("CAMBER_BASE_BASE_H"))
+        self.finds("src/io/io.h:2", "is that of src/base/base.h")
+
+    def test_guard_of_another_path(self):
+        self.write("src/io/io.h", header("CAMBER_IO_H"))
+        self.finds("src/io/io.h:2", "does not follow the path")
+
+    # ---- Layers ----
+
+    def test_include_points_up(self):
+        self.write("src/io/io.h", header("CAMBER_IO_IO_H"))
+        self.append("src/base/base.c", '\n#include "io/io.h"\n')
+        self.finds("src/base/base.c:6", "layer base includes io")
+
+    def test_include_of_parent(self):
+        self.append("src/io/png.c", '#include "../base/base.h"\n')
+        self.finds("src/io/png.c:8", '"../base/base.h"')
+
+    def test_kernel_includes_layer(self):
+        self.append("kernels/scan.cl", '#include "base/base.h"\n')
+        self.finds("kernels/scan.cl:4", "kernels includes layer base")
+
+    def test_public_header_includes_layer(self):
+        self.write("src/camber.h", header("CAMBER_H", '#include "base/base.h"'))
+        self.finds("src/camber.h:4", "src includes layer base")
+
+    def test_folder_without_layer(self):
+        self.write("src/gl/gl.c", HEAD)
+        self.finds("src/CMakeLists.txt:1", "src/gl is no layer")
+
+    def test_no_layers(self):
+        self.write("src/CMakeLists.txt", "camber_layer(all base io draw)\n")
+        self.finds("src/CMakeLists.txt:1", "no layers")
+
+    def test_layers_in_a_circle(self):
+        self.write("src/gl/gl.c", HEAD)
+        self.append("src/CMakeLists.txt", "camber_layer(gl LINKS gl)\n")
+        self.finds("src/CMakeLists.txt:8", "layer gl links itself in a circle")
+
+    def test_link_points_up(self):
+        self.append("src/base/base.c", "int camber_png(void);\nint camber_up(void);\n"
+                                       "int camber_up(void) { return camber_png(); }\n")
+        self.finds("src/base/base.c:1", "layer base calls camber_png of src/io/png.c", self.compile())
+
+    def test_link_cycle(self):
+        """Where no layers are named, those that the objects show must have no circle."""
+        self.write("src/CMakeLists.txt", "")
+        self.append("src/base/base.c", "int camber_png(void);\nint camber_up(void);\n"
+                                       "int camber_up(void) { return camber_png(); }\n")
+        whats = [finding.what for finding in self.findings(self.compile())]
+        self.assertEqual(whats, ["no layers",
+                                 "layers base and io use each other: here camber_png of src/io/png.c",
+                                 "layers io and base use each other: here camber_base of src/base/base.c"])
+
+    # ---- Kernels ----
+
+    def test_kernel_includes_nothing(self):
+        self.write("kernels/scan.cl", HEAD + "#define CAMBER_OWN 1\nkernel void scan(void) {\n"
+                                             "    int x = CAMBER_OWN + CAMBER_BLOCK;\n}\n")
+        self.finds("kernels/scan.cl:4", "CAMBER_BLOCK comes from nowhere")
+
+    def test_kernel_includes_what_is_not_there(self):
+        self.append("kernels/scan.cl", '#include "kernels/join.h"\n')
+        self.finds("kernels/scan.cl:4", 'there is no "kernels/join.h"')
+
+    # ---- Words ----
+
+    def test_gone_identifier(self):
+        self.append("src/io/png.c", "/* It says\n * so. */\nextern int camber_edge;\n")
+        self.finds("src/io/png.c:10", "camber_edge is a word that is gone")
+
+    def test_gone_word_of_comment(self):
+        self.append("shaders/stroke.vert", "// A small\n/* line\n   and a veil over it */\n")
+        self.finds("shaders/stroke.vert:5", "veil is a word that is gone")
+
+    def test_gone_file(self):
+        self.write("bench/prowl.c", HEAD)
+        self.finds("bench/prowl.c:1", "the file is called prowl")
+
+    def test_word_within_another(self):
+        self.append("src/io/png.c", "extern int camber_pens, prowler, ink; /* unveil, camber_pen_x */\n")
+        self.assertEqual(self.findings(), [])
+
+    # ---- Comments ----
+
+    def test_comment_of(self):
+        self.append("src/io/png.c", "extern int x; /* Of\n many */\nextern int y; /* Of all */\n")
+        self.finds("src/io/png.c:10", 'begins with "Of"')
+
+    def test_comment_what(self):
+        self.append("src/CMakeLists.txt", "set(x) #%s it is\n# It is\n#%s goes on.\n" % (2 * (" What",)))
+        self.finds("src/CMakeLists.txt:8", 'begins with "What"')
+
+    def test_head(self):
+        self.write("src/io/long.c", "int x;\n" + "\n" * 100)
+        self.finds("src/io/long.c:1", "without a head")
+
+    # ---- Documents ----
+
+    def test_long_line(self):
+        self.append("README.md", "word " * 25 + "\n")
+        self.finds("README.md:5", "125 characters")
+
+    def test_long_document(self):
+        self.append("docs/glossary.md", "- word\n" * 1500)
+        self.finds("docs/glossary.md:1", "10 are allowed")
+
+    # ---- The program ----
+
+    def test_program(self):
+        program = [sys.executable, lint_tree.__file__]
+        clean = subprocess.run(program + [self.root], capture_output=True, text=True)
+        self.assertEqual((clean.returncode, clean.stdout), (0, ""), clean.stderr)
+        self.write("bench/prowl.c", HEAD)
+        broken = subprocess.run(program + [self.root], capture_output=True, text=True)
+        self.assertEqual((broken.returncode, broken.stdout),
+                         (1, "bench/prowl.c:1: the file is called prowl: rename it: neighbour walk\n"))
+        self.assertEqual(subprocess.run(program, capture_output=True).returncode, 1)
+
+
+if __name__ == "__main__":
+    unittest.main()

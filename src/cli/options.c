@@ -50,11 +50,11 @@ void camber_options_help(camber_verb verb, FILE *file) {
     fprintf(file, "  %-12s%s\n", "help [VERB]", "print this text, or a verb's");
     fprintf(file, "  %-12s%s\n", "version", "print the version");
 #ifdef CAMBER_MAP
-    fputs(
-        "\nINPUT: any file that OGR reads (OSM PBF and XML, GeoJSON, Shapefile, GeoPackage, ...); -: standard input.\n",
-        file);
+    fputs("\nINPUT: any file that GDAL reads (OSM PBF and XML, GeoJSON, Shapefile, GeoPackage, ...); -: standard "
+          "input.\n",
+          file);
 #endif
-    fputs("\nOptions of the verbs (`camber VERB --help` lists a verb's own):\n", file);
+    fputs("\nOptions of the verbs, with their defaults in brackets (`camber VERB --help` lists a verb's own):\n", file);
     print_options(CAMBER_VERB_NONE, file);
     fputs("\nExit status: 0 done, 1 a check failed, 2 usage, 65 bad data, 66 no such input, 69 no device,\n"
           "70 internal error, 73 OUT exists or cannot be created, 74 input or output error, 128 + N signal N.\n",

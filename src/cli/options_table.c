@@ -29,7 +29,7 @@ enum {
 const camber_verb_spec camber_verb_specs[] = {
 #ifdef CAMBER_MAP
     {"render", CAMBER_VERB_RENDER, "INPUT... | --style FILE -o OUT.png", "draw a map"},
-    {"tessellate", CAMBER_VERB_TESSELLATE, "INPUT... -o OUT.glb", "write the mesh that the GPU draws"},
+    {"tessellate", CAMBER_VERB_TESSELLATE, "INPUT... -o OUT.glb", "write the mesh that a GPU draws, as GLB"},
     {"compare", CAMBER_VERB_COMPARE, "INPUT... | --polylines FILE", "compare the methods fan, kite and strip"},
     {"validate", CAMBER_VERB_VALIDATE, "[INPUT... | --polylines FILE]", "check kernels and pixels on every device"},
     {"bench", CAMBER_VERB_BENCH, "INPUT... | --polylines FILE", "time every stage"},
@@ -64,12 +64,13 @@ const camber_option_spec camber_option_specs[] = {
     {"attribution", 0, CAMBER_OPTION_WORDS, SIGNED, FIELD(attribution), "TEXT",
      "name this as the source of the data in OUT, in place of what INPUT names; '': name none"},
     {"style", 0, CAMBER_OPTION_STYLE, STYLED, FIELD(style), "NAME|FILE",
-     "a built-in style, or a MapLibre style document (roads)"},
+     "a built-in style (roads, openmaptiles, transit), or a MapLibre style document (roads)"},
     {"theme", 0, CAMBER_OPTION_CHOICE, STYLED, FIELD(theme), "light|dark", "theme of a built-in style (light)"},
     {"layer", 0, CAMBER_OPTION_TEXT, MAPS, FIELD(layer), "NAME", "read only this layer of INPUT"},
-    {"where", 0, CAMBER_OPTION_WHERES, MAPS, 0, "SQL", "OGR attribute filter; compare: each makes a network",
-     .notes = {{COMPARE, "OGR attribute filter; several filters make several networks"},
-               {MAPS, "OGR attribute filter"}}},
+    {"where", 0, CAMBER_OPTION_WHERES, MAPS, 0, "SQL",
+     "read only what passes, as in \"highway='primary'\"; compare: each makes a network",
+     .notes = {{COMPARE, "read only what passes, as in \"highway='primary'\"; several make several networks"},
+               {MAPS, "read only what passes, as in \"highway='primary'\""}}},
     {"polylines", 0, CAMBER_OPTION_FILE, COMPARE | BENCH | VALIDATE, FIELD(polylines), "FILE",
      "read polylines in pixels, not a map"},
     {"width-px", 0, CAMBER_OPTION_NUMBER, COMPARE | BENCH | VALIDATE, FIELD(width_px), "W",
@@ -104,7 +105,8 @@ const camber_option_spec camber_option_specs[] = {
     {"threads", 0, CAMBER_OPTION_COUNT, EVERY, FIELD(threads), "N", "threads of OpenCL and GL on a CPU (one per core)",
      1, 1024},
     {"memory", 0, CAMBER_OPTION_BYTES, READING, FIELD(memory_bytes), "SIZE",
-     "memory limit of the run, as in 512M; above it and 128M, data is refused", 262144, 1099511627776.0},
+     "memory that the run may take, as in 512M; data that takes more, and over 128M, is refused", 262144,
+     1099511627776.0},
     {"allow-remote", 0, CAMBER_OPTION_FLAG, READING, FIELD(allow_remote), NULL,
      "allow INPUT to be on the network or to lead there"},
     {"allow-vrt", 0, CAMBER_OPTION_FLAG, READING, FIELD(allow_vrt), NULL, "allow INPUT to name other files (VRT)"},
@@ -122,7 +124,8 @@ const camber_option_spec camber_option_specs[] = {
     {"verbose", 'v', CAMBER_OPTION_FLAG, TALKING, FIELD(verbose), NULL, "print what is chosen and how long it takes"},
     {"help", 'h', CAMBER_OPTION_FLAG, TALKING | TOOL, FIELD(help), NULL, "print this text"},
     {"version", 'V', CAMBER_OPTION_FLAG, TALKING | TOOL, FIELD(version), NULL, "print the version"},
-    {"completion", 0, CAMBER_OPTION_CHOICE, TOOL, FIELD(completion), "bash|zsh", "print the completion for this shell"},
+    {"completion", 0, CAMBER_OPTION_CHOICE, TOOL, FIELD(completion), "bash|zsh",
+     "print the completion script for this shell"},
 };
 
 const size_t camber_verb_count = sizeof camber_verb_specs / sizeof *camber_verb_specs;

@@ -67,7 +67,7 @@ static camber_status set_features(camber_cl_tables *t, const camber_draw_list *l
 
 /* Fills in the parts of a brush that all brushes of a command share. The union needs no layer: its brush has the
  * opacity. */
-static camber_brush ink_of_command(camber_cl_tables *t, const camber_draw_command *command) {
+static camber_brush brush_of_command(camber_cl_tables *t, const camber_draw_command *command) {
     camber_brush brush = {.mode = CAMBER_BRUSH_OVER, .group = command->group};
     if (command->group)
         brush.group_opacity = command->group_opacity;
@@ -86,7 +86,7 @@ static camber_brush ink_of_command(camber_cl_tables *t, const camber_draw_comman
 static camber_status add_rows(camber_cl_tables *t, const camber_draw_list *list, const camber_draw_command *command) {
     const size_t count = command->mesh->row_count, first_brush = t->brush_count;
     const bool is_united = command->composite == CAMBER_COMPOSITE_UNION;
-    camber_brush brush = ink_of_command(t, command);
+    camber_brush brush = brush_of_command(t, command);
     camber_status status = CAMBER_OK;
     if (!camber_grow(t->context, &t->rows, &t->row_capacity, t->row_count + count,
                      CAMBER_RASTER_ROW_WORDS * sizeof *t->rows))

@@ -5,6 +5,12 @@
  * mesh needs. Kite and fan have their indices in the mesh, so a uniform says it, and each command takes a call. */
 #include "draw/renderer.h"
 
+/* A feature bit times CAMBER_VARIANT_FEATURES is the variant of the same name. */
+_Static_assert((int)CAMBER_VARIANT_GAP == (int)CAMBER_FEATURE_GAP * CAMBER_VARIANT_FEATURES &&
+                   (int)CAMBER_VARIANT_PATTERN == (int)CAMBER_FEATURE_IMAGE * CAMBER_VARIANT_FEATURES &&
+                   (int)CAMBER_VARIANT_MASK == 2 * (int)CAMBER_VARIANT_PATTERN,
+               "features and variants are the same bits, and variants that are no features lie behind them");
+
 /* Rows of all tables of a call. More would take more memory than another call costs. */
 enum { ROWS_MAX = 1 << 20 };
 

@@ -11,6 +11,7 @@ alone, and for BUILD the program `nm`. Adding a rule: write the function, list i
 """
 
 import collections
+import json
 import os
 import re
 import subprocess
@@ -280,22 +281,26 @@ def check_includes(tree):
 # ---- Object files ----
 
 
-def object_source(tree, path):
-    """The source in src that an object file was compiled from, or None: BUILD/src/CMakeFiles/x.dir/io/png.c.o."""
-    match = re.match(r"(.*?)CMakeFiles/[^/]+\.dir/(.+)\.o(?:bj)?$", os.path.relpath(path, tree.build))
-    source = os.path.normpath(match.group(1) + match.group(2)) if match else ""
-    return source if source.count("/") > 1 and tree.has(source) else None
+def compiled_objects(tree):
+    """(object file, source in src) of what the build folder compiles now: others in it are left from before."""
+    path = os.path.join(tree.build, "compile_commands.json")
+    if not os.path.isfile(path):
+        return
+    with open(path, encoding="utf-8") as file:
+        commands = json.load(file)
+    for command in commands:
+        source = os.path.relpath(os.path.join(command["directory"], command["file"]), os.path.abspath(tree.root))
+        output = re.search(r" -o (\S+)", command.get("command", ""))
+        compiled = os.path.join(command["directory"], command.get("output") or (output.group(1) if output else ""))
+        if source.startswith("src/") and source.count("/") > 1 and os.path.isfile(compiled):
+            yield compiled, source
 
 
 def list_symbols(tree):
-    """(source, symbol, is defined there) of all object files in BUILD/src."""
+    """(source, symbol, is defined there) of all object files of src in BUILD."""
     sources = {}
-    for folder, _, names in os.walk(os.path.join(tree.build, "src")):
-        for name in names:
-            path = os.path.join(folder, name)
-            source = object_source(tree, path) if name.endswith((".o", ".obj")) else None
-            if source:
-                sources.setdefault(source, path)  # one of those that are compiled twice
+    for compiled, source in compiled_objects(tree):
+        sources.setdefault(source, compiled)  # one of those that are compiled twice
     if not sources:
         return
     by_object = {path: source for source, path in sources.items()}

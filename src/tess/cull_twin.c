@@ -80,7 +80,7 @@ static camber_status make_slots(const camber_network *network, const camber_proj
     w.slot_x = p->x;
     w.slot_y = p->y;
     w.slot_info = p->info;
-    w.slot_measures = (float *)p->arc_lengths;
+    w.slot_arc_lengths = (float *)p->arc_lengths;
     w.puts = 1;
     w.at = 1;
     for (size_t i = 0; i < network->entry_count; i++) {

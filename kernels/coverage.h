@@ -256,7 +256,7 @@ CAMBER_FN void camber_edge_normal(const camber_edge *p, camber_real x, camber_re
     *ny = in_x * p->uy + in_y * p->ux;
 }
 
-/* What a segment does to cells. partial: it may touch the cell; near_end: an end is close enough to matter; full: the
+/* How cells lie to a segment. partial: it may touch the cell; near_end: an end is close enough to matter; full: the
  * whole cell lies inside the stroke. */
 typedef struct camber_cell_masks {
     camber_mask partial, near_end, full;

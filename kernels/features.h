@@ -229,7 +229,7 @@ CAMBER_FN camber_real camber_extras_area(const camber_edge *p, const camber_extr
 
 /* ---- Cells ---- */
 
-/* What a segment does to a cell: nothing; reaches it with an end; touches it with a side; fills it. */
+/* How a cell lies to a segment: outside it, near an end of it, across one of its sides, or all inside it. */
 #define CAMBER_CELL_OUTSIDE 0u
 #define CAMBER_CELL_NEAR_END 1u
 #define CAMBER_CELL_PARTIAL 2u
@@ -271,8 +271,8 @@ CAMBER_FN camber_u32 camber_dashes_meet(const camber_edge *p, const camber_extra
     return whole ? CAMBER_CELL_FULL : some ? CAMBER_CELL_NEAR_END : CAMBER_CELL_OUTSIDE;
 }
 
-/* What a segment with features does to a cell, if `meets` is what a plain one does. x and y: the cell's middle, along
- * and across the segment. */
+/* How a cell lies to a segment with features, if `meets` is how it lies to a plain one. x and y: the cell's middle,
+ * along and across the segment. */
 CAMBER_FN camber_u32 camber_extras_cell(const camber_edge *p, const camber_extras *e, camber_u32 meets, float x,
                                         float y) {
     const float aside = CAMBER_FABS(y), reach = 1.5f * (CAMBER_FABS(p->ux) + CAMBER_FABS(p->uy));

@@ -88,7 +88,7 @@ CAMBER_FN float camber_image_tangent(float cosine, float sine) {
     return CAMBER_FABS(tangent) < 1e-6f ? 0.0f : tangent;
 }
 
-/* What a line's sampler needs of a segment: cosine and sine are of half the turn at A and at B. */
+/* The segment as a line's sampler needs it: cosine and sine are of half the turn at A and at B. */
 typedef struct camber_image_line {
     float length, half_width, ca, sa, cb, sb;
 } camber_image_line;

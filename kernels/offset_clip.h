@@ -4,7 +4,7 @@
 
 #include "offset.h"
 
-/* ---- What the line hides ---- */
+/* ---- Hidden intervals ---- */
 
 /* A walk away from a slot: the segments of the line, cut where they leave its reach. */
 typedef struct camber_neighbour_walk {

@@ -4,7 +4,7 @@
 
 #if CAMBER_RASTER_PITCHED
 
-/* What a segment in a picture with a pitch is drawn from. */
+/* All that a segment in a picture with a pitch is drawn from. */
 typedef struct tilted {
     global const float *segment, *plane, *arc_length, *side_table;
     camber_eye eye;

@@ -64,8 +64,8 @@ typedef int camber_mask;
 #define CAMBER_BRUSH_MASKED                                                                                            \
     2u /* in a masked layer, a translucent colour replaces what lies below it; only CAMBER_RASTER_RICH */
 
-/* What segments are drawn with. Layers and groups are put onto what lies below as a whole; number 0 is none. A layer
- * belongs to one group. */
+/* A colour and mode that segments are drawn with. Layers and groups are put onto what lies below as a whole; number 0
+ * is none. A layer belongs to one group. */
 typedef struct camber_brush {
     float r, g, b, a; /* not premultiplied */
     camber_u32 mode, layer, group, spare;

@@ -5,6 +5,7 @@
  */
 #include "raster/rasterizer.h"
 
+#include "base/stages.h"
 #include "cl/launch.h"
 
 #include <string.h>
@@ -14,22 +15,25 @@
 enum { CHUNK = 8192, CHUNKS_MAX = 64, HEAVY = 2048 };
 /* The same for kernels in which a work-item takes a segment. */
 enum { CHUNK_OF_LANES = 512, CHUNKS_OF_LANES_MAX = 1024 };
-static const char *const stage_names[STAGES] = {"setup", "bin_count", "bin_scan", "bin_scatter", "rasterize"};
 /* Kernels for GPUs: the work-items of a work-group, and how many jobs of the kernel for CPUs these do. */
 static const struct { size_t lanes, jobs; } lanes_of[STAGES] = {{64, 4}, {32, 1}, {64, 4}, {32, 1}, {128, 1}};
 
 enum { PLANE_WORDS = CAMBER_TILE_PX * CAMBER_TILE_PX };
 
 /* The scene and the ranges that an area is drawn from. */
-typedef struct raster_job {
+typedef struct listed_scene {
     const camber_raster_scene *scene;
     const camber_record_range *ranges;
     size_t range_count, segment_count;
-} raster_job;
+} listed_scene;
 
 /* ---- Stages ---- */
 
 #define BUFFER(which) CAMBER_ARG_BUFFER(raster->buffers[which])
+
+static const char *stage_name(int stage) {
+    return camber_stage_name((camber_stage_id)((int)CAMBER_STAGE_SETUP + stage));
+}
 
 /* Waits for all running kernels at once, as each wait costs time. Adds their times up. */
 static camber_status settle(camber_raster *raster) {
@@ -39,7 +43,7 @@ static camber_status settle(camber_raster *raster) {
         const cl_int code = clWaitForEvents(1, &one->event);
         camber_add_ms(one->event, raster->ms + one->stage);
         if (code != CL_SUCCESS)
-            status = camber_fail_stage(raster->device, "clWaitForEvents", stage_names[one->stage], code);
+            status = camber_fail_stage(raster->device, "clWaitForEvents", stage_name(one->stage), code);
     }
     raster->pending_count = 0;
     return status;
@@ -59,7 +63,7 @@ static camber_status run(camber_raster *raster, int stage, const camber_kernel_a
     const bool by_lanes = has_lanes(raster);
     const size_t lanes = by_lanes ? lanes_of[stage].lanes : 1, jobs = by_lanes ? lanes_of[stage].jobs : 1;
     const camber_launch launch = {
-        stage_names[stage], kernels[stage], args, arg_count, (job_count + jobs - 1) / jobs * lanes, lanes};
+        stage_name(stage), kernels[stage], args, arg_count, (job_count + jobs - 1) / jobs * lanes, lanes};
     cl_event event = NULL;
     if (job_count == 0)
         return CAMBER_OK;
@@ -309,7 +313,7 @@ static camber_status prepare(camber_raster *raster, const camber_raster_scene *s
 }
 
 /* Draws a slice of the band, unless its lists do not fit. */
-static camber_status draw_slice(camber_raster *raster, const raster_job *p, camber_spill_args k, bool *fits) {
+static camber_status draw_slice(camber_raster *raster, const listed_scene *p, camber_spill_args k, bool *fits) {
     uint32_t chunk_count;
     const camber_bin_args c = cut_chunks(raster, &chunk_count);
     camber_status status = make_segments(raster, p->scene, p->ranges, p->range_count);
@@ -329,7 +333,7 @@ static camber_status draw_slice(camber_raster *raster, const raster_job *p, camb
 
 /* Draws the band's slices, from the last to the first. If the lists of one do not fit, it stops so that the caller
  * halves the band, or halves the slice. */
-static camber_status draw_band(camber_raster *raster, const raster_job *p, bool *fits) {
+static camber_status draw_band(camber_raster *raster, const listed_scene *p, bool *fits) {
     size_t most = segments_at_once(raster), left = p->segment_count;
     camber_spill_args k = plan_spill(p->scene);
     camber_status status = CAMBER_OK;
@@ -352,7 +356,7 @@ static camber_status draw_band(camber_raster *raster, const raster_job *p, bool 
 }
 
 /* How many rows of tiles a band has: all of the area, or as many as can be spilled between slices. */
-static uint32_t rows_at_once(const camber_raster *raster, const raster_job *p) {
+static uint32_t rows_at_once(const camber_raster *raster, const listed_scene *p) {
     const uint32_t rows = camber_raster_tiles(raster->area.height);
     const uint64_t row_bytes = 4 * (uint64_t)plan_spill(p->scene).tile_words * raster->columns;
     const uint64_t most = camber_raster_most_bytes(raster) / row_bytes;
@@ -362,7 +366,7 @@ static uint32_t rows_at_once(const camber_raster *raster, const raster_job *p) {
 }
 
 /* Draws the area's bands. A band whose lists do not fit is halved, and so are those after it. */
-static camber_status draw_bands(camber_raster *raster, const raster_job *p) {
+static camber_status draw_bands(camber_raster *raster, const listed_scene *p) {
     const camber_raster_area *area = &raster->area;
     uint32_t rows = rows_at_once(raster, p);
     camber_status status = CAMBER_OK;
@@ -385,7 +389,7 @@ camber_status camber_raster_draw_into(camber_raster *raster, const camber_raster
                                       const camber_raster_area *area, cl_mem pixels) {
     camber_context *context = raster->device->context;
     camber_record_range *ranges = NULL;
-    raster_job p = {.scene = scene};
+    listed_scene p = {.scene = scene};
     memset(raster->ms, 0, sizeof raster->ms);
     raster->slice_count = 0;
     raster->area = *area;

@@ -244,7 +244,7 @@ static void put_colors(const tile_state *c, const drawn_segment *t, cell *one, c
     count_colors(c, one, most, meets == CAMBER_CELL_FULL);
 }
 
-/* What a segment does to a cell: CAMBER_CELL_*. */
+/* How a cell lies to a segment: CAMBER_CELL_*. */
 static camber_u32 meets_cell(const drawn_segment *t, float middle_x, float middle_y) {
     const camber_edge *p = &t->edge;
     camber_cell_masks m;

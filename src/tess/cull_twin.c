@@ -155,7 +155,7 @@ static size_t last_of(const visible_lines *p, size_t first) {
     return first;
 }
 
-/* Appends the visible lines of an entry. Where the window cuts a ring, the line over the ring's seam is in two pieces,
+/* Appends the visible lines of an entry. Where the window cuts a ring, the line over the ring's seam has two halves,
  * the end of which comes first in the slots. It waits at `seam` until its beginning has been appended:
  *
  *     slots     S..e   b..S              S: the seam, the ring's first and last point

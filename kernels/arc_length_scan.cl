@@ -1,6 +1,6 @@
 /* arc_length_scan: how far along its line each slot lies, and how long the line is.
  * Reads x, y, info[n + 2] and carries[2 * chunks]: what the chunk's first line has before the chunk, and what its last
- * line has behind it. Writes measures[2 * n]: along and in all, px. A work-item takes a chunk of
+ * line has behind it. Writes arc_lengths[2 * n]: how far along, and the whole line, px. A work-item takes a chunk of
  * CAMBER_ARC_LENGTH_CHUNK slots; the host turns arc_length_sum's sums into the carries. */
 #include "arc_length.h"
 

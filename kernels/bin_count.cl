@@ -1,6 +1,6 @@
-/* bin_count: how many segments of each chunk each tile has; a chunk is a work-item.
- * Reads segments[CAMBER_SEGMENT_WORDS * segment_count], boxes[segment_count]; writes counts[chunks * tiles].
- * bin_gpu.cl does the same with a work-item a segment. */
+/* bin_count: counts for each chunk of segments how many of them each tile has. A work-item takes a chunk.
+ * Reads segments[CAMBER_SEGMENT_WORDS * segment_count], boxes[segment_count]. Writes counts[chunks * tiles].
+ * bin_gpu.cl writes the same counts, with a work-item for each segment. */
 #include "segment.h"
 
 #if CAMBER_LANES == 16

@@ -1,11 +1,11 @@
-/* bin_count, bin_scatter and bin_scan on a GPU. They read and write what the kernels of their names do, to the same
- * bytes. In the first two a chunk is a work-group and a segment a work-item; behind the counts of all chunks lie as
- * many words of marks. In bin_scan a work-item is a tile. */
+/* bin_count, bin_scatter and bin_scan on a GPU. Each reads and writes the same bytes as the kernel of its name for
+ * CPUs. In the first two a work-group takes a chunk, and its work-items take the segments in turn. In bin_scan a
+ * work-item takes a tile. counts[2 * chunks * tiles] has a mark for each count, behind all the counts. */
 #include "segment.h"
 
 #if CAMBER_LANES == 1
 
-#define BIN_LANES 32 /* bits of a mark */
+#define BIN_LANES 32 /* as many as a mark has bits */
 
 kernel __attribute__((reqd_work_group_size(BIN_LANES, 1, 1))) void bin_count(global const float *restrict segments,
                                                                              global const camber_u32 *restrict boxes,
@@ -30,8 +30,8 @@ kernel __attribute__((reqd_work_group_size(BIN_LANES, 1, 1))) void bin_count(glo
     }
 }
 
-/* The turns that a segment takes in each of its tiles, one after the other: it says that it is there; goes to its
- * place, behind those of the lanes before; and the first of a tile's counts them all. */
+/* The turns that 32 segments take in each of their tiles. First each sets its bit in the tile's mark. Then each writes
+ * itself into the list, behind those of lower lanes. At last the lowest lane adds all of them to the count. */
 enum { TURN_MARK, TURN_PUT, TURN_END, TURNS };
 
 static inline void take_turn(int turn, volatile global camber_u32 *own, volatile global camber_u32 *mark,
@@ -42,7 +42,7 @@ static inline void take_turn(int turn, volatile global camber_u32 *own, volatile
     } else if (turn == TURN_PUT) {
         lists[start + *own + popcount(*mark & before)] = i;
     } else {
-        const camber_u32 all = atomic_or(mark, 0u); /* or 0: the first has been here */
+        const camber_u32 all = atomic_or(mark, 0u); /* 0 if the lowest lane was here already */
         if ((all & bit) != 0u && (all & before) == 0u) {
             *own += popcount(all);
             atomic_xchg(mark, 0u);

@@ -1,5 +1,6 @@
-/* bin_scan: for each tile the segments in the chunks before, and in all of them; sixteen tiles a work-item.
- * Turns counts[chunks * tiles] into sums before each chunk; writes totals[tiles]. */
+/* bin_scan: adds up each tile's counts over the chunks. A work-item takes sixteen tiles.
+ * Replaces counts[chunks * tiles] by the sums over the chunks before each. Writes totals[tiles]. The host adds the
+ * totals up to the starts of the tiles' lists. */
 #include "segment.h"
 
 #if CAMBER_LANES == 16

@@ -1,7 +1,7 @@
-/* bin_scatter: the list of each tile, its segments in drawing order. A chunk, a work-item, puts its own where bin_count
- * and bin_scan say, so that the order is the same however many chunks there are.
- * Reads segments[CAMBER_SEGMENT_WORDS * segment_count], boxes[segment_count], starts[tiles]; moves
- * counts[chunks * tiles] on to each chunk's end; writes lists[starts[tiles]]. */
+/* bin_scatter: writes the list of each tile, its segments in drawing order. A work-item takes a chunk of segments. It
+ * puts them where bin_count and bin_scan have made room, so that the order does not depend on the number of chunks.
+ * Reads segments[CAMBER_SEGMENT_WORDS * segment_count], boxes[segment_count], starts[tiles]. Advances
+ * counts[chunks * tiles] to each chunk's end. Writes lists[starts[tiles]]. */
 #include "segment.h"
 
 #if CAMBER_LANES == 16

@@ -1,37 +1,43 @@
-/* Drawing in OpenCL: what a segment covers of a pixel, and how what is covered is put together. shaders/stroke.vert,
- * stroke.frag and flatten.frag say the same of triangles. */
+/* The share of a pixel that a segment covers, for the rasterizer's kernels and their CPU twin.
+ *
+ * Input: a segment's 16 words, as setup writes them, and the positions of pixels or cells in the picture. Output: areas
+ * from 0 to 1, and masks of the cells that the segment touches. camber_edge_of turns the words into coefficients once.
+ * Then a pixel's area follows from its distance to the segment's sides, to its ends and to the bisectors of its joins.
+ * shaders/stroke.vert, stroke.frag and flatten.frag hold the same formulas for triangles. */
 #ifndef CAMBER_KERNELS_COVERAGE_H
 #define CAMBER_KERNELS_COVERAGE_H
 
 #include "segment.h"
 
-/* The coefficients of a segment: all that is constant over its pixels. */
+/* The coefficients of a segment: all that is the same for each of its pixels. x runs along it, y across it, in px. */
 typedef struct camber_edge {
     float ax, ay, bx, by, ux, uy, nax, nay, nbx, nby;
     float length, half_width;
-    float extent, corner, slope, curve; /* of an edge: edge_of */
-    float ca, sa, cb, sb;               /* cosine and sine of half the turns */
+    float extent, corner, slope, curve; /* how its sides cut pixels: edge_of in shaders/edge.glsl */
+    float ca, sa, cb, sb;               /* cosine and sine of half the turn at A and at B */
     float flat_a, flat_b;               /* where flat caps lie, px past the end */
-    float round_a, round_b;             /* from where on ends are round */
-    float tip_a, tip_b;                 /* where the round caps of thin lines end */
-    float owner_a, owner_b;             /* past the bisector, what lies farther than this past the end is the other's */
-    float slope_a, slope_b, from_a, from_b; /* of the lines that bound a tight join's inner side */
+    float round_a, round_b;             /* where round ends begin, px past the end */
+    float tip_a, tip_b;                 /* where the round caps of thin lines end, px past the end */
+    float owner_a, owner_b; /* pixels behind the bisector and this far past the end are the neighbour's, px */
+    float slope_a, slope_b, from_a, from_b; /* camber_tight_line */
     camber_u32 end_a, end_b;
     camber_u32 thin, tips, flat, tight, sharp;
 } camber_edge;
 
+/* How far past its end a segment still draws pixels that lie behind the bisector, px. */
 CAMBER_FN float camber_owner_from(camber_u32 end, camber_u32 own) {
     const float own_from = own ? 0.0f : CAMBER_ALWAYS_PX;
     return end & CAMBER_END_CLASS_BITS ? own_from : CAMBER_NEVER_PX;
 }
 
+/* Where a round cap of a thin line ends, px past the end. It is cut straight there, and has a half circle's area. */
 CAMBER_FN float camber_cap_tip(camber_u32 end, float half_width) {
     const float past = half_width > 0.5f ? 1.2f * (half_width - 0.5f) : 0.0f;
     return CAMBER_END_IS_ROUND_CAP(end) ? 0.5f + 0.785398f * half_width + past : CAMBER_NEVER_PX;
 }
 
-/* The line that bounds a tight join's inner side, from the inner vertex, limit px before the end, to the outer one on
- * the bisector. Of other ends it lies nowhere. */
+/* The line that bounds a tight join's inner side. It goes from the inner vertex, limit px before the end, to the outer
+ * vertex on the bisector. For other ends it is placed where no pixel lies. */
 CAMBER_FN void camber_tight_line(camber_u32 end, float c, float s, float half_width, float *slope, float *from) {
     const float reach = half_width + CAMBER_PAD_PX, limit = (float)(CAMBER_END_LIMIT(end)) * (CAMBER_PAD_PX / 127.0f);
     const float outer = CAMBER_FABS(s) * reach;
@@ -42,8 +48,9 @@ CAMBER_FN void camber_tight_line(camber_u32 end, float c, float s, float half_wi
     *from = tight ? less * reach : CAMBER_NEVER_PX;
 }
 
-/* Through a pointer: oclgrind does not know what compilers make of large results where a call is inlined. Inlined, it
- * makes what its caller needs. */
+/* Works out the coefficients of a segment from its words. The result goes through a pointer, because oclgrind does not
+ * follow large results of inlined calls. It is always inlined, so that the compiler drops what the caller does not
+ * read. */
 CAMBER_FN __attribute__((always_inline)) void camber_edge_of(CAMBER_GLOBAL const float *segment, camber_u32 flags,
                                                              camber_edge *p) {
     p->ax = segment[CAMBER_SEGMENT_AX];
@@ -90,7 +97,7 @@ CAMBER_FN __attribute__((always_inline)) void camber_edge_of(CAMBER_GLOBAL const
     camber_tight_line(end_b, p->cb, p->sb, h, &p->slope_b, &p->from_b);
 }
 
-/* The area of a pixel whose centre lies s px inside an edge. */
+/* The share of a pixel inside an edge, whose centre lies s px inside it (below 0: outside). */
 CAMBER_FN camber_real camber_covered(camber_real s, float extent, float corner, float slope, float curve) {
     const camber_real left = extent - CAMBER_FABS(s), rest = left > 0.0f ? left : CAMBER_REAL(0.0f);
     const camber_real bend = rest < corner ? rest : CAMBER_REAL(corner);
@@ -107,13 +114,13 @@ CAMBER_FN camber_real camber_clamp_to_one(camber_real x) {
     return least < 1.0f ? least : CAMBER_REAL(1.0f);
 }
 
-/* The second line across a sharp join: what does not turn over with the end of it that is looked out of. */
+/* The second line that cuts a miter's tip or bounds a bevel. These values are the same from either end of the join. */
 typedef struct camber_second {
     camber_u32 bevel, miter;
-    float outer, nx, ny; /* the side it lies on; its normal along and across */
+    float outer, nx, ny; /* the side of the segment that it lies on, 1 or -1; its normal along and across the segment */
 } camber_second;
 
-/* second_line of stroke.frag. */
+/* second_line of shaders/stroke.frag says the same. */
 CAMBER_FN void camber_second_of(camber_u32 end, float c, float s, camber_second *l) {
     const float sine = CAMBER_FABS(s);
     l->bevel = end == CAMBER_ENDS_BEVEL || end == CAMBER_ENDS_SPLIT_BEVEL;
@@ -128,7 +135,8 @@ CAMBER_FN camber_real camber_second_inside(const camber_second *l, float half_wi
     return (l->bevel ? half_width * c : half_width) - (past * l->nx + y * l->ny);
 }
 
-/* cut_join of stroke.frag: (ux, uy) looks out of the end. */
+/* The area that the join's second line leaves of a pixel, as cut_join of shaders/stroke.frag. past: px past the end;
+ * (ux, uy): the direction out of it. */
 CAMBER_FN camber_real camber_cut_join(camber_real area, const camber_edge *p, camber_u32 end, camber_real past,
                                       camber_real y, float c, float s, float ux, float uy) {
     camber_second l;
@@ -142,7 +150,8 @@ CAMBER_FN camber_real camber_cut_join(camber_real area, const camber_edge *p, ca
     const float extent = linear ? 0.5f : 0.5f * (more + less), slope = linear ? 1.0f : 1.0f / more;
     const float curve = linear || less <= 1e-4f ? 0.0f : 0.5f / (more * less);
     const camber_real second = camber_covered(inside, extent, linear ? 0.0f : less, slope, curve);
-    /* The area inside two edges: the smaller, the product, or what both leave, by the angle between them. */
+    /* The area inside both edges is between the smaller one, the product and the sum less 1, by the angle between
+     * them. */
     const float cosine = l.outer * l.ny, weight = CAMBER_FABS(cosine);
     const camber_real smaller = CAMBER_LESS(area, second), product = area * second, both = area + second - 1.0f;
     const camber_real bound = cosine > 0.0f ? smaller : (both > 0.0f ? both : CAMBER_REAL(0.0f));
@@ -157,8 +166,8 @@ CAMBER_FN camber_real camber_cut_joins(const camber_edge *p, camber_real area, c
     return camber_cut_join(area, p, p->end_b, x - p->length, y, p->cb, p->sb, p->ux, p->uy);
 }
 
-/* How far past its round ends a pixel lies, px, and how far across the line, with what that bends aside by the joins:
- * x along the segment, y across, fa and fb past the bisectors at A and B. */
+/* Returns how far past a round end a pixel lies, px; 0 before the ends. *bent is how far it lies to the side of the
+ * line, which bends where the next segment begins. x: along the segment; y: across; fa and fb: past the bisectors. */
 CAMBER_FN camber_real camber_edge_off(const camber_edge *p, camber_real x, camber_real y, camber_real fa,
                                       camber_real fb, camber_real *bent) {
     const camber_real none = CAMBER_REAL(0.0f), arc_a = -x - p->round_a, arc_b = x - p->length - p->round_b;
@@ -171,8 +180,8 @@ CAMBER_FN camber_real camber_edge_off(const camber_edge *p, camber_real x, cambe
     return arc;
 }
 
-/* The area of pixels that lies half_width from the line at most, where they lie d from it. */
-CAMBER_FN camber_real camber_edge_band(const camber_edge *p, float half_width, camber_real d) {
+/* The share of a pixel within half_width of the line, if its centre lies d px from it. */
+CAMBER_FN camber_real camber_edge_within(const camber_edge *p, float half_width, camber_real d) {
     const camber_real area = camber_inside_edge(p, half_width - d);
     if (!p->thin)
         return area;
@@ -180,13 +189,14 @@ CAMBER_FN camber_real camber_edge_band(const camber_edge *p, float half_width, c
     return both > 0.0f ? both : CAMBER_REAL(0.0f);
 }
 
-/* The share of pixels that round caps of thin lines leave, and flat caps. */
+/* The share of a pixel that the round caps of a thin line leave. */
 CAMBER_FN camber_real camber_edge_tips(const camber_edge *p, camber_real x) {
     const camber_real past_a = -x, past_b = x - p->length;
     const camber_real tips = camber_clamp_to_one(p->tip_a - past_a) + camber_clamp_to_one(p->tip_b - past_b) - 1.0f;
     return tips > 0.0f ? tips : CAMBER_REAL(0.0f);
 }
 
+/* The share of a pixel that flat caps leave: one, or both ends of a short segment. */
 CAMBER_FN camber_real camber_edge_caps(const camber_edge *p, camber_real x) {
     const camber_u32 at_a = p->flat_a < CAMBER_NEVER_PX, both = at_a && p->flat_b < CAMBER_NEVER_PX;
     const camber_real past_a = -x, past_b = x - p->length;
@@ -197,7 +207,7 @@ CAMBER_FN camber_real camber_edge_caps(const camber_edge *p, camber_real x) {
     return caps > 0.0f ? caps : CAMBER_REAL(0.0f);
 }
 
-/* The area where a pixel is the segment's. */
+/* The area, or 0 where the pixel lies on the neighbour's side of a bisector and the neighbour draws it. */
 CAMBER_FN camber_real camber_edge_owner(const camber_edge *p, camber_real area, camber_real x, camber_real y,
                                         camber_real fa, camber_real fb) {
     const camber_real past_a = -x, past_b = x - p->length;
@@ -207,12 +217,12 @@ CAMBER_FN camber_real camber_edge_owner(const camber_edge *p, camber_real area, 
     return others ? CAMBER_REAL(0.0f) : area;
 }
 
-/* The area of pixels that are the segment's. */
+/* The area of a pixel that the segment draws: the one formula that all the functions above are parts of. */
 CAMBER_FN camber_real camber_edge_area(const camber_edge *p, camber_real x, camber_real y, camber_real fa,
                                        camber_real fb) {
     camber_real bent;
     const camber_real arc = camber_edge_off(p, x, y, fa, fb, &bent);
-    camber_real area = camber_edge_band(p, p->half_width, CAMBER_SQRT(arc * arc + bent * bent));
+    camber_real area = camber_edge_within(p, p->half_width, CAMBER_SQRT(arc * arc + bent * bent));
     if (p->tips)
         area *= camber_edge_tips(p, x);
     if (p->sharp)
@@ -222,12 +232,12 @@ CAMBER_FN camber_real camber_edge_area(const camber_edge *p, camber_real x, camb
     return camber_edge_owner(p, area, x, y, fa, fb);
 }
 
-/* The same where the ends are too far away to matter. */
+/* The same for a pixel that no end is near to: only the sides count. */
 CAMBER_FN camber_real camber_edge_side(const camber_edge *p, camber_real y) {
-    return camber_edge_band(p, p->half_width, CAMBER_FABS(y));
+    return camber_edge_within(p, p->half_width, CAMBER_FABS(y));
 }
 
-/* The normal into the stroke across the nearest edge, in the picture. */
+/* The normal of the nearest edge, into the stroke, in the picture. */
 CAMBER_FN void camber_edge_normal(const camber_edge *p, camber_real x, camber_real y, camber_real *nx,
                                   camber_real *ny) {
     const camber_real none = CAMBER_REAL(0.0f), past_a = -x, past_b = x - p->length;
@@ -246,24 +256,25 @@ CAMBER_FN void camber_edge_normal(const camber_edge *p, camber_real x, camber_re
     *ny = in_x * p->uy + in_y * p->ux;
 }
 
-/* Masks of cells, by their middles: which a segment may meet; which of them lie near its ends, so that these matter;
- * which lie all inside the stroke. */
+/* How cells lie to a segment. partial: it may touch the cell; near_end: an end is close enough to matter; full: the
+ * whole cell lies inside the stroke. */
 typedef struct camber_cell_masks {
     camber_mask partial, near_end, full;
 } camber_cell_masks;
 
+/* Finds the masks by the positions of the cells' middles, px. */
 CAMBER_FN void camber_cell_masks_of(const camber_edge *p, camber_real mx, camber_real my, camber_cell_masks *cells) {
     const float reach = 1.5f * (CAMBER_FABS(p->ux) + CAMBER_FABS(p->uy));
     const float reach_a = 1.5f * (CAMBER_FABS(p->nax) + CAMBER_FABS(p->nay));
     const float reach_b = 1.5f * (CAMBER_FABS(p->nbx) + CAMBER_FABS(p->nby));
     const float far_a = p->owner_a == CAMBER_ALWAYS_PX ? -reach_a : CAMBER_ALWAYS_PX;
     const float far_b = p->owner_b == CAMBER_ALWAYS_PX ? reach_b : -CAMBER_ALWAYS_PX;
-    /* The parts that corners and tight joins cut off may lie far from them. */
+    /* A sharp or tight join may cut pixels that lie far from it. */
     const float near = p->sharp ? CAMBER_NEVER_PX : reach + 0.75f;
     const camber_real qx = mx - p->ax, qy = my - p->ay, rx = mx - p->bx, ry = my - p->by;
     const camber_real x = qx * p->ux + qy * p->uy, aside = CAMBER_FABS(qy * p->ux - qx * p->uy);
     const camber_real fa = qx * p->nax + qy * p->nay, fb = rx * p->nbx + ry * p->nby;
-    /* A join bends the edge outwards by so much: camber_edge_off. */
+    /* A join bends the edge outwards by at most this: camber_edge_off. */
     const float bend_a = CAMBER_FABS(p->sa), bend_b = CAMBER_FABS(p->sb), bend = 0.25f * CAMBER_MORE(bend_a, bend_b);
     cells->partial = (aside < p->half_width + p->extent + reach + bend) & (fa >= far_a) & (fb < far_b);
     cells->near_end = (x < near) | (x > p->length - near) | (fa < reach_a + 0.5f) | (fb > -0.5f - reach_b);
@@ -272,8 +283,8 @@ CAMBER_FN void camber_cell_masks_of(const camber_edge *p, camber_real mx, camber
 
 /* ---- Layers ---- */
 
-/* The area under all strokes of a pixel, from the sum of their areas a, what they cover one over the other, and the sum
- * of their normals by a (1 - a): flatten.frag. */
+/* The area of a pixel that all strokes of a layer cover together, as shaders/flatten.frag. over: the area if each were
+ * drawn over the others; sum: the sum of their areas a; the normal: the sum of their normals times a (1 - a). */
 CAMBER_FN camber_real camber_united(camber_real over, camber_real sum, camber_real nx, camber_real ny) {
     const camber_real none = CAMBER_REAL(0.0f), one = CAMBER_REAL(1.0f), tiny = CAMBER_REAL(1e-6f);
     const camber_real excess = sum - over, inner = sum * sum - 4.0f * (excess > 0.0f ? excess : none);

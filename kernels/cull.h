@@ -1,17 +1,17 @@
-/* The frame's part of a network, the one place where it is decided which points of it become slots, and where they lie.
+/* Culls a network for a frame: decides which of its points become slots, and where these lie in the picture.
  *
  *     network   x[], y[], importance[]: every point, rings with their first point again at the end
- *     runs      its polylines, with their boxes
+ *     stretches its polylines without invalid points, with their boxes
  *     slots     what classify reads: the points that the camera sees at its tolerance, in px
  *
  * A chunk of points is walked by itself: each point puts its own slot, and the ends of the segment behind it where the
  * window cuts that. Points behind the chunk's end are looked at, and slots do not depend on how chunks are cut.
  *
  *     window  +-----------------------------+
- *             |   A1.....A2                 |      A1, A2, then a piece's end put by A2
+ *             |   A1.....A2                 |      A1, A2, then an end that A2 puts
  *             |            \                |
  *             +-------------e---------------+
- *                            A3        A5          A3 puts nothing, A4 a piece's begin
+ *                            A3        A5          A3 puts nothing, A4 a beginning
  *             +--------------------b---/----+
  *                               A4-'               (pictured: two sides of one window)
  */
@@ -20,19 +20,19 @@
 
 #include "layout.h"
 
-/* Points a work-item walks, and work-items a group. */
+/* Points that a work-item walks, and work-items in a group. */
 #define CAMBER_CULL_CHUNK 64
 #define CAMBER_WALKERS (CAMBER_BLOCK / 8)
-/* Farther from the window than this, pixels are not drawn from: floats are exact to 1/2048 px there. */
+/* Points farther from the window than this are moved closer: floats are exact to 1/2048 px up to here. */
 #define CAMBER_NEAR_PX 4096.0f
 #define CAMBER_NO_POINT 0xffffffffu
-/* Whether a walk carries how far along its run each slot lies; the host's does both. */
+/* Whether a walk finds the arc length of each slot. The host's walk can do both. */
 #if defined(CAMBER_DEVICE) && !CAMBER_HAS_ARC_LENGTH
 #define CAMBER_WALK_ARC_LENGTHS 0
 #else
 #define CAMBER_WALK_ARC_LENGTHS 1
 #endif
-/* Whether a walk may be of a camera with a pitch; the host's may. */
+/* Whether the camera may have a pitch. On the host it may. */
 #ifndef CAMBER_PITCHED
 #define CAMBER_PITCHED 0
 #endif
@@ -41,14 +41,14 @@
 #else
 #define CAMBER_WALK_PITCHED 1
 #endif
-/* In a stretch's word, whose row stands at CAMBER_POINT_ROW_SHIFT. */
+/* A flag of a stretch's word, which also holds the row at CAMBER_POINT_ROW_SHIFT. */
 #define CAMBER_STRETCH_RING CAMBER_POINT_RING
 
-/* A polyline without invalid points. Behind the last run stands one that begins with the number of points. */
+/* Points of a polyline without invalid ones between them. A last stretch begins at the number of all points. */
 typedef struct camber_stretch {
-    camber_u32 first; /* of its points */
+    camber_u32 first; /* its first point; it ends where the next stretch begins */
     camber_u32 word;
-    camber_i32 x0, y0, x1, y1; /* of its points */
+    camber_i32 x0, y0, x1, y1; /* the box of its points */
 } camber_stretch;
 
 /* The camera, as the kernels need it. px = (x - origin_x) * across_x + (y - origin_y) * down_x + at_x. */
@@ -58,13 +58,13 @@ typedef struct camber_projection {
     float across_y, down_y, at_y;
     float tolerance;                                  /* points of less importance are left out */
     float window_x0, window_y0, window_x1, window_y1; /* px: nothing lies outside it */
-    camber_i32 seen_x0, seen_y0, seen_x1, seen_y1;    /* runs whose boxes miss it are not seen */
+    camber_i32 seen_x0, seen_y0, seen_x1, seen_y1;    /* stretches whose boxes miss it are not seen */
     camber_u32 first_point;                           /* where the arrays of points begin in the network */
     camber_u32 begin, end;                            /* the points to walk, counted from there */
     float step_px;
-    /* For a camera with a pitch. The window is a trapezoid then: its sides come so many px closer a px down, and are at
-     * window_x0 and window_x1 at its bottom. Depth is 1 at middle_y, and so much less a px down; tolerance is what is
-     * borne there. */
+    /* For a camera with a pitch, the window is a trapezoid. Its sides come `slope` px closer for each px down, to
+     * window_x0 and window_x1 at its bottom. Depth is 1 at middle_y, where `tolerance` holds, and falls by `fall` for
+     * each px down. */
     float slope; /* 0: no pitch */
     float middle_y, fall, nearest, inverse_cosine;
 } camber_projection;
@@ -77,25 +77,25 @@ typedef struct camber_walk {
     CAMBER_GLOBAL camber_u32 *slot_info;
     camber_u32 puts;             /* 0: slots are counted, 1: and put */
     camber_u32 at;               /* the next slot */
-    camber_u32 first, end, word; /* of the run */
+    camber_u32 first, end, word; /* of the stretch */
 #if CAMBER_WALK_ARC_LENGTHS
-    CAMBER_GLOBAL const float *lengths; /* of each point along its run, steps. NULL: not measured */
-    CAMBER_GLOBAL float *slot_measures; /* camber_arc_length of each slot */
-    CAMBER_GLOBAL const float *totals;  /* of the runs: how long the line is that each is a part of, steps */
+    CAMBER_GLOBAL const float *lengths;    /* how far along its stretch each point lies, steps. NULL: no arc lengths */
+    CAMBER_GLOBAL float *slot_arc_lengths; /* camber_arc_length of each slot */
+    CAMBER_GLOBAL const float *totals;     /* for each stretch the length of its whole line, steps */
     CAMBER_GLOBAL const camber_stretch *stretches;
-    float total; /* of the run */
+    float total; /* of the stretch */
 #endif
 } camber_walk;
 
 /* A point that is kept: its pixel, and which sides of the window that lies beyond. */
-typedef struct camber_kept {
+typedef struct camber_kept_point {
     camber_u32 point; /* CAMBER_NO_POINT: there is none */
     camber_u32 beyond;
     float x, y;
 #if CAMBER_WALK_ARC_LENGTHS
-    float along; /* its run, steps */
+    float along; /* how far along its stretch, steps */
 #endif
-} camber_kept;
+} camber_kept_point;
 
 CAMBER_FN float camber_project_x(const camber_projection *p, camber_i32 x, camber_i32 y) {
     return (float)(x - p->origin_x) * p->across_x + (float)(y - p->origin_y) * p->down_x + p->at_x;
@@ -118,8 +118,9 @@ CAMBER_FN camber_u32 camber_beyond(const camber_projection *p, float x, float y,
            (y < p->window_y0 - grown ? 4u : 0u) | (y > p->window_y1 + grown ? 8u : 0u);
 }
 
-CAMBER_FN camber_kept camber_keep_at(const camber_projection *p, camber_u32 point, camber_i32 x, camber_i32 y) {
-    camber_kept kept;
+CAMBER_FN camber_kept_point camber_kept_point_at(const camber_projection *p, camber_u32 point, camber_i32 x,
+                                                 camber_i32 y) {
+    camber_kept_point kept;
     kept.point = point;
     kept.x = camber_project_x(p, x, y);
     kept.y = camber_project_y(p, x, y);
@@ -127,8 +128,8 @@ CAMBER_FN camber_kept camber_keep_at(const camber_projection *p, camber_u32 poin
     return kept;
 }
 
-CAMBER_FN camber_kept camber_keep(const camber_walk *w, const camber_projection *p, camber_u32 point) {
-    camber_kept kept = camber_keep_at(p, point, w->x[point], w->y[point]);
+CAMBER_FN camber_kept_point camber_kept_point_of(const camber_walk *w, const camber_projection *p, camber_u32 point) {
+    camber_kept_point kept = camber_kept_point_at(p, point, w->x[point], w->y[point]);
 #if CAMBER_WALK_ARC_LENGTHS
     kept.along = w->lengths ? w->lengths[point] : 0.0f;
 #endif
@@ -136,8 +137,9 @@ CAMBER_FN camber_kept camber_keep(const camber_walk *w, const camber_projection 
 }
 
 #if CAMBER_WALK_ARC_LENGTHS
-/* How far along its run a place of the segment from a to b lies. */
-CAMBER_FN float camber_along_at(const camber_walk *w, camber_kept a, camber_kept b, camber_i32 x, camber_i32 y) {
+/* How far along its stretch a point of the segment from a to b lies, steps. */
+CAMBER_FN float camber_along_at(const camber_walk *w, camber_kept_point a, camber_kept_point b, camber_i32 x,
+                                camber_i32 y) {
     const float dx = (float)(w->x[b.point] - w->x[a.point]), dy = (float)(w->y[b.point] - w->y[a.point]);
     const float t =
         CAMBER_FABS(dx) > CAMBER_FABS(dy) ? (float)(x - w->x[a.point]) / dx : (float)(y - w->y[a.point]) / dy;
@@ -145,22 +147,23 @@ CAMBER_FN float camber_along_at(const camber_walk *w, camber_kept a, camber_kept
 }
 #endif
 
-CAMBER_FN camber_u32 camber_same_pixel(camber_kept a, camber_kept b) {
+CAMBER_FN camber_u32 camber_same_pixel(camber_kept_point a, camber_kept_point b) {
     return a.x == b.x && a.y == b.y ? 1u : 0u;
 }
 
-/* The end a of a segment to b, or in its stead, where a lies so far out that its pixel is coarse, a place of the
- * segment that does not, before the window. Halves the segment in steps of the network: what is left is exact to one of
- * them. Where the segment misses what is near, the place does too. */
-CAMBER_FN camber_kept camber_pull(const camber_walk *w, const camber_projection *p, camber_kept a, camber_kept b) {
+/* Returns the end a of a segment to b. If a lies so far out that its pixel is coarse, it returns a nearer point of the
+ * segment, outside the window. It is found by halving, and exact to a step of the network. If the segment stays far
+ * from the window, so does that point. */
+CAMBER_FN camber_kept_point camber_pull(const camber_walk *w, const camber_projection *p, camber_kept_point a,
+                                        camber_kept_point b) {
     camber_u32 out = camber_beyond(p, a.x, a.y, CAMBER_NEAR_PX);
     if (out == 0u)
         return a;
     camber_i32 x = w->x[a.point], y = w->y[a.point], to_x = w->x[b.point], to_y = w->y[b.point];
-    camber_kept found = b;
+    camber_kept_point found = b;
     for (camber_u32 i = 0; i < 32u; i++) {
         const camber_i32 mid_x = x + (to_x - x) / 2, mid_y = y + (to_y - y) / 2;
-        const camber_kept mid = camber_keep_at(p, a.point, mid_x, mid_y);
+        const camber_kept_point mid = camber_kept_point_at(p, a.point, mid_x, mid_y);
         const camber_u32 mid_out = camber_beyond(p, mid.x, mid.y, CAMBER_NEAR_PX);
         if (mid_out & out) {
             x = mid_x;
@@ -181,26 +184,26 @@ CAMBER_FN camber_kept camber_pull(const camber_walk *w, const camber_projection 
 }
 
 #if CAMBER_WALK_PITCHED
-/* px inside a side, of which b is not. */
-CAMBER_FN float camber_part_to(float a_inside, float b_inside) {
+/* Where between a and b, 0 to 1, a side of the window is crossed. Both are px inside the side; b's is below 0. */
+CAMBER_FN float camber_share_to(float a_inside, float b_inside) {
     return a_inside / (a_inside - b_inside);
 }
 
-CAMBER_FN float camber_part_within_pitched(const camber_projection *p, camber_kept a, camber_kept b) {
+CAMBER_FN float camber_share_within_pitched(const camber_projection *p, camber_kept_point a, camber_kept_point b) {
     const float a_wider = p->slope * (p->window_y1 - a.y), b_wider = p->slope * (p->window_y1 - b.y);
     float t = 1.0f, part;
     if (b.beyond & 1u)
-        t = camber_part_to(a.x - p->window_x0 + a_wider, b.x - p->window_x0 + b_wider);
+        t = camber_share_to(a.x - p->window_x0 + a_wider, b.x - p->window_x0 + b_wider);
     if (b.beyond & 2u) {
-        part = camber_part_to(p->window_x1 - a.x + a_wider, p->window_x1 - b.x + b_wider);
+        part = camber_share_to(p->window_x1 - a.x + a_wider, p->window_x1 - b.x + b_wider);
         t = part < t ? part : t;
     }
     if (b.beyond & 4u) {
-        part = camber_part_to(a.y - p->window_y0, b.y - p->window_y0);
+        part = camber_share_to(a.y - p->window_y0, b.y - p->window_y0);
         t = part < t ? part : t;
     }
     if (b.beyond & 8u) {
-        part = camber_part_to(p->window_y1 - a.y, p->window_y1 - b.y);
+        part = camber_share_to(p->window_y1 - a.y, p->window_y1 - b.y);
         t = part < t ? part : t;
     }
     return t > 0.0f ? t : 0.0f;
@@ -216,7 +219,7 @@ CAMBER_FN float camber_tolerance_at(const camber_projection *p, camber_i32 x, ca
 }
 #endif
 
-/* Whether a point matters to the camera. Nodes that lines share have one importance and one place. */
+/* Whether a point matters to the camera. A point that lines share has the same importance and position in each. */
 CAMBER_FN camber_u32 camber_matters(const camber_walk *w, const camber_projection *p, camber_u32 i) {
 #if CAMBER_WALK_PITCHED
     if (p->slope > 0.0f)
@@ -227,10 +230,10 @@ CAMBER_FN camber_u32 camber_matters(const camber_walk *w, const camber_projectio
 
 /* How far from a to b, 0 to 1, the first side of the window lies that b is beyond; 1 where it is beyond none. a is not
  * beyond any of these sides: no division by 0. */
-CAMBER_FN float camber_part_within(const camber_projection *p, camber_kept a, camber_kept b) {
+CAMBER_FN float camber_share_within(const camber_projection *p, camber_kept_point a, camber_kept_point b) {
 #if CAMBER_WALK_PITCHED
     if (p->slope > 0.0f)
-        return camber_part_within_pitched(p, a, b);
+        return camber_share_within_pitched(p, a, b);
 #endif
     const float side_x = b.beyond & 2u ? p->window_x1 : p->window_x0;
     const float side_y = b.beyond & 8u ? p->window_y1 : p->window_y0;
@@ -249,41 +252,41 @@ CAMBER_FN void camber_put_slot(camber_walk *w, float x, float y, camber_u32 info
 }
 
 #if CAMBER_WALK_ARC_LENGTHS
-/* Puts the arc length of the slot that has been put last. */
+/* Writes the arc length of the slot that was put last. */
 CAMBER_FN void camber_walk_put_arc_length(const camber_walk *w, const camber_projection *p, float along) {
     if (w->puts && w->lengths) {
-        w->slot_measures[2 * (w->at - 2u)] = along * p->step_px;
-        w->slot_measures[2 * (w->at - 2u) + 1u] = w->total * p->step_px;
+        w->slot_arc_lengths[2 * (w->at - 2u)] = along * p->step_px;
+        w->slot_arc_lengths[2 * (w->at - 2u) + 1u] = w->total * p->step_px;
     }
 }
 #endif
 
-/* b, or where the way to it leaves the window. */
-CAMBER_FN void camber_put_cut(camber_walk *w, const camber_projection *p, camber_kept a, camber_kept b,
+/* Puts b, or the point where the way from a to b leaves the window. */
+CAMBER_FN void camber_put_cut(camber_walk *w, const camber_projection *p, camber_kept_point a, camber_kept_point b,
                               camber_u32 info) {
-    const float t = camber_part_within(p, a, b);
+    const float t = camber_share_within(p, a, b);
     camber_put_slot(w, b.beyond ? a.x + (b.x - a.x) * t : b.x, b.beyond ? a.y + (b.y - a.y) * t : b.y, info);
 #if CAMBER_WALK_ARC_LENGTHS
     camber_walk_put_arc_length(w, p, b.beyond ? a.along + (b.along - a.along) * t : b.along);
 #endif
 }
 
-/* The last point before a place that is kept. The run's first point always is. */
-CAMBER_FN camber_kept camber_find_before(const camber_walk *w, const camber_projection *p, camber_u32 from) {
+/* The last kept point before `from`. A stretch's first point always is kept. */
+CAMBER_FN camber_kept_point camber_find_before(const camber_walk *w, const camber_projection *p, camber_u32 from) {
     camber_u32 i = from - 1;
     while (i > w->first && !camber_matters(w, p, i))
         i--;
-    return camber_keep(w, p, i);
+    return camber_kept_point_of(w, p, i);
 }
 
-/* The first point from a place on that is kept and has another pixel. */
-CAMBER_FN camber_kept camber_find_next(const camber_walk *w, const camber_projection *p, camber_u32 from,
-                                       camber_kept other) {
-    camber_kept next = other;
+/* The first kept point from `from` on that lies on another pixel; `other` itself if there is none. */
+CAMBER_FN camber_kept_point camber_find_next(const camber_walk *w, const camber_projection *p, camber_u32 from,
+                                             camber_kept_point other) {
+    camber_kept_point next = other;
     for (camber_u32 i = from; i < w->end; i++) {
         if (!camber_matters(w, p, i))
             continue;
-        next = camber_keep(w, p, i);
+        next = camber_kept_point_of(w, p, i);
         if (!camber_same_pixel(next, other))
             return next;
     }
@@ -294,8 +297,8 @@ CAMBER_FN camber_kept camber_find_next(const camber_walk *w, const camber_projec
 /* The sentinel of a ring: its last other point before the first, its second behind the last. Cut like the segment that
  * it stands for, so that both ends of the ring see the same turn. */
 CAMBER_FN void camber_walk_put_sentinel(camber_walk *w, const camber_projection *p, camber_u32 before,
-                                        camber_kept seam) {
-    camber_kept other = seam;
+                                        camber_kept_point seam) {
+    camber_kept_point other = seam;
     if (before) {
         other.point = w->end;
         while (other.point > w->first && camber_same_pixel(other, seam))
@@ -307,7 +310,7 @@ CAMBER_FN void camber_walk_put_sentinel(camber_walk *w, const camber_projection 
 }
 
 /* The slots that belong to a point: its own, a ring's sentinel, and the ends of the segment to the next point. */
-CAMBER_FN void camber_put_point(camber_walk *w, const camber_projection *p, camber_kept a, camber_kept b) {
+CAMBER_FN void camber_put_point(camber_walk *w, const camber_projection *p, camber_kept_point a, camber_kept_point b) {
     const camber_u32 real = (w->word & ~0xffu) | CAMBER_POINT_REAL;
     const camber_u32 has_next = b.point != CAMBER_NO_POINT ? 1u : 0u;
     if (!a.beyond) {
@@ -325,9 +328,9 @@ CAMBER_FN void camber_put_point(camber_walk *w, const camber_projection *p, camb
     }
     if (!has_next || (a.beyond & b.beyond) || !(a.beyond | b.beyond))
         return;
-    const camber_kept from = camber_pull(w, p, a, b), to = camber_pull(w, p, b, a);
+    const camber_kept_point from = camber_pull(w, p, a, b), to = camber_pull(w, p, b, a);
     if (from.beyond && to.beyond &&
-        ((from.beyond & to.beyond) || !(camber_part_within(p, from, to) + camber_part_within(p, to, from) > 1.0f)))
+        ((from.beyond & to.beyond) || !(camber_share_within(p, from, to) + camber_share_within(p, to, from) > 1.0f)))
         return;
     if (a.beyond)
         camber_put_cut(w, p, to, from, real | CAMBER_POINT_FIRST);
@@ -335,9 +338,9 @@ CAMBER_FN void camber_put_point(camber_walk *w, const camber_projection *p, camb
         camber_put_cut(w, p, from, to, real | CAMBER_POINT_LAST);
 }
 
-/* The points [begin, end) of the run, CAMBER_CULL_CHUNK at most. Of points that follow each other on one pixel the
- * first counts. Which are kept is found without a branch: no processor foresees it. */
-CAMBER_FN void camber_walk_part(camber_walk *w, const camber_projection *p, camber_u32 begin, camber_u32 end) {
+/* Walks the points [begin, end) of the stretch, at most CAMBER_CULL_CHUNK. Of neighbours on the same pixel only the
+ * first counts. Which points are kept is found without a branch, as no processor could predict it. */
+CAMBER_FN void camber_walk_points(camber_walk *w, const camber_projection *p, camber_u32 begin, camber_u32 end) {
     camber_u32 kept[CAMBER_CULL_CHUNK];
     camber_u32 count = 0;
     for (camber_u32 i = begin; i < end; i++) {
@@ -346,13 +349,13 @@ CAMBER_FN void camber_walk_part(camber_walk *w, const camber_projection *p, camb
     }
     if (count == 0u)
         return;
-    camber_kept now = {0};
+    camber_kept_point now = {0};
     now.point = CAMBER_NO_POINT;
     if (kept[0] > w->first)
         now = camber_find_before(w, p, kept[0]);
     camber_u32 waits = 0;
     for (camber_u32 i = 0; i < count; i++) {
-        const camber_kept next = camber_keep(w, p, kept[i]);
+        const camber_kept_point next = camber_kept_point_of(w, p, kept[i]);
         if (now.point != CAMBER_NO_POINT && camber_same_pixel(now, next))
             continue;
         if (waits)
@@ -364,30 +367,30 @@ CAMBER_FN void camber_walk_part(camber_walk *w, const camber_projection *p, camb
         camber_put_point(w, p, now, camber_find_next(w, p, end, now));
 }
 
-/* The points [begin, end) of the run. */
+/* Walks the points [begin, end) of the stretch. */
 CAMBER_FN void camber_walk_stretch(camber_walk *w, const camber_projection *p, camber_u32 begin, camber_u32 end) {
     for (camber_u32 from = begin; from < end; from += CAMBER_CULL_CHUNK)
-        camber_walk_part(w, p, from, end - from > CAMBER_CULL_CHUNK ? from + CAMBER_CULL_CHUNK : end);
+        camber_walk_points(w, p, from, end - from > CAMBER_CULL_CHUNK ? from + CAMBER_CULL_CHUNK : end);
 }
 
-/* The points [begin, end), of which the first belongs to the run that is given. */
-CAMBER_FN void camber_walk_chunk(camber_walk *w, const camber_projection *p, CAMBER_GLOBAL const camber_stretch *run,
-                                 camber_u32 begin, camber_u32 end) {
-    for (; run->first - p->first_point < end; run++) {
-        if (run->x1 < p->seen_x0 || run->x0 > p->seen_x1 || run->y1 < p->seen_y0 || run->y0 > p->seen_y1)
+/* Walks the points [begin, end), the first of which belongs to the given stretch. */
+CAMBER_FN void camber_walk_chunk(camber_walk *w, const camber_projection *p,
+                                 CAMBER_GLOBAL const camber_stretch *stretch, camber_u32 begin, camber_u32 end) {
+    for (; stretch->first - p->first_point < end; stretch++) {
+        if (stretch->x1 < p->seen_x0 || stretch->x0 > p->seen_x1 || stretch->y1 < p->seen_y0 ||
+            stretch->y0 > p->seen_y1)
             continue;
-        w->first = run->first - p->first_point;
-        w->end = run[1].first - p->first_point;
-        w->word = run->word;
+        w->first = stretch->first - p->first_point;
+        w->end = stretch[1].first - p->first_point;
+        w->word = stretch->word;
 #if CAMBER_WALK_ARC_LENGTHS
-        w->total = w->lengths ? w->totals[run - w->stretches] : 0.0f;
+        w->total = w->lengths ? w->totals[stretch - w->stretches] : 0.0f;
 #endif
         camber_walk_stretch(w, p, w->first > begin ? w->first : begin, w->end < end ? w->end : end);
     }
 }
 
-/* The points of a chunk, which are counted from the start of the arrays, that are to be walked; end is not above begin
- * where there are none. */
+/* The points of a chunk that are to be walked, counted from the start of the arrays; none if end is not above begin. */
 CAMBER_FN void camber_chunk_bounds(const camber_projection *p, camber_u32 chunk, camber_u32 *begin, camber_u32 *end) {
     const camber_u32 first = chunk * CAMBER_CULL_CHUNK;
     *begin = first > p->begin ? first : p->begin;
@@ -399,7 +402,7 @@ typedef char camber_projection_is_104_bytes[sizeof(camber_projection) == 104 ? 1
 typedef char camber_stretch_is_24_bytes[sizeof(camber_stretch) == 24 ? 1 : -1];
 #else
 _Static_assert(sizeof(camber_projection) == 104, "the device reads a projection of 104 bytes");
-_Static_assert(sizeof(camber_stretch) == 24, "the device reads runs of 24 bytes");
+_Static_assert(sizeof(camber_stretch) == 24, "the device reads stretches of 24 bytes");
 #endif
 
 #endif

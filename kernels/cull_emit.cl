@@ -2,7 +2,7 @@
  * Reads what cull_count reads and bases[chunks + 1], the slots before each chunk and all of them; writes x, y, info[s +
  * 2] with s these rounded up to CAMBER_BLOCK, a sentinel before them and sentinels behind, and the joins of the first
  * sentinel and the last, which classify leaves. With CAMBER_HAS_ARC_LENGTH it reads lengths[n] and totals[stretches] as
- * well and writes slot_measures[2 * s]; else these are NULL. A work-item a chunk. */
+ * well and writes slot_arc_lengths[2 * s]; else these are NULL. A work-item a chunk. */
 #include "cull.h"
 
 CAMBER_KERNEL(CAMBER_WALKERS, cull_emit,
@@ -11,10 +11,10 @@ CAMBER_KERNEL(CAMBER_WALKERS, cull_emit,
                global const camber_u32 *restrict chunk_stretches, global const camber_u32 *restrict bases,
                global float *restrict slot_x, global float *restrict slot_y, global camber_u32 *restrict slot_info,
                global camber_u32 *restrict joins, global const float *restrict lengths,
-               global const float *restrict totals, global float *restrict slot_measures,
+               global const float *restrict totals, global float *restrict slot_arc_lengths,
                const camber_projection projection),
               (x, y, importance, stretches, chunk_stretches, bases, slot_x, slot_y, slot_info, joins, lengths, totals,
-               slot_measures, projection)) {
+               slot_arc_lengths, projection)) {
     const camber_u32 item = (camber_u32)CAMBER_WORK_ITEM, chunk = projection.begin / CAMBER_CULL_CHUNK + item;
     camber_u32 begin, end;
     camber_chunk_bounds(&projection, chunk, &begin, &end);
@@ -23,7 +23,7 @@ CAMBER_KERNEL(CAMBER_WALKERS, cull_emit,
     camber_walk w = {x, y, importance, slot_x, slot_y, slot_info, 1u, bases[item] + 1u, 0, 0, 0};
 #if CAMBER_HAS_ARC_LENGTH
     w.lengths = lengths;
-    w.slot_measures = slot_measures;
+    w.slot_arc_lengths = slot_arc_lengths;
     w.totals = totals;
     w.stretches = stretches;
 #endif

@@ -1,9 +1,9 @@
 /* emit: per point, its records and, for kite and fan, its indices.
  * Reads x, y, info[n + 2], joins[n + 2], offsets[n / CAMBER_POINT_CHUNK], bases[2 * n / CAMBER_BLOCK] (each block's
  * first vertex and first index); writes records[CAMBER_RECORD_WORDS * record count], indices[index count]. Lists and
- * their order: camber_strip_records and camber_join_counts in join.h. A work-item appends what a run of
- * CAMBER_POINT_CHUNK points has. With CAMBER_HAS_ARC_LENGTH it reads measures[2 * n] as well, and records
- * are twice as long; else measures is NULL. */
+ * their order: camber_strip_records and camber_join_counts in join.h. A work-item appends what a chunk of
+ * CAMBER_POINT_CHUNK points has. With CAMBER_HAS_ARC_LENGTH it reads arc_lengths[2 * n] as well, and records
+ * are twice as long; else arc_lengths is NULL. */
 #include "join.h"
 
 #define LANES (CAMBER_BLOCK / CAMBER_POINT_CHUNK)
@@ -17,8 +17,8 @@ static inline void put_record(global camber_u32 *records, size_t k, float x, flo
 
 #if CAMBER_HAS_ARC_LENGTH
 /* The records [k, k + count) lie as far along their line as point i. */
-static inline void put_measures(global camber_u32 *records, size_t k, size_t count, global const float *arc_lengths,
-                                size_t i) {
+static inline void put_arc_lengths(global camber_u32 *records, size_t k, size_t count, global const float *arc_lengths,
+                                   size_t i) {
     const camber_u32 along = as_uint(arc_lengths[2 * i]), in_all = as_uint(arc_lengths[2 * i + 1]);
     for (size_t r = 0; r < count; r++)
         vstore4((uint4)(along, in_all, 0u, 0u), 2 * (k + r) + 1, records);
@@ -92,7 +92,7 @@ CAMBER_KERNEL(LANES, emit,
             for (size_t n = i; n < i + 4; n++) {
                 const size_t count = put_any(x, y, n, joins[n], info[n], records, k);
 #if CAMBER_HAS_ARC_LENGTH
-                put_measures(records, k, count, arc_lengths, n - 1);
+                put_arc_lengths(records, k, count, arc_lengths, n - 1);
 #endif
                 k += count;
             }
@@ -216,7 +216,7 @@ CAMBER_KERNEL(LANES, emit,
     for (size_t i = first; i < first + CAMBER_POINT_CHUNK; i++) {
         at += put_point(x, y, info, joins, i, records, indices + at);
 #if CAMBER_HAS_ARC_LENGTH
-        put_measures(records, i - 1, 1, arc_lengths, i - 1);
+        put_arc_lengths(records, i - 1, 1, arc_lengths, i - 1);
 #endif
     }
 }

@@ -1,5 +1,7 @@
-/* The features that CAMBER_RASTER_RICH draws: strokes with a gap, strokes that fade, are dashed, drawn in part, or
- * change their colour along them. stroke.frag says the same of fragments. */
+/* The features that only kernels built with CAMBER_RASTER_RICH draw: gaps, blurs, dashes, trims, ramps and images.
+ *
+ * Input: a brush's extension, the side table that it points into, and the segment's arc length. Output: the area that a
+ * pixel keeps, its colour, and whether a cell needs a look at all. shaders/stroke.frag holds the same formulas. */
 #ifndef CAMBER_KERNELS_FEATURES_H
 #define CAMBER_KERNELS_FEATURES_H
 
@@ -11,36 +13,36 @@
 #define CAMBER_TRUNCATE(x) ((float)(camber_i32)(x))
 #endif
 
-/* Words of a segment's measure: how far along its line A lies, px; how much farther a px along it; the line's length.
- */
-#define CAMBER_SEGMENT_MEASURES 4
+/* Words of a segment's arc length: how far along its line A lies, px; how much of the line a px of the segment is; the
+ * line's length, px; 0. */
+#define CAMBER_SEGMENT_ARC_LENGTHS 4
 
-/* The features of a row, as bits. A brush with none is drawn as one of a plain frame is. */
+/* The features of a brush, as bits. A brush without any is drawn as in a plain frame. */
 #define CAMBER_FEATURE_GAP 1u
 #define CAMBER_FEATURE_BLUR 2u
 #define CAMBER_FEATURE_DASH 4u
 #define CAMBER_FEATURE_TRIM 8u
 #define CAMBER_FEATURE_RAMP 16u
 #define CAMBER_FEATURE_IMAGE 32u
-#define CAMBER_FEATURES_COLORS (CAMBER_FEATURE_RAMP | CAMBER_FEATURE_IMAGE) /* from pixel to pixel */
+/* these change the colour from pixel to pixel */
+#define CAMBER_FEATURES_COLORS (CAMBER_FEATURE_RAMP | CAMBER_FEATURE_IMAGE)
 #define CAMBER_FEATURES_ALONG (CAMBER_FEATURE_DASH | CAMBER_FEATURE_TRIM | CAMBER_FEATURE_RAMP)
 
-/* Stops of a ramp that a cell looks at; where it sees more, several are taken for one. */
+/* The most stops of a ramp that a cell reads. Where it sees more, it takes several for one. */
 #define CAMBER_STOPS_SEEN 1024u
 
-/* Behind each brush. What it names in the side table is by float4s: dashes are one each, from where to where, with a
- * period's last one before it once more and its first one behind it; stops of ramps two, the place and the
- * premultiplied colour.
- */
+/* One for each brush. It points into the side table, which is counted in float4s. A dash takes one: where it begins and
+ * ends, px; the list repeats the period's last dash before the first, and its first behind the last. A stop of a ramp
+ * takes two: its position, and its premultiplied colour. */
 typedef struct camber_brush_ext {
     camber_u32 features;
     float half_gap, blur, period; /* px */
     camber_u32 first_dash, dash_count, round_dashes, image;
     camber_u32 first_stop, stop_count;
-    float trim_from, trim_to; /* shares of the line's length */
+    float trim_from, trim_to; /* as shares of the line's length */
 } camber_brush_ext;
 
-/* How much farther along its line a px of a segment lies. */
+/* How much of the line's arc length a px of the segment is. */
 CAMBER_FN camber_real camber_segment_rate(const camber_segment *s, camber_real from, camber_real to) {
     const camber_real dx = s->bx - s->ax, dy = s->by - s->ay, length = CAMBER_SQRT(dx * dx + dy * dy);
     const camber_real none = CAMBER_REAL(0.0f), one = CAMBER_REAL(1.0f);
@@ -49,19 +51,20 @@ CAMBER_FN camber_real camber_segment_rate(const camber_segment *s, camber_real f
 
 /* ---- A segment ---- */
 
-/* The coefficients of a segment with features, besides its edge. */
+/* The coefficients that a segment with features has besides its edge. */
 typedef struct camber_extras {
     camber_u32 features;
     float half_gap, blur;
-    camber_edge hole;          /* the gap, where joins cut it */
-    float along, rate, total;  /* of A; a px; of the line */
-    float trim_from, trim_to;  /* px along the line */
-    float period, drawn, from; /* of dashes: px; the share that is drawn; from each end of the line on */
+    camber_edge hole;         /* the gap's sides, as joins cut them */
+    float along, rate, total; /* arc length of A, px; arc length of a px; the line's whole length, px */
+    float trim_from, trim_to; /* px along the line */
+    float period, drawn,
+        from; /* of dashes: the period, px; the share of it that is drawn; where it begins, px from the line's ends */
     camber_u32 dash_count, round_dashes, stop_count;
     CAMBER_GLOBAL const float *dashes, *stops;
 } camber_extras;
 
-/* How much of the period is drawn. */
+/* The share of the period that dashes draw. */
 CAMBER_FN float camber_dashes_drawn(CAMBER_GLOBAL const float *dashes, camber_u32 count, float period) {
     float drawn = 0.0f;
     for (camber_u32 i = 0; i < count; i++) {
@@ -72,16 +75,16 @@ CAMBER_FN float camber_dashes_drawn(CAMBER_GLOBAL const float *dashes, camber_u3
     return drawn / period;
 }
 
-/* p: NULL where the plane is seen at an angle. */
+/* Works out the coefficients. p: the segment's edge; NULL in a picture with a pitch. */
 CAMBER_FN void camber_extras_of(const camber_brush_ext *brush_ext, const camber_edge *p,
-                                CAMBER_GLOBAL const float *measure, CAMBER_GLOBAL const float *side_table,
+                                CAMBER_GLOBAL const float *arc_length, CAMBER_GLOBAL const float *side_table,
                                 camber_extras *e) {
     e->features = brush_ext->features;
     e->half_gap = brush_ext->half_gap;
     e->blur = brush_ext->blur;
-    e->along = measure[0];
-    e->rate = measure[1];
-    e->total = measure[2];
+    e->along = arc_length[0];
+    e->rate = arc_length[1];
+    e->total = arc_length[2];
     const float span = e->total > 1e-6f ? e->total : 1e-6f;
     e->trim_from = brush_ext->trim_from * span;
     e->trim_to = brush_ext->trim_to * span;
@@ -103,22 +106,22 @@ CAMBER_FN void camber_extras_of(const camber_brush_ext *brush_ext, const camber_
 
 /* ---- Along the line ---- */
 
-/* floor, for numbers that are not below 0. Floats this large are whole. */
+/* floor of numbers from 0 on. Floats from 2^23 on are whole already. */
 CAMBER_FN camber_real camber_whole(camber_real x) {
     const camber_real large = CAMBER_REAL(8388608.0f), bounded = x < large ? x : large;
     const camber_real whole = CAMBER_TRUNCATE(bounded);
     return x < large ? whole : x;
 }
 
-/* How far along its line a pixel lies: past an end of the segment, as far as that. */
+/* How far along its line a pixel lies, px. Past an end of the segment it is as far as the end. */
 CAMBER_FN camber_real camber_extras_along(const camber_edge *p, const camber_extras *e, camber_real x) {
     const camber_real none = CAMBER_REAL(0.0f), most = CAMBER_REAL(p->length);
     const camber_real least = x > 0.0f ? x : none;
     return e->along + (least < p->length ? least : most) * e->rate;
 }
 
-/* Where in the dashes' period. The ends of the line are its caps' to cut: up to where they do, dashes go on as they are
- * a little inside. */
+/* Where in the dashes' period a pixel lies, px. At an end of the line the cap cuts, so up to there the dashes go on as
+ * they are a little before the end. */
 CAMBER_FN camber_real camber_dash_place(const camber_extras *e, camber_real along) {
     const float last = e->total - e->from;
     const camber_real least = along > e->from ? along : CAMBER_REAL(e->from);
@@ -126,8 +129,8 @@ CAMBER_FN camber_real camber_dash_place(const camber_extras *e, camber_real alon
     return at - e->period * camber_whole(at / e->period);
 }
 
-/* The share of a pixel that dashes leave, from its place in their period. Where a pixel holds more than a period, its
- * share that is drawn is all there is to see. */
+/* The share of a pixel that dashes leave, by where in the period it lies. A pixel that holds more than a period gets
+ * the share of the period that is drawn. */
 CAMBER_FN camber_real camber_dashes_cover(const camber_edge *p, const camber_extras *e, camber_real t) {
     camber_real area = CAMBER_REAL(0.0f);
     for (camber_u32 i = 0; i < e->dash_count; i++)
@@ -138,7 +141,7 @@ CAMBER_FN camber_real camber_dashes_cover(const camber_edge *p, const camber_ext
     return e->drawn * (1.0f - weight) + area * weight;
 }
 
-/* How far it is to the nearest dash. */
+/* The distance to the nearest dash, px along the line. */
 CAMBER_FN camber_real camber_dash_distance(const camber_extras *e, camber_real t) {
     camber_real nearest = CAMBER_REAL(1e6f);
     for (camber_u32 i = 0; i < e->dash_count; i++) {
@@ -151,13 +154,13 @@ CAMBER_FN camber_real camber_dash_distance(const camber_extras *e, camber_real t
 
 /* ---- Pixels ---- */
 
-/* The area of the gap, both edges of which may lie in a pixel. */
+/* The share of a pixel inside the gap. Both sides of the gap may lie in one pixel. */
 CAMBER_FN camber_real camber_gap_area(const camber_edge *p, float half_gap, camber_real d) {
     const camber_real both = camber_inside_edge(p, half_gap - d) + camber_inside_edge(p, half_gap + d) - 1.0f;
     return both > 0.0f ? both : CAMBER_REAL(0.0f);
 }
 
-/* How far inside the second line of a join, where there is one. */
+/* How far inside the second lines of its joins a pixel lies, px; far where there are none. */
 CAMBER_FN camber_real camber_rim_at(const camber_edge *p, camber_real rim, camber_u32 end, camber_real past,
                                     camber_real y, float c, float s) {
     camber_second l;
@@ -170,7 +173,7 @@ CAMBER_FN camber_real camber_rim_at(const camber_edge *p, camber_real rim, cambe
     return ((past > -1.0f) & (y * l.outer > 0.0f)) ? nearer : rim;
 }
 
-/* A ramp from half a pixel outside inwards, and into the gap. */
+/* The coverage of a blurred stroke: it grows from half a pixel outside the edge inwards, and falls towards the gap. */
 CAMBER_FN camber_real camber_blurred(const camber_edge *p, const camber_extras *e, camber_u32 aside, camber_real d,
                                      camber_real x, camber_real y) {
     camber_real rim = p->half_width - d;
@@ -187,8 +190,8 @@ CAMBER_FN camber_real camber_blurred(const camber_edge *p, const camber_extras *
     return camber_clamp_to_one((rim + 0.5f) / (e->blur + 1.0f));
 }
 
-/* The area of pixels that are the segment's, as camber_edge_area and camber_edge_side say it of plain strokes. aside:
- * the ends are too far away to matter. */
+/* The area of a pixel that the segment draws: camber_edge_area with features. aside: no end is near, as in
+ * camber_edge_side. */
 CAMBER_FN camber_real camber_extras_area(const camber_edge *p, const camber_extras *e, camber_u32 aside, camber_real x,
                                          camber_real y, camber_real fa, camber_real fb) {
     const camber_u32 dashed = e->features & CAMBER_FEATURE_DASH;
@@ -202,7 +205,7 @@ CAMBER_FN camber_real camber_extras_area(const camber_edge *p, const camber_extr
     if (dashed && e->round_dashes)
         arc += camber_dash_distance(e, place);
     const camber_real d = CAMBER_SQRT(arc * arc + bent * bent);
-    camber_real area = camber_edge_band(p, p->half_width, d);
+    camber_real area = camber_edge_within(p, p->half_width, d);
     if (p->tips && !aside)
         area *= camber_edge_tips(p, x);
     if (p->sharp && !aside)
@@ -226,13 +229,13 @@ CAMBER_FN camber_real camber_extras_area(const camber_edge *p, const camber_extr
 
 /* ---- Cells ---- */
 
-/* How a cell lies to a segment: it has nothing of it; it lies near the ends; on the sides; all inside the stroke. */
+/* How a cell lies to a segment: outside it, near an end of it, across one of its sides, or all inside it. */
 #define CAMBER_CELL_OUTSIDE 0u
 #define CAMBER_CELL_NEAR_END 1u
 #define CAMBER_CELL_PARTIAL 2u
 #define CAMBER_CELL_FULL 3u
 
-/* From where to where along the line the pixels of a cell reach, by its middle. */
+/* The arc lengths between which the pixels of a cell lie, px, by the position of its middle. */
 CAMBER_FN void camber_extras_range(const camber_edge *p, const camber_extras *e, float x, float *low, float *high) {
     const float reach = 1.5f * (CAMBER_FABS(p->ux) + CAMBER_FABS(p->uy)), from = x - reach, to = x + reach;
     const float first = from > 0.0f ? from : 0.0f, last = to > 0.0f ? to : 0.0f;
@@ -242,7 +245,7 @@ CAMBER_FN void camber_extras_range(const camber_edge *p, const camber_extras *e,
     *high = (at_first < at_last ? at_last : at_first) + p->extent + 0.01f;
 }
 
-/* Whether dashes leave nothing of a cell, some of it or all. */
+/* Whether dashes leave a cell empty, cut it, or leave all of it. */
 CAMBER_FN camber_u32 camber_dashes_meet(const camber_edge *p, const camber_extras *e, float low, float high) {
     const float last = e->total - e->from, spread = e->round_dashes ? p->half_width + p->extent : 0.0f;
     if (!e->round_dashes) {
@@ -268,8 +271,8 @@ CAMBER_FN camber_u32 camber_dashes_meet(const camber_edge *p, const camber_extra
     return whole ? CAMBER_CELL_FULL : some ? CAMBER_CELL_NEAR_END : CAMBER_CELL_OUTSIDE;
 }
 
-/* The same with what is drawn there of the stroke, of a cell far from the ends; x and y: of its middle, along and
- * across the segment. */
+/* How a cell lies to a segment with features, if `meets` is how it lies to a plain one. x and y: the cell's middle,
+ * along and across the segment. */
 CAMBER_FN camber_u32 camber_extras_cell(const camber_edge *p, const camber_extras *e, camber_u32 meets, float x,
                                         float y) {
     const float aside = CAMBER_FABS(y), reach = 1.5f * (CAMBER_FABS(p->ux) + CAMBER_FABS(p->uy));
@@ -304,7 +307,7 @@ CAMBER_FN camber_u32 camber_extras_cell(const camber_edge *p, const camber_extra
 
 /* ---- Colours ---- */
 
-/* How many stops lie up to a place. */
+/* How many stops lie up to a position on the line. */
 CAMBER_FN camber_u32 camber_stops_up_to(const camber_extras *e, float place) {
     camber_u32 low = 0, high = e->stop_count;
     while (low < high) {
@@ -326,8 +329,8 @@ CAMBER_FN void camber_ramp_between(const camber_extras *e, camber_u32 i, camber_
         color[k] = from[4 + k] * (1.0f - part) + to[4 + k] * part;
 }
 
-/* The mean colour of the ramp over pixels of a cell that sees it from low to high: the share of a pixel between two
- * stops has the colour in the middle of what it sees of them. */
+/* The mean colour of the ramp over each pixel of a cell, which sees the ramp from low to high. Between two stops a
+ * pixel has the colour in the middle of the stretch of the ramp that it sees. */
 CAMBER_FN void camber_ramp_over(const camber_edge *p, const camber_extras *e, camber_real along, float low, float high,
                                 camber_real color[4]) {
     const camber_u32 first = e->total > 0.0f ? camber_stops_up_to(e, low) : 0;

@@ -1,5 +1,8 @@
-/* Images that CAMBER_RASTER_RICH draws with, along lines and side by side over the picture. image_at of stroke.frag and
- * images_over of flatten.frag say the same of fragments. */
+/* Images that kernels built with CAMBER_RASTER_RICH draw with: along lines, or side by side over the picture.
+ *
+ * Input: the side table, which holds each image's layout and texels, and the positions of pixels. Output: the colour
+ * that a pixel sees, as the mean of the texels that it shows. image_at of shaders/stroke.frag and images_over of
+ * shaders/flatten.frag hold the same formulas. */
 #ifndef CAMBER_KERNELS_IMAGES_H
 #define CAMBER_KERNELS_IMAGES_H
 
@@ -7,14 +10,13 @@
 
 #if CAMBER_LANES == 16 /* as rich frames are drawn */
 
-/* Where a brush names an image, the side table has
- *     the first word of its texels in the side table, texels a row and rows (the bits of unsigned integers); px along a
- * line of a fill: where the corner of one image lies, px of the picture; images a px to the right, along their x and y
- *     the same a px down, and 0
- *     the mean, 0 to 255
- * and texels are premultiplied RGBA8, a word each, from the top down, with one more beyond each edge. */
+/* An image's layout in the side table, four float4s:
+ *     0-3    the first word of its texels, texels a row, rows (all three are bits of unsigned integers); px along a
+ * line 4-7    of a fill: where a corner of an image lies, px; images a px to the right, along their x and their y 8-11
+ * of a fill: images a px down, along their x and their y; 0, 0 12-15  the mean colour, 0 to 255 Texels are
+ * premultiplied RGBA8, a word each, from the top down, with a border of one texel around them. */
 #define CAMBER_IMAGE_WORDS 16u
-#define CAMBER_SAMPLES_MAX 8.0f /* to a side of a pixel that shows many texels */
+#define CAMBER_SAMPLES_MAX 8.0f /* the most along each side of a pixel that shows many texels */
 
 #ifdef CAMBER_DEVICE
 #define CAMBER_BITS(x) as_uint(x)
@@ -41,18 +43,18 @@ CAMBER_FN camber_u32 camber_bits_of(float value) {
 }
 #endif
 
-/* How an image is looked up, constant over a segment or a fill. */
+/* How an image is looked up: all that is the same for each pixel of a segment or a fill. */
 typedef struct camber_image_sampler {
     camber_u32 first, stride; /* words */
     float width, height;      /* texels */
-    float phase, rate, aside; /* images: at A, a px along the line, a px across it */
-    float length, near;       /* of the segment, and from its joints: px */
+    float phase, rate, aside; /* in images: the position at A, what a px along the line is, what a px across it is */
+    float length, near;       /* the segment's length; how far from a joint the image bends; px */
     float tangent_a, tangent_b;
     float left, top, across_x, across_y, down_x, down_y; /* of a fill */
     float mean[4];
 } camber_image_sampler;
 
-/* The fraction of a number; 0 past 2^23. */
+/* The fraction of a number, from 0 to 1; 0 from 2^23 on. */
 CAMBER_FN float camber_fraction(float x) {
     const float held = CAMBER_FABS(x) < 8388608.0f ? x : 0.0f, rest = held - (float)(camber_i32)held;
     return rest < 0.0f ? rest + 1.0f : rest;
@@ -63,7 +65,7 @@ CAMBER_FN camber_real camber_fractions(camber_real x) {
     return rest < 0.0f ? rest + 1.0f : rest;
 }
 
-/* at: the brush's place, words. */
+/* The sampler of a fill. at: where the image's layout begins in the side table, words. */
 CAMBER_FN void camber_image_sampler_of(CAMBER_GLOBAL const float *side_table, camber_u32 at, camber_image_sampler *m) {
     m->first = CAMBER_BITS(side_table[at]);
     m->stride = CAMBER_BITS(side_table[at + 1u]) + 2u;
@@ -80,24 +82,25 @@ CAMBER_FN void camber_image_sampler_of(CAMBER_GLOBAL const float *side_table, ca
         m->mean[k] = side_table[at + 12u + k];
 }
 
+/* The tangent of half a turn; 0 where the line goes straight on. */
 CAMBER_FN float camber_image_tangent(float cosine, float sine) {
     const float tangent = sine / (cosine > 1e-3f ? cosine : 1e-3f);
     return CAMBER_FABS(tangent) < 1e-6f ? 0.0f : tangent;
 }
 
-/* A segment: half its width, and cosine and sine of half its turns at A and B. */
+/* The segment as a line's sampler needs it: cosine and sine are of half the turn at A and at B. */
 typedef struct camber_image_line {
     float length, half_width, ca, sa, cb, sb;
 } camber_image_line;
 
-/* The same for a line: measure is the segment's. */
+/* The sampler of a line. arc_length: the segment's CAMBER_SEGMENT_ARC_LENGTHS words. */
 CAMBER_FN void camber_image_line_of(CAMBER_GLOBAL const float *side_table, camber_u32 at,
-                                    CAMBER_GLOBAL const float *measure, const camber_image_line *p,
+                                    CAMBER_GLOBAL const float *arc_length, const camber_image_line *p,
                                     camber_image_sampler *m) {
     const float one_px = side_table[at + 3u], middle = 0.5f * p->length, widths = 4.0f * p->half_width;
     camber_image_sampler_of(side_table, at, m);
-    m->phase = camber_fraction(measure[0] / one_px);
-    m->rate = measure[1] / one_px;
+    m->phase = camber_fraction(arc_length[0] / one_px);
+    m->rate = arc_length[1] / one_px;
     m->aside = 0.5f / (p->half_width > 1e-9f ? p->half_width : 1e-9f);
     m->length = p->length;
     m->near = middle < widths ? middle : widths;
@@ -106,7 +109,8 @@ CAMBER_FN void camber_image_line_of(CAMBER_GLOBAL const float *side_table, cambe
 }
 
 CAMBER_FN void camber_flat_image_of(CAMBER_GLOBAL const float *side_table, camber_u32 at,
-                                    CAMBER_GLOBAL const float *measure, const camber_edge *p, camber_image_sampler *m) {
+                                    CAMBER_GLOBAL const float *arc_length, const camber_edge *p,
+                                    camber_image_sampler *m) {
     camber_image_line line;
     line.length = p->length;
     line.half_width = p->half_width;
@@ -114,28 +118,27 @@ CAMBER_FN void camber_flat_image_of(CAMBER_GLOBAL const float *side_table, cambe
     line.sa = p->sa;
     line.cb = p->cb;
     line.sb = p->sb;
-    camber_image_line_of(side_table, at, measure, &line, m);
+    camber_image_line_of(side_table, at, arc_length, &line, m);
 }
 
 /* ---- Pixels ---- */
 
-/* Where pixels lie along and across a segment and how far from it, or in the plane; and how far they reach there: 0
- * where a px of the plane is one of the picture. */
+/* Where pixels lie: along and across a segment and how far from it, or in the plane. reach: how much of the plane a
+ * pixel spans, px; 0 without a pitch. */
 typedef struct camber_image_spot {
     camber_real x, y, distance;
     camber_real reach_x, reach_y;
 } camber_image_spot;
 
-/* How far from a joint a place t px before it lies on a line that bends there: the bisector is the joint, and up to two
- * widths from it, or half the segment, what lies between is drawn out or pushed together. Past a cap the line goes on.
- */
+/* How far before a joint a position lies in the image, if it lies t px before the joint. The image is stretched or
+ * squeezed near the joint, up to `near` px from it, so that its end lies on the bisector. A cap leaves it as it is. */
 CAMBER_FN camber_real camber_before_joint(camber_real t, float tangent, camber_real y, float near) {
     const camber_real bisector = tangent * y, room = near - bisector, least = CAMBER_REAL(1e-3f);
     const camber_real share = camber_clamp_to_one((t - bisector) / CAMBER_MORE(room, least));
     return tangent == 0.0f ? t : t > near ? t : near * share;
 }
 
-/* Two texels that lie side by side, of each pixel. */
+/* For each pixel, the texel at a word of the side table and the one to its right. */
 CAMBER_FN void camber_texels_at(CAMBER_GLOBAL const float *side_table, camber_words at, camber_words *left,
                                 camber_words *right) {
 #ifdef CAMBER_DEVICE
@@ -154,7 +157,7 @@ CAMBER_FN void camber_texels_at(CAMBER_GLOBAL const float *side_table, camber_wo
 #endif
 }
 
-/* Adds what lies at a share of the image's width and height, bilinear, 0 to 255, where that is wanted. */
+/* Adds the image's colour, 0 to 255, bilinear, at shares u and v of its width and height, where it is wanted. */
 CAMBER_FN void camber_add_texels(CAMBER_GLOBAL const float *side_table, const camber_image_sampler *m, camber_real u,
                                  camber_real v, camber_mask wanted, camber_real rgba[4]) {
     const camber_real x = u * m->width + 0.5f, y = v * m->height + 0.5f;
@@ -172,13 +175,15 @@ CAMBER_FN void camber_add_texels(CAMBER_GLOBAL const float *side_table, const ca
     }
 }
 
+/* How many samples a pixel takes along a side on which it shows so many texels. */
 CAMBER_FN camber_real camber_samples(camber_real texels) {
     const camber_real least = CAMBER_REAL(1.0f), most = CAMBER_REAL(CAMBER_SAMPLES_MAX), wanted = texels + 0.5f;
     const camber_real bounded = wanted > least ? wanted : least;
     return CAMBER_TRUNCATE(bounded < most ? bounded : most);
 }
 
-/* The image at u and v, premultiplied, 0 to 1, over so many images to each side. tiled: downwards, too. */
+/* The image's mean colour, premultiplied, 0 to 1, around u and v, over over_u and over_v images. It repeats along u;
+ * tiled: along v, too. */
 CAMBER_FN void camber_image_over(CAMBER_GLOBAL const float *side_table, const camber_image_sampler *m, camber_real u,
                                  camber_real v, camber_real over_u, camber_real over_v, camber_u32 tiled,
                                  camber_real rgba[4]) {
@@ -196,7 +201,7 @@ CAMBER_FN void camber_image_over(CAMBER_GLOBAL const float *side_table, const ca
         rgba[k] *= scale;
 }
 
-/* The image of a line; past a round join it is swept around. */
+/* The colour of a line's image. Around a round join or cap it is swept. */
 CAMBER_FN void camber_line_image(CAMBER_GLOBAL const float *side_table, const camber_image_sampler *m,
                                  const camber_image_spot *at, camber_real rgba[4]) {
     const camber_real t = m->length - at->x, none = CAMBER_REAL(0.0f), edge = CAMBER_REAL(0.5f);
@@ -210,7 +215,7 @@ CAMBER_FN void camber_line_image(CAMBER_GLOBAL const float *side_table, const ca
                       CAMBER_FABS(m->rate) * at->reach_x, m->aside * at->reach_y, 0u, rgba);
 }
 
-/* The images of a fill. */
+/* The colour of a fill's images. Where a pixel shows very many texels, it tends to the mean. */
 CAMBER_FN void camber_fill_image(CAMBER_GLOBAL const float *side_table, const camber_image_sampler *m,
                                  const camber_image_spot *at, camber_real rgba[4]) {
     const camber_real x = at->x - m->left, y = at->y - m->top;

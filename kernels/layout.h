@@ -77,8 +77,8 @@ typedef struct camber_row {
     float fan_step;  /* the angle */
 } camber_row;
 
-/* Words of a record: see camber_record in camber_proof.h. A measured mesh has as many again behind them, of which the
- * first two are camber_arc_length. */
+/* Words of a record: see camber_record in camber_proof.h. A mesh with arc lengths has as many again behind them, of
+ * which the first two are camber_arc_length. */
 #define CAMBER_RECORD_WORDS 4
 #ifndef CAMBER_HAS_ARC_LENGTH
 #define CAMBER_HAS_ARC_LENGTH 0

@@ -1,4 +1,4 @@
-/* Offset: the line that lies beside another, the one place where it is decided which points it has.
+/* Offset: decides which points a line has that lies beside another, its source line.
  *
  *     offset segment   the one from a slot to the next, moved aside
  *     corner           where two of them meet: an arc about the point outside, a crossing inside
@@ -32,7 +32,7 @@
 /* The rest of a cut segment is longer. Elements that are linked are so by one point where they end closer. */
 #define CAMBER_OFFSET_SEGMENT_SHORTEST_PX (1.0f / 1024.0f)
 #define CAMBER_OFFSET_GAP_PX 0.25f
-/* Legs that are cut may end so far from where they cross. */
+/* Segments that are cut may end so far from where they cross. */
 #define CAMBER_OFFSET_SLACK_PX 1.0f
 /* The end of a segment that is not cut there. */
 #define CAMBER_OFFSET_SEGMENT_WHOLE 1.0e30f
@@ -57,7 +57,7 @@ typedef struct camber_source_line {
     CAMBER_GLOBAL const camber_u32 *info;
     CAMBER_GLOBAL const camber_offset_row *offset_rows;
     CAMBER_GLOBAL const camber_offset_clip *clips;
-    CAMBER_GLOBAL const float *arc_lengths; /* camber_arc_length of each slot. NULL: not measured */
+    CAMBER_GLOBAL const float *arc_lengths; /* camber_arc_length of each slot. NULL: no arc lengths */
     camber_u32 slots;
 } camber_source_line;
 
@@ -106,7 +106,7 @@ CAMBER_FN camber_u32 camber_is_open_end(camber_u32 info) {
     return (info & (CAMBER_POINT_FIRST | CAMBER_POINT_LAST)) && !(info & CAMBER_POINT_RING) ? 1u : 0u;
 }
 
-/* ---- Legs ---- */
+/* ---- Offset segments ---- */
 
 /* A component of a direction: 0 where two slots have one place, as they may where a camera sees a whole city in a
  * pixel. */
@@ -142,7 +142,7 @@ CAMBER_FN camber_u32 camber_offset_has_segment(camber_offset_clip clip) {
     return clip.to > clip.from ? 1u : 0u;
 }
 
-/* ---- Bends ---- */
+/* ---- Corners ---- */
 
 typedef struct camber_offset_corner {
     float c, s;    /* cosine and sine of half the turn that the offset makes, positive from x to y */

@@ -4,7 +4,7 @@
 
 #include "offset.h"
 
-/* ---- Hidden parts ---- */
+/* ---- Hidden intervals ---- */
 
 /* A walk away from a slot: the segments of the line, cut where they leave its reach. */
 typedef struct camber_neighbour_walk {
@@ -52,9 +52,9 @@ CAMBER_FN camber_u32 camber_neighbour_walk_on(const camber_source_line *c, cambe
     return 1u;
 }
 
-/* Where places of a straight lie nearer than near to a segment, whose ends lie at ax and bx along it and ha and hb
- * below it. */
-CAMBER_FN camber_u32 camber_hidden_part(float near, float ax, float ha, float bx, float hb, float *lo, float *hi) {
+/* The interval of a straight line that lies nearer than `near` to a segment. The segment's ends lie at ax and bx along
+ * the line, and ha and hb below it. */
+CAMBER_FN camber_u32 camber_hidden_interval(float near, float ax, float ha, float bx, float hb, float *lo, float *hi) {
     *lo = CAMBER_OFFSET_SEGMENT_WHOLE;
     *hi = -CAMBER_OFFSET_SEGMENT_WHOLE;
     const float ra = near * near - ha * ha, rb = near * near - hb * hb;
@@ -140,8 +140,8 @@ CAMBER_FN void camber_offset_segment_cut(const camber_source_line *c, camber_u32
         float lo, hi;
         if ((ha >= near && hb >= near) || (ha <= -near && hb <= -near))
             continue; /* mostly */
-        if (!camber_hidden_part(near, ax * segment->ux + ay * segment->uy, ha, bx * segment->ux + by * segment->uy, hb,
-                                &lo, &hi))
+        if (!camber_hidden_interval(near, ax * segment->ux + ay * segment->uy, ha, bx * segment->ux + by * segment->uy,
+                                    hb, &lo, &hi))
             continue;
         if (lo >= segment->length || hi <= 0.0f)
             continue;
@@ -176,7 +176,7 @@ CAMBER_FN void camber_offset_arc_cut(const camber_source_line *c, camber_u32 slo
     }
 }
 
-/* ---- Spans ---- */
+/* ---- Clips ---- */
 
 /* Clips the segment from a slot to the next. */
 CAMBER_FN void camber_offset_clip_segment(const camber_source_line *c, camber_u32 slot, float offset,

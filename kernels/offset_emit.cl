@@ -2,7 +2,7 @@
  * Reads what offset_count reads and bases[chunks + 1], the slots before each chunk and all of them. Writes x, y,
  * info[s + 2], s being all slots rounded up to CAMBER_BLOCK: a sentinel before them and sentinels behind; the joins of
  * the first and the last sentinel, which classify leaves; places[n], the slots that come of those before each. With
- * CAMBER_HAS_ARC_LENGTH it reads measures[2 * n] and writes out_measures[2 * s]; else both are NULL. */
+ * CAMBER_HAS_ARC_LENGTH it reads arc_lengths[2 * n] and writes out_arc_lengths[2 * s]; else both are NULL. */
 #include "offset_emit.h"
 
 kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK / CAMBER_OFFSET_CHUNK, 1, 1))) void offset_emit(
@@ -10,7 +10,7 @@ kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK / CAMBER_OFFSET_CHUNK, 1
     global const camber_offset_row *restrict offset_rows, global camber_offset_clip *restrict clips,
     global const camber_u32 *restrict bases, global float *restrict out_x, global float *restrict out_y,
     global camber_u32 *restrict out_info, global camber_u32 *restrict joins, global camber_u32 *restrict places,
-    global const float *restrict arc_lengths, global float *restrict out_measures) {
+    global const float *restrict arc_lengths, global float *restrict out_arc_lengths) {
     const camber_u32 chunk = (camber_u32)get_global_id(0), chunks = (camber_u32)get_global_size(0);
     camber_source_line source_line = {x, y, info, offset_rows, clips, 0, chunks * CAMBER_OFFSET_CHUNK};
     camber_offset_writer writer = camber_offset_writer_counting();
@@ -19,7 +19,7 @@ kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK / CAMBER_OFFSET_CHUNK, 1
     writer.info = out_info;
 #if CAMBER_HAS_ARC_LENGTH
     source_line.arc_lengths = arc_lengths;
-    writer.arc_lengths = out_measures;
+    writer.arc_lengths = out_arc_lengths;
 #endif
     writer.emits = 1u;
     writer.at = bases[chunk] + 1u;
@@ -40,7 +40,7 @@ kernel __attribute__((reqd_work_group_size(CAMBER_BLOCK / CAMBER_OFFSET_CHUNK, 1
             out_info[i] = 0u;
 #if CAMBER_HAS_ARC_LENGTH
             if (i <= padded)
-                out_measures[2u * (i - 1u)] = out_measures[2u * (i - 1u) + 1u] = 0.0f;
+                out_arc_lengths[2u * (i - 1u)] = out_arc_lengths[2u * (i - 1u) + 1u] = 0.0f;
 #endif
         }
         joins[padded + 1u] = 0u;

@@ -4,7 +4,7 @@
 
 #include "offset_clip.h"
 
-/* ---- Pieces: what is left, in the order of the line ---- */
+/* ---- Elements: what is left, in the order of the line ---- */
 
 #define CAMBER_OFFSET_NONE 0u
 #define CAMBER_OFFSET_SEGMENT 1u

@@ -1,41 +1,48 @@
-/* Drawing in OpenCL of a plane that is seen at an angle: what a segment covers of a pixel. shaders/stroke.frag says the
- * same under PITCHED.
+/* The share of a pixel that a segment covers, in a picture with a pitch: coverage.h for a plane that is seen at an
+ * angle.
  *
- * A distance in the plane from a line, n . p - n . a, is linear in the picture once it is divided by the depth there:
- * straight edges of the plane are straight edges of the picture, and where the ends of a segment are far there is
- * nothing else to see. */
+ * Input: the footprint and the plane of a segment, as setup writes them, and positions in the picture. Output: areas
+ * from 0 to 1, and masks of the cells that the segment touches. shaders/stroke.frag holds the same formulas under
+ * PITCHED.
+ *
+ * A distance from a line of the plane, n . p - n . a, divided by the depth there is linear in the picture. So straight
+ * edges of the plane are straight in the picture, and far from the ends of a segment only its sides count. Near them a
+ * pixel is projected into the plane. */
 #ifndef CAMBER_KERNELS_PITCH_COVERAGE_H
 #define CAMBER_KERNELS_PITCH_COVERAGE_H
 
 #include "pitch_segment.h"
 
-/* ---- Pens ---- */
+/* ---- Edges ---- */
 
-/* How far a place lies past a line of the plane, by the depth there: linear in the picture. */
+/* How far a pixel lies past a line of the plane, divided by its depth. This is linear in the picture: x, y, less at. */
 typedef struct camber_form {
     float at, x, y;
 } camber_form;
 
-/* An edge of the picture, and edge_of. */
+/* A straight edge in the picture, and how it cuts pixels: edge_of in shaders/edge.glsl. */
 typedef struct camber_seen_edge {
     float at, x, y;
     float extent, corner, slope, curve;
 } camber_seen_edge;
 
+/* The coefficients of a segment in a picture with a pitch. */
 typedef struct camber_pitch_edge {
     float by_cosine, fall;
     float ux, uy, half_width, length;
-    float along_a, across_a; /* where A lies along the segment, and the line across it */
+    float along_a,
+        across_a; /* where A lies along the segment's direction and across it, px from where the camera looks at */
     float ca, sa, cb, sb;
     camber_form x, y, past_b, fa, fb;
     camber_seen_edge left, right, cut_a, cut_b;
-    float owner_a, owner_b, wide_a, wide_b; /* wide: of camber_pitch_cut */
+    float owner_a, owner_b, wide_a, wide_b; /* wide: the share of camber_pitch_cut */
     float flat_a, flat_b, round_a, round_b;
     float margin;
-    float axis_x, axis_y, axis_at, aside_at, from, to, wide; /* the band */
+    float axis_x, axis_y, axis_at, aside_at, from, to, wide; /* the footprint */
     camber_u32 end_a, end_b, linear, tip_a, tip_b, flat, bends, sharp, narrow;
 } camber_pitch_edge;
 
+/* The form of a line of the plane: its unit normal, and its position along that. */
 CAMBER_FN camber_form camber_form_of(camber_eye e, float nx, float ny, float at) {
     camber_form f;
     f.at = at;
@@ -48,6 +55,7 @@ CAMBER_FN camber_real camber_form_at(const camber_form *f, camber_real x, camber
     return x * f->x + y * f->y - f->at;
 }
 
+/* Works out how an edge of the picture cuts pixels. linear: coverage is a linear ramp. */
 CAMBER_FN void camber_seen_edge_of(float at, float x, float y, camber_u32 linear, camber_seen_edge *edge) {
     const float nx = CAMBER_FABS(x), ny = CAMBER_FABS(y);
     const float q = nx < ny ? nx : ny, more = nx < ny ? ny : nx, p = more > 0.5f ? more : 0.5f;
@@ -60,7 +68,7 @@ CAMBER_FN void camber_seen_edge_of(float at, float x, float y, camber_u32 linear
     edge->curve = linear || q <= 1e-4f ? 0.0f : 0.5f / (p * q);
 }
 
-/* shape: the band's words; plane: those behind it. */
+/* Works out the coefficients from the words of the footprint (segment) and those of the plane. */
 CAMBER_FN void camber_pitch_edge_of(camber_eye e, CAMBER_GLOBAL const float *segment, CAMBER_GLOBAL const float *plane,
                                     camber_u32 flags, camber_pitch_edge *p) {
     const float ax = plane[CAMBER_SEGMENT_AX], ay = plane[CAMBER_SEGMENT_AY], bx = plane[CAMBER_SEGMENT_BX];
@@ -124,28 +132,29 @@ CAMBER_FN void camber_pitch_edge_of(camber_eye e, CAMBER_GLOBAL const float *seg
 
 /* ---- Cells ---- */
 
+/* How far the middles of a cell's pixels lie from the cell's middle, along a normal. */
 CAMBER_FN float camber_cell_reach(float nx, float ny) {
     return 1.5f * (CAMBER_FABS(nx) + CAMBER_FABS(ny));
 }
 
-/* px inside an edge, of places of the picture. */
+/* How far a pixel lies inside an edge of the picture, px. */
 CAMBER_FN camber_real camber_seen_inside(const camber_seen_edge *edge, camber_real x, camber_real y) {
     return edge->at - (x * edge->x + y * edge->y);
 }
 
-/* Whether a join's cut lies nearer to a cell than pixels see. */
+/* Whether a join's cut may pass through a pixel of a cell, whose middle is x, y. */
 CAMBER_FN camber_mask camber_cut_is_near(const camber_seen_edge *cut, float wide, camber_real x, camber_real y) {
     return camber_seen_inside(cut, x, y) <=
            (wide < 1.0f ? camber_cell_reach(cut->x, cut->y) + 0.75f : CAMBER_ALWAYS_PX);
 }
 
-/* camber_cell_masks_of, by the cells' middles in the picture. */
+/* camber_cell_masks_of for a picture with a pitch, by the positions of the cells' middles. */
 CAMBER_FN void camber_pitch_cell_masks_of(const camber_pitch_edge *p, camber_real x, camber_real y,
                                           camber_cell_masks *cells) {
     const float reach_a = camber_cell_reach(p->fa.x, p->fa.y), reach_b = camber_cell_reach(p->fb.x, p->fb.y);
     const float left = camber_cell_reach(p->left.x, p->left.y), right = camber_cell_reach(p->right.x, p->right.y);
     const float axis = camber_cell_reach(p->axis_x, p->axis_y);
-    /* Bends take the line that far to the side. */
+    /* A bend at a join moves the line to the side by at most this. */
     const float past_left = p->bends ? CAMBER_PAD_PX : p->left.extent;
     const float past_right = p->bends ? CAMBER_PAD_PX : p->right.extent;
     const float far_a = !p->narrow && p->owner_a == CAMBER_ALWAYS_PX ? -reach_a : CAMBER_ALWAYS_PX;
@@ -169,18 +178,17 @@ CAMBER_FN void camber_pitch_cell_masks_of(const camber_pitch_edge *p, camber_rea
 
 /* ---- Pixels ---- */
 
-/* A pixel: its place in the picture and in the plane, what is there along the segment and across it, and which place
- * of the line is nearest. */
+/* A pixel: its position in the picture, in the plane and relative to the segment, and the nearest point of the line. */
 typedef struct camber_pitch_pixel {
     camber_real seen_x, seen_y, by_depth, ground_x, ground_y;
-    camber_real x, y, past_a, past_b, fa, fb; /* px of the plane */
-    camber_real scale, along_x, along_y;      /* along the line: px of the picture a px, and the direction there */
-    camber_real arc_a, arc_b;                 /* past the ends where they are round, px of the plane */
-    camber_real off;                          /* along the line from the nearest place of it */
-    camber_real d, side_x, side_y;            /* from there, px of the plane, and the direction */
+    camber_real x, y, past_a, past_b, fa, fb; /* along, across, past the ends and the bisectors: px of the plane */
+    camber_real scale, along_x, along_y; /* px of the picture per px along the line, and the line's direction there */
+    camber_real arc_a, arc_b;            /* how far past round ends, px of the plane */
+    camber_real off;                     /* from the nearest point of the line, along the line, px of the plane */
+    camber_real d, side_x, side_y;       /* the distance from that point, px of the plane, and its direction */
 } camber_pitch_pixel;
 
-/* The area of a pixel whose centre lies s px inside an edge of the picture, by its normal. */
+/* The share of a pixel inside an edge of the picture, whose centre lies s px inside it; (nx, ny): the edge's normal. */
 CAMBER_FN camber_real camber_seen_covered(camber_real s, camber_real nx, camber_real ny, camber_u32 linear) {
     const camber_real ax = CAMBER_FABS(nx), ay = CAMBER_FABS(ny), none = CAMBER_REAL(0.0f), one = CAMBER_REAL(1.0f);
     if (linear)
@@ -193,8 +201,8 @@ CAMBER_FN camber_real camber_seen_covered(camber_real s, camber_real nx, camber_
     return s < 0.0f ? area : 1.0f - area;
 }
 
-/* How an edge of the plane that lies at px along its unit normal looks: the normal in the picture, and px of the
- * picture by depth that a px of the plane across it takes. */
+/* Projects an edge of the plane, which lies `at` px along its unit normal. seen: its normal in the picture. Returns how
+ * many px of the picture, times the depth, a px of the plane across the edge is. */
 CAMBER_FN camber_real camber_pitch_normal(const camber_pitch_edge *p, camber_real nx, camber_real ny, camber_real at,
                                           camber_real seen[2]) {
     const camber_real y = (ny - p->fall * at) * p->by_cosine, square = nx * nx + y * y, least = CAMBER_REAL(1e-30f);
@@ -204,7 +212,8 @@ CAMBER_FN camber_real camber_pitch_normal(const camber_pitch_edge *p, camber_rea
     return scale;
 }
 
-/* The area of a pixel whose centre shows a place s px of the plane inside an edge, with the normal out of it. */
+/* The share of a pixel inside an edge of the plane, if its centre shows a point s px of the plane inside. (nx, ny): the
+ * edge's normal outwards. */
 CAMBER_FN camber_real camber_plane_covered(const camber_pitch_edge *p, const camber_pitch_pixel *at, camber_real s,
                                            camber_real nx, camber_real ny) {
     camber_real seen[2];
@@ -213,13 +222,13 @@ CAMBER_FN camber_real camber_plane_covered(const camber_pitch_edge *p, const cam
     return camber_seen_covered(s * scale * at->by_depth, seen[0], seen[1], p->linear);
 }
 
-/* How far the next segment takes the line to the side: bend of stroke.frag. */
+/* How far a join bends the line to the side: bend of shaders/stroke.frag. */
 CAMBER_FN camber_real camber_pitch_bend(camber_real beyond, float sine) {
     const camber_real none = CAMBER_REAL(0.0f), share = 0.5f + beyond;
     return ((beyond > 0.0f) | (share < 0.0f)) ? none : sine * share * share;
 }
 
-/* x, y: of the pixel in the picture. */
+/* Fills in a pixel's positions. x, y: its position from the picture's middle, px. */
 CAMBER_FN void camber_pitch_look(const camber_pitch_edge *p, camber_real x, camber_real y, camber_pitch_pixel *at) {
     const camber_real least = CAMBER_REAL(CAMBER_PITCH_LEAST), one = CAMBER_REAL(1.0f);
     at->seen_x = x;
@@ -237,7 +246,8 @@ CAMBER_FN void camber_pitch_look(const camber_pitch_edge *p, camber_real x, camb
     at->fb = camber_form_at(&p->fb, x, y) * depth;
 }
 
-/* Which place of the line is nearest. */
+/* Fills in the nearest point of the line: the line's scale and direction there, arc_a, arc_b, off, and the distance
+ * across in d. */
 CAMBER_FN void camber_pitch_arc_length(const camber_pitch_edge *p, camber_pitch_pixel *at) {
     const camber_real none = CAMBER_REAL(0.0f), ux = CAMBER_REAL(p->ux), uy = CAMBER_REAL(p->uy);
     camber_real seen[2];
@@ -252,7 +262,7 @@ CAMBER_FN void camber_pitch_arc_length(const camber_pitch_edge *p, camber_pitch_
         const camber_real arc = CAMBER_MORE(at->arc_a, at->arc_b), left = 1.0f - arc * at->scale;
         const camber_real bend =
             camber_pitch_bend((0.0f - at->fa) * at->scale, p->sa) + camber_pitch_bend(at->fb * at->scale, p->sb);
-        /* A segment that is shorter than a pixel does not know how the line goes on. */
+        /* A segment shorter than a pixel has no share in the bend. */
         const camber_real knows = camber_clamp_to_one(p->length * at->scale - 1.0f);
         bent = at->y - bend / at->scale * (left > 0.0f ? left : none) * knows;
     }
@@ -260,8 +270,8 @@ CAMBER_FN void camber_pitch_arc_length(const camber_pitch_edge *p, camber_pitch_
     at->d = bent;
 }
 
-/* Round caps that are no pixel long, and not seen aslant, end like flat ones of the same area. Returns how much of a
- * pixel they leave along the line. */
+/* Round caps shorter than a pixel, and seen upright, end like flat ones of the same area. Returns the share of a pixel
+ * that they leave along the line. */
 CAMBER_FN camber_real camber_pitch_tips(const camber_pitch_edge *p, camber_pitch_pixel *at) {
     const camber_real none = CAMBER_REAL(0.0f), one = CAMBER_REAL(1.0f);
     camber_real across[2];
@@ -280,7 +290,7 @@ CAMBER_FN camber_real camber_pitch_tips(const camber_pitch_edge *p, camber_pitch
     return left > 0.0f ? left : none;
 }
 
-/* Into d and side, from off and, in d, the way across. */
+/* Turns `off` and the distance across, which d holds, into the distance d and its direction. */
 CAMBER_FN void camber_pitch_turn(const camber_pitch_edge *p, camber_pitch_pixel *at) {
     const camber_real across = at->d, d = CAMBER_SQRT(at->off * at->off + across * across), one = CAMBER_REAL(1.0f);
     const camber_mask apart = d > 1e-4f;
@@ -291,16 +301,16 @@ CAMBER_FN void camber_pitch_turn(const camber_pitch_edge *p, camber_pitch_pixel 
     at->side_y = x * p->uy + y * p->ux;
 }
 
-/* The share of a pixel within a distance from the line. */
-CAMBER_FN camber_real camber_pitch_band_area(const camber_pitch_edge *p, const camber_pitch_pixel *at,
-                                             camber_real half_width) {
+/* The share of a pixel within half_width of the line, px of the plane. */
+CAMBER_FN camber_real camber_pitch_within(const camber_pitch_edge *p, const camber_pitch_pixel *at,
+                                          camber_real half_width) {
     const camber_real none = CAMBER_REAL(0.0f);
     const camber_real both = camber_plane_covered(p, at, half_width - at->d, at->side_x, at->side_y) +
                              camber_plane_covered(p, at, half_width + at->d, -at->side_x, -at->side_y) - 1.0f;
     return both > 0.0f ? both : none;
 }
 
-/* The area inside two edges that each leave a and b of the pixel, from the cosine of the angle between their normals.
+/* The share of a pixel inside two edges, which alone leave a and b, by the cosine of the angle between their normals.
  */
 CAMBER_FN camber_real camber_inside_both(camber_real a, camber_real b, camber_real cosine) {
     const camber_real weight = CAMBER_FABS(cosine), smaller = CAMBER_LESS(a, b), both = a + b - 1.0f;
@@ -308,7 +318,7 @@ CAMBER_FN camber_real camber_inside_both(camber_real a, camber_real b, camber_re
     return a * b * (1.0f - weight) + bound * weight;
 }
 
-/* The share that the join at B, or at A, leaves of the band within half_width. */
+/* The share that the join at B, or at A, leaves of what lies within half_width of the line. */
 CAMBER_FN camber_real camber_pitch_join(const camber_pitch_edge *p, const camber_pitch_pixel *at, camber_real area,
                                         float half_width, int at_b) {
     const float c = at_b ? p->cb : p->ca, out = at_b ? 1.0f : -1.0f;
@@ -336,7 +346,8 @@ CAMBER_FN camber_real camber_pitch_joins(const camber_pitch_edge *p, const cambe
     return camber_pitch_join(p, at, area, half_width, 1);
 }
 
-/* Flat caps of a line that is seen aslant meet the sides at any angle. One with both sides in the pixel has none. */
+/* The share that flat caps leave. Seen at an angle they meet the sides at any angle. A line thinner than the pixel has
+ * no such corner. */
 CAMBER_FN camber_real camber_pitch_caps(const camber_pitch_edge *p, const camber_pitch_pixel *at, camber_real area) {
     camber_real side[2];
     const camber_real lies = at->side_x * at->ground_x + at->side_y * at->ground_y;
@@ -349,8 +360,9 @@ CAMBER_FN camber_real camber_pitch_caps(const camber_pitch_edge *p, const camber
     return camber_inside_both(camber_inside_both(area, cut_a, 0.0f - cosine), cut_b, cosine);
 }
 
-/* How much of a pixel belongs to a segment at an end. Where the line is wide, all where its centre lies before the
- * join. Where it is not, many segments may meet in one pixel, and each takes the share that lies between its ends. */
+/* The share of a pixel that a segment draws at one of its ends. Where the line is wide, the segment draws all of a
+ * pixel whose centre lies before the join. Where it is thin, many segments may meet in a pixel, and each takes its
+ * share. */
 CAMBER_FN camber_real camber_pitch_owner(const camber_pitch_pixel *at, const camber_seen_edge *cut, float wide,
                                          camber_mask others) {
     const camber_real none = CAMBER_REAL(0.0f), one = CAMBER_REAL(1.0f), whole = others ? none : one;
@@ -361,7 +373,7 @@ CAMBER_FN camber_real camber_pitch_owner(const camber_pitch_pixel *at, const cam
     return share * (1.0f - wide) + whole * wide;
 }
 
-/* The share of a pixel that is the segment's at all. */
+/* The share of a pixel that the segment draws, with both ends. */
 CAMBER_FN camber_real camber_pitch_share(const camber_pitch_edge *p, const camber_pitch_pixel *at) {
     const camber_real none = CAMBER_REAL(0.0f);
     const camber_mask foreign_a = (at->fa < 0.0f) & (at->past_a > p->owner_a);
@@ -374,14 +386,14 @@ CAMBER_FN camber_real camber_pitch_share(const camber_pitch_edge *p, const cambe
     return (out | (share < 0.0f)) ? none : share;
 }
 
-/* The area of pixels that are the segment's, from what camber_pitch_look says of them. */
+/* The area of a pixel that the segment draws. camber_pitch_look has filled in its positions. */
 CAMBER_FN camber_real camber_pitch_area(const camber_pitch_edge *p, camber_pitch_pixel *at) {
     camber_real tips = CAMBER_REAL(1.0f);
     camber_pitch_arc_length(p, at);
     if (p->tip_a || p->tip_b)
         tips = camber_pitch_tips(p, at);
     camber_pitch_turn(p, at);
-    camber_real area = camber_pitch_band_area(p, at, CAMBER_REAL(p->half_width)) * tips;
+    camber_real area = camber_pitch_within(p, at, CAMBER_REAL(p->half_width)) * tips;
     if (p->sharp)
         area = camber_pitch_joins(p, at, area, p->half_width);
     if (p->flat)
@@ -389,7 +401,7 @@ CAMBER_FN camber_real camber_pitch_area(const camber_pitch_edge *p, camber_pitch
     return area * camber_pitch_share(p, at);
 }
 
-/* The area between the two sides, where the ends are too far away to matter. */
+/* The same for a pixel that no end is near to: only the sides count. */
 CAMBER_FN camber_real camber_pitch_side(const camber_pitch_edge *p, camber_real x, camber_real y) {
     const camber_seen_edge *l = &p->left, *r = &p->right;
     const camber_real in_left = camber_seen_inside(l, x, y), in_right = camber_seen_inside(r, x, y);
@@ -398,8 +410,8 @@ CAMBER_FN camber_real camber_pitch_side(const camber_pitch_edge *p, camber_real 
     return both > 0.0f ? both : CAMBER_REAL(0.0f);
 }
 
-/* The normal into the stroke across the nearest edge, in the picture, and whether there is one: lines thinner than a
- * pixel have two. at: as camber_pitch_area leaves it. */
+/* The normal of the nearest edge, into the stroke, in the picture. Returns whether there is one: a line thinner than a
+ * pixel has two. at: as camber_pitch_area has filled it in. */
 CAMBER_FN camber_mask camber_pitch_inward(const camber_pitch_edge *p, const camber_pitch_pixel *at, camber_real *nx,
                                           camber_real *ny) {
     camber_real side[2];

@@ -1,18 +1,19 @@
-/* Strokes of two bands, that fade, are dashed, drawn in part, or change their colour along them, in a plane that is
- * seen at an angle: kernels/features.h says the same of one that is not, stroke.frag under PITCHED of fragments.
- * What lies along a line is measured in the plane; a blur is px of the picture. */
+/* Gaps, blurs, dashes, trims, ramps and images in a picture with a pitch.
+ *
+ * Input and output are those of features.h, for pixels of pitch_coverage.h. Lengths along and across a line are px of
+ * the plane; a blur is px of the picture. shaders/stroke.frag holds the same formulas under PITCHED. */
 #ifndef CAMBER_KERNELS_PITCH_FEATURES_H
 #define CAMBER_KERNELS_PITCH_FEATURES_H
 
 #include "features.h"
 #include "pitch_coverage.h"
 
-/* The area of a pixel before a place that lies so many px of the plane farther along the line. */
+/* The share of a pixel before a point of the line that lies so many px of the plane farther along it. */
 CAMBER_FN camber_real camber_pitch_before(const camber_pitch_edge *p, const camber_pitch_pixel *at, camber_real px) {
     return camber_seen_covered(px * at->scale, at->along_x, at->along_y, p->linear);
 }
 
-/* How far along its line a pixel lies: past an end of the segment, as far as that. */
+/* How far along its line a pixel lies, px. Past an end of the segment it is as far as the end. */
 CAMBER_FN camber_real camber_pitch_along(const camber_pitch_edge *p, const camber_extras *e,
                                          const camber_pitch_pixel *at) {
     const camber_real none = CAMBER_REAL(0.0f), most = CAMBER_REAL(p->length);
@@ -22,7 +23,7 @@ CAMBER_FN camber_real camber_pitch_along(const camber_pitch_edge *p, const cambe
 
 /* ---- Dashes ---- */
 
-/* How much of a period of dashes is seen apart: where a pixel holds more than one, their share is all there is. */
+/* How well dashes are seen apart, from 0 to 1. A pixel that holds more than a period sees their share alone. */
 CAMBER_FN camber_real camber_pitch_apart(const camber_extras *e, const camber_pitch_pixel *at) {
     return camber_clamp_to_one(e->period * at->scale - 1.0f);
 }
@@ -36,7 +37,7 @@ CAMBER_FN camber_real camber_pitch_dashes(const camber_pitch_edge *p, const camb
     return e->drawn * (1.0f - apart) + area * apart;
 }
 
-/* How far it is from the nearest dash, below 0 where that lies ahead. */
+/* The distance to the nearest dash, px along the line; below 0 if it lies ahead. */
 CAMBER_FN camber_real camber_pitch_off_dash(const camber_extras *e, camber_real t) {
     camber_real nearest = CAMBER_REAL(1e6f);
     for (camber_u32 i = 0; i < e->dash_count; i++) {
@@ -47,7 +48,7 @@ CAMBER_FN camber_real camber_pitch_off_dash(const camber_extras *e, camber_real 
     return nearest;
 }
 
-/* The share of its area that a line with round dashes has. */
+/* The share of a line's area that round dashes draw. */
 CAMBER_FN float camber_round_dashes_drawn(const camber_extras *e, float half_width) {
     float drawn = 0.0f;
     for (camber_u32 i = 0; i < e->dash_count; i++) {
@@ -57,7 +58,7 @@ CAMBER_FN float camber_round_dashes_drawn(const camber_extras *e, float half_wid
     return drawn < e->period ? drawn / e->period : 1.0f;
 }
 
-/* Round dashes that hold less than a pixel each are their share of the whole line. */
+/* Blends round dashes smaller than a pixel into their share of the whole line. */
 CAMBER_FN camber_real camber_pitch_blend_dashes(const camber_pitch_edge *p, const camber_extras *e,
                                                 const camber_pitch_pixel *at, camber_real area) {
     const camber_real apart = camber_pitch_apart(e, at), none = CAMBER_REAL(0.0f), d = CAMBER_FABS(at->y);
@@ -71,7 +72,7 @@ CAMBER_FN camber_real camber_pitch_blend_dashes(const camber_pitch_edge *p, cons
 
 /* ---- Pixels ---- */
 
-/* px of the picture that a px of the plane takes, from the nearest place of the line on. */
+/* How many px of the picture a px of the plane is, in the direction from the nearest point of the line. */
 CAMBER_FN camber_real camber_pitch_scale(const camber_pitch_edge *p, const camber_pitch_pixel *at) {
     camber_real side[2];
     const camber_real lies = at->side_x * at->ground_x + at->side_y * at->ground_y;
@@ -94,7 +95,7 @@ CAMBER_FN camber_real camber_pitch_rim(const camber_pitch_edge *p, const camber_
     return ((past > -1.0f) & (at->y * l.outer > 0.0f)) ? nearer : rim;
 }
 
-/* A ramp from half a pixel outside inwards, and into the gap. */
+/* The coverage of a blurred stroke: it grows from half a pixel outside the edge inwards, and falls towards the gap. */
 CAMBER_FN camber_real camber_pitch_blurred(const camber_pitch_edge *p, const camber_extras *e,
                                            const camber_pitch_pixel *at) {
     const camber_real across = camber_pitch_scale(p, at), outer = p->half_width - at->d;
@@ -107,13 +108,13 @@ CAMBER_FN camber_real camber_pitch_blurred(const camber_pitch_edge *p, const cam
     return camber_clamp_to_one((rim + 0.5f) / (e->blur + 1.0f));
 }
 
-/* The share that a gap and a blur leave. */
+/* The share of a pixel that a gap and a blur leave. */
 CAMBER_FN camber_real camber_pitch_hollow(const camber_pitch_edge *p, const camber_extras *e,
                                           const camber_pitch_pixel *at, camber_real area) {
     if (e->features & CAMBER_FEATURE_BLUR)
         return camber_pitch_blurred(p, e, at);
     if (e->features & CAMBER_FEATURE_GAP) {
-        camber_real gap = camber_pitch_band_area(p, at, CAMBER_REAL(e->half_gap));
+        camber_real gap = camber_pitch_within(p, at, CAMBER_REAL(e->half_gap));
         if (p->sharp)
             gap = camber_pitch_joins(p, at, gap, e->half_gap);
         return area > gap ? area - gap : CAMBER_REAL(0.0f);
@@ -121,7 +122,7 @@ CAMBER_FN camber_real camber_pitch_hollow(const camber_pitch_edge *p, const camb
     return area;
 }
 
-/* As camber_pitch_area, of a brush with features. along: of its line. */
+/* camber_pitch_area for a brush with features. along: the pixel's arc length, px. */
 CAMBER_FN camber_real camber_pitch_extras_area(const camber_pitch_edge *p, const camber_extras *e,
                                                camber_pitch_pixel *at, camber_real *along) {
     const camber_u32 dashed = e->features & CAMBER_FEATURE_DASH, rounded = dashed && e->round_dashes;
@@ -135,7 +136,7 @@ CAMBER_FN camber_real camber_pitch_extras_area(const camber_pitch_edge *p, const
     if (rounded)
         at->off += camber_pitch_off_dash(e, place);
     camber_pitch_turn(p, at);
-    camber_real area = camber_pitch_band_area(p, at, CAMBER_REAL(p->half_width));
+    camber_real area = camber_pitch_within(p, at, CAMBER_REAL(p->half_width));
     if (rounded)
         area = camber_pitch_blend_dashes(p, e, at, area);
     area *= tips;
@@ -154,13 +155,13 @@ CAMBER_FN camber_real camber_pitch_extras_area(const camber_pitch_edge *p, const
 
 /* ---- Colours ---- */
 
-/* px of the plane along the line that half a pixel reaches. */
+/* How far half a pixel reaches along the line, px of the plane. */
 CAMBER_FN camber_real camber_pitch_extent(const camber_pitch_edge *p, const camber_pitch_pixel *at) {
     const camber_real px = 0.5f * (CAMBER_FABS(at->along_x) + CAMBER_FABS(at->along_y));
     return (p->linear ? CAMBER_REAL(0.5f) : px) / at->scale;
 }
 
-/* camber_ramp_over of pixels that see the ramp from low to high. */
+/* camber_ramp_over for pixels that see the ramp from low to high. */
 CAMBER_FN void camber_pitch_ramp(const camber_pitch_edge *p, const camber_extras *e, const camber_pitch_pixel *at,
                                  camber_real along, const float range[2], camber_real color[4]) {
     const camber_u32 first = e->total > 0.0f ? camber_stops_up_to(e, range[0]) : 0;

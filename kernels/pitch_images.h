@@ -1,4 +1,4 @@
-/* Images that lie in a plane that is seen at an angle: of which of it a pixel shows how much. */
+/* Images in a picture with a pitch: where in the plane a pixel lies, and how much of the plane it shows. */
 #ifndef CAMBER_KERNELS_PITCH_IMAGES_H
 #define CAMBER_KERNELS_PITCH_IMAGES_H
 
@@ -7,7 +7,7 @@
 
 #if CAMBER_LANES == 16 /* as rich frames are drawn */
 
-/* The spot of a fill; x, y: where the pixel lies from the picture's middle. */
+/* The spot of a fill's pixel. x and y: its position from the picture's middle, px. */
 CAMBER_FN void camber_plane_spot(camber_eye e, camber_real x, camber_real y, camber_image_spot *spot) {
     const camber_real by_depth = 1.0f + y * (e.fall / e.cosine), least = CAMBER_REAL(CAMBER_PITCH_LEAST);
     const camber_real depth = 1.0f / CAMBER_MORE(by_depth, least);
@@ -18,7 +18,7 @@ CAMBER_FN void camber_plane_spot(camber_eye e, camber_real x, camber_real y, cam
     spot->reach_y = depth * depth / e.cosine;
 }
 
-/* The spot of a line; at: as camber_pitch_area leaves it. */
+/* The spot of a line's pixel. at: as camber_pitch_area has filled it in. */
 CAMBER_FN void camber_pitch_spot(const camber_pitch_edge *p, const camber_pitch_pixel *at, camber_image_spot *spot) {
     const camber_real lies = at->side_x * at->ground_x + at->side_y * at->ground_y, least = CAMBER_REAL(1e-4f);
     camber_real seen[2];
@@ -31,7 +31,7 @@ CAMBER_FN void camber_pitch_spot(const camber_pitch_edge *p, const camber_pitch_
 }
 
 CAMBER_FN void camber_pitch_image_of(CAMBER_GLOBAL const float *side_table, camber_u32 at,
-                                     CAMBER_GLOBAL const float *measure, const camber_pitch_edge *p,
+                                     CAMBER_GLOBAL const float *arc_length, const camber_pitch_edge *p,
                                      camber_image_sampler *m) {
     camber_image_line line;
     line.length = p->length;
@@ -40,7 +40,7 @@ CAMBER_FN void camber_pitch_image_of(CAMBER_GLOBAL const float *side_table, camb
     line.sa = p->sa;
     line.cb = p->cb;
     line.sb = p->sb;
-    camber_image_line_of(side_table, at, measure, &line, m);
+    camber_image_line_of(side_table, at, arc_length, &line, m);
 }
 
 #endif

@@ -1,34 +1,36 @@
-/* Drawing in OpenCL of a plane that is seen at an angle: what a segment of the plane takes of the picture.
- * shaders/stroke.vert says the same under PITCHED, src/base/perspective.h has the camera. What is px of the plane lies
- * as far from where the camera looks at; what is seen, px of the picture, as far from its middle, but for the band in
- * which a segment is seen, whose place is the picture's.
+/* Segments in a picture with a pitch: where in the picture a segment of the plane is seen.
  *
- * A distance in the plane from a line, n . p - n . a, by the depth there is linear in the picture: straight edges of
- * the plane are straight edges of the picture, and where the ends of a segment are far nothing else is drawn. */
+ * Input: a segment in the plane and the camera (src/base/perspective.h). Output: the segment's footprint, a rectangle
+ * of the picture around all that it draws, in the words of a segment; and camber_plane, which its edge needs besides.
+ * Positions in the plane count from the point that the camera looks at; those seen count from the picture's middle. The
+ * footprint alone counts from the picture's corner. shaders/stroke.vert holds the same formulas under PITCHED.
+ *
+ * A distance from a line of the plane, n . p - n . a, times by_depth (1 / depth) is linear in the picture. So straight
+ * edges of the plane are straight in the picture, and far from the ends of a segment only its sides count. */
 #ifndef CAMBER_KERNELS_PITCH_SEGMENT_H
 #define CAMBER_KERNELS_PITCH_SEGMENT_H
 
 #include "coverage.h"
 
-/* A segment in the plane, behind its band in the picture, which is a segment: the words that edges read. */
+/* The words of a segment in the plane, in a buffer beside the footprints. */
 #define CAMBER_PLANE_WORDS 32
-#define CAMBER_PLANE_AX 0          /* A, B, the direction, the bisectors' normals: as of a segment */
+#define CAMBER_PLANE_AX 0          /* to word 9: A, B, the direction, the bisectors' normals, as in a segment */
 #define CAMBER_PLANE_HALF_WIDTH 10 /* px of the plane */
-#define CAMBER_PLANE_OWNER_A 11    /* camber_owner_side, by how wide the line is seen */
+#define CAMBER_PLANE_OWNER_A 11    /* two words: camber_owner_side, by the width that is seen */
 #define CAMBER_PLANE_OWNER_B 12
 #define CAMBER_PLANE_CUT_A 13 /* four words each: camber_pitch_cut */
 #define CAMBER_PLANE_CUT_B 17
-#define CAMBER_PLANE_ENDS 21   /* how far the band reaches past its ends, px of the picture */
-#define CAMBER_PLANE_MARGIN 22 /* px of the plane by depth that are a px along the segment, at most */
-#define CAMBER_PLANE_LEFT 23   /* its edges in the picture, three words each: camber_pitch_project_edge */
+#define CAMBER_PLANE_ENDS 21   /* how far the footprint reaches past its ends, px of the picture */
+#define CAMBER_PLANE_MARGIN 22 /* at most so many px of the plane by depth make a px along the segment */
+#define CAMBER_PLANE_LEFT 23   /* its sides in the picture, three words each: camber_pitch_project_edge */
 #define CAMBER_PLANE_RIGHT 26
 
-/* By how much a band is wider than what is drawn, so that what rounding makes of either does not matter. */
+/* By how much the footprint is wider than what is drawn, so that rounding does not matter. */
 #define CAMBER_PITCH_SLACK_PX 0.02f
-/* Nearer to the camera than this nothing is projected. */
+/* The least depth at which a point is projected. */
 #define CAMBER_PITCH_LEAST 1e-3f
 
-/* ---- Shapes ---- */
+/* ---- Footprints ---- */
 
 typedef struct camber_plane {
     camber_real owner_a, owner_b, cut_a[4], cut_b[4];
@@ -46,7 +48,7 @@ CAMBER_FN void camber_pitch_see(camber_eye e, camber_real x, camber_real y, camb
     *seen_y = y * e.cosine * by_depth;
 }
 
-/* px of the picture that a line through a place of the plane is wide. */
+/* The width in the picture of a line through a point of the plane, px. */
 CAMBER_FN camber_real camber_pitch_width(camber_eye e, camber_real x, camber_real y, camber_real ux, camber_real uy,
                                          camber_real half_width) {
     const camber_real across = (ux - e.fall * (y * ux - x * uy)) / e.cosine;
@@ -54,7 +56,7 @@ CAMBER_FN camber_real camber_pitch_width(camber_eye e, camber_real x, camber_rea
     return 2.0f * half_width / (camber_pitch_depth(e, y) * CAMBER_MORE(seen, least));
 }
 
-/* The direction that u has in the picture, at a place of the plane. */
+/* The direction in the picture of the plane's direction u, at a point of the plane. */
 CAMBER_FN void camber_pitch_direction(camber_eye e, const camber_real place[2], camber_real ux, camber_real uy,
                                       camber_real seen[2]) {
     const camber_real x = ux * camber_pitch_depth(e, place[1]) + e.fall * place[0] * uy, y = e.cosine * uy;
@@ -64,9 +66,10 @@ CAMBER_FN void camber_pitch_direction(camber_eye e, const camber_real place[2], 
     seen[1] = y * scale;
 }
 
-/* The end of a segment at a place: what its own side is, and where the join is narrower than a pixel as it is seen
- * the line between the two segments in the picture: its normal, where it lies, and 1 where the line is wide and the
- * bisector in the plane parts them, down to 0. turns: 1 at B, -1 at A; c and s: of half the turn. */
+/* The end of a segment at a point: which side of the bisector the segment draws, and its cut in the picture. Where the
+ * join is seen narrower than a pixel, the cut divides the pixels between both segments. Its four words are the normal,
+ * its position, and a share: 1 where the line is wide and the plane's bisector divides the pixels, down to 0. turns: 1
+ * at B, -1 at A; c and s: cosine and sine of half the turn. */
 CAMBER_FN void camber_pitch_cut(camber_eye e, const camber_segment *s, const camber_real place[2], camber_words end,
                                 float turns, camber_real c, camber_real sine, camber_real *own, camber_real cut[4]) {
     const camber_real none = CAMBER_REAL(0.0f), one = CAMBER_REAL(1.0f), h = s->half_width;
@@ -97,7 +100,7 @@ CAMBER_FN void camber_pitch_cut(camber_eye e, const camber_segment *s, const cam
     *own = is_cap ? CAMBER_REAL(CAMBER_NEVER_PX) : own_side;
 }
 
-/* How far the stroke reaches past an end, px of the plane. */
+/* How far a stroke reaches past an end, px of the plane. */
 CAMBER_FN camber_real camber_pitch_reach(camber_words end, camber_real c, camber_real sine, camber_real half_width) {
     const camber_real one = CAMBER_REAL(1.0f), least = CAMBER_REAL(1e-5f), aside = CAMBER_FABS(sine);
     const camber_words kind = CAMBER_END_KIND(end), class = CAMBER_END_CLASS(end);
@@ -107,12 +110,11 @@ CAMBER_FN camber_real camber_pitch_reach(camber_words end, camber_real c, camber
     return half_width * (class == CAMBER_CLASS_CAP ? cap : class == CAMBER_CLASS_SPLIT ? whole : tip);
 }
 
-/* A segment's part of the stroke: from where to where it is seen, px along it from A, or whether it may be all over
- * the picture: wider than this, a line whose one side is behind the camera may be seen. Returns whether it is seen. */
+/* Clips a segment to what the camera sees: from where to where, px along it from A. all_over: it may be seen anywhere
+ * in the picture, as a wide line with one side behind the camera. Returns whether it is seen. */
 CAMBER_FN camber_mask camber_pitch_clip(camber_eye e, const camber_segment *s, camber_real *from, camber_real *to,
                                         camber_mask *all_over) {
-    /* A place that lies less deep than the picture's bottom is not seen, and one half as deep cannot be projected well.
-     */
+    /* A point that is nearer than the picture's bottom is not seen. One half as deep is not projected exactly. */
     const float nearest = e.cosine / (e.cosine + e.fall * e.y), hidden = 0.5f * nearest;
     const camber_real spread = e.fall * CAMBER_FABS(s->ux) * s->half_width, rate = e.fall * s->uy;
     const camber_real room = 1.0f - e.fall * s->ay - spread - hidden;
@@ -124,10 +126,10 @@ CAMBER_FN camber_mask camber_pitch_clip(camber_eye e, const camber_segment *s, c
     return *all_over | !((*from > *to) | ((rate == 0.0f) & (room < 0.0f)));
 }
 
-/* The band in which a segment is seen: its corners in the picture, turned along it, and half a pixel around them. from
- * and to: px along the segment. */
-CAMBER_FN void camber_pitch_band(camber_eye e, const camber_segment *s, camber_real from, camber_real to,
-                                 camber_mask all_over, camber_segment *band, camber_real *ends) {
+/* The footprint of a segment: the rectangle along it in the picture that holds its corners, and half a pixel around
+ * them. from and to: px along the segment in the plane. */
+CAMBER_FN void camber_pitch_footprint(camber_eye e, const camber_segment *s, camber_real from, camber_real to,
+                                      camber_mask all_over, camber_segment *footprint, camber_real *ends) {
     const camber_real none = CAMBER_REAL(0.0f), one = CAMBER_REAL(1.0f), h = s->half_width;
     const camber_real start_x = s->ax + s->ux * from, start_y = s->ay + s->uy * from;
     const camber_real stop_x = s->ax + s->ux * to, stop_y = s->ay + s->uy * to;
@@ -158,19 +160,19 @@ CAMBER_FN void camber_pitch_band(camber_eye e, const camber_segment *s, camber_r
     const camber_real across = nx * past + ny * wide, down = ny * past + nx * wide;
     const camber_real x = e.x + (all_over ? none : from_x), y = e.y + (all_over ? none : from_y);
     const camber_real whole = CAMBER_REAL(4.0f * (e.x + e.y));
-    band->ux = axis_x;
-    band->uy = axis_y;
-    band->ax = x - (all_over ? none : axis_x * rest);
-    band->ay = y - (all_over ? none : axis_y * rest);
-    band->bx = x + (all_over ? none : axis_x * rest);
-    band->by = y + (all_over ? none : axis_y * rest);
-    band->half_width = (all_over ? whole : wide) - CAMBER_PAD_PX;
-    band->reach = all_over ? whole : CAMBER_MORE(across, down);
+    footprint->ux = axis_x;
+    footprint->uy = axis_y;
+    footprint->ax = x - (all_over ? none : axis_x * rest);
+    footprint->ay = y - (all_over ? none : axis_y * rest);
+    footprint->bx = x + (all_over ? none : axis_x * rest);
+    footprint->by = y + (all_over ? none : axis_y * rest);
+    footprint->half_width = (all_over ? whole : wide) - CAMBER_PAD_PX;
+    footprint->reach = all_over ? whole : CAMBER_MORE(across, down);
     *ends = all_over ? whole : past;
 }
 
-/* An edge of the plane, by its unit normal out of the stroke and where it lies, in the picture: px inside are at[0] -
- * at[1] x - at[2] y. */
+/* Projects a straight edge of the plane, by its unit normal out of the stroke and its position along that. In the
+ * picture a pixel lies at[0] - at[1] x - at[2] y px inside it. */
 CAMBER_FN void camber_pitch_project_edge(camber_eye e, camber_real nx, camber_real ny, camber_real at,
                                          camber_real edge[3]) {
     const camber_real x = nx, y = (ny - e.fall * at) / e.cosine, least = CAMBER_REAL(1e-15f);
@@ -180,10 +182,10 @@ CAMBER_FN void camber_pitch_project_edge(camber_eye e, camber_real nx, camber_re
     edge[2] = y * scale;
 }
 
-/* For a segment in the plane: its band in the picture, and all else that edges read. Returns whether it is seen:
- * past the horizon, px from the picture's top, nothing is. */
-CAMBER_FN camber_mask camber_pitch_shape_of(camber_eye e, float horizon, const camber_segment *s, camber_segment *band,
-                                            camber_plane *plane) {
+/* Makes a segment's footprint, and the words of its plane. Returns whether it is seen. Nothing is seen above the
+ * horizon, px from the picture's top. */
+CAMBER_FN camber_mask camber_pitch_segment_of(camber_eye e, float horizon, const camber_segment *s,
+                                              camber_segment *footprint, camber_plane *plane) {
     const camber_real h = s->half_width, none = CAMBER_REAL(0.0f);
     const camber_words end_a = CAMBER_END_OF_A(s->flags), end_b = CAMBER_END_OF_B(s->flags);
     const camber_real ca = s->nax * s->ux + s->nay * s->uy, sa = s->nax * s->uy - s->nay * s->ux;
@@ -201,9 +203,9 @@ CAMBER_FN camber_mask camber_pitch_shape_of(camber_eye e, float horizon, const c
     camber_real to = along_b - along_a + camber_pitch_reach(end_b, cb, sb, h);
     camber_mask all_over;
     const camber_mask seen = camber_pitch_clip(e, s, &from, &to, &all_over);
-    *band = *s;
-    camber_pitch_band(e, s, from, to, all_over, band, &plane->ends);
-    return seen & (CAMBER_MORE(band->ay, band->by) + band->reach > horizon);
+    *footprint = *s;
+    camber_pitch_footprint(e, s, from, to, all_over, footprint, &plane->ends);
+    return seen & (CAMBER_MORE(footprint->ay, footprint->by) + footprint->reach > horizon);
 }
 
 #endif

@@ -1,4 +1,5 @@
-/* The program that draws: segments, lists of tiles, pixels. CAMBER_LANES says whether for a CPU or for a GPU. */
+/* The rasterizer's program: all kernels from setup to rasterize. CAMBER_LANES chooses those for CPUs (16) or GPUs (1).
+ */
 #include "setup.cl"
 
 #include "setup_gpu.cl"

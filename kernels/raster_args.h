@@ -1,18 +1,18 @@
-/* The arguments of the rasterizer's kernels that are no buffers: structs that both compile, and what tiles keep
- * between slices. Their sizes are asserted on both sides. */
+/* The arguments of the rasterizer's kernels that are not buffers, and the layout of spills and jobs. Host and device
+ * compile these structs, and both assert their sizes. */
 #ifndef CAMBER_KERNELS_RASTER_ARGS_H
 #define CAMBER_KERNELS_RASTER_ARGS_H
 
 #include "layout.h"
 
-/* The camera of a plane that is seen at an angle, as stroke.vert has it. */
+/* The camera of a picture with a pitch, as in shaders/stroke.vert. */
 typedef struct camber_eye {
     float x, y;   /* half the picture's size, px */
-    float cosine; /* of the pitch */
-    float fall;   /* depth that is lost a px towards the viewer */
+    float cosine; /* cosine of the pitch */
+    float fall;   /* by how much depth falls for each px of the plane towards the viewer */
 } camber_eye;
 
-/* An area of the picture: its first tile, px, and its tiles. */
+/* The tiles of an area: where the first lies in the picture, px, and how many there are. */
 typedef struct camber_tile_grid {
     float left, top;
     camber_u32 columns, rows;
@@ -20,50 +20,50 @@ typedef struct camber_tile_grid {
 
 /* setup: the records of a range, and where their segments go. */
 typedef struct camber_setup_args {
-    camber_u32 first, end, record_count; /* records: those of the range, and all there are */
+    camber_u32 first, end, record_count; /* the range's records [first, end), and how many the part has */
     camber_u32 stride, strips, linear;   /* stride: 2 where records have arc lengths behind them */
-    camber_u32 base, first_row;          /* the first segment, and the first row of the range's table */
-    float left, top;                     /* where what is drawn begins in the picture, px */
-    camber_u32 columns, rows;            /* tiles */
-    float horizon;                       /* rows of pixels, from the picture's top, in which nothing is drawn */
+    camber_u32 base, first_row; /* where the range's segments begin, a multiple of 16, and its table among all rows */
+    float left, top;            /* where the area begins in the picture, px */
+    camber_u32 columns, rows;   /* tiles */
+    float horizon;              /* rows of pixels at the picture's top in which no segment is drawn */
     camber_eye eye;
 } camber_setup_args;
 
-/* bin_count and bin_scatter: how segments are cut into chunks. */
+/* bin_count and bin_scatter: the segments, cut into chunks, and the tiles. */
 typedef struct camber_bin_args {
-    camber_u32 segment_count, a_chunk; /* all, and those of a chunk */
+    camber_u32 segment_count, a_chunk; /* of all chunks, and of one */
     camber_u32 tiles;                  /* columns * rows, rounded up to sixteens */
     camber_tile_grid of;
 } camber_bin_args;
 
-/* rasterize: what is drawn into. */
+/* rasterize: the area that is drawn into. */
 typedef struct camber_target_args {
     float left, top; /* where the first tile lies in the picture, px */
     camber_u32 columns, stride;
     float r, g, b, a; /* background, premultiplied */
-    camber_u32 above; /* rows of pixels before these */
-    float horizon;    /* CAMBER_RASTER_PITCHED: rows of pixels of the picture in which nothing is drawn */
+    camber_u32 above; /* rows of pixels of the target before the first tile */
+    float horizon;    /* CAMBER_RASTER_PITCHED: rows of pixels at the picture's top that show the sky */
     camber_eye eye;
-    float sky[4];         /* what they have, premultiplied */
-    camber_u32 first_job; /* an offset of work-items would be a build of its own with PoCL */
+    float sky[4];         /* the sky's colour, premultiplied */
+    camber_u32 first_job; /* an argument, as PoCL builds a kernel again for an offset of its work-items */
 } camber_target_args;
 
-/* rasterize draws the segments in slices, one after the other, the last in drawing order first. Between two slices a
- * tile spills its state: bits and counts of its cells, a word a row of cells, and from CAMBER_SPILL_WORDS on planes,
- * each with the sixteen floats of every cell. The first planes are the brush and the picture's level. */
+/* rasterize draws the segments slice by slice, from the last in drawing order to the first. Between two slices a tile
+ * spills its state. That is six sets of cells and a count of each cell, a word for each row of cells, and planes from
+ * word CAMBER_SPILL_WORDS on. A plane has sixteen floats for each cell; the first are the brush and the picture. */
 typedef struct camber_spill_args {
-    camber_u32 is_first, is_last; /* in the order in which slices are drawn */
+    camber_u32 is_first, is_last; /* the slice that is drawn first, and last */
     camber_u32 tile_words;
-    camber_u32 sums, group, layer; /* the first plane of what unions, groups and layers have besides */
+    camber_u32 sums, group, layer; /* the first plane of a union's sums, of a group and of a layer */
 } camber_spill_args;
 
 #define CAMBER_SPILL_WORDS 48
-#define CAMBER_SPILL_BLEND_COUNTS 48 /* bytes: six sets of cells, a bit a cell, lie before them */
-#define CAMBER_SPILL_ROWS 28         /* words */
+#define CAMBER_SPILL_BLEND_COUNTS 48 /* the byte at which they begin, behind six sets of cells with a bit a cell */
+#define CAMBER_SPILL_ROWS 28         /* the word at which the rows' words begin */
 #define CAMBER_SPILL_BRUSH 0x3fffffffu
-#define CAMBER_SPILL_FULL 0x3ffffffeu /* a row of cells that nothing shows through */
+#define CAMBER_SPILL_FULL 0x3ffffffeu /* in a row's word: nothing below shows through its cells */
 
-/* rasterize, two words a job: the tile, and the first and the last row of its cells that a work-item draws. */
+/* rasterize: a job is two words, the tile, and the first and the last row of its cells to draw. */
 #define CAMBER_JOB_WORDS 2
 #define CAMBER_JOB_ROWS(first, last) ((camber_u32)(first) | (camber_u32)(last) << 8)
 

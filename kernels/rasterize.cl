@@ -1,17 +1,19 @@
-/* rasterize: the pixels of a tile, or of some rows of its cells, from the segments in its list.
- * Reads segments[CAMBER_SEGMENT_WORDS * n], starts[tiles + 1], lists[starts[tiles]], brushes, jobs[CAMBER_JOB_WORDS *
- * job count], and only CAMBER_RASTER_RICH measures[CAMBER_SEGMENT_MEASURES * n], brush_ext (as many as brushes) and
- * side_table, which has what these name, and only CAMBER_RASTER_PITCHED planes[CAMBER_PLANE_WORDS * n]. Writes pixels,
- * rows of stride words; or, where segments are cut into slices, spill[tiles * tile_words] for the next one.
+/* rasterize: draws the pixels of a tile, or of some rows of its cells, from the tile's list of segments.
  *
- * What is drawn last is seen first: the list is walked from its end, and what lies below cells that are full is not
- * looked at. Each colour in turn is gathered as what it lets through, and then put under what is there.
- * rasterize_gpu.cl does the same with a work-item a pixel. */
+ * Reads segments[CAMBER_SEGMENT_WORDS * n], starts[tiles + 1], lists[starts[tiles]], brushes[brush count],
+ * jobs[CAMBER_JOB_WORDS * job count]. With CAMBER_RASTER_RICH it also reads arc_lengths[CAMBER_SEGMENT_ARC_LENGTHS *
+ * n], brush_ext[brush count] and the side_table that these point into; with CAMBER_RASTER_PITCHED
+ * planes[CAMBER_PLANE_WORDS * n]. Writes pixels, rows of `stride` words. Before the last slice it writes spill[tiles *
+ * tile_words] instead.
+ *
+ * The list is walked from its end, as what is drawn last is seen first. Segments below cells that are full are skipped.
+ * Each brush is gathered as the share of light that it lets through, and then put under what is there already.
+ * rasterize_gpu.cl writes the same bytes, with a work-item for each pixel. */
 #include "rasterize_pitch.cl"
 #include "rasterize_rich.cl"
 #include "rasterize_sixteen.cl"
 
-/* A list's segments lie anywhere: where the compiler is known, those to come are asked for ahead. */
+/* A list's segments are scattered in memory. Where the compiler is known to be clang, they are prefetched. */
 #if defined(POCL_DEVICE_ADDRESS_BITS) && CAMBER_POINT_CHUNK == CAMBER_BLOCK
 #define AHEAD 6
 #define ASK_FOR(address) __builtin_prefetch((const void *)(size_t)(address))
@@ -21,7 +23,7 @@
 #endif
 
 #if CAMBER_LANES == 16
-/* Whether nothing that is still to come shows. What is filled by a brush of a layer shows as much as the layer does. */
+/* Whether nothing shows of the segments to come. A cell that is filled in a layer or group may still be translucent. */
 static inline int is_full(private const tile_state *c) {
     const int opaque = c->now.mode != CAMBER_BRUSH_UNION && !c->is_open[1] && !c->is_open[2];
     return (c->done | (opaque ? c->filled : 0ul)) == ~0ul;
@@ -73,21 +75,21 @@ CAMBER_KERNEL(1, rasterize,
               (segments, starts, lists, brushes, jobs, pixels, s, spill, slice, arc_lengths, brush_ext, side_table,
                planes)) {
     tile_state c;
-    places at;
+    positions at;
     sixteen b;
-    const size_t item = CAMBER_WORK_ITEM + s.first_job, tile = jobs[2 * item];
-    const camber_u32 cells = jobs[2 * item + 1], column = (camber_u32)tile % s.columns,
+    const size_t job = CAMBER_WORK_ITEM + s.first_job, tile = jobs[CAMBER_JOB_WORDS * job];
+    const camber_u32 cells = jobs[CAMBER_JOB_WORDS * job + 1], column = (camber_u32)tile % s.columns,
                      row = (camber_u32)tile / s.columns;
     const int first = (int)(cells & 255u), last = (int)(cells >> 8);
     const float left = s.left + (float)(column * CAMBER_TILE_PX), top = s.top + (float)(row * CAMBER_TILE_PX);
     const ulong own = (~0ul >> (64 - CAMBER_TILE_CELLS * (last - first + 1))) << (CAMBER_TILE_CELLS * first);
-    const place where = {left, top, first, last};
+    const tile_rows where = {left, top, first, last};
     camber_u32 current = ~0u;
     b.count = 0;
     begin_tile_state(&c, own);
-    begin_places(&at, left, top);
+    begin_positions(&at, left, top);
 #if CAMBER_RASTER_PITCHED
-    for (int j = first; j <= last; j++) /* what shows nothing needs no looking at */
+    for (int j = first; j <= last; j++) /* cells above the horizon are done */
         if (top + (float)(CAMBER_CELL_PX * (j + 1)) <= s.horizon)
             c.done |= 255ul << (CAMBER_TILE_CELLS * j);
 #endif
@@ -117,11 +119,11 @@ CAMBER_KERNEL(1, rasterize,
 #if CAMBER_RASTER_PITCHED
         draw_tilted(&c, &at, where,
                     (tilted){segment, planes + (size_t)CAMBER_PLANE_WORDS * lists[k],
-                             arc_lengths + CAMBER_SEGMENT_MEASURES * (size_t)lists[k], side_table, s.eye});
+                             arc_lengths + CAMBER_SEGMENT_ARC_LENGTHS * (size_t)lists[k], side_table, s.eye});
 #else
 #if CAMBER_RASTER_RICH
         if (c.brush_ext.features) {
-            draw_rich(&c, &at, segment, where, arc_lengths + CAMBER_SEGMENT_MEASURES * (size_t)lists[k], side_table);
+            draw_rich(&c, &at, segment, where, arc_lengths + CAMBER_SEGMENT_ARC_LENGTHS * (size_t)lists[k], side_table);
         } else
 #endif
             if (c.now.mode == CAMBER_BRUSH_UNION) {

@@ -1,20 +1,21 @@
-/* The cells of a tile that a segment meets, and what it draws of them by itself. */
+/* Finds the cells of a tile that a segment touches, and draws a single segment of a union into them. */
 #ifndef CAMBER_RASTERIZE_CELLS_CL
 #define CAMBER_RASTERIZE_CELLS_CL
 
 #include "tile_state.cl"
 
 #if CAMBER_LANES == 16
-/* Where pixels of cells, and cells of four by four of them, lie in the picture: by the first one's column or row. */
-typedef struct places {
+/* Positions in the picture, px: of the pixels of a cell, and of the middles of 4 x 4 cells, by the column or row of the
+ * (first) cell. */
+typedef struct positions {
     float16 x[CAMBER_TILE_CELLS], y[CAMBER_TILE_CELLS];
     float16 middle_x[CAMBER_TILE_CELLS], middle_y[CAMBER_TILE_CELLS];
-} places;
+} positions;
 
 constant float ACROSS[16] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
 constant float DOWN[16] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
 
-static inline void begin_places(private places *at, float left, float top) {
+static inline void begin_positions(private positions *at, float left, float top) {
     const float16 across = vload16(0, ACROSS), down = vload16(0, DOWN);
     for (int i = 0; i < CAMBER_TILE_CELLS; i++) {
         const float from = (float)(CAMBER_CELL_PX * i), middle = 0.5f * CAMBER_CELL_PX;
@@ -29,14 +30,14 @@ typedef struct cell_box {
     int from_x, from_y, to_x, to_y;
 } cell_box;
 
-/* A tile, or some rows of its cells, in the picture. */
-typedef struct place {
+/* Rows of cells [first, last] of a tile, and where the tile lies in the picture, px. */
+typedef struct tile_rows {
     float left, top;
     int first, last;
-} place;
+} tile_rows;
 
-/* The cells in the box of a segment, a bit each. */
-static inline ulong box_of(global const float *segment, place where, private cell_box *box) {
+/* The cells in the box of a segment, a bit each: row by row from the lowest bit. */
+static inline ulong box_of(global const float *segment, tile_rows where, private cell_box *box) {
     const float left = where.left, top = where.top;
     const int first = where.first, last = where.last;
     const float ax = segment[CAMBER_SEGMENT_AX], ay = segment[CAMBER_SEGMENT_AY];
@@ -58,7 +59,7 @@ static inline ulong box_of(global const float *segment, place where, private cel
            << (CAMBER_TILE_CELLS * from_y);
 }
 
-/* Turns the masks of four by four cells into bits as a tile has them. */
+/* Turns the masks of 4 x 4 cells into the bits of a tile's cells. */
 static inline uint bits_of(int16 cells) {
     const uint16 each = (uint16)(0x1, 0x2, 0x4, 0x8, 0x100, 0x200, 0x400, 0x800, 0x10000, 0x20000, 0x40000, 0x80000,
                                  0x1000000, 0x2000000, 0x4000000, 0x8000000);
@@ -69,12 +70,12 @@ static inline uint bits_of(int16 cells) {
     return e.x | e.y;
 }
 
-/* The cells of a box, a bit each: those that the segment meets, those near its ends, and those all inside it. */
+/* Cells, a bit each: those that a segment touches, those that an end is near to, and those that it fills. */
 typedef struct cell_sets {
     ulong partial, near_end, full;
 } cell_sets;
 
-static inline void sort_cells(private const camber_edge *p, private const places *at, cell_box box, ulong cells,
+static inline void sort_cells(private const camber_edge *p, private const positions *at, cell_box box, ulong cells,
                               private cell_sets *sets) {
     const int may_be_inside = p->half_width > 2.0f;
     sets->partial = sets->near_end = sets->full = 0;
@@ -95,12 +96,13 @@ static inline void sort_cells(private const camber_edge *p, private const places
     sets->full &= sets->partial & ~sets->near_end;
 }
 
-/* Pixels as a segment has them: x along it, y across, and past the bisectors at its ends. */
+/* The pixels of a cell relative to a segment: x along it, y across, fa and fb past its bisectors, px. */
 typedef struct pixel_set {
     float16 x, y, fa, fb;
 } pixel_set;
 
-static inline void find_pixels(private const camber_edge *p, private const places *at, int i, private pixel_set *set) {
+static inline void find_pixels(private const camber_edge *p, private const positions *at, int i,
+                               private pixel_set *set) {
     const float16 px = at->x[i % CAMBER_TILE_CELLS], py = at->y[i / CAMBER_TILE_CELLS];
     const float16 qx = px - p->ax, qy = py - p->ay;
     set->x = qx * p->ux + qy * p->uy;
@@ -109,9 +111,9 @@ static inline void find_pixels(private const camber_edge *p, private const place
     set->fb = (px - p->bx) * p->nbx + (py - p->by) * p->nby;
 }
 
-/* Draws a segment of a union by itself. */
-static inline void draw_segment(private tile_state *c, private const places *at, global const float *segment,
-                                place where) {
+/* Draws a single segment of a union. */
+static inline void draw_segment(private tile_state *c, private const positions *at, global const float *segment,
+                                tile_rows where) {
     cell_box box;
     cell_sets sets;
     camber_edge p;

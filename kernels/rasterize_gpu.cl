@@ -1,41 +1,44 @@
-/* rasterize on a GPU: a row of a tile's cells is a work-group, a pixel a work-item. It reads and writes what
- * rasterize.cl does, to the same bytes. All sixteen work-items of a cell decide alike, from what they all have or from
- * the largest of their values, so that barriers are the same for the whole group. Only plain frames are drawn so. */
+/* rasterize on a GPU: a work-group draws a row of a tile's cells, a work-item a pixel. Only plain frames are drawn so.
+ *
+ * It reads what rasterize.cl reads without CAMBER_RASTER_RICH, and writes the same pixels; its spills are laid out in
+ * another way. The sixteen work-items of a cell decide alike, by values that all have or by the largest of theirs. So
+ * the whole group comes to the same barriers. */
 #include "tile_state.cl"
 
 #if CAMBER_LANES == 1
 
 #define RASTERIZE_LANES (CAMBER_TILE_PX * CAMBER_CELL_PX)
 #define CELL_LANES (CAMBER_CELL_PX * CAMBER_CELL_PX)
-#define BATCH CAMBER_LOOK_EVERY /* segments that are drawn at once: of no more can a cell be looked at only once */
+/* segments that are drawn at once: so a cell has to be checked only once among them */
+#define SIXTEEN CAMBER_LOOK_EVERY
 
-/* For functions that are given local memory: PoCL 3.1 loses it where they are called. */
+/* For functions with arguments in local memory: PoCL 3.1 loses these in a call that is not inlined. */
 #define HERE inline __attribute__((always_inline))
 
-/* Segments of one colour, as all lanes read them. */
+/* Up to sixteen segments in local memory, which all lanes read. */
 typedef struct sixteen {
-    camber_edge edges[BATCH];
-    float reaches[BATCH];
-    camber_u32 brushes[BATCH];
+    camber_edge edges[SIXTEEN];
+    float reaches[SIXTEEN];
+    camber_u32 brushes[SIXTEEN];
 } sixteen;
 
 typedef struct level {
     float r, g, b, through;
 } level;
 
-/* The state of a pixel, and from done on that of its cell. */
+/* The state of a pixel; from `done` on it is the state of its cell, the same in all lanes of the cell. */
 typedef struct tile_state {
-    float x, y;      /* its middle in its cell, px */
+    float x, y;      /* the pixel in its cell, px */
     int column, row; /* of the cell in its tile */
     float brush, sum, normal_x, normal_y;
-    level levels[LEVELS]; /* by numbers that the compiler knows, so that they stay in registers */
+    level levels[LEVELS]; /* indexed by constants only, so that they stay in registers */
     int done, filled, brushed, touched[LEVELS];
     camber_u32 blend_count;
-    int is_open[LEVELS]; /* of all cells */
+    int is_open[LEVELS]; /* the same in all cells */
     camber_brush now;
 } tile_state;
 
-/* The most of what the lanes of a cell have. All of the group come here together. */
+/* The largest value among the lanes of a cell. All lanes of the group call this together. */
 static HERE float most_of(local float *values, float value) {
     const camber_u32 lane = (camber_u32)get_local_id(0), first = lane / CELL_LANES * CELL_LANES;
     float most = 0.0f;
@@ -118,7 +121,7 @@ static inline void change_brush(private tile_state *c, camber_brush next) {
     c->now = next;
 }
 
-/* Whether the cell lies in the segment's box. */
+/* Whether the cell lies in the box of a segment. */
 static inline int is_in_box(private const tile_state *c, private const camber_edge *p, float reach, float left,
                             float top) {
     const float a_cell = 1.0f / CAMBER_CELL_PX, side = (float)(CAMBER_TILE_CELLS - 1);
@@ -150,7 +153,7 @@ static inline void put_area(private tile_state *c, private const camber_edge *p,
     }
 }
 
-/* Returns whether the caller has to look now whether the cell is filled. */
+/* Draws a segment into the pixel. Returns whether it is time to check if the cell is filled. */
 static inline int draw_segment(private tile_state *c, private const camber_edge *p, float reach, float left,
                                float top) {
     if (c->done || c->filled || !is_in_box(c, p, reach, left, top))
@@ -177,7 +180,8 @@ static inline int draw_segment(private tile_state *c, private const camber_edge 
     return !is_union && c->now.a == 1.0f && c->blend_count % CAMBER_LOOK_EVERY == 0;
 }
 
-/* From a segment of a batch on, until the cell has to be looked at. */
+/* Draws segments [from, count) until the cell has to be checked. Returns the next segment; past SIXTEEN: all are drawn.
+ */
 static HERE camber_u32 draw_some(private tile_state *c, local const sixteen *b, camber_u32 from, camber_u32 count,
                                  float2 corner) {
     int looks = 0;
@@ -185,7 +189,7 @@ static HERE camber_u32 draw_some(private tile_state *c, local const sixteen *b, 
         const camber_edge p = b->edges[from];
         looks = draw_segment(c, &p, b->reaches[from], corner.x, corner.y);
     }
-    return looks ? from : BATCH + 1;
+    return looks ? from : SIXTEEN + 1;
 }
 
 static inline camber_u32 level_of(float value) {
@@ -193,8 +197,8 @@ static inline camber_u32 level_of(float value) {
     return (camber_u32)(least < 255.0f ? least : 255.0f);
 }
 
-static HERE void load_batch(local sixteen *b, global const float *segments, global const camber_u32 *lists,
-                            camber_u32 end, camber_u32 count) {
+static HERE void load_sixteen(local sixteen *b, global const float *segments, global const camber_u32 *lists,
+                              camber_u32 end, camber_u32 count) {
     const camber_u32 lane = (camber_u32)get_local_id(0);
     if (lane < count) {
         global const float *segment = segments + (size_t)CAMBER_SEGMENT_WORDS * lists[end - 1u - lane];
@@ -207,7 +211,7 @@ static HERE void load_batch(local sixteen *b, global const float *segments, glob
     barrier(CLK_LOCAL_MEM_FENCE);
 }
 
-/* Whether nothing that is still to come shows in any cell of the group. */
+/* Whether nothing shows of the segments to come, in any cell of the group. */
 static HERE int is_full(private const tile_state *c, local float *values) {
     const int opaque = c->now.mode != CAMBER_BRUSH_UNION && !c->is_open[1] && !c->is_open[2];
     const camber_u32 lane = (camber_u32)get_local_id(0);
@@ -221,19 +225,20 @@ static HERE int is_full(private const tile_state *c, local float *values) {
     return full;
 }
 
-/* ---- Between slices: of a cell a short word, then of a row of cells the brush and what is open, then the planes */
+/* ---- Between slices: 16 bits for each cell; a word for each row of cells, its brush and open levels; the planes ----
+ */
 
-#define LANES_ROWS 32 /* words */
+#define LANES_ROWS 32 /* the word at which the rows' words begin */
 #define PLANE (CAMBER_TILE_PX * CAMBER_TILE_PX)
 
-static inline void keep_level(global float *planes, size_t plane, size_t at, private const level *l) {
+static inline void spill_level(global float *planes, size_t plane, size_t at, private const level *l) {
     planes[plane * PLANE + at] = l->r;
     planes[(plane + 1) * PLANE + at] = l->g;
     planes[(plane + 2) * PLANE + at] = l->b;
     planes[(plane + 3) * PLANE + at] = l->through;
 }
 
-static inline void take_level(global const float *planes, size_t plane, size_t at, private level *l) {
+static inline void restore_level(global const float *planes, size_t plane, size_t at, private level *l) {
     l->r = planes[plane * PLANE + at];
     l->g = planes[(plane + 1) * PLANE + at];
     l->b = planes[(plane + 2) * PLANE + at];
@@ -251,19 +256,19 @@ static inline void spill_pixel(private const tile_state *c, global float *spill,
     if (lane == 0)
         ((global camber_u32 *)spill)[LANES_ROWS + c->row] = now;
     planes[at] = c->brush;
-    keep_level(planes, 1, at, &c->levels[0]);
+    spill_level(planes, 1, at, &c->levels[0]);
     if (c->now.mode == CAMBER_BRUSH_UNION) {
         planes[s.sums * PLANE + at] = c->sum;
         planes[(s.sums + 1) * PLANE + at] = c->normal_x;
         planes[(s.sums + 2) * PLANE + at] = c->normal_y;
     }
     if (c->is_open[1])
-        keep_level(planes, s.group, at, &c->levels[1]);
+        spill_level(planes, s.group, at, &c->levels[1]);
     if (c->is_open[2])
-        keep_level(planes, s.layer, at, &c->levels[2]);
+        spill_level(planes, s.layer, at, &c->levels[2]);
 }
 
-/* Gives the brush that was drawn last, ~0 where none was, or CAMBER_SPILL_FULL. */
+/* Restores a pixel. Returns the brush that was drawn last, ~0 if none was, or CAMBER_SPILL_FULL. */
 static inline camber_u32 restore_pixel(private tile_state *c, global const float *spill,
                                        global const camber_brush *brushes, camber_spill_args s) {
     global const float *planes = spill + CAMBER_SPILL_WORDS;
@@ -277,15 +282,15 @@ static inline camber_u32 restore_pixel(private tile_state *c, global const float
         c->touched[k] = cell >> (3u + k) & 1u;
     c->blend_count = cell >> 6;
     c->brush = planes[at];
-    take_level(planes, 1, at, &c->levels[0]);
+    restore_level(planes, 1, at, &c->levels[0]);
     if (now == CAMBER_SPILL_FULL)
         return now;
     c->is_open[1] = now >> 30 & 1u;
     c->is_open[2] = now >> 31 & 1u;
     if (c->is_open[1])
-        take_level(planes, s.group, at, &c->levels[1]);
+        restore_level(planes, s.group, at, &c->levels[1]);
     if (c->is_open[2])
-        take_level(planes, s.layer, at, &c->levels[2]);
+        restore_level(planes, s.layer, at, &c->levels[2]);
     if ((now & CAMBER_SPILL_BRUSH) == CAMBER_SPILL_BRUSH)
         return ~0u;
     c->now = brushes[now & CAMBER_SPILL_BRUSH];
@@ -297,7 +302,7 @@ static inline camber_u32 restore_pixel(private tile_state *c, global const float
     return now & CAMBER_SPILL_BRUSH;
 }
 
-/* ---- The row */
+/* ---- The row of cells ---- */
 
 static inline void finish(private tile_state *c) {
     close_brush(c);
@@ -327,21 +332,22 @@ kernel __attribute__((reqd_work_group_size(RASTERIZE_LANES, 1, 1))) void rasteri
     local sixteen b;
     local float values[RASTERIZE_LANES];
     tile_state c;
-    const size_t item = get_global_id(0) / RASTERIZE_LANES + s.first_job;
-    const camber_u32 tile = jobs[2 * item], column = tile % s.columns, row = tile / s.columns, from = starts[tile];
+    const size_t job = get_global_id(0) / RASTERIZE_LANES + s.first_job;
+    const camber_u32 tile = jobs[CAMBER_JOB_WORDS * job], column = tile % s.columns, row = tile / s.columns,
+                     from = starts[tile];
     const float2 corner = (float2)(s.left + (float)(column * CAMBER_TILE_PX), s.top + (float)(row * CAMBER_TILE_PX));
     global float *own_spill = spill + (size_t)tile * slice.tile_words;
     camber_u32 current = ~0u, end = starts[tile + 1];
     const int idles = !slice.is_first && !slice.is_last && end == from;
-    begin_tile_state(&c, (int)(jobs[2 * item + 1] & 255u));
+    begin_tile_state(&c, (int)(jobs[CAMBER_JOB_WORDS * job + 1] & 255u));
     c.now = brushes[0];
     if (!slice.is_first && !idles)
         current = restore_pixel(&c, own_spill, brushes, slice);
-    barrier(CLK_GLOBAL_MEM_FENCE); /* before one of them keeps what all have taken */
+    barrier(CLK_GLOBAL_MEM_FENCE); /* no lane may spill before all have restored */
     int full = current == CAMBER_SPILL_FULL;
     while (end > from && !full) {
-        const camber_u32 most = end - from < BATCH ? end - from : BATCH;
-        load_batch(&b, segments, lists, end, most);
+        const camber_u32 most = end - from < SIXTEEN ? end - from : SIXTEEN;
+        load_sixteen(&b, segments, lists, end, most);
         camber_u32 count = 1;
         while (count < most && b.brushes[count] == b.brushes[0])
             count++;
@@ -351,7 +357,7 @@ kernel __attribute__((reqd_work_group_size(RASTERIZE_LANES, 1, 1))) void rasteri
         }
         c.done |= most_of(values, c.levels[0].through) < CAMBER_NOTHING_PX;
         const camber_u32 next = draw_some(&c, &b, 0, count, corner);
-        c.filled |= (most_of(values, c.brush) < CAMBER_NOTHING_PX) & (next <= BATCH);
+        c.filled |= (most_of(values, c.brush) < CAMBER_NOTHING_PX) & (next <= SIXTEEN);
         (void)draw_some(&c, &b, next, count, corner);
         full = is_full(&c, values);
         end -= count;

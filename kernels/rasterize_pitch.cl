@@ -1,12 +1,12 @@
-/* Segments of a plane that is seen at an angle: kernels/pitch_coverage.h says how. */
+/* Draws segments in a picture with a pitch: pitch_coverage.h has the formulas. */
 #include "pitch_features.h"
 #include "rasterize_rich.cl"
 
 #if CAMBER_RASTER_PITCHED
 
-/* A segment that is seen at an angle. */
+/* All that a segment in a picture with a pitch is drawn from. */
 typedef struct tilted {
-    global const float *segment, *plane, *measure, *side_table;
+    global const float *segment, *plane, *arc_length, *side_table;
     camber_eye eye;
 } tilted;
 
@@ -21,9 +21,9 @@ static inline void put_tilted(private tile_state *c, private const camber_pitch_
     c->brush[3][i] += thick ? ny * edge : none;
 }
 
-/* As sort_cells. */
-static inline void sort_tilted(private const camber_pitch_edge *p, private const places *at, cell_box box, ulong cells,
-                               camber_eye eye, private cell_sets *sets) {
+/* sort_cells for a picture with a pitch. */
+static inline void sort_tilted(private const camber_pitch_edge *p, private const positions *at, cell_box box,
+                               ulong cells, camber_eye eye, private cell_sets *sets) {
     sets->partial = sets->near_end = sets->full = 0;
     for (int j = box.from_y; j <= box.to_y; j += 4)
         for (int i = box.from_x; i <= box.to_x; i += 4) {
@@ -41,14 +41,14 @@ static inline void sort_tilted(private const camber_pitch_edge *p, private const
     sets->full &= sets->partial & ~sets->near_end;
 }
 
-/* Those that a segment of a brush with features meets. */
-static __attribute__((noinline)) void draw_rich_tilted(private tile_state *c, private const places *at,
+/* Draws cells with a brush that has features. */
+static __attribute__((noinline)) void draw_rich_tilted(private tile_state *c, private const positions *at,
                                                        private const camber_pitch_edge *p, ulong meets, tilted from) {
     camber_extras e;
     camber_image_sampler image;
-    camber_extras_of(&c->brush_ext, 0, from.measure, from.side_table, &e);
+    camber_extras_of(&c->brush_ext, 0, from.arc_length, from.side_table, &e);
     if (e.features & CAMBER_FEATURE_IMAGE)
-        camber_pitch_image_of(from.side_table, 4u * c->brush_ext.image, from.measure, p, &image);
+        camber_pitch_image_of(from.side_table, 4u * c->brush_ext.image, from.arc_length, p, &image);
     for (ulong left = meets; left; left &= left - 1) {
         const int i = lowest(left);
         camber_pitch_pixel pixels;
@@ -81,8 +81,8 @@ static __attribute__((noinline)) void draw_rich_tilted(private tile_state *c, pr
     }
 }
 
-/* As draw_segment. */
-static inline void draw_tilted(private tile_state *c, private const places *at, place where, tilted from) {
+/* draw_segment for a picture with a pitch. */
+static inline void draw_tilted(private tile_state *c, private const positions *at, tile_rows where, tilted from) {
     cell_box box;
     cell_sets sets;
     camber_pitch_edge p;

@@ -1,4 +1,4 @@
-/* Segments of brushes with features: kernels/features.h says what these are. */
+/* Draws segments of brushes with features: features.h and images.h have the formulas. */
 #ifndef CAMBER_RASTERIZE_RICH_CL
 #define CAMBER_RASTERIZE_RICH_CL
 
@@ -7,7 +7,7 @@
 
 #if CAMBER_RASTER_RICH
 
-/* Colours that change from pixel to pixel go straight under what the level has. */
+/* Puts colours that change from pixel to pixel straight under what the level has. */
 static inline void put_colors(private tile_state *c, int i, float16 area, private const float16 *color, int whole) {
     const int level = c->is_open[2] ? 2 : c->is_open[1] ? 1 : 0;
     const float16 through = c->level[level][3][i], seen = through * area * c->now.a;
@@ -27,8 +27,8 @@ static inline void put_colors(private tile_state *c, int i, float16 area, privat
         *(level == 0 ? &c->done : &c->filled) |= 1ul << i;
 }
 
-/* All cells that are not full. */
-static inline void fill_with_images(private tile_state *c, private const places *at, camber_eye eye,
+/* Fills all cells that are not full with images. */
+static inline void fill_with_images(private tile_state *c, private const positions *at, camber_eye eye,
                                     global const float *side_table) {
     camber_image_sampler m;
     camber_image_sampler_of(side_table, 4u * c->brush_ext.image, &m);
@@ -65,10 +65,10 @@ static inline void image_line(global const float *side_table, private const camb
         color[channel] *= rgba[channel];
 }
 
-/* Draws what draw_segment draws. */
-static __attribute__((noinline)) void draw_rich(private tile_state *c, private const places *at,
-                                                global const float *segment, place where, global const float *measure,
-                                                global const float *side_table) {
+/* Draws a segment of a brush with features. */
+static __attribute__((noinline)) void draw_rich(private tile_state *c, private const positions *at,
+                                                global const float *segment, tile_rows where,
+                                                global const float *arc_length, global const float *side_table) {
     cell_box box;
     cell_sets sets;
     camber_edge p;
@@ -84,8 +84,8 @@ static __attribute__((noinline)) void draw_rich(private tile_state *c, private c
     }
     camber_edge_of(segment, as_uint(segment[CAMBER_SEGMENT_FLAGS]), &p);
     if (c->brush_ext.features & CAMBER_FEATURE_IMAGE)
-        camber_flat_image_of(side_table, 4u * c->brush_ext.image, measure, &p, &image);
-    camber_extras_of(&c->brush_ext, &p, measure, side_table, &e);
+        camber_flat_image_of(side_table, 4u * c->brush_ext.image, arc_length, &p, &image);
+    camber_extras_of(&c->brush_ext, &p, arc_length, side_table, &e);
     sort_cells(&p, at, box, cells, &sets);
     for (ulong left = sets.partial; left; left &= left - 1) {
         const int i = lowest(left);

@@ -1,11 +1,13 @@
-/* Segments of one brush that is no union, sixteen at a time. What is to be known of them is worked out side by side, as
- * camber_edge_of and camber_cell_masks_of say it of one, to the same bits. Then their cells follow each other in one
- * list: a processor that guesses which way branches go guesses few of them wrong. */
+/* Draws segments of one brush, which is not a union, sixteen at a time.
+ *
+ * Input: the numbers of up to sixteen segments. Their coefficients and cell masks are computed side by side in vectors,
+ * to the same bits as camber_edge_of and camber_cell_masks_of find for one. Then all their cells are put into one list
+ * and drawn. One long loop lets the processor predict most branches. */
 #include "rasterize_cells.cl"
 #include "transpose.cl"
 
 #if CAMBER_LANES == 16
-/* Segments of a brush that is no union wait until there are so many. */
+/* Segments of a brush that is not a union wait until there are so many. */
 #define CAMBER_SIXTEEN 16
 
 typedef struct sixteen {
@@ -51,7 +53,7 @@ static inline float16 find_flat(uint16 kind, float16 h) {
     return kind == CAMBER_ENDS_BUTT ? (float16)(0.0f) : kind == CAMBER_ENDS_SQUARE ? h : (float16)(CAMBER_NEVER_PX);
 }
 
-/* Works out the edges from the words that are there already. */
+/* Works out the coefficients from the words, which are there already. */
 static inline void find_edges(private edges *p) {
     const uint16 flags = as_uint16(WORD(p, FLAGS)), one = (uint16)(1u);
     const uint16 end_a = CAMBER_END_OF_A(flags), end_b = CAMBER_END_OF_B(flags);
@@ -110,11 +112,11 @@ static inline void take_edge(private const edges *from, uint k, private camber_e
     p->flat_b = LANE(from->flat_b);
     p->thin = as_uint(LANE(from->thin));
     p->flat = as_uint(LANE(from->flat));
-    p->tight = 1u; /* of others the lines lie nowhere */
+    p->tight = 1u; /* the lines of other joins lie far from any pixel */
 #undef LANE
 }
 
-/* Boxes of cells: from where, and how many a side. */
+/* Boxes of cells: the first cell, and how many cells along each side. */
 typedef struct boxes {
     int16 x, y, columns, rows;
     int most_columns, most_rows;
@@ -127,8 +129,8 @@ static inline int most_of_all(int16 v) {
     return max(c.x, c.y);
 }
 
-/* As box_of. */
-static inline void find_boxes(private const edges *p, place where, uint count, private boxes *b) {
+/* box_of for sixteen segments. */
+static inline void find_boxes(private const edges *p, tile_rows where, uint count, private boxes *b) {
     const float16 ax = WORD(p, AX), ay = WORD(p, AY), bx = WORD(p, BX), by = WORD(p, BY), reach = WORD(p, REACH);
     const float a_cell = 1.0f / CAMBER_CELL_PX;
     const float16 none = (float16)(0.0f), side = (float16)(CAMBER_TILE_CELLS - 1);
@@ -148,18 +150,19 @@ static inline void find_boxes(private const edges *p, place where, uint count, p
     b->most_rows = most_of_all(b->rows);
 }
 
-/* Rows of four bits, each to a byte of its own. */
+/* Moves four rows of four bits to a byte each. */
 static inline uint16 spread(uint16 bits) {
     return (bits & 0xfu) | (bits & 0xf0u) << 4 | (bits & 0xf00u) << 8 | (bits & 0xf000u) << 12;
 }
 
-/* The cells of each segment, a bit each. */
+/* The cell_sets of sixteen segments. */
 typedef struct sixteen_masks {
     ulong16 partial, near_end, full;
 } sixteen_masks;
 
-/* As camber_cell_masks_of. */
-static inline void find_masks(private const edges *p, private const boxes *b, place where, private sixteen_masks *m) {
+/* sort_cells for sixteen segments. */
+static inline void find_masks(private const edges *p, private const boxes *b, tile_rows where,
+                              private sixteen_masks *m) {
     const float16 ux = WORD(p, UX), uy = WORD(p, UY), h = WORD(p, HALF_WIDTH), always = (float16)(CAMBER_ALWAYS_PX);
     const float16 nax = WORD(p, NAX), nay = WORD(p, NAY), nbx = WORD(p, NBX), nby = WORD(p, NBY);
     const float16 reach = 1.5f * (fabs(ux) + fabs(uy));
@@ -200,7 +203,7 @@ static inline void find_masks(private const edges *p, private const boxes *b, pl
 }
 
 typedef struct cell_list {
-    uint jobs[CAMBER_SIXTEEN * CELLS + 4]; /* cells, and how they lie; the lane << ITEM_LANE */
+    uint words[CAMBER_SIXTEEN * CELLS + 4]; /* cell | CELL_NEAR_END or CELL_FULL | lane << CELL_LANE */
     uint count;
 } cell_list;
 
@@ -209,12 +212,12 @@ static inline void list_cells(private cell_list *list, ulong cells, uint word) {
     list->count += (uint)popcount(cells);
 #pragma unroll
     for (int i = 0; i < 4; i++, cells &= cells - 1)
-        list->jobs[at++] = word | (uint)lowest(cells);
+        list->words[at++] = word | (uint)lowest(cells);
     for (; cells; cells &= cells - 1)
-        list->jobs[at++] = word | (uint)lowest(cells);
+        list->words[at++] = word | (uint)lowest(cells);
 }
 
-/* shut: the cells that are full. */
+/* Lists the cells of all segments, segment by segment. shut: cells that are full already. */
 static inline void list_all(private const sixteen_masks *m, uint count, ulong shut, private cell_list *list) {
     ulong nears[CAMBER_SIXTEEN], sides[CAMBER_SIXTEEN], inside[CAMBER_SIXTEEN];
     vstore16(m->near_end & ~shut, 0, nears);
@@ -240,32 +243,32 @@ static __attribute__((noinline)) float16 odd_area(global const float *segment, f
 static inline float16 area_of(private const camber_edge *p, float16 x, float16 y, float16 fa, float16 fb) {
     float16 bent;
     const float16 arc = camber_edge_off(p, x, y, fa, fb, &bent);
-    float16 area = camber_edge_band(p, p->half_width, sqrt(arc * arc + bent * bent));
+    float16 area = camber_edge_within(p, p->half_width, sqrt(arc * arc + bent * bent));
     if (p->flat)
         area *= camber_edge_caps(p, x);
     return camber_edge_owner(p, area, x, y, fa, fb);
 }
 
-static inline void draw_list(private tile_state *c, private const places *at, private const edges *all,
+static inline void draw_list(private tile_state *c, private const positions *at, private const edges *all,
                              private const cell_list *list, global const float *segments, private const uint *which) {
     const float opacity = c->now.a;
     ulong shut = c->done | c->filled, brushed = 0;
     for (uint n = 0; n < list->count; n++) {
-        const uint item = list->jobs[n], lane = item >> CELL_LANE;
-        const int i = (int)(item % CELLS);
+        const uint word = list->words[n], lane = word >> CELL_LANE;
+        const int i = (int)(word % CELLS);
         camber_edge p;
         pixel_set set;
         float16 area;
         if (shut >> i & 1ul)
             continue;
         brushed |= 1ul << i;
-        if (item & CELL_FULL) {
+        if (word & CELL_FULL) {
             put_whole(c, 1ul << i);
             shut |= c->filled;
             continue;
         }
         take_edge(all, lane, &p);
-        if (item & CELL_NEAR_END) {
+        if (word & CELL_NEAR_END) {
             find_pixels(&p, at, i, &set);
             area = ((private const uint *)&all->odd)[lane]
                        ? odd_area(segments + (size_t)CAMBER_SEGMENT_WORDS * which[lane], set.x, set.y, set.fa, set.fb)
@@ -280,8 +283,8 @@ static inline void draw_list(private tile_state *c, private const places *at, pr
     c->brushed |= brushed;
 }
 
-static __attribute__((noinline)) void draw_sixteen(private tile_state *c, private const places *at,
-                                                   global const float *segments, place where, private sixteen *b) {
+static __attribute__((noinline)) void draw_sixteen(private tile_state *c, private const positions *at,
+                                                   global const float *segments, tile_rows where, private sixteen *b) {
     edges p;
     boxes box;
     sixteen_masks m;

@@ -1,6 +1,6 @@
-/* scan: exclusive prefix sums of the counts within each block of CAMBER_BLOCK points, by runs of CAMBER_POINT_CHUNK
- * points, and each block's sum. A work-group a block, a run a work-item: sums over 32 lanes are a tenth of the work of
- * sums over 256, and where one item takes the block there is but its sum. Reads joins[n + 2], info[n + 2]; writes
+/* scan: exclusive prefix sums of the counts within each block of CAMBER_BLOCK points, by chunks of CAMBER_POINT_CHUNK
+ * points, and each block's sum. A work-group a block, a chunk a work-item: sums over 32 lanes are a tenth of the work
+ * of sums over 256, and where one item takes the block there is but its sum. Reads joins[n + 2], info[n + 2]; writes
  * offsets[n / CAMBER_POINT_CHUNK] and sums[n / CAMBER_BLOCK], both vertices | indices << 16. The sums of blocks are
  * few; the host adds them up in 64 bits and learns the sizes by it. joins_before is joins once more, for the
  * vectoriser's sake. */

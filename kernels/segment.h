@@ -1,12 +1,15 @@
-/* Drawing in OpenCL: a segment as tiles and pixels read it, and the tiles that it meets. Only + - * / sqrt and
- * comparisons, so that device and twin agree to the last bit; a camber_real is sixteen segments, or the sixteen pixels
- * of a cell, on the device and one of them in the twin. */
+/* The rasterizer's segment: its words and flags, and the tiles that it touches.
+ *
+ * Input: the points before A, A and B with their join words, and the row that the segment is drawn by. Output:
+ * camber_segment, the 16 words that all later stages read, and the box of tiles around it. Only + - * / sqrt and
+ * comparisons are used, so that device and twin agree to the last bit. A camber_real is sixteen segments, or the
+ * sixteen pixels of a cell, on the device, and one of them in the twin and on GPUs. */
 #ifndef CAMBER_KERNELS_SEGMENT_H
 #define CAMBER_KERNELS_SEGMENT_H
 
 #include "raster_args.h"
 
-/* The host has all there is; what the device is built for, its build says. */
+/* The host has all features. A build for the device says which it has. */
 #ifndef CAMBER_RASTER_RICH
 #define CAMBER_RASTER_RICH 0
 #endif
@@ -14,7 +17,7 @@
 #define CAMBER_RASTER_PITCHED 0
 #endif
 
-/* Pixels a work-item of a device: 16 where one takes the pixels of a cell, 1 where it takes a pixel, as in the twin. */
+/* Pixels that a work-item draws at a time: 16 on a CPU, the pixels of a cell; 1 on a GPU, as in the twin. */
 #ifndef CAMBER_LANES
 #define CAMBER_LANES 16
 #endif
@@ -34,44 +37,44 @@ typedef int camber_mask;
 #define CAMBER_MORE(a, b) ((a) > (b) ? (a) : (b))
 #define CAMBER_LESS(a, b) ((a) < (b) ? (a) : (b))
 
-/* A picture is tiles, each of which is drawn by itself, and a tile is cells of 4 x 4 pixels. */
+/* A picture is cut into tiles, which are drawn independently, and a tile into cells of 4 x 4 pixels. */
 #define CAMBER_TILE_PX 32
 #define CAMBER_CELL_PX 4
-#define CAMBER_TILE_CELLS 8               /* a side */
-#define CAMBER_TILES_MAX 256              /* a side of what is drawn at once: a box has a byte for each */
-#define CAMBER_LOOK_EVERY 16              /* segments of a cell: then it is looked whether it is full */
-#define CAMBER_NOTHING_PX (1.0f / 512.0f) /* of what lies below, less than this is not seen */
+#define CAMBER_TILE_CELLS 8               /* along each side of a tile */
+#define CAMBER_TILES_MAX 256              /* along each side of an area: a box has a byte for each */
+#define CAMBER_LOOK_EVERY 16              /* a cell is checked for being full after so many segments */
+#define CAMBER_NOTHING_PX (1.0f / 512.0f) /* where less than this shows through, what lies below is not drawn */
 #define CAMBER_NEVER_PX 1e6f
 #define CAMBER_ALWAYS_PX (-1e30f)
-#define CAMBER_TIPS_PX 1.85f /* half as wide, the ends of round caps are judged by themselves */
-#define CAMBER_FILL_PX 1e6f  /* a fill is a line along y = 0, so long to either side and half so wide */
+#define CAMBER_TIPS_PX 1.85f /* in lines of a smaller half width, round caps get their area by camber_edge_tips */
+#define CAMBER_FILL_PX 1e6f  /* a fill is a line along y = 0 that is this long to either side, and this half width */
 
-/* The bytes that a tile spills between slices of segments, at most: seventeen planes of its pixels, and a few words. */
+/* The most bytes that a tile spills between slices: seventeen planes of its pixels, and a few words. */
 #define CAMBER_SPILL_BYTES (17 * 4096 + 192)
 
 /* The box of a segment that is not drawn: its first tile lies behind the last one. */
 #define CAMBER_NO_BOX 0xffu
 
-/* Words of the table of rows. */
-#define CAMBER_RASTER_ROW_WORDS 4 /* half the width, below 0 where nothing is drawn; x, y translation; the brush */
+/* Words of a row of the rasterizer's table. */
+#define CAMBER_RASTER_ROW_WORDS 4 /* half width, px, below 0: not drawn; x, y translation, px; brush number */
 
-/* How what is drawn lies over what is below. */
-#define CAMBER_BRUSH_OVER 0u  /* segments lie over each other */
-#define CAMBER_BRUSH_UNION 1u /* their areas are united first */
+/* How a brush's segments come together. */
+#define CAMBER_BRUSH_OVER 0u  /* each is drawn over the others */
+#define CAMBER_BRUSH_UNION 1u /* their areas are united first, and drawn once */
 #define CAMBER_BRUSH_MASKED                                                                                            \
-    2u /* of a layer in which what is translucent replaces what lies below it. CAMBER_RASTER_RICH */
+    2u /* in a masked layer, a translucent colour replaces what lies below it; only CAMBER_RASTER_RICH */
 
-/* A colour that segments are drawn in. Layers and groups are put onto what lies below as a whole: 0 is none. A layer
- * lies within its group. */
+/* A colour and mode that segments are drawn with. Layers and groups are put onto what lies below as a whole; number 0
+ * is none. A layer belongs to one group. */
 typedef struct camber_brush {
-    float r, g, b, a; /* straight */
+    float r, g, b, a; /* not premultiplied */
     camber_u32 mode, layer, group, spare;
     float layer_opacity, group_opacity, spares[2];
 } camber_brush;
 
 /* ---- A segment as tiles and pixels read it ---- */
 
-/* Ends that a second line cuts, a bit each. */
+/* The ends (CAMBER_ENDS_*) that a second line cuts, a bit each. */
 #define CAMBER_SECOND_ENDS                                                                                             \
     (1u << CAMBER_ENDS_MITER | 1u << CAMBER_ENDS_BEVEL | 1u << CAMBER_ENDS_SPLIT_BEVEL | 1u << CAMBER_ENDS_SPLIT_MITER)
 #define CAMBER_CLASS_CAP 0u
@@ -79,8 +82,8 @@ typedef struct camber_brush {
 #define CAMBER_CLASS_TIGHT 2u
 #define CAMBER_CLASS_SPLIT 3u
 
-/* An end has 13 bits: camber_end 0-2, class 3-4, a tight join's limit 5-11, whether the line ends with the next segment
- * 12. The end at A, then that at B, then: coverage is a ramp. */
+/* Flags of a segment. Each end has 13 bits: 0-2 camber_end, 3-4 class, 5-11 a tight join's limit, 12 the line ends with
+ * the next segment. First the end at A, then that at B, then the flags below. LINEAR: coverage is a linear ramp. */
 #define CAMBER_SEGMENT_END_BITS 13
 #define CAMBER_END_MASK 0x1fffu
 #define CAMBER_END_CLASS_SHIFT 3
@@ -96,15 +99,15 @@ typedef struct camber_brush {
 #define CAMBER_END_IS_ROUND_CAP(end)                                                                                   \
     (((end) & (CAMBER_JOIN_END_MASK | CAMBER_END_CLASS_BITS)) == (CAMBER_ENDS_ROUND | CAMBER_CLASS_CAP << 3))
 #define CAMBER_SEGMENT_LINEAR (1u << 26)
-/* Past a split end the segment has what is wide on its inner side too: camber_owner_side. */
+/* Past a split end the segment draws its inner side as well, if it is wide there: camber_owner_side. */
 #define CAMBER_SEGMENT_OWNER_A (1u << 27)
 #define CAMBER_SEGMENT_OWNER_B (1u << 28)
-/* Flags of its ends: one is cut at a corner or tight, flat, a round cap. */
+/* At least one of its ends is: cut by a second line or tight (SHARP), flat (FLAT), a round cap (ROUNDED). */
 #define CAMBER_SEGMENT_SHARP (1u << 29)
 #define CAMBER_SEGMENT_FLAT (1u << 30)
 #define CAMBER_SEGMENT_ROUNDED (1u << 31)
 
-/* The words of a segment. */
+/* The words of a segment, in the order in which setup writes them. */
 #define CAMBER_SEGMENT_AX 0u
 #define CAMBER_SEGMENT_AY 1u
 #define CAMBER_SEGMENT_BX 2u
@@ -124,14 +127,14 @@ typedef struct camber_brush {
 #define CAMBER_SEGMENT_WORDS 16u
 
 typedef struct camber_segment {
-    camber_real ax, ay, bx, by, ux, uy; /* from A to B, and the direction */
-    camber_real nax, nay, nbx, nby;     /* normals of the bisectors at A and B, along the line */
-    camber_real half_width, reach;      /* reach: no pixel farther out of the box of A and B is touched */
-    camber_real slope, curve;           /* of its edges' area: edge_of in shaders/edge.glsl */
+    camber_real ax, ay, bx, by, ux, uy; /* A, B, and the direction from A to B */
+    camber_real nax, nay, nbx, nby;     /* normals of the bisectors at A and B, which point along the line */
+    camber_real half_width, reach; /* reach: no pixel is touched farther than this, px, outside the box of A and B */
+    camber_real slope, curve;      /* how its sides cut pixels: edge_of in shaders/edge.glsl */
     camber_words flags;
 } camber_segment;
 
-/* camber_end, class, limit of a join word's end. kite and fan say at which joins they split by the kind alone. */
+/* The 12 bits of an end from its join word: camber_end, class, limit. */
 CAMBER_FN camber_words camber_segment_end(camber_words join) {
     const camber_words kind = join >> CAMBER_JOIN_KIND_SHIFT,
                        end = join >> CAMBER_JOIN_END_SHIFT & CAMBER_JOIN_END_MASK;
@@ -144,8 +147,8 @@ CAMBER_FN camber_words camber_segment_end(camber_words join) {
     return drawn | class << CAMBER_END_CLASS_SHIFT | limit << CAMBER_END_LIMIT_SHIFT;
 }
 
-/* Whether a segment has more of a split end than its own side of the bisector: of what is wide, as stroke.vert has it.
- * c and s: of half the turn. */
+/* Whether a segment draws more of a split end than its own side of the bisector, as in shaders/stroke.vert. c and s:
+ * cosine and sine of half the turn. */
 CAMBER_FN camber_mask camber_owner_side(camber_words end, camber_real c, camber_real s, camber_real half_width) {
     const camber_real bound = (CAMBER_END_IS_LAST(end) ? CAMBER_REAL(0.35f) : CAMBER_REAL(0.6f)) * c;
     return (CAMBER_END_CLASS(end) > CAMBER_CLASS_CUT) & (half_width * CAMBER_FABS(s) > bound);
@@ -161,7 +164,7 @@ CAMBER_FN camber_words camber_end_flags(camber_words end) {
            (rounded ? (camber_words)(CAMBER_SEGMENT_ROUNDED) : none);
 }
 
-/* Sets the flags that are known of the ends before any pixel is. */
+/* Sets the flags that follow from the ends alone. */
 CAMBER_FN void camber_segment_judge(camber_segment *s) {
     const camber_words none = (camber_words)(0u), end_a = CAMBER_END_OF_A(s->flags), end_b = CAMBER_END_OF_B(s->flags);
     const camber_real ca = s->nax * s->ux + s->nay * s->uy, sa = s->nax * s->uy - s->nay * s->ux;
@@ -171,7 +174,7 @@ CAMBER_FN void camber_segment_judge(camber_segment *s) {
     s->flags |= camber_end_flags(end_a) | camber_end_flags(end_b);
 }
 
-/* How far an end reaches out of the box of A and B, in units of half the width and the pad. */
+/* How far an end reaches outside the box of A and B, in units of half width + pad. */
 CAMBER_FN camber_real camber_segment_reach(camber_words join, camber_real q) {
     const camber_words end = join >> CAMBER_JOIN_END_SHIFT & CAMBER_JOIN_END_MASK;
     const camber_real below = 1.0f - q * q;
@@ -182,8 +185,9 @@ CAMBER_FN camber_real camber_segment_reach(camber_words join, camber_real q) {
     return ((end == CAMBER_ENDS_MITER) | (end == CAMBER_ENDS_SPLIT_MITER)) ? miter : corner;
 }
 
-/* Sets up the segment from A to B that is half_width wide; (px, py) is where the segment before it comes from. Both
- * segments at a join turn the bisector from the direction of the one before: its normal is the same to the last bit. */
+/* Makes the segment from A to B, which is half_width to either side. (px, py) is where the segment before it begins.
+ * Both segments at a join turn the bisector from the direction of the first, so that both get the same bits for its
+ * normal. */
 CAMBER_FN camber_segment camber_segment_of(camber_real px, camber_real py, camber_real ax, camber_real ay,
                                            camber_real bx, camber_real by, camber_words join_a, camber_words join_b,
                                            camber_real half_width, camber_u32 linear) {
@@ -225,13 +229,13 @@ CAMBER_FN camber_segment camber_segment_of(camber_real px, camber_real py, cambe
     return s;
 }
 
-/* The tiles that the box of a segment meets: x and y of the first and of the last, a byte each. left and top: where the
- * first tile of what is drawn lies in the picture, px. */
+/* The box of tiles that a segment may touch: x and y of the first tile, then x and y of the last, a byte each. left and
+ * top: where the area's first tile lies in the picture, px. */
 CAMBER_FN camber_words camber_segment_box(const camber_segment *s, camber_mask drawn, float left, float top,
                                           camber_u32 columns, camber_u32 rows) {
     const float a_tile = 1.0f / CAMBER_TILE_PX, right = (float)(columns - 1u), bottom = (float)(rows - 1u);
-    /* To the middles of pixels, as cells have it, and a little farther: no cell's own box lies past its tile's. Tiles
-     * are counted from the picture's first one before the area's are, so that they are the same in every area. */
+    /* The box reaches to the middles of pixels, and a little farther, so that no cell's box lies outside its tile's.
+     * Tiles are counted from the picture's first one, and then from the area's, so that every area finds the same. */
     const float inset = 0.4375f, from_x = left * a_tile, from_y = top * a_tile;
     const camber_real none = CAMBER_REAL(0.0f);
     const camber_real x0 = (CAMBER_LESS(s->ax, s->bx) - s->reach + inset) * a_tile - from_x;
@@ -253,8 +257,8 @@ CAMBER_FN camber_words camber_segment_box(const camber_segment *s, camber_mask d
 
 /* ---- Tiles ---- */
 
-/* The squares of a box in one row, tiles or cells of side px, that a segment's band meets: the first | the
- * last << 8. middle: of the row, px; left: of the first square; segment: its words. */
+/* The squares (tiles or cells) of one row of a box that a segment with its reach touches: first | last << 8. middle: y
+ * of the row's middle, px; left: where the first square begins, px. */
 CAMBER_FN camber_u32 camber_row_span(CAMBER_GLOBAL const float *segment, float middle, float left, camber_u32 first,
                                      camber_u32 last, float side) {
     const float ax = segment[CAMBER_SEGMENT_AX], ay = segment[CAMBER_SEGMENT_AY], ux = segment[CAMBER_SEGMENT_UX],
@@ -267,17 +271,17 @@ CAMBER_FN camber_u32 camber_row_span(CAMBER_GLOBAL const float *segment, float m
         return first | last << 8;
     const float scale = 1.0f / uy, across = (middle - ay) * ux;
     const float one = ax + (across - reach) * scale, other = ax + (across + reach) * scale;
-    /* From the squares' middles. */
+    /* Counted from the squares' middles. */
     const float from = ((one < other ? one : other) - to_middle) * a_square - left * a_square;
     const float to = ((one < other ? other : one) - to_middle) * a_square - left * a_square;
     if (from > (float)last || to < (float)first)
-        return 1u; /* the last lies before the first */
+        return 1u; /* none: the last lies before the first */
     const camber_u32 begin = from > (float)first ? (camber_u32)from : first;
     return (from > (float)begin ? begin + 1u : begin) | (to < (float)last ? (camber_u32)to : last) << 8;
 }
 
-/* Whether the box of a segment lies in one column or in one row of tiles, as camber_segment_box has them before an
- * area's edges cut it. */
+/* Whether from and to lie in the same column, or row, of tiles, as camber_segment_box counts them before the area's
+ * edges cut the box. */
 CAMBER_FN camber_u32 camber_same_tile(float from, float to) {
     const float a_tile = 1.0f / CAMBER_TILE_PX, least = -1e9f, most = 1e9f, inset = 0.4375f;
     const float a = (from + inset) * a_tile, b = (to - inset) * a_tile;
@@ -286,6 +290,7 @@ CAMBER_FN camber_u32 camber_same_tile(float from, float to) {
     return first - (lower < (float)first) == last - (upper < (float)last);
 }
 
+/* Whether the box of a segment lies in one column or in one row of tiles. */
 CAMBER_FN camber_u32 camber_segment_is_narrow(CAMBER_GLOBAL const float *segment) {
     const float ax = segment[CAMBER_SEGMENT_AX], ay = segment[CAMBER_SEGMENT_AY], bx = segment[CAMBER_SEGMENT_BX],
                 by = segment[CAMBER_SEGMENT_BY], reach = segment[CAMBER_SEGMENT_REACH];
@@ -293,19 +298,19 @@ CAMBER_FN camber_u32 camber_segment_is_narrow(CAMBER_GLOBAL const float *segment
            camber_same_tile(CAMBER_LESS(ay, by) - reach, CAMBER_MORE(ay, by) + reach);
 }
 
-/* The tiles of a box: camber_segment_box. */
+/* The four bytes of a box: camber_segment_box. */
 #define CAMBER_BOX_FIRST_X(box) ((box)&255u)
 #define CAMBER_BOX_FIRST_Y(box) ((box) >> 8 & 255u)
 #define CAMBER_BOX_LAST_X(box) ((box) >> 16 & 255u)
 #define CAMBER_BOX_LAST_Y(box) ((box) >> 24)
 
-/* Whether a box is one tile that camber_tile_span says nothing of. */
+/* Whether a box is one tile, away from the area's left and right edges: camber_tile_span then is that tile. */
 CAMBER_FN camber_u32 camber_box_is_one_tile(camber_u32 box, camber_u32 columns) {
     return box >> 16 == (box & 0xffffu) && CAMBER_BOX_FIRST_X(box) - 1u < columns - 2u;
 }
 
-/* The tiles of a box in row y that a segment meets, as camber_row_span has them: boxes of one column or row have all.
- * What lies at the area's edge may be cut, and must be as it is in any other area. */
+/* The tiles of a box in row y that a segment touches: first | last << 8. A box of one column or row has all its tiles.
+ * At the area's edge the box may be cut, but the span must be as in any other area. */
 CAMBER_FN camber_u32 camber_tile_span(CAMBER_GLOBAL const float *segment, camber_u32 box, camber_u32 y,
                                       const camber_tile_grid *of) {
     const camber_u32 first = box & 255u, last = box >> 16 & 255u, top = box >> 8 & 255u, bottom = box >> 24;

@@ -1,23 +1,25 @@
-/* setup: sixteen records a work-item, the segments that end with them and the tiles that their boxes meet.
- * Reads records[CAMBER_RECORD_WORDS * stride * record_count], rows[CAMBER_RASTER_ROW_WORDS * row count]. From the
- * record first on, for n records rounded up to sixteens, it writes from base on:
- *     segments[CAMBER_SEGMENT_WORDS * n]; CAMBER_RASTER_PITCHED: as bands of the picture
- *     boxes[n], CAMBER_NO_BOX where no segment ends that is drawn
- *     measures[CAMBER_SEGMENT_MEASURES * n], only CAMBER_RASTER_RICH: how far along its line A lies, how fast that
- *         grows, how long the line is; 0 where records have no arc lengths
- *     planes[CAMBER_PLANE_WORDS * n], only CAMBER_RASTER_PITCHED: the segment in its plane
- * setup_gpu.cl does the same with a work-item a record. */
+/* setup: makes a segment of each record that ends one, and finds the box of tiles around it. A work-item takes sixteen
+ * records.
+ *
+ * Reads records[CAMBER_RECORD_WORDS * stride * record_count], rows[CAMBER_RASTER_ROW_WORDS * row count]. For the n
+ * records of a range, rounded up to sixteens, it writes from element `base` on:
+ *     segments[CAMBER_SEGMENT_WORDS * n]; with CAMBER_RASTER_PITCHED their footprints in the picture
+ *     boxes[n]; CAMBER_NO_BOX for a record that ends no segment, or one that is not drawn
+ *     arc_lengths[CAMBER_SEGMENT_ARC_LENGTHS * n], only with CAMBER_RASTER_RICH; 0 if the records have none
+ *     planes[CAMBER_PLANE_WORDS * n], only with CAMBER_RASTER_PITCHED: the segments in their plane
+ * setup_gpu.cl writes the same bytes, with a work-item for each record. */
 #include "features.h"
 #include "pitch_segment.h"
 #include "record_at.cl"
 #include "transpose.cl"
 
 #if CAMBER_LANES == 16
-/* Sixteen records from one on, or the nearest there are. */
+/* The words of sixteen consecutive records, a vector for each word. */
 typedef struct sixteen_records {
     uint16 x, y, join, info;
 } sixteen_records;
 
+/* Reads sixteen records from `first` on. Numbers outside the part stand for its nearest record. */
 static inline void take_records(global const camber_u32 *records, int first, camber_setup_args r,
                                 private sixteen_records *taken) {
     uint16 v[4];
@@ -37,7 +39,7 @@ static inline void take_records(global const camber_u32 *records, int first, cam
     taken->info = (uint16)(v[0].s37bf, v[1].s37bf, v[2].s37bf, v[3].s37bf);
 }
 
-/* The rows that segments are drawn by: one, mostly. */
+/* Reads the rows of sixteen segments. Mostly they all have the same one. */
 static inline void take_rows(global const float *rows, camber_u32 first, uint16 numbers, int16 drawn,
                              private float16 *row) {
     const uint16 known = drawn ? numbers : (uint16)(0u);
@@ -68,19 +70,19 @@ static inline void take_rows(global const float *rows, camber_u32 first, uint16 
 }
 
 #if CAMBER_RASTER_RICH
-static inline float2 measure_at(global const camber_u32 *records, int i, camber_setup_args r) {
+static inline float2 arc_length_at(global const camber_u32 *records, int i, camber_setup_args r) {
     const int last = (int)r.record_count - 1, at = i < 0 ? 0 : i > last ? last : i;
     return r.stride == 2 ? as_float2(vload2(4 * (size_t)at + 2, records)) : (float2)(0.0f);
 }
 
-static inline void put_measures(global const camber_u32 *records, int first, camber_setup_args r,
-                                private const camber_segment *s, global float *arc_lengths) {
+static inline void put_arc_lengths(global const camber_u32 *records, int first, camber_setup_args r,
+                                   private const camber_segment *s, global float *arc_lengths) {
     float from[16], to[16], total[16];
     for (int k = 0; k < 16; k++) {
         const int is_dot = record_at(records, first + k, r).s2 >> CAMBER_JOIN_KIND_SHIFT == CAMBER_KIND_DOT;
-        const float2 a = measure_at(records, is_dot ? first + k : first + k - 1, r);
+        const float2 a = arc_length_at(records, is_dot ? first + k : first + k - 1, r);
         from[k] = a.s0;
-        to[k] = measure_at(records, first + k, r).s0;
+        to[k] = arc_length_at(records, first + k, r).s0;
         total[k] = a.s1;
     }
     const float16 along = vload16(0, from);
@@ -145,18 +147,18 @@ CAMBER_KERNEL(1, setup,
 #if CAMBER_RASTER_PITCHED
     const camber_segment flat = s;
     camber_plane plane;
-    is_drawn &= camber_pitch_shape_of(r.eye, r.horizon, &flat, &s, &plane);
+    is_drawn &= camber_pitch_segment_of(r.eye, r.horizon, &flat, &s, &plane);
 #endif
     const uint16 box = camber_segment_box(&s, is_drawn, r.left, r.top, r.columns, r.rows);
     vstore16(box, at, boxes);
-    /* In a picture of several areas most segments lie in others. */
+    /* If a picture is drawn in several areas, most segments lie in others. */
     if (all(box == CAMBER_NO_BOX))
         return;
 #if CAMBER_RASTER_PITCHED
     put_planes(&flat, &plane, planes + 16 * CAMBER_PLANE_WORDS * at);
-    put_measures(records, first, r, &flat, arc_lengths + 64 * at);
+    put_arc_lengths(records, first, r, &flat, arc_lengths + 64 * at);
 #elif CAMBER_RASTER_RICH
-    put_measures(records, first, r, &s, arc_lengths + 64 * at);
+    put_arc_lengths(records, first, r, &s, arc_lengths + 64 * at);
 #endif
     float16 words[16] = {s.ax,         s.ay,    s.bx,    s.by,    s.ux,
                          s.uy,         s.nax,   s.nay,   s.nbx,   s.nby,

@@ -1,12 +1,13 @@
-/* setup on a GPU: a work-item is a record. Reads and writes what setup.cl does, to the same bytes. Segments go through
- * local memory, so that neighbours write what lies side by side. */
+/* setup on a GPU: a work-item takes a record. It reads what setup.cl reads and writes the same bytes. Segments go
+ * through local memory, so that neighbouring work-items write neighbouring words. */
 #include "record_at.cl"
 #include "segment.h"
 
 #if CAMBER_LANES == 1
 
 #define SETUP_LANES 64
-#define SETUP_STRIDE (CAMBER_SEGMENT_WORDS + 1) /* so that the lanes' words lie in different banks */
+/* odd, so that the lanes' words lie in different banks of local memory */
+#define SETUP_STRIDE (CAMBER_SEGMENT_WORDS + 1)
 
 static inline void segment_at(global const camber_u32 *records, global const float *rows, int i, camber_setup_args r,
                               local float *words, global camber_u32 *box) {

@@ -1,5 +1,8 @@
-/* The state of a tile while rasterize draws it: the brush as what it lets through, and the levels that it goes under
- * (the picture, a group, a layer), front to back. How a tile spills that between slices, and takes it back. */
+/* The state of a tile while rasterize draws it, and how a tile spills it between slices and restores it.
+ *
+ * Drawing goes from front to back. Each brush is gathered first, as the share of light that it lets through. Then it is
+ * put under what its level has so far: the picture, the open group, or the open layer. A closed layer or group goes
+ * under the level below it in the same way. */
 #ifndef CAMBER_TILE_STATE_CL
 #define CAMBER_TILE_STATE_CL
 
@@ -10,23 +13,23 @@
 
 #if CAMBER_LANES == 16
 typedef struct tile_state {
-    float16 brush[4][CELLS];         /* let through; of unions the sums of areas and of normals besides */
-    float16 level[LEVELS][4][CELLS]; /* red, green, blue; let through */
-    ulong brushed, touched[LEVELS];  /* cells, a bit each */
-    ulong done;                      /* nothing that lies below shows in these */
-    ulong filled;                    /* nor of the same brush in these */
+    float16 brush[4][CELLS];         /* let through; a union's sums of areas and of normals, too */
+    float16 level[LEVELS][4][CELLS]; /* red, green, blue, premultiplied; let through */
+    ulong brushed, touched[LEVELS];  /* cells that the brush, and each level, has drawn in; a bit each */
+    ulong done;                      /* cells in which nothing below shows */
+    ulong filled;                    /* cells in which no more of the same brush shows */
     int is_open[LEVELS], is_ready[LEVELS], has_sums;
-    uchar blend_count[CELLS]; /* segments that came */
+    uchar blend_count[CELLS]; /* segments that have been drawn into the cell */
     camber_brush now;
 #if CAMBER_RASTER_RICH
-    camber_brush_ext brush_ext; /* of it */
-    float layer_alpha;          /* of masked colours, which cover as if they were opaque: their alpha; else 1 */
-    float16 mask[CELLS]; /* of a masked layer: its alphas, where what it lets through is what it does not cover */
+    camber_brush_ext brush_ext; /* the same brush's extension */
+    float layer_alpha;          /* of a masked layer's colour, which covers as if it were opaque; else 1 */
+    float16 mask[CELLS];        /* of a masked layer: its alpha, as its level holds what it does not cover */
 #endif
 } tile_state;
 
 #if CAMBER_RASTER_RICH
-/* How much of the covered area is seen: masked colours are seen by their alpha. */
+/* How much of the covered area is seen: a masked colour by its alpha. */
 #define WITH_LAYER_ALPHA(c, i, seen) with_layer_alpha(c, i, seen)
 static inline float16 with_layer_alpha(private tile_state *c, int i, float16 seen) {
     const float16 shown = seen * c->layer_alpha;
@@ -35,7 +38,7 @@ static inline float16 with_layer_alpha(private tile_state *c, int i, float16 see
     return shown;
 }
 
-/* Takes what a layer covers with it, if it is masked. */
+/* The area that a layer covers; a masked one gives its mask, which is cleared. */
 #define LAYER_AREA(c, i, level) layer_area(c, i, level)
 static inline float16 layer_area(private tile_state *c, int i, int level) {
     const float16 alpha = c->mask[i];
@@ -93,13 +96,13 @@ static inline void begin_tile_state(private tile_state *c, ulong cells) {
     c->is_open[1] = c->is_open[2] = c->is_ready[1] = c->is_ready[2] = c->has_sums = 0;
 }
 
-/* Notes whether a cell of the picture is full. */
+/* Marks a cell as done if nothing shows through the picture's level. */
 static inline void look_at_cell(private tile_state *c, int i, int level) {
     if (level == 0 && most_of(c->level[0][3][i]) < CAMBER_NOTHING_PX)
         c->done |= 1ul << i;
 }
 
-/* Puts the brush under what the level has. */
+/* Puts the gathered brush under what its level has. */
 static inline void close_brush(private tile_state *c) {
     const int level = c->is_open[2] ? 2 : c->is_open[1] ? 1 : 0;
     const int is_union = c->now.mode == CAMBER_BRUSH_UNION;
@@ -122,7 +125,7 @@ static inline void close_brush(private tile_state *c) {
     c->brushed = c->filled = 0;
 }
 
-/* Puts a layer or a group under what the level below it has. */
+/* Puts a layer or a group under what the level below has. */
 static inline void close_level(private tile_state *c, int level, float opacity) {
     const int below = level == 2 && c->is_open[1] ? 1 : 0;
     for (ulong left = c->touched[level]; left; left &= left - 1) {
@@ -153,7 +156,7 @@ static inline void clear_sums(private tile_state *c) {
     c->has_sums = 1;
 }
 
-/* Closes what the brush has nothing to do with, and opens what it lies in. */
+/* Closes the brush, and the layer and group that the next brush does not belong to. Opens those that it does. */
 static inline void change_brush(private tile_state *c, camber_brush next) {
     close_brush(c);
     if (c->is_open[2] && next.layer != c->now.layer)
@@ -169,7 +172,7 @@ static inline void change_brush(private tile_state *c, camber_brush next) {
     c->now = next;
 }
 
-/* Adds a segment of a brush that is no union to what the brush lets through. */
+/* Adds a segment's area of a cell to a brush that is not a union. */
 static inline void put_over(private tile_state *c, int i, float16 area, float opacity) {
     const float16 through = c->brush[0][i] * (1.0f - area * opacity);
     c->brush[0][i] = through;
@@ -194,7 +197,7 @@ static inline void put_area(private tile_state *c, private const camber_edge *p,
     }
 }
 
-/* Fills cells whose pixels all lie inside the stroke. */
+/* Draws cells that lie inside the stroke as a whole. */
 static inline void put_whole(private tile_state *c, ulong cells) {
     const int is_union = c->now.mode == CAMBER_BRUSH_UNION;
     const float through = is_union ? 0.0f : 1.0f - c->now.a;
@@ -220,7 +223,7 @@ static inline void restore_planes(global const float *planes, private float16 (*
             to[k][lowest(cells)] = vload16((size_t)(plane + k) * CELLS + (size_t)lowest(cells), planes);
 }
 
-/* Spills what cells have beyond their beginning. */
+/* Spills the state of rows of cells [first, last]. now: the brush, and which levels are open. */
 static inline void spill_cells(private const tile_state *c, global float *spill, camber_spill_args s, int first,
                                int last, camber_u32 now) {
     global uchar *bits = (global uchar *)spill, *blend_count = bits + CAMBER_SPILL_BLEND_COUNTS;
@@ -245,8 +248,8 @@ static inline void spill_cells(private const tile_state *c, global float *spill,
 #endif
 }
 
-/* Gives the brush that was drawn last, or CAMBER_SPILL_FULL. Rows of cells that are not full have seen the same list,
- * so that all of them have the same brush and levels. */
+/* Restores rows of cells [first, last]. Returns the brush that was drawn last, ~0 if none was, or CAMBER_SPILL_FULL.
+ * All rows that are not full have been drawn from the same list, so they have the same brush and open levels. */
 static inline camber_u32 restore_cells(private tile_state *c, global const float *spill,
                                        global const camber_brush *brushes, camber_spill_args s, int first, int last) {
     global const uchar *bits = (global const uchar *)spill, *blend_count = bits + CAMBER_SPILL_BLEND_COUNTS;

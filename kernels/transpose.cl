@@ -1,4 +1,4 @@
-/* Sixteen words of sixteen segments, turned over: a vector then has a word of all sixteen. */
+/* Transposes sixteen vectors: from the sixteen words of each segment to each word of sixteen segments. */
 #ifndef CAMBER_TRANSPOSE_CL
 #define CAMBER_TRANSPOSE_CL
 
@@ -12,7 +12,7 @@ static inline float16 put_together(float16 high, float16 low, int upper) {
                              high.s5, low.s5, high.s6, low.s6, high.s7, low.s7);
 }
 
-/* Four perfect shuffles. */
+/* Four perfect shuffles of 256 words transpose them. */
 static inline void turn_over(private float16 *words) {
 #pragma unroll
     for (int turn = 0; turn < 4; turn++) {

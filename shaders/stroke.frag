@@ -32,7 +32,7 @@ flat in highp uvec3 v_ends;
 #endif
 flat in mediump vec4 v_color;
 #if GAP || BLUR
-flat in vec2 v_band; // half the gap between two bands, below 0 where there is none; blur; px
+flat in vec2 v_band; // half the gap between the rails, below 0 where there is none; blur; px
 #endif
 
 #if MEASURED

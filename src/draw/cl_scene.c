@@ -1,7 +1,7 @@
-/* Makes the rasterizer's scene of a draw list. A command becomes a run of polylines, and a table with a row for each of
- * its mesh's rows. A row names a brush: its colour, its layer and group, and, beside it, its features.
+/* Makes the rasterizer's scene of a draw list. A command becomes an input (polylines of a mesh), and a table with a row
+ * for each of its mesh's rows. A row names a brush: its colour, its layer and group, and, beside it, its features.
  *
- * Fills that lie below all lines become part of the background, and an opaque fill hides all runs below it. */
+ * Fills that lie below all lines become part of the background, and an opaque fill hides all inputs below it. */
 #include "draw/draw_cl.h"
 
 #include <string.h>
@@ -11,7 +11,7 @@ enum { INKS_BACK = 16 };
 
 void camber_cl_tables_free(camber_cl_tables *t) {
     camber_free(t->context, t->images.held);
-    camber_free(t->context, t->runs);
+    camber_free(t->context, t->inputs);
     camber_free(t->context, t->brush_ext);
     camber_free(t->context, t->brushes);
     camber_free(t->context, t->rows);
@@ -117,21 +117,21 @@ static camber_status add_rows(camber_cl_tables *t, const camber_draw_list *list,
 }
 
 static camber_status add_lines(camber_cl_tables *t, const camber_draw_list *list, const camber_draw_command *command) {
-    const camber_raster_input run = {command->mesh, command->first, command->end, t->row_count};
-    if (!camber_grow(t->context, &t->runs, &t->run_capacity, t->run_count + 1, sizeof *t->runs))
+    const camber_raster_input input = {command->mesh, command->first, command->end, t->row_count};
+    if (!camber_grow(t->context, &t->inputs, &t->input_capacity, t->input_count + 1, sizeof *t->inputs))
         return CAMBER_ERROR_MEMORY;
-    t->runs[t->run_count++] = run;
+    t->inputs[t->input_count++] = input;
     return add_rows(t, list, command);
 }
 
 /* ---- Fills ---- */
 
-/* Adds a run that fills the picture, with a row of its own. */
-static camber_status add_fill_run(camber_cl_tables *t, const camber_brush *brush, const camber_brush_ext *brush_ext) {
+/* Adds an input that fills the picture, with a row of its own. */
+static camber_status add_fill_input(camber_cl_tables *t, const camber_brush *brush, const camber_brush_ext *brush_ext) {
     uint32_t number = 0;
     if (!camber_grow(t->context, &t->rows, &t->row_capacity, t->row_count + 1,
                      CAMBER_RASTER_ROW_WORDS * sizeof *t->rows) ||
-        !camber_grow(t->context, &t->runs, &t->run_capacity, t->run_count + 1, sizeof *t->runs))
+        !camber_grow(t->context, &t->inputs, &t->input_capacity, t->input_count + 1, sizeof *t->inputs))
         return CAMBER_ERROR_MEMORY;
     const camber_status status = use_brush(t, 0, brush, brush_ext, &number);
     if (status != CAMBER_OK)
@@ -140,13 +140,13 @@ static camber_status add_fill_run(camber_cl_tables *t, const camber_brush *brush
     row[0] = CAMBER_FILL_PX;
     row[1] = row[2] = 0.0f;
     memcpy(row + 3, &number, sizeof number);
-    t->runs[t->run_count++] = (camber_raster_input){.first_row = t->row_count++};
+    t->inputs[t->input_count++] = (camber_raster_input){.first_row = t->row_count++};
     return CAMBER_OK;
 }
 
 /* Nothing that lies below is seen. */
 static void hide_runs(camber_cl_tables *t) {
-    t->run_count = 0;
+    t->input_count = 0;
     t->is_rich = false;
 }
 
@@ -171,8 +171,8 @@ static camber_status add_fill(camber_cl_tables *t, const camber_draw_list *list,
     }
     if (is_opaque && c.a >= 1.0f)
         hide_runs(t);
-    if (fill->has_image || t->run_count > 0)
-        return add_fill_run(t, &brush, &brush_ext);
+    if (fill->has_image || t->input_count > 0)
+        return add_fill_input(t, &brush, &brush_ext);
     put_over(color, t->background);
     return CAMBER_OK;
 }
@@ -219,8 +219,8 @@ camber_status camber_cl_tables_make(camber_draw_list *list, const camber_frame *
         .row_count = t->row_count + 1,
         .brushes = t->brushes,
         .brush_count = t->brush_count,
-        .inputs = t->runs,
-        .input_count = t->run_count,
+        .inputs = t->inputs,
+        .input_count = t->input_count,
         .background = {t->background[0], t->background[1], t->background[2], t->background[3]},
         .linear = frame->coverage == CAMBER_COVERAGE_LINEAR,
         .brush_ext = t->is_rich || list->view.pitched ? t->brush_ext : NULL,

@@ -59,12 +59,12 @@ typedef struct camber_cl_tables {
     float *rows;
     camber_brush *brushes;
     camber_brush_ext *brush_ext; /* as many as brushes */
-    camber_raster_input *runs;
-    size_t row_count, row_capacity, brush_count, brush_capacity, more_capacity, run_count, run_capacity;
+    camber_raster_input *inputs;
+    size_t row_count, row_capacity, brush_count, brush_capacity, more_capacity, input_count, input_capacity;
     bool is_rich; /* a brush has features */
     camber_cl_images images;
     uint32_t layers;     /* so far */
-    float background[4]; /* premultiplied: what lies below the first run */
+    float background[4]; /* premultiplied: what lies below the first input */
     float sky[4];        /* premultiplied: what is seen where nothing but colours is drawn */
 } camber_cl_tables;
 

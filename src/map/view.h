@@ -61,12 +61,4 @@ static inline void camber_box_add(camber_box *box, double x, double y) {
     box->y1 = y > box->y1 ? y : box->y1;
 }
 
-static inline bool camber_box_overlaps(camber_box a, camber_box b) {
-    return a.x0 <= b.x1 && b.x0 <= a.x1 && a.y0 <= b.y1 && b.y0 <= a.y1;
-}
-
-static inline bool camber_box_holds(camber_box outer, camber_box inner) {
-    return inner.x0 >= outer.x0 && inner.x1 <= outer.x1 && inner.y0 >= outer.y0 && inner.y1 <= outer.y1;
-}
-
 #endif

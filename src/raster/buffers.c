@@ -1,12 +1,12 @@
-/* The buffers of what draws on a device: how much they hold, what is written to them and read back. */
+/* The rasterizer's buffers on the device: how many bytes they hold, and what is written to them and read back. */
 #include "raster/rasterizer.h"
 
 #include <assert.h>
 #include <string.h>
 
-/* The bytes that segments, lists and spills may take each where memory has no bound. Segments that take more are
- * drawn in slices, from the last one to the first. Where lists or spills would take more, rows of tiles are drawn
- * by halves, and where the lists of one row do, half the slice. */
+/* The bytes that segments, lists and spills may each take if memory has no bound. More segments than that are drawn in
+ * slices, from the last one to the first. If lists or spills would take more, a band is halved; if the lists of a
+ * single row of tiles do, the slice is halved. */
 static const uint64_t MOST_BYTES = 256 * 1024 * 1024;
 
 camber_status camber_raster_create(camber_device *device, camber_raster **raster) {
@@ -41,7 +41,7 @@ uint32_t camber_raster_slice_count(const camber_raster *raster) {
 
 /* ---- Buffers ---- */
 
-/* Pictures are not counted. */
+/* Adds up the bytes of all buffers but the picture's. */
 static void count_buffers(camber_raster *raster) {
     uint64_t bytes = 0;
     for (int i = 0; i < BUFFERS; i++)
@@ -147,7 +147,8 @@ camber_status camber_raster_read_stages(camber_raster *raster, camber_raster_sta
     if (status == CAMBER_OK)
         status = get(raster, BUFFER_BOXES, 4 * made.segment_count, &made.boxes);
     if (status == CAMBER_OK && raster->variant)
-        status = get(raster, BUFFER_ARC_LENGTHS, 4 * CAMBER_SEGMENT_MEASURES * made.segment_count, &made.arc_lengths);
+        status =
+            get(raster, BUFFER_ARC_LENGTHS, 4 * CAMBER_SEGMENT_ARC_LENGTHS * made.segment_count, &made.arc_lengths);
     if (status == CAMBER_OK && raster->variant & CAMBER_RASTER_PITCHED)
         status = get(raster, BUFFER_PLANES, 4 * CAMBER_PLANE_WORDS * made.segment_count, &made.planes);
     if (status == CAMBER_OK)

@@ -1,16 +1,17 @@
-/* Which records of which parts are drawn: what the device and the twin both begin with. */
+/* Lists which records of which parts are drawn. Device and twin both begin with this list. */
 #include "raster/raster.h"
 
 #define BUTT_CAP                                                                                                       \
     ((uint32_t)CAMBER_KIND_CAP << CAMBER_JOIN_KIND_SHIFT | (uint32_t)CAMBER_END_BUTT << CAMBER_JOIN_END_SHIFT)
 
-/* A line that no tile is beside: fills are drawn in their place among segments, by what draws these. */
+/* A line that covers every tile. A fill is drawn as this line, in its order among the segments. */
 const camber_record camber_fill_records[CAMBER_FILL_RECORDS] = {
     {-CAMBER_FILL_PX, 0.0f, BUTT_CAP, CAMBER_POINT_REAL | CAMBER_POINT_FIRST},
     {CAMBER_FILL_PX, 0.0f, BUTT_CAP, CAMBER_POINT_REAL | CAMBER_POINT_LAST},
 };
 
-/* Records of a part's polylines before one. A strip has two indices a record; kite and fan a record a slot. */
+/* How many records of a part lie before a polyline's. A strip has two indices for each record, kite and fan a record
+ * for each slot. */
 static camber_status first_record(const camber_mesh *mesh, const camber_mesh_part *part, size_t polyline,
                                   size_t *record) {
     uint64_t index = 0;
@@ -18,7 +19,7 @@ static camber_status first_record(const camber_mesh *mesh, const camber_mesh_par
     if (polyline == part->first_polyline)
         return CAMBER_OK;
     *record = part->record_count;
-    if (polyline == part->first_polyline + part->polyline_count) /* of a part that is not there, too */
+    if (polyline == part->first_polyline + part->polyline_count) /* also for a part that has not been made */
         return CAMBER_OK;
     if (!mesh->mesh_info.strips)
         return camber_part_slot(mesh, part, polyline, record);
@@ -27,20 +28,20 @@ static camber_status first_record(const camber_mesh *mesh, const camber_mesh_par
     return status;
 }
 
-static camber_status find_range(const camber_raster_input *run, size_t which, camber_record_range *range) {
-    camber_mesh_part *part = run->mesh->parts + which;
+static camber_status find_range(const camber_raster_input *input, size_t which, camber_record_range *range) {
+    camber_mesh_part *part = input->mesh->parts + which;
     const size_t end = part->first_polyline + part->polyline_count;
-    const size_t from = run->first > part->first_polyline ? run->first : part->first_polyline;
-    const size_t to = run->end < end ? run->end : end;
-    *range = (camber_record_range){.mesh = run->mesh, .part = which, .first_row = run->first_row};
+    const size_t from = input->first > part->first_polyline ? input->first : part->first_polyline;
+    const size_t to = input->end < end ? input->end : end;
+    *range = (camber_record_range){.mesh = input->mesh, .part = which, .first_row = input->first_row};
     if (from >= to || part->index_count == 0)
         return CAMBER_OK;
     const bool whole = from == part->first_polyline && to == end;
-    camber_status status = whole ? CAMBER_OK : camber_part_ensure_made(run->mesh, part);
+    camber_status status = whole ? CAMBER_OK : camber_part_ensure_made(input->mesh, part);
     if (status == CAMBER_OK)
-        status = first_record(run->mesh, part, from, &range->first);
+        status = first_record(input->mesh, part, from, &range->first);
     if (status == CAMBER_OK)
-        status = first_record(run->mesh, part, to, &range->end);
+        status = first_record(input->mesh, part, to, &range->end);
     return status;
 }
 
@@ -60,13 +61,13 @@ static camber_status add_range(range_list *list, camber_record_range range) {
     return CAMBER_OK;
 }
 
-static camber_status add_input(range_list *list, const camber_raster_input *run) {
+static camber_status add_input(range_list *list, const camber_raster_input *input) {
     camber_status status = CAMBER_OK;
-    if (!run->mesh)
-        return add_range(list, (camber_record_range){.end = CAMBER_FILL_RECORDS, .first_row = run->first_row});
-    for (size_t i = 0; i < run->mesh->part_count && status == CAMBER_OK; i++) {
+    if (!input->mesh)
+        return add_range(list, (camber_record_range){.end = CAMBER_FILL_RECORDS, .first_row = input->first_row});
+    for (size_t i = 0; i < input->mesh->part_count && status == CAMBER_OK; i++) {
         camber_record_range range;
-        status = find_range(run, i, &range);
+        status = find_range(input, i, &range);
         if (status == CAMBER_OK && range.first < range.end)
             status = add_range(list, range);
     }

@@ -1,13 +1,13 @@
-/* Drawing in OpenCL: setup -> bin_count -> bin_scan -> bin_scatter -> rasterize, of the records of meshes, and the CPU
- * twin.
+/* The OpenCL rasterizer: it draws the records of meshes by the stages setup -> bin_count -> bin_scan -> bin_scatter ->
+ * rasterize. The CPU twin makes the same bytes.
  *
- * The kernels are built in variants, so that a plain frame pays for nothing that it has not; camber_raster_variant says
- * which one a scene takes:
+ * Input: a scene, which lists polylines of meshes with tables of rows and brushes. Output: the pixels of an area. The
+ * kernels are built in variants, so that a plain frame does not pay for features that it lacks:
  *
  * - 0: brushes alone.
  * - CAMBER_RASTER_RICH: scene.brush_ext says for each brush what kernels/features.h lists, and the side table has the
- * float4s that it names. setup writes measures besides; a brush without features gets the same bytes as from the plain
- * variant.
+ * float4s that it names. setup writes arc lengths, too. A brush without features gets the same bytes as from the plain
+ *   variant.
  * - CAMBER_RASTER_RICH | CAMBER_RASTER_PITCHED: the plane of the lines is seen at an angle.
  *
  * In kernels a variant is what #if CAMBER_RASTER_RICH and #if CAMBER_RASTER_PITCHED leave; the twin has all of them and
@@ -23,14 +23,15 @@
 
 /* Polylines [first, end) of a mesh, drawn by a table of rows. */
 typedef struct camber_raster_input {
-    camber_mesh *mesh; /* NULL: the picture is filled with the brush of the first row, which is CAMBER_FILL_PX wide */
+    camber_mesh
+        *mesh; /* NULL: a fill of the picture with the brush of the first row, whose half width is CAMBER_FILL_PX */
     size_t first, end;
-    size_t first_row; /* of the table, in all rows */
+    size_t first_row; /* where the table begins among all rows */
 } camber_raster_input;
 
 /* All that is drawn, in drawing order. Brushes of one layer follow each other, and so do those of a group. */
 typedef struct camber_raster_scene {
-    const float *rows; /* row_count times CAMBER_RASTER_ROW_WORDS; the brush's number is a word like the others */
+    const float *rows; /* row_count times CAMBER_RASTER_ROW_WORDS; the brush's number has the bits of a camber_u32 */
     size_t row_count;
     const camber_brush *brushes; /* at least one */
     size_t brush_count;
@@ -38,20 +39,20 @@ typedef struct camber_raster_scene {
     size_t input_count;
     float background[4]; /* premultiplied */
     bool linear;
-    bool pitched; /* the plane of the lines is seen at an angle: there is more */
+    bool pitched; /* the picture has a pitch: the fields below count */
     camber_eye eye;
-    uint32_t horizon;                  /* rows of the picture, from its top, in which nothing is drawn */
-    float sky[4];                      /* what they have, premultiplied */
-    const camber_brush_ext *brush_ext; /* ink_count. NULL: the frame is plain */
-    const float *side_table;           /* tail_count times 4 */
+    uint32_t horizon;                  /* rows of pixels at the picture's top that show the sky */
+    float sky[4];                      /* the sky's colour, premultiplied */
+    const camber_brush_ext *brush_ext; /* brush_count of them. NULL: the frame is plain */
+    const float *side_table;           /* side_table_count times 4 floats */
     size_t side_table_count;
 } camber_raster_scene;
 
-/* The variant of the program that draws it. */
+/* The variant of the program that draws a scene. */
 unsigned camber_raster_variant(const camber_raster_scene *scene);
 
-/* A part of the picture that is drawn at once, px; a multiple of CAMBER_TILE_PX from its edges, and no side longer than
- * CAMBER_TILES_MAX tiles. */
+/* A rectangle of the picture that is drawn at once, px. x and y are multiples of CAMBER_TILE_PX, and no side is longer
+ * than CAMBER_TILES_MAX tiles. */
 typedef struct camber_raster_area {
     uint32_t x, y, width, height;
 } camber_raster_area;
@@ -70,28 +71,28 @@ typedef struct camber_raster camber_raster;
 
 camber_status camber_raster_create(camber_device *device, camber_raster **raster);
 void camber_raster_destroy(camber_raster *raster);
-/* Draws an area. What it was drawn from may go afterwards. */
+/* Draws an area. The scene may be freed afterwards. */
 camber_status camber_raster_draw(camber_raster *raster, const camber_raster_scene *scene,
                                  const camber_raster_area *area);
-/* The same into a buffer of the caller's, of camber_raster_bytes; there is nothing to map then. */
+/* The same, into a buffer of the caller that holds camber_raster_bytes; camber_raster_map then has nothing to map. */
 camber_status camber_raster_draw_into(camber_raster *raster, const camber_raster_scene *scene,
                                       const camber_raster_area *area, cl_mem pixels);
-/* The pixels of the area that was drawn last, until they are unmapped. */
+/* Maps the pixels of the area that was drawn last, until they are unmapped. */
 camber_status camber_raster_map(camber_raster *raster, camber_raster_pixels *pixels);
 void camber_raster_unmap(camber_raster *raster, camber_raster_pixels pixels);
 camber_raster_times camber_raster_get_times(const camber_raster *raster);
-/* px; of an area, where memory is bounded: a row of its tiles can be spilled between slices. */
+/* The widest area, px, for which a bounded memory can hold the spill of a row of tiles. */
 uint32_t camber_raster_widest(const camber_raster *raster);
-/* How many slices of segments, in bands, the area that was drawn last took. */
+/* How many slices the bands of the area that was drawn last took in all. */
 uint32_t camber_raster_slice_count(const camber_raster *raster);
 
 /* ---- Stages in host memory, for proofs: freed with camber_raster_stages_free ---- */
 
 typedef struct camber_raster_stages {
-    float *segments;    /* shape_count times CAMBER_SEGMENT_WORDS */
-    uint32_t *boxes;    /* shape_count */
-    float *arc_lengths; /* shape_count times CAMBER_SEGMENT_MEASURES. NULL: of a plain scene */
-    float *planes;      /* shape_count times CAMBER_PLANE_WORDS. NULL: not pitched */
+    float *segments;    /* segment_count times CAMBER_SEGMENT_WORDS */
+    uint32_t *boxes;    /* segment_count */
+    float *arc_lengths; /* segment_count times CAMBER_SEGMENT_ARC_LENGTHS. NULL: a plain scene */
+    float *planes;      /* segment_count times CAMBER_PLANE_WORDS. NULL: no pitch */
     size_t segment_count;
     uint32_t *starts; /* tile_count + 1 */
     size_t tile_count;
@@ -101,23 +102,23 @@ typedef struct camber_raster_stages {
 
 /* Reads the stages of the area that was drawn last: the last slice of its last band. */
 camber_status camber_raster_read_stages(camber_raster *raster, camber_raster_stages *stages);
-/* The CPU twin, from what the meshes hold. */
+/* Runs the CPU twin on the meshes' records. */
 camber_status camber_raster_on_host(camber_context *context, const camber_raster_scene *scene,
                                     const camber_raster_area *area, camber_raster_stages *stages);
 void camber_raster_stages_free(camber_context *context, camber_raster_stages *stages);
 
 /* ---- Shared by device and twin ---- */
 
-/* Records that are drawn by one table. */
+/* Records of one part that are drawn by one table of rows. */
 typedef struct camber_record_range {
     camber_mesh *mesh; /* NULL: the records of a fill */
     size_t part;
-    size_t first, end; /* records of the part */
-    size_t base;       /* the first segment: a multiple of 16 */
+    size_t first, end; /* the records [first, end) of the part */
+    size_t base;       /* where its segments begin, a multiple of 16 */
     size_t first_row;
 } camber_record_range;
 
-/* Lists the ranges of a scene; segment_count is what they take. *ranges is freed with camber_free. */
+/* Lists the ranges of a scene, and how many segments they take. The caller frees *ranges with camber_free. */
 camber_status camber_raster_list_ranges(camber_context *context, const camber_raster_scene *scene,
                                         camber_record_range **ranges, size_t *range_count, size_t *segment_count);
 camber_setup_args camber_raster_setup_args(const camber_raster_scene *scene, const camber_record_range *range,
@@ -127,7 +128,7 @@ extern const camber_record camber_fill_records[CAMBER_FILL_RECORDS];
 static inline uint32_t camber_raster_tiles(uint32_t side_px) {
     return (side_px + CAMBER_TILE_PX - 1) / CAMBER_TILE_PX;
 }
-/* Pixels from row to row of an area, and what all of it takes: whole tiles. */
+/* Pixels from one row of an area's buffer to the next, and the bytes of the buffer, which holds whole tiles. */
 static inline size_t camber_raster_stride_px(const camber_raster_area *area) {
     return (size_t)camber_raster_tiles(area->width) * CAMBER_TILE_PX;
 }

@@ -1,33 +1,41 @@
-/* setup -> bin_count -> bin_scan -> bin_scatter -> rasterize on a device, an area of the picture at a time. */
+/* Runs the rasterizer's stages on a device: setup -> bin_count -> bin_scan -> bin_scatter -> rasterize.
+ *
+ * Input: a scene and an area. Output: the area's pixels in a buffer. An area is drawn band by band, and a band slice by
+ * slice, from the last segments to the first. Bands and slices are as large as the buffers for lists and spills allow.
+ */
 #include "raster/rasterizer.h"
 
+#include "base/stages.h"
 #include "cl/launch.h"
 
 #include <string.h>
 
-/* Segments a chunk, at least; chunks, at most: each has a count of every tile. A tile with more segments than HEAVY is
- * drawn by as many work-items as it has rows of cells. */
+/* The fewest segments of a chunk, and the most chunks, as each has a count for every tile. A tile with more segments
+ * than HEAVY is drawn by as many work-items as it has rows of cells. */
 enum { CHUNK = 8192, CHUNKS_MAX = 64, HEAVY = 2048 };
-/* The same where a work-item takes a segment. */
+/* The same for kernels in which a work-item takes a segment. */
 enum { CHUNK_OF_LANES = 512, CHUNKS_OF_LANES_MAX = 1024 };
-static const char *const stage_names[STAGES] = {"setup", "bin_count", "bin_scan", "bin_scatter", "rasterize"};
-/* Work-items a work-group, and how many of those that one takes else: kernels/rasterize_gpu.cl. */
+/* Kernels for GPUs: the work-items of a work-group, and how many jobs of the kernel for CPUs these do. */
 static const struct { size_t lanes, jobs; } lanes_of[STAGES] = {{64, 4}, {32, 1}, {64, 4}, {32, 1}, {128, 1}};
 
 enum { PLANE_WORDS = CAMBER_TILE_PX * CAMBER_TILE_PX };
 
-/* The records to draw in an area. */
-typedef struct raster_job {
+/* The scene and the ranges that an area is drawn from. */
+typedef struct listed_scene {
     const camber_raster_scene *scene;
     const camber_record_range *ranges;
     size_t range_count, segment_count;
-} raster_job;
+} listed_scene;
 
 /* ---- Stages ---- */
 
 #define BUFFER(which) CAMBER_ARG_BUFFER(raster->buffers[which])
 
-/* Waits for what runs: once, as every waking up costs time. */
+static const char *stage_name(int stage) {
+    return camber_stage_name((camber_stage_id)((int)CAMBER_STAGE_SETUP + stage));
+}
+
+/* Waits for all running kernels at once, as each wait costs time. Adds their times up. */
 static camber_status settle(camber_raster *raster) {
     camber_status status = CAMBER_OK;
     for (size_t i = raster->pending_count; i-- > 0;) {
@@ -35,18 +43,19 @@ static camber_status settle(camber_raster *raster) {
         const cl_int code = clWaitForEvents(1, &one->event);
         camber_add_ms(one->event, raster->ms + one->stage);
         if (code != CL_SUCCESS)
-            status = camber_fail_stage(raster->device, "clWaitForEvents", stage_names[one->stage], code);
+            status = camber_fail_stage(raster->device, "clWaitForEvents", stage_name(one->stage), code);
     }
     raster->pending_count = 0;
     return status;
 }
 
-/* Whether the variant has kernels with a work-item a pixel, and the device wants them. */
+/* Whether the variant has kernels for GPUs, with a work-item for each pixel, and the device wants them. */
 static bool has_lanes(const camber_raster *raster) {
     return raster->variant == 0 && raster->device->lanes == 1;
 }
 
-/* So many work-items, each a work-group, or what does their work. */
+/* Starts a stage's kernel for so many jobs: a work-group of one work-item for each, or the groups of a GPU that do
+ * them. */
 static camber_status run(camber_raster *raster, int stage, const camber_kernel_arg *args, size_t arg_count,
                          size_t job_count) {
     const cl_kernel kernels[STAGES] = {raster->program->setup, raster->program->bin_count, raster->program->bin_scan,
@@ -54,7 +63,7 @@ static camber_status run(camber_raster *raster, int stage, const camber_kernel_a
     const bool by_lanes = has_lanes(raster);
     const size_t lanes = by_lanes ? lanes_of[stage].lanes : 1, jobs = by_lanes ? lanes_of[stage].jobs : 1;
     const camber_launch launch = {
-        stage_names[stage], kernels[stage], args, arg_count, (job_count + jobs - 1) / jobs * lanes, lanes};
+        stage_name(stage), kernels[stage], args, arg_count, (job_count + jobs - 1) / jobs * lanes, lanes};
     cl_event event = NULL;
     if (job_count == 0)
         return CAMBER_OK;
@@ -69,7 +78,7 @@ static bool is_pitched(const camber_raster *raster) {
     return raster->variant & CAMBER_RASTER_PITCHED;
 }
 
-/* Cuts a range to what lies in the slice: its first record begins a work-item, as the range's does. */
+/* Cuts a range to its records in the slice. The first of them begins a work-item, as the range's first does. */
 static bool cut_range(const camber_raster *raster, camber_record_range *range) {
     const size_t from = raster->first_segment, to = from + raster->segment_count, base = range->base;
     const size_t before = from > base ? from - base : 0, past = to > base ? to - base : 0;
@@ -103,7 +112,7 @@ static camber_status make_segments(camber_raster *raster, const camber_raster_sc
     return status;
 }
 
-/* Words that a tile has in a chunk: its count, and a mark where it takes one. */
+/* Words that a tile has in each chunk: its count, and on GPUs a mark. */
 static size_t count_words(const camber_raster *raster) {
     return has_lanes(raster) ? 2 : 1;
 }
@@ -141,8 +150,8 @@ static camber_status count_segments(camber_raster *raster, camber_bin_args c, ui
     return status;
 }
 
-/* The host's part of the scan: where each tile's list begins. *fits is false where they take too much for a band that
- * can be halved, or a slice. */
+/* Adds the tiles' totals up on the host to where each list begins. *fits is false if the lists are too long and the
+ * band or the slice can still be halved. */
 static camber_status start_lists(camber_raster *raster, bool *fits) {
     const camber_device *device = raster->device;
     const size_t tiles = raster->tile_count;
@@ -183,8 +192,8 @@ static bool is_heavy(const camber_raster *raster, size_t tile) {
     return has_lanes(raster) || raster->starts[tile + 1] - raster->starts[tile] > HEAVY;
 }
 
-/* Lists the jobs of work-items: heavy tiles by rows of cells, before all others; where they have a pixel each, all
- * tiles. */
+/* Lists the jobs: first heavy tiles, one job for each row of cells, then whole tiles. On GPUs every tile is cut into
+ * rows. */
 static camber_status list_jobs(camber_raster *raster, size_t *heavy_count, size_t *job_count) {
     const size_t tiles = raster->tile_count;
     size_t heavy = 0;
@@ -197,12 +206,12 @@ static camber_status list_jobs(camber_raster *raster, size_t *heavy_count, size_
     for (size_t i = 0; i < tiles; i++) {
         const bool by_row = is_heavy(raster, i);
         for (uint32_t row = 0; by_row && row < CAMBER_TILE_CELLS; row++) {
-            raster->jobs[2 * by_rows] = (uint32_t)i;
-            raster->jobs[2 * by_rows++ + 1] = row | row << 8;
+            raster->jobs[CAMBER_JOB_WORDS * by_rows] = (uint32_t)i;
+            raster->jobs[CAMBER_JOB_WORDS * by_rows++ + 1] = CAMBER_JOB_ROWS(row, row);
         }
         if (!by_row) {
-            raster->jobs[2 * whole] = (uint32_t)i;
-            raster->jobs[2 * whole++ + 1] = (CAMBER_TILE_CELLS - 1u) << 8;
+            raster->jobs[CAMBER_JOB_WORDS * whole] = (uint32_t)i;
+            raster->jobs[CAMBER_JOB_WORDS * whole++ + 1] = CAMBER_JOB_ROWS(0, CAMBER_TILE_CELLS - 1);
         }
     }
     *heavy_count = by_rows;
@@ -210,8 +219,8 @@ static camber_status list_jobs(camber_raster *raster, size_t *heavy_count, size_
     return camber_raster_put(raster, BUFFER_JOBS, raster->jobs, 2 * count * sizeof *raster->jobs);
 }
 
-/* Where planes lie that a scene needs: a brush's and the picture's five, three of unions, four a level, one of masks.
- */
+/* Lays out the planes of a spill: five for the brush and the picture, three for unions, four for the group and for the
+ * layer, one for masks. */
 static camber_spill_args plan_spill(const camber_raster_scene *scene) {
     bool unions = false, groups = false, layers = false, masks = false;
     for (size_t i = 0; i < scene->brush_count; i++) {
@@ -261,8 +270,8 @@ static camber_status rasterize_tiles(camber_raster *raster, const camber_raster_
     return status;
 }
 
-/* Buffers that only the rich variants read and write. */
-static camber_status prepare_more(camber_raster *raster, const camber_raster_scene *scene, size_t segments) {
+/* Makes the buffers that only the rich variants use. */
+static camber_status prepare_rich(camber_raster *raster, const camber_raster_scene *scene, size_t segments) {
     static const float nothing[4] = {0};
     const bool bare = scene->side_table_count == 0;
     camber_status status =
@@ -271,7 +280,7 @@ static camber_status prepare_more(camber_raster *raster, const camber_raster_sce
         status = camber_raster_put(raster, BUFFER_SIDE_TABLE, bare ? nothing : scene->side_table,
                                    (bare ? 1 : scene->side_table_count) * sizeof nothing);
     if (status == CAMBER_OK)
-        status = camber_raster_reserve(raster, BUFFER_ARC_LENGTHS, 4 * CAMBER_SEGMENT_MEASURES * segments);
+        status = camber_raster_reserve(raster, BUFFER_ARC_LENGTHS, 4 * CAMBER_SEGMENT_ARC_LENGTHS * segments);
     if (status == CAMBER_OK && is_pitched(raster))
         status = camber_raster_reserve(raster, BUFFER_PLANES, 4 * CAMBER_PLANE_WORDS * segments);
     return status;
@@ -297,14 +306,14 @@ static camber_status prepare(camber_raster *raster, const camber_raster_scene *s
     if (status == CAMBER_OK)
         status = camber_raster_reserve(raster, BUFFER_BOXES, 4 * segments);
     if (status == CAMBER_OK && raster->variant)
-        status = prepare_more(raster, scene, segments);
+        status = prepare_rich(raster, scene, segments);
     if (status == CAMBER_OK && !raster->given)
         status = camber_raster_reserve(raster, BUFFER_PIXELS, camber_raster_bytes(&raster->area));
     return status;
 }
 
-/* Draws the slice of the band, unless its lists do not fit. */
-static camber_status draw_slice(camber_raster *raster, const raster_job *p, camber_spill_args k, bool *fits) {
+/* Draws a slice of the band, unless its lists do not fit. */
+static camber_status draw_slice(camber_raster *raster, const listed_scene *p, camber_spill_args k, bool *fits) {
     uint32_t chunk_count;
     const camber_bin_args c = cut_chunks(raster, &chunk_count);
     camber_status status = make_segments(raster, p->scene, p->ranges, p->range_count);
@@ -322,9 +331,9 @@ static camber_status draw_slice(camber_raster *raster, const raster_job *p, camb
     return status == CAMBER_OK ? rasterize_tiles(raster, p->scene, k, heavy, jobs) : status;
 }
 
-/* Slice after slice, from the last one to the first, unless the band can be halved where the lists of one do not fit.
- */
-static camber_status draw_band(camber_raster *raster, const raster_job *p, bool *fits) {
+/* Draws the band's slices, from the last to the first. If the lists of one do not fit, it stops so that the caller
+ * halves the band, or halves the slice. */
+static camber_status draw_band(camber_raster *raster, const listed_scene *p, bool *fits) {
     size_t most = segments_at_once(raster), left = p->segment_count;
     camber_spill_args k = plan_spill(p->scene);
     camber_status status = CAMBER_OK;
@@ -346,8 +355,8 @@ static camber_status draw_band(camber_raster *raster, const raster_job *p, bool 
     return status;
 }
 
-/* Rows of tiles of a band: all, or of what is drawn in slices as many as may be kept. */
-static uint32_t rows_at_once(const camber_raster *raster, const raster_job *p) {
+/* How many rows of tiles a band has: all of the area, or as many as can be spilled between slices. */
+static uint32_t rows_at_once(const camber_raster *raster, const listed_scene *p) {
     const uint32_t rows = camber_raster_tiles(raster->area.height);
     const uint64_t row_bytes = 4 * (uint64_t)plan_spill(p->scene).tile_words * raster->columns;
     const uint64_t most = camber_raster_most_bytes(raster) / row_bytes;
@@ -356,8 +365,8 @@ static uint32_t rows_at_once(const camber_raster *raster, const raster_job *p) {
     return most > 0 ? (uint32_t)most : 1;
 }
 
-/* Band after band; one whose lists do not fit is halved, and so are those after it. */
-static camber_status draw_bands(camber_raster *raster, const raster_job *p) {
+/* Draws the area's bands. A band whose lists do not fit is halved, and so are those after it. */
+static camber_status draw_bands(camber_raster *raster, const listed_scene *p) {
     const camber_raster_area *area = &raster->area;
     uint32_t rows = rows_at_once(raster, p);
     camber_status status = CAMBER_OK;
@@ -380,7 +389,7 @@ camber_status camber_raster_draw_into(camber_raster *raster, const camber_raster
                                       const camber_raster_area *area, cl_mem pixels) {
     camber_context *context = raster->device->context;
     camber_record_range *ranges = NULL;
-    raster_job p = {.scene = scene};
+    listed_scene p = {.scene = scene};
     memset(raster->ms, 0, sizeof raster->ms);
     raster->slice_count = 0;
     raster->area = *area;
@@ -398,7 +407,7 @@ camber_status camber_raster_draw_into(camber_raster *raster, const camber_raster
         status = draw_bands(raster, &p);
     const camber_status settled = settle(raster);
     if (status != CAMBER_OK)
-        clFinish(raster->device->queue); /* what is put goes with the scene */
+        clFinish(raster->device->queue); /* the scene may be freed: what was put must have been copied */
     status = status == CAMBER_OK ? settled : status;
     camber_free(context, ranges);
     return status;

@@ -1,4 +1,4 @@
-/* The rasterizer on a device, for the steps that lie in files of their own. */
+/* The rasterizer on a device: the state that rasterizer.c and buffers.c share. */
 #ifndef CAMBER_RASTER_RASTERIZER_H
 #define CAMBER_RASTER_RASTERIZER_H
 
@@ -26,7 +26,7 @@ enum {
 
 enum { STAGE_SETUP, STAGE_BIN_COUNT, STAGE_BIN_SCAN, STAGE_BIN_SCATTER, STAGE_RASTERIZE, STAGES };
 
-/* A kernel that was started, and of which stage. */
+/* A kernel that was started, and its stage. */
 typedef struct camber_raster_pending {
     cl_event event;
     int stage;
@@ -39,11 +39,11 @@ struct camber_raster {
     unsigned variant;        /* of what was drawn last */
     cl_mem buffers[BUFFERS];
     size_t capacities[BUFFERS];
-    uint32_t *starts, *jobs; /* of the host */
+    uint32_t *starts, *jobs; /* in host memory */
     size_t start_capacity, job_capacity;
     camber_raster_area area;             /* drawn last */
-    camber_raster_area band;             /* of it: whole rows of tiles, as many as there is room for lists */
-    cl_mem given;                        /* where its pixels are, if not in a buffer of its own */
+    camber_raster_area band;             /* the band of the area: whole rows of tiles whose lists fit */
+    cl_mem given;                        /* the caller's buffer for the pixels; NULL: a buffer of our own */
     uint32_t columns;                    /* tiles */
     size_t first_segment, segment_count; /* of the slice */
     size_t tile_count;
@@ -54,11 +54,11 @@ struct camber_raster {
     double ms[STAGES];
 };
 
-/* The bytes that segments, lists and spills may take, each. */
+/* The bytes that segments, lists and spills may each take. */
 uint64_t camber_raster_most_bytes(const camber_raster *raster);
-/* A buffer of that size at least; what it had is lost where it grows. */
+/* Makes a buffer at least so large. If it grows, its contents are lost. */
 camber_status camber_raster_reserve(camber_raster *raster, int which, size_t size_bytes);
-/* The bytes must stay until the drawing has been waited for. */
+/* Writes bytes to a buffer. They must stay until the drawing has been waited for. */
 camber_status camber_raster_put(camber_raster *raster, int which, const void *bytes, size_t size_bytes);
 
 #endif

@@ -1,5 +1,5 @@
-/* The CPU twin of what draws: the same segments, boxes, lists and pixels, a segment, a tile and a pixel at a time, with
- * neither chunks nor sums. */
+/* The rasterizer's CPU twin: makes the same segments, boxes, lists and pixels as the kernels. It takes one segment,
+ * tile and pixel at a time, without chunks and sums. This file makes all but the pixels. */
 #include "raster/twin.h"
 
 #include "camber_proof.h"
@@ -8,16 +8,16 @@
 #include <math.h>
 #include <string.h>
 
-/* ---- Shapes ---- */
+/* ---- Segments ---- */
 
 /* The records of a part, as the device has them: padding is sentinels. */
 typedef struct part_records {
     camber_record *records;
-    camber_arc_length *arc_lengths; /* NULL: not measured */
+    camber_arc_length *arc_lengths; /* NULL: none */
 } part_records;
 
-/* A record's number, or that of the nearest there is. */
-static size_t place_of(int64_t i, const camber_setup_args *r) {
+/* A record's number; outside the part, that of its nearest record. */
+static size_t record_number(int64_t i, const camber_setup_args *r) {
     const int64_t last = (int64_t)r->record_count - 1;
     return (size_t)(i < 0 ? 0 : i > last ? last : i);
 }
@@ -36,15 +36,15 @@ static bool ends_segment(const camber_record *b, const camber_setup_args *r) {
     return r->strips ? !(b->last & starts) : !(b->last & CAMBER_POINT_FIRST) || kind == CAMBER_KIND_DOT;
 }
 
-/* How far along its line a segment lies: from one record to another. */
-static void put_measure(const camber_arc_length *arc_lengths, size_t from, size_t to, const camber_segment *s,
-                        float measure[CAMBER_SEGMENT_MEASURES]) {
-    memset(measure, 0, CAMBER_SEGMENT_MEASURES * sizeof *measure);
+/* Writes how far along its line a segment lies, by the arc lengths of its two records. */
+static void put_arc_length(const camber_arc_length *arc_lengths, size_t from, size_t to, const camber_segment *s,
+                           float arc_length[CAMBER_SEGMENT_ARC_LENGTHS]) {
+    memset(arc_length, 0, CAMBER_SEGMENT_ARC_LENGTHS * sizeof *arc_length);
     if (!arc_lengths)
         return;
-    measure[0] = arc_lengths[from].along_px;
-    measure[1] = camber_segment_rate(s, arc_lengths[from].along_px, arc_lengths[to].along_px);
-    measure[2] = arc_lengths[from].total_px;
+    arc_length[0] = arc_lengths[from].along_px;
+    arc_length[1] = camber_segment_rate(s, arc_lengths[from].along_px, arc_lengths[to].along_px);
+    arc_length[2] = arc_lengths[from].total_px;
 }
 
 static void put_words(const camber_segment *s, float brush, float *made) {
@@ -65,16 +65,16 @@ static void put_plane(const camber_segment *s, const camber_plane *p, float *mad
     memcpy(made, words, sizeof words);
 }
 
-/* The words of the segment that ends with a record; the box says whether there is one. */
+/* Writes the words of the segment that ends with a record. Its box says whether there is one. */
 static void put_segment(const camber_twin *t, const part_records *part, const camber_setup_args *r, int64_t i,
                         size_t segment) {
     const camber_record *records = part->records ? part->records : camber_fill_records;
-    const camber_record b = records[place_of(i, r)], before = records[place_of(i - 1, r)];
+    const camber_record b = records[record_number(i, r)], before = records[record_number(i - 1, r)];
     const bool is_dot = camber_join_kind(b.join) == CAMBER_KIND_DOT;
     const bool ends = i < r->end && ends_segment(&b, r);
     const camber_record a = is_dot ? b : before;
     const bool again = before.last & CAMBER_RECORD_START && camber_join_kind(before.join) == CAMBER_KIND_TIGHT;
-    const camber_record p = records[place_of(again ? i - 3 : i - 2, r)];
+    const camber_record p = records[record_number(again ? i - 3 : i - 2, r)];
     const float *row =
         t->scene->rows + CAMBER_RASTER_ROW_WORDS * (r->first_row + (ends ? b.last >> CAMBER_POINT_ROW_SHIFT : 0));
     const float x = row[1] - r->eye.x, y = row[2] - r->eye.y; /* 0 where there is no pitch */
@@ -82,15 +82,15 @@ static void put_segment(const camber_twin *t, const part_records *part, const ca
         camber_segment_of(p.x + x, p.y + y, a.x + x, a.y + y, b.x + x, b.y + y, a.join, b.join, row[0], r->linear);
     bool drawn = ends && row[0] >= 0.0f;
     if (t->stages->arc_lengths)
-        put_measure(part->arc_lengths, place_of(is_dot ? i : i - 1, r), place_of(i, r), &s,
-                    t->stages->arc_lengths + CAMBER_SEGMENT_MEASURES * segment);
+        put_arc_length(part->arc_lengths, record_number(is_dot ? i : i - 1, r), record_number(i, r), &s,
+                       t->stages->arc_lengths + CAMBER_SEGMENT_ARC_LENGTHS * segment);
     if (t->stages->planes) {
-        camber_segment band;
+        camber_segment footprint;
         camber_plane plane;
-        drawn = drawn && camber_pitch_shape_of(r->eye, r->horizon, &s, &band, &plane);
+        drawn = drawn && camber_pitch_segment_of(r->eye, r->horizon, &s, &footprint, &plane);
         if (drawn) {
             put_plane(&s, &plane, t->stages->planes + CAMBER_PLANE_WORDS * segment);
-            s = band;
+            s = footprint;
         }
     }
     put_words(&s, row[3], t->stages->segments + CAMBER_SEGMENT_WORDS * segment);
@@ -102,7 +102,7 @@ static void free_part(camber_context *context, part_records *part) {
     camber_free(context, part->arc_lengths);
 }
 
-/* The records of a part, read as the device has them. */
+/* Reads the records of a part from the device. */
 static camber_status read_part(camber_mesh *mesh, size_t which, part_records *part) {
     camber_context *context = mesh->device->context;
     camber_mesh_data data;
@@ -190,7 +190,7 @@ camber_status camber_raster_on_host(camber_context *context, const camber_raster
     made.boxes = camber_alloc(context, made.segment_count, sizeof *made.boxes);
     if (scene->brush_ext)
         made.arc_lengths =
-            camber_alloc(context, made.segment_count, CAMBER_SEGMENT_MEASURES * sizeof *made.arc_lengths);
+            camber_alloc(context, made.segment_count, CAMBER_SEGMENT_ARC_LENGTHS * sizeof *made.arc_lengths);
     if (scene->pitched)
         made.planes = camber_alloc(context, made.segment_count, CAMBER_PLANE_WORDS * sizeof *made.planes);
     made.starts = camber_alloc(context, made.tile_count + 1, sizeof *made.starts);

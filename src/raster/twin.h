@@ -1,4 +1,4 @@
-/* Shared by the files of the CPU twin. */
+/* The state that the two files of the CPU twin share. */
 #ifndef CAMBER_RASTER_TWIN_H
 #define CAMBER_RASTER_TWIN_H
 

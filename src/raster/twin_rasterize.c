@@ -1,5 +1,8 @@
-/* The twin's pixels, a tile at a time. Between pixels it knows cells only, as what lies below a cell that is full is
- * not looked at. */
+/* rasterize of the CPU twin: draws the pixels of an area, tile by tile, from the tiles' lists of segments.
+ *
+ * Input: the segments, lists and brushes of a camber_twin. Output: its area's pixels. As in kernels/tile_state.cl, each
+ * brush is gathered as the light that it lets through and then put under its level. Cells matter because segments below
+ * a full cell are not drawn. The order of operations is that of the kernels, so that all bytes are equal. */
 #include "raster/twin.h"
 
 #include <math.h>
@@ -12,8 +15,8 @@ typedef struct level {
 } level;
 
 typedef struct pixel {
-    float brush, sum, normal[2]; /* let through; of unions the areas and the normals */
-    float mask;                  /* of a masked layer its alpha */
+    float brush, sum, normal[2]; /* let through; a union's sums of areas and of normals */
+    float mask;                  /* of a masked layer: its alpha */
     level levels[LEVELS];
 } pixel;
 
@@ -21,7 +24,7 @@ typedef struct cell {
     pixel pixels[CELL_PIXELS];
     bool brushed, touched[LEVELS];
     bool done, filled;
-    uint8_t blend_count; /* segments that came */
+    uint8_t blend_count; /* segments that have been drawn into the cell */
 } cell;
 
 typedef struct tile_state {
@@ -29,20 +32,20 @@ typedef struct tile_state {
     bool is_open[LEVELS];
     camber_brush now;
     camber_brush_ext brush_ext;
-    float layer_alpha; /* of masked colours, which cover as if they were opaque: their alpha; else 1 */
+    float layer_alpha; /* of a masked layer's colour, which covers as if it were opaque; else 1 */
 } tile_state;
 
-/* All that draws a segment. */
-typedef struct tool {
-    camber_edge pen;
-    camber_extras extras; /* of no features: not there */
-    bool tilted;          /* or else */
-    camber_pitch_edge tilted_pen;
+/* A segment with all that it is drawn from. */
+typedef struct drawn_segment {
+    camber_edge edge;
+    camber_extras extras; /* all 0 if the brush has no features */
+    bool tilted;          /* the picture has a pitch: tilted_edge counts, not edge */
+    camber_pitch_edge tilted_edge;
     camber_eye eye;
     camber_image_sampler image;
     const float *side_table;
     bool is_fill;
-} tool;
+} drawn_segment;
 
 static void look_at_cell(cell *c, int at) {
     float most = 0.0f;
@@ -116,45 +119,45 @@ static void change_brush(tile_state *c, camber_brush next, const camber_brush_ex
     }
 }
 
-/* Where a pixel lies: along and across the segment, and past its bisectors. */
-typedef struct place {
+/* Where a pixel lies: along and across the segment, and past its bisectors, px. */
+typedef struct position {
     float x, y, fa, fb;
     float px, py; /* in the picture */
-} place;
+} position;
 
-static place place_at(const camber_edge *p, float px, float py) {
+static position position_at(const camber_edge *p, float px, float py) {
     const float qx = px - p->ax, qy = py - p->ay;
-    return (place){qx * p->ux + qy * p->uy,
-                   qy * p->ux - qx * p->uy,
-                   qx * p->nax + qy * p->nay,
-                   (px - p->bx) * p->nbx + (py - p->by) * p->nby,
-                   px,
-                   py};
+    return (position){qx * p->ux + qy * p->uy,
+                      qy * p->ux - qx * p->uy,
+                      qx * p->nax + qy * p->nay,
+                      (px - p->bx) * p->nbx + (py - p->by) * p->nby,
+                      px,
+                      py};
 }
 
-static float area_of(const tool *t, place at, camber_u32 meets) {
+static float area_of(const drawn_segment *t, position at, camber_u32 meets) {
     const bool aside = meets == CAMBER_CELL_PARTIAL;
     if (meets == CAMBER_CELL_FULL)
         return 1.0f;
     if (t->extras.features)
-        return camber_extras_area(&t->pen, &t->extras, aside, at.x, at.y, at.fa, at.fb);
-    return aside ? camber_edge_side(&t->pen, at.y) : camber_edge_area(&t->pen, at.x, at.y, at.fa, at.fb);
+        return camber_extras_area(&t->edge, &t->extras, aside, at.x, at.y, at.fa, at.fb);
+    return aside ? camber_edge_side(&t->edge, at.y) : camber_edge_area(&t->edge, at.x, at.y, at.fa, at.fb);
 }
 
-/* A segment's part of a pixel. */
-static void put_pixel(const tile_state *c, const camber_edge *pen, pixel *p, place at, float area) {
+/* Adds a segment's area of a pixel to the brush. */
+static void put_pixel(const tile_state *c, const camber_edge *edge, pixel *p, position at, float area) {
     if (c->now.mode != CAMBER_BRUSH_UNION) {
         p->brush *= 1.0f - area * c->now.a;
         return;
     }
     p->brush *= 1.0f - area;
-    if (pen->half_width > 0.4f) {
-        const float edge = area * (1.0f - area);
+    if (edge->half_width > 0.4f) {
+        const float weight = area * (1.0f - area);
         float nx, ny;
-        camber_edge_normal(pen, at.x, at.y, &nx, &ny);
+        camber_edge_normal(edge, at.x, at.y, &nx, &ny);
         p->sum += area;
-        p->normal[0] += nx * edge;
-        p->normal[1] += ny * edge;
+        p->normal[0] += nx * weight;
+        p->normal[1] += ny * weight;
     }
 }
 
@@ -172,13 +175,13 @@ static void fill_cell(const tile_state *c, cell *one) {
     one->filled = is_union || c->now.a == 1.0f;
 }
 
-/* Looks whether a cell is full, once in so many times. */
+/* Counts a segment of a cell. After every CAMBER_LOOK_EVERY it checks if the cell is filled. */
 static void count_blend(const tile_state *c, cell *one) {
     if (c->now.mode != CAMBER_BRUSH_UNION && ++one->blend_count % CAMBER_LOOK_EVERY == 0 && c->now.a == 1.0f)
         one->filled = most_through(one) < CAMBER_NOTHING_PX;
 }
 
-static void multiply_by_image(const tool *t, const camber_image_spot *spot, float color[4]) {
+static void multiply_by_image(const drawn_segment *t, const camber_image_spot *spot, float color[4]) {
     float rgba[4];
     if (t->is_fill)
         camber_fill_image(t->side_table, &t->image, spot, rgba);
@@ -189,8 +192,8 @@ static void multiply_by_image(const tool *t, const camber_image_spot *spot, floa
 }
 
 /* Multiplies a pixel's colour by the image that it shows. */
-static void take_image(const tool *t, place at, float color[4]) {
-    const camber_edge *p = &t->pen;
+static void take_image(const drawn_segment *t, position at, float color[4]) {
+    const camber_edge *p = &t->edge;
     const float past_a = -at.x - p->round_a, past_b = at.x - p->length - p->round_b;
     const float arc_a = past_a > 0.0f ? past_a : 0.0f, arc_b = past_b > 0.0f ? past_b : 0.0f;
     const camber_image_spot of_line = {at.x, at.y, sqrtf(arc_a * arc_a + arc_b * arc_b + at.y * at.y), 0.0f, 0.0f};
@@ -202,7 +205,8 @@ static int level_now(const tile_state *c) {
     return c->is_open[2] ? 2 : c->is_open[1] ? 1 : 0;
 }
 
-/* Colours that change from pixel to pixel go straight under what the level has. Gives what is still let through. */
+/* Puts a colour that changes from pixel to pixel straight under what the level has. Returns what is still let through.
+ */
 static float put_color(const tile_state *c, pixel *p, float area, const float color[4]) {
     const bool masked = c->now.mode == CAMBER_BRUSH_MASKED;
     level *l = p->levels + level_now(c);
@@ -215,7 +219,7 @@ static float put_color(const tile_state *c, pixel *p, float area, const float co
     return l->through;
 }
 
-/* most: that any of its pixels lets through. */
+/* Counts a segment of such colours. most: the most that any pixel of the cell lets through. */
 static void count_colors(const tile_state *c, cell *one, float most, bool inside) {
     const int at = level_now(c);
     one->touched[at] = true;
@@ -223,46 +227,46 @@ static void count_colors(const tile_state *c, cell *one, float most, bool inside
         *(at == 0 ? &one->done : &one->filled) = true;
 }
 
-static void put_colors(const tile_state *c, const tool *t, cell *one, const place places[CELL_PIXELS], float middle,
-                       camber_u32 meets) {
+static void put_colors(const tile_state *c, const drawn_segment *t, cell *one, const position positions[CELL_PIXELS],
+                       float middle, camber_u32 meets) {
     float low, high, most = 0.0f;
-    camber_extras_range(&t->pen, &t->extras, middle, &low, &high);
+    camber_extras_range(&t->edge, &t->extras, middle, &low, &high);
     for (int i = 0; i < CELL_PIXELS; i++) {
         float color[4] = {1.0f, 1.0f, 1.0f, 1.0f};
         if (t->extras.features & CAMBER_FEATURE_RAMP)
-            camber_ramp_over(&t->pen, &t->extras, camber_extras_along(&t->pen, &t->extras, places[i].x), low, high,
+            camber_ramp_over(&t->edge, &t->extras, camber_extras_along(&t->edge, &t->extras, positions[i].x), low, high,
                              color);
         if (t->extras.features & CAMBER_FEATURE_IMAGE)
-            take_image(t, places[i], color);
-        const float through = put_color(c, one->pixels + i, area_of(t, places[i], meets), color);
+            take_image(t, positions[i], color);
+        const float through = put_color(c, one->pixels + i, area_of(t, positions[i], meets), color);
         most = CAMBER_MORE(through, most);
     }
     count_colors(c, one, most, meets == CAMBER_CELL_FULL);
 }
 
-/* How a cell lies to a segment. */
-static camber_u32 meets_cell(const tool *t, float middle_x, float middle_y) {
-    const camber_edge *p = &t->pen;
+/* How a cell lies to a segment: CAMBER_CELL_*. */
+static camber_u32 meets_cell(const drawn_segment *t, float middle_x, float middle_y) {
+    const camber_edge *p = &t->edge;
     camber_cell_masks m;
     camber_cell_masks_of(p, middle_x, middle_y, &m);
     const bool inside = p->half_width > 2.0f && m.full;
     const camber_u32 far = inside ? CAMBER_CELL_FULL : CAMBER_CELL_PARTIAL;
     const camber_u32 meets = !m.partial ? CAMBER_CELL_OUTSIDE : m.near_end ? CAMBER_CELL_NEAR_END : far;
-    const place middle = place_at(p, middle_x, middle_y);
+    const position middle = position_at(p, middle_x, middle_y);
     return t->extras.features ? camber_extras_cell(p, &t->extras, meets, middle.x, middle.y) : meets;
 }
 
-/* px and py: of the first pixel. */
-static void draw_cell(tile_state *c, const tool *t, cell *one, float px, float py) {
+/* Draws a cell. px and py: its first pixel, px of the picture. */
+static void draw_cell(tile_state *c, const drawn_segment *t, cell *one, float px, float py) {
     const float to_middle = 0.5f * (CAMBER_CELL_PX - 1);
     const camber_u32 meets = meets_cell(t, px + to_middle, py + to_middle);
-    place places[CELL_PIXELS];
+    position positions[CELL_PIXELS];
     if (one->done || one->filled || meets == CAMBER_CELL_OUTSIDE)
         return;
     for (int i = 0; i < CELL_PIXELS; i++)
-        places[i] = place_at(&t->pen, px + (float)(i % CAMBER_CELL_PX), py + (float)(i / CAMBER_CELL_PX));
+        positions[i] = position_at(&t->edge, px + (float)(i % CAMBER_CELL_PX), py + (float)(i / CAMBER_CELL_PX));
     if (t->extras.features & CAMBER_FEATURES_COLORS) {
-        put_colors(c, t, one, places, place_at(&t->pen, px + to_middle, py + to_middle).x, meets);
+        put_colors(c, t, one, positions, position_at(&t->edge, px + to_middle, py + to_middle).x, meets);
         return;
     }
     one->brushed = true;
@@ -271,29 +275,29 @@ static void draw_cell(tile_state *c, const tool *t, cell *one, float px, float p
         return;
     }
     for (int i = 0; i < CELL_PIXELS; i++)
-        put_pixel(c, &t->pen, one->pixels + i, places[i], area_of(t, places[i], meets));
+        put_pixel(c, &t->edge, one->pixels + i, positions[i], area_of(t, positions[i], meets));
     count_blend(c, one);
 }
 
-static void put_tilted(const tile_state *c, const camber_pitch_edge *pen, pixel *p, float area,
+static void put_tilted(const tile_state *c, const camber_pitch_edge *edge, pixel *p, float area,
                        const camber_pitch_pixel *at) {
     if (c->now.mode != CAMBER_BRUSH_UNION) {
         p->brush *= 1.0f - area * c->now.a;
         return;
     }
-    const float edge = area * (1.0f - area);
+    const float weight = area * (1.0f - area);
     float nx, ny;
     p->brush *= 1.0f - area;
-    if (camber_pitch_inward(pen, at, &nx, &ny)) {
+    if (camber_pitch_inward(edge, at, &nx, &ny)) {
         p->sum += area;
-        p->normal[0] += nx * edge;
-        p->normal[1] += ny * edge;
+        p->normal[0] += nx * weight;
+        p->normal[1] += ny * weight;
     }
 }
 
-/* x, y: of the first pixel, as those below. */
-static void draw_rich_tilted(const tile_state *c, const tool *t, cell *one, float x, float y) {
-    const camber_pitch_edge *p = &t->tilted_pen;
+/* Draws a cell of a picture with a pitch. x and y: its first pixel, px from the picture's middle, as below. */
+static void draw_rich_tilted(const tile_state *c, const drawn_segment *t, cell *one, float x, float y) {
+    const camber_pitch_edge *p = &t->tilted_edge;
     const camber_extras *e = &t->extras;
     const bool has_colors = e->features & CAMBER_FEATURES_COLORS;
     camber_pitch_pixel at[CELL_PIXELS];
@@ -329,7 +333,7 @@ static void draw_rich_tilted(const tile_state *c, const tool *t, cell *one, floa
     }
 }
 
-static void fill_tilted_cell(const tile_state *c, const tool *t, cell *one, float x, float y) {
+static void fill_tilted_cell(const tile_state *c, const drawn_segment *t, cell *one, float x, float y) {
     float most = 0.0f;
     for (int i = 0; i < CELL_PIXELS; i++) {
         float color[4] = {1.0f, 1.0f, 1.0f, 1.0f};
@@ -342,8 +346,8 @@ static void fill_tilted_cell(const tile_state *c, const tool *t, cell *one, floa
     count_colors(c, one, most, true);
 }
 
-static void draw_tilted_cell(tile_state *c, const tool *t, cell *one, float x, float y) {
-    const camber_pitch_edge *p = &t->tilted_pen;
+static void draw_tilted_cell(tile_state *c, const drawn_segment *t, cell *one, float x, float y) {
+    const camber_pitch_edge *p = &t->tilted_edge;
     const bool is_union = c->now.mode == CAMBER_BRUSH_UNION;
     camber_cell_masks m;
     camber_pitch_cell_masks_of(p, x + 1.5f, y + 1.5f, &m);
@@ -375,8 +379,8 @@ static void draw_tilted_cell(tile_state *c, const tool *t, cell *one, float x, f
     count_blend(c, one);
 }
 
-/* The cells of a tile that a segment may meet. */
-static void draw_cells(tile_state *c, const float *segment, const tool *t, float left, float top) {
+/* Draws the cells of a tile that a segment may touch. */
+static void draw_cells(tile_state *c, const float *segment, const drawn_segment *t, float left, float top) {
     const float reach = segment[CAMBER_SEGMENT_REACH], a_cell = 1.0f / CAMBER_CELL_PX,
                 side = (float)(CAMBER_TILE_CELLS - 1);
     const float ax = segment[CAMBER_SEGMENT_AX], ay = segment[CAMBER_SEGMENT_AY], bx = segment[CAMBER_SEGMENT_BX],
@@ -400,34 +404,34 @@ static void draw_cells(tile_state *c, const float *segment, const tool *t, float
         }
 }
 
-static void begin_image(const tile_state *c, const float *measure, tool *by) {
+static void begin_image(const tile_state *c, const float *arc_length, drawn_segment *by) {
     const camber_u32 at = 4u * c->brush_ext.image;
     if (by->tilted)
-        camber_pitch_image_of(by->side_table, at, measure, &by->tilted_pen, &by->image);
+        camber_pitch_image_of(by->side_table, at, arc_length, &by->tilted_edge, &by->image);
     else
-        camber_flat_image_of(by->side_table, at, measure, &by->pen, &by->image);
+        camber_flat_image_of(by->side_table, at, arc_length, &by->edge, &by->image);
 }
 
 static void draw_segment(tile_state *c, const camber_twin *t, uint32_t which, float left, float top) {
     const camber_raster_stages *stages = t->stages;
     const float *segment = stages->segments + (size_t)CAMBER_SEGMENT_WORDS * which;
     const uint32_t flags = camber_as_word(segment[CAMBER_SEGMENT_FLAGS]);
-    tool by;
+    drawn_segment by;
     by.eye = t->scene->eye;
     by.tilted = stages->planes;
     by.extras.features = 0;
     if (by.tilted)
         camber_pitch_edge_of(by.eye, segment, stages->planes + (size_t)CAMBER_PLANE_WORDS * which, flags,
-                             &by.tilted_pen);
+                             &by.tilted_edge);
     else
-        camber_edge_of(segment, flags, &by.pen);
-    const float *measure = stages->arc_lengths + CAMBER_SEGMENT_MEASURES * (size_t)which;
+        camber_edge_of(segment, flags, &by.edge);
+    const float *arc_length = stages->arc_lengths + CAMBER_SEGMENT_ARC_LENGTHS * (size_t)which;
     by.side_table = t->scene->side_table;
-    by.is_fill = (by.tilted ? by.tilted_pen.half_width : by.pen.half_width) >= CAMBER_FILL_PX;
+    by.is_fill = (by.tilted ? by.tilted_edge.half_width : by.edge.half_width) >= CAMBER_FILL_PX;
     if (c->brush_ext.features)
-        camber_extras_of(&c->brush_ext, by.tilted ? NULL : &by.pen, measure, by.side_table, &by.extras);
+        camber_extras_of(&c->brush_ext, by.tilted ? NULL : &by.edge, arc_length, by.side_table, &by.extras);
     if (c->brush_ext.features & CAMBER_FEATURE_IMAGE)
-        begin_image(c, measure, &by);
+        begin_image(c, arc_length, &by);
     draw_cells(c, segment, &by, left, top);
 }
 
@@ -436,7 +440,7 @@ static uint8_t level_of(float value) {
     return (uint8_t)(least < 255.0f ? least : 255.0f);
 }
 
-/* The tile's pixels that lie in the area. */
+/* Writes the pixels of a tile that lie in the area. */
 static void write_tile(const camber_twin *t, const tile_state *c, uint32_t column, uint32_t row) {
     const float *back = t->scene->background;
     const uint32_t left = column * CAMBER_TILE_PX, top = row * CAMBER_TILE_PX;

@@ -80,7 +80,7 @@ static camber_status make_slots(const camber_network *network, const camber_proj
     w.slot_x = p->x;
     w.slot_y = p->y;
     w.slot_info = p->info;
-    w.slot_measures = (float *)p->arc_lengths;
+    w.slot_arc_lengths = (float *)p->arc_lengths;
     w.puts = 1;
     w.at = 1;
     for (size_t i = 0; i < network->entry_count; i++) {
@@ -155,7 +155,7 @@ static size_t last_of(const visible_lines *p, size_t first) {
     return first;
 }
 
-/* Appends the visible lines of an entry. Where the window cuts a ring, the line over the ring's seam is in two pieces,
+/* Appends the visible lines of an entry. Where the window cuts a ring, the line over the ring's seam has two halves,
  * the end of which comes first in the slots. It waits at `seam` until its beginning has been appended:
  *
  *     slots     S..e   b..S              S: the seam, the ring's first and last point

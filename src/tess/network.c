@@ -100,9 +100,9 @@ static int32_t to_step(double offset, double step) {
  * importance that is NaN counts as infinite. */
 static void store_point(camber_network *n, const double *point, double shift_x, float importance) {
     const int32_t x = to_step(point[0] + shift_x - n->x0, n->step), y = to_step(point[1] - n->y0, n->step);
-    camber_stretch *run = n->stretches + n->stretch_count;
+    camber_stretch *stretch = n->stretches + n->stretch_count;
     const float weight = importance >= 0.0f ? importance : importance < 0.0f ? 0.0f : INFINITY;
-    if (n->point_count > run->first && n->x[n->point_count - 1] == x && n->y[n->point_count - 1] == y) {
+    if (n->point_count > stretch->first && n->x[n->point_count - 1] == x && n->y[n->point_count - 1] == y) {
         float *kept = n->importance + n->point_count - 1;
         *kept = weight > *kept ? weight : *kept;
         n->stats.repeated_points++;
@@ -111,10 +111,10 @@ static void store_point(camber_network *n, const double *point, double shift_x, 
     n->x[n->point_count] = x;
     n->y[n->point_count] = y;
     n->importance[n->point_count++] = weight;
-    run->x0 = x < run->x0 ? x : run->x0;
-    run->x1 = x > run->x1 ? x : run->x1;
-    run->y0 = y < run->y0 ? y : run->y0;
-    run->y1 = y > run->y1 ? y : run->y1;
+    stretch->x0 = x < stretch->x0 ? x : stretch->x0;
+    stretch->x1 = x > stretch->x1 ? x : stretch->x1;
+    stretch->y0 = y < stretch->y0 ? y : stretch->y0;
+    stretch->y1 = y > stretch->y1 ? y : stretch->y1;
 }
 
 /* Stores the valid points [first, end) as a stretch. Its ends have infinite importance: they always stay. */
@@ -122,15 +122,15 @@ static void store_stretch(camber_network *n, const camber_network_desc *desc, ca
                           size_t end, bool may_close) {
     const double *from = desc->points + 2 * first, *last = desc->points + 2 * (end - 1);
     const bool closes = may_close && end - first > 2 && from[0] == last[0] && from[1] == last[1];
-    camber_stretch *run = n->stretches + n->stretch_count;
-    *run =
+    camber_stretch *stretch = n->stretches + n->stretch_count;
+    *stretch =
         (camber_stretch){(uint32_t)n->point_count, entry.row << CAMBER_POINT_ROW_SHIFT, INT32_MAX, INT32_MAX, -1, -1};
     for (size_t i = first; i < end; i++)
         store_point(n, desc->points + 2 * i, entry.shift_x, desc->importance ? desc->importance[i] : INFINITY);
-    const size_t count = n->point_count - run->first;
-    n->importance[run->first] = n->importance[n->point_count - 1] = INFINITY;
+    const size_t count = n->point_count - stretch->first;
+    n->importance[stretch->first] = n->importance[n->point_count - 1] = INFINITY;
     if (closes && count > 2)
-        run->word |= CAMBER_STRETCH_RING;
+        stretch->word |= CAMBER_STRETCH_RING;
     n->stats.kept_points += count;
     n->stats.kept_segments += count - 1;
     n->stats.dots += count == 1;
@@ -169,8 +169,8 @@ static double length_into(const camber_network *n, size_t point) {
  *                progress[0]   progress[1]
  *
  * Shares that make no sense are ignored. */
-static void measure_stretch(camber_network *n, size_t run, const float *progress) {
-    const size_t first = n->stretches[run].first, end = n->stretches[run + 1].first;
+static void measure_stretch(camber_network *n, size_t stretch, const float *progress) {
+    const size_t first = n->stretches[stretch].first, end = n->stretches[stretch + 1].first;
     const double from = progress ? (double)progress[0] : 0.0, part = progress ? (double)progress[1] - from : 1.0;
     const bool is_part = from >= 0.0 && from < 1.0 && part > LEAST_PART && part <= 1.0 - from + LEAST_PART;
     double length = 0.0;
@@ -182,7 +182,7 @@ static void measure_stretch(camber_network *n, size_t run, const float *progress
         along += i > first ? length_into(n, i) : 0.0;
         n->lengths[i] = (float)along;
     }
-    n->totals[run] = (float)total;
+    n->totals[stretch] = (float)total;
 }
 
 static camber_status measure_stretches(camber_network *n, const camber_network_desc *desc) {

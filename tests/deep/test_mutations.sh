@@ -54,8 +54,8 @@ validate_until_failure() {
 }
 
 # A failure leaves a picture that the report names, JUnit's failures, and JSON with what differs.
-evidence=()
-look_at_evidence() { # FILE METHOD
+reports=()
+look_at_failures() { # FILE METHOD
     local picture member
     picture=$(sed -n 's/^  picture: "\(.*\)"$/\1/p' "$tmp/tap" | head -n 1)
     [ "$(head -c 4 "${picture:-/dev/null}" | tail -c 3)" = PNG ] || fail "$1: no picture: '$picture'"
@@ -84,14 +84,14 @@ mutant() {
     if build "$file"; then
         rm -rf "$tmp/pictures" "$tmp/junit.xml"
         local status first
-        if [ ${#evidence[@]} = 0 ]; then
+        if [ ${#reports[@]} = 0 ]; then
             validate_until_failure --method "$method"
         else
-            validate --method "$method" "${evidence[@]}"
+            validate --method "$method" "${reports[@]}"
         fi
         status=$?
         first=$(grep -m 1 '^not ok' "$tmp/tap")
-        if [ "$status" -gt 128 ] && [ ${#evidence[@]} = 0 ]; then
+        if [ "$status" -gt 128 ] && [ ${#reports[@]} = 0 ]; then
             # A broken kernel may leave unwritten whatever lay there: the next one may go anywhere.
             caught=$((caught + 1))
             echo "caught: $file: $what: ended by signal $((status - 128))"
@@ -100,7 +100,7 @@ mutant() {
             echo "caught: $file: $what"
             echo "    ${first#not ok }"
             grep -m 1 '^  message: ' "$tmp/tap" | sed 's/^ */    /'
-            [ ${#evidence[@]} = 0 ] || look_at_evidence "$file" "$method"
+            [ ${#reports[@]} = 0 ] || look_at_failures "$file" "$method"
         else
             fail "$file: $what: not caught: exit status $status; $(head -c 300 "$tmp/stderr")"
         fi
@@ -148,9 +148,9 @@ mutant strip kernels/classify.cl "only first points are ends" 'point & (CAMBER_P
     'point & CAMBER_POINT_FIRST'
 mutant strip kernels/scan.cl "runs that begin half as far" 'total[from][lane] - own' '(total[from][lane] - own) / 2u'
 mutant kite kernels/scan.cl "a point in its neighbour's place" 'joins_before[first + n - 1]' 'joins_before[first + n]'
-evidence=(--pictures "$tmp/pictures" --junit "$tmp/junit.xml")
+reports=(--pictures "$tmp/pictures" --junit "$tmp/junit.xml")
 mutant strip kernels/emit.cl "a missing break" 'CAMBER_RECORD_BREAK};' '0u};'
-evidence=()
+reports=()
 mutant strip kernels/emit.cl "a start that is placed like an end" 'CAMBER_RECORD_START, 0u' '0u, 0u'
 mutant strip kernels/classify.cl "a line that forgets its ends" 'info_before[i - 1]' 'info_before[i]'
 mutant kite kernels/emit.cl "a triangle that winds the other way" 'put_triangle(indices + 3, sr, e + 1, e)' \
@@ -199,15 +199,15 @@ mutant strip kernels/cull.h "segments to points that are left out" 'if (!camber_
 mutant strip kernels/cull.h "ends that are not pulled" 'if (out == 0u)' 'if (out < 16u)'
 mutant strip kernels/cull.h "ends pulled past the window" 'if (mid_out & out) {' 'if (mid_out) {'
 mutant strip kernels/cull.h "a seam that is an end" 'begins == has_next ? CAMBER_POINT_RING' 'begins != has_next ? CAMBER_POINT_RING'
-mutant strip kernels/cull.h "the ghost behind in the place of the one before" 'camber_walk_put_sentinel(w, p, 1u, a)' \
+mutant strip kernels/cull.h "the sentinel behind in the place of the one before" 'camber_walk_put_sentinel(w, p, 1u, a)' \
     'camber_walk_put_sentinel(w, p, 0u, a)'
-mutant strip kernels/cull.h "a ghost on the seam" 'other.point > w->first && camber_same_pixel(other, seam)' \
+mutant strip kernels/cull.h "a sentinel on the seam" 'other.point > w->first && camber_same_pixel(other, seam)' \
     'other.point > w->first && !camber_same_pixel(other, seam)'
 mutant strip kernels/cull.h "pieces that do not begin" 'camber_put_cut(w, p, to, from, real | CAMBER_POINT_FIRST)' \
     'camber_put_cut(w, p, to, from, real)'
 mutant strip kernels/cull.h "pieces that end where they began" 'camber_put_cut(w, p, from, to, real | CAMBER_POINT_LAST)' \
     'camber_put_cut(w, p, from, from, real | CAMBER_POINT_LAST)'
-mutant strip kernels/cull.h "runs that are not seen" 'run->x1 < p->seen_x0' 'run->x0 < p->seen_x0'
+mutant strip kernels/cull.h "stretches that are not seen" 'stretch->x1 < p->seen_x0' 'stretch->x0 < p->seen_x0'
 mutant strip kernels/cull.h "pixels turned the other way" 'p->down_x + p->at_x' '-p->down_x + p->at_x'
 
 # ---- Shaders ----
@@ -223,9 +223,9 @@ mutant strip shaders/stroke.vert "a tight start placed by the end of no length" 
 mutant strip shaders/stroke.vert "no pad" 'PAD_PX = 0.75' 'PAD_PX = 0.0'
 mutant strip shaders/edge.glsl "the slope of an edge" '1.0 / p,' '0.8 / p,'
 mutant strip shaders/stroke.frag "the corner of a pixel" 'corner * corner * edge.w' 'corner * edge.w'
-evidence=(--pictures "$tmp/pictures" --junit "$tmp/junit.xml")
+reports=(--pictures "$tmp/pictures" --junit "$tmp/junit.xml")
 mutant strip shaders/stroke.frag "half the width" 'covered_band(half_width, d, side)' 'covered_band(0.9 * half_width, d, side)'
-evidence=()
+reports=()
 mutant strip shaders/stroke.vert "the sine of a turn" '2.0 * q * scale' 'q * scale'
 mutant strip shaders/stroke.frag "the wrong side of a bisector" 'v_turns.yw * y' '-v_turns.yw * y'
 mutant strip shaders/stroke.vert "square caps of a whole width" 'SQUARE ? half_width' 'SQUARE ? 2.0 * half_width'
@@ -258,7 +258,7 @@ mutant strip shaders/stroke.frag "colours at the ends of pieces" 'mix(color, nex
 mutant strip shaders/stroke.frag "translucent ramps that are opaque" 'o_alpha = vec4(o_color.a' 'o_alpha = vec4(area'
 mutant strip shaders/flatten.frag "alphas that are left beside" 'vec4(layer.rgb, texelFetch' 'vec4(layer.rgb, layer.a) + 0.0 * vec4(texelFetch'
 mutant strip kernels/arc_length_scan.cl "lengths that are not summed" 'FIRST ? 0 : sum + ' 'FIRST ? 0 : '
-mutant strip kernels/emit.cl "measures of the neighbour" 'as_uint(arc_lengths[2 * i])' 'as_uint(arc_lengths[2 * i + 2])'
+mutant strip kernels/emit.cl "arc lengths of the neighbour" 'as_uint(arc_lengths[2 * i])' 'as_uint(arc_lengths[2 * i + 2])'
 
 # ---- Kernels that draw: the twin tells ----
 
@@ -283,7 +283,7 @@ mutant strip kernels/tile_state.cl "united lines: areas that are not summed" 'c-
 mutant strip kernels/rasterize_sixteen.cl "tight joins that cut strokes narrower than their mesh" ' & (limit * c < outer)' ''
 mutant strip kernels/rasterize_sixteen.cl "cells that are whole too soon" 'full = h - p->extent - reach' 'full = h - p->extent'
 mutant strip kernels/bin_gpu.cl "places behind those of later lanes" 'popcount(*mark & before)' 'popcount(*mark & ~before) - 1'
-mutant strip kernels/rasterize_gpu.cl "cells that are full without a look" '& (next <= BATCH)' '& (next > BATCH)'
+mutant strip kernels/rasterize_gpu.cl "cells that are full without a look" '& (next <= SIXTEEN)' '& (next > SIXTEEN)'
 mutant strip kernels/setup_gpu.cl "segments between two strips" 'r.strips ? (b.s3 & STARTS) == 0u' 'r.strips ? (b.s3 & STARTS) != 1u'
 mutant strip kernels/rasterize.cl "lists that end too soon" 'k-- > starts[tile];' 'k-- > starts[tile] + 1u;'
 

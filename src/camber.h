@@ -481,26 +481,6 @@ typedef struct camber_color {
     float r, g, b, a;
 } camber_color;
 
-/* How a row is drawn in one pass. */
-typedef struct camber_paint {
-    float width_px; /* 0: nothing is drawn. gap_px + 2 width_px with a gap, else this, is at most the stroke's width */
-    camber_color color;
-    float gap_px;                         /* 0: none; else the room between two bands of this width each */
-    float blur_px;                        /* 0: none; else edges fade over so much more than a pixel, inwards */
-    float translate_x_px, translate_y_px; /* where it is drawn, from where its polyline lies */
-    uint32_t dash;                        /* 0: none; else one of the pass's dashes, counted from 1 */
-    float dash_unit_px;                   /* that the dash's lengths are given in. 0: 1 */
-    /* Shares of its line's length, of a mesh with arc lengths: from the one to the other it is not drawn. What is
-     * trimmed at an end takes the cap too. trim_end not above trim_start: it is whole. */
-    float trim_start, trim_end;
-    uint32_t ramp; /* 0: none; else one of the pass's ramps, counted from 1, that color is multiplied by */
-    /* 0: none; else one of the pass's images, counted from 1, of a mesh with arc lengths: in place of the colour, whose
-     * alpha it takes. It is as high as the stroke is wide, a gap with it, its top to the right of the line's direction,
-     * and follows upon itself from where the line begins. */
-    uint32_t pattern;
-    float pattern_px; /* along the line, that one takes. 0: as many as keep the image's shape */
-} camber_paint;
-
 /* Lengths that are drawn and left out in turn, from where a polyline begins; an odd count is gone through twice, as in
  * SVG. Their ends are cut straight, but round where the stroke's caps are. */
 typedef struct camber_dash {
@@ -533,10 +513,30 @@ typedef struct camber_image {
 
 #define CAMBER_IMAGE_SIDE_MAX 16384
 
+/* How a row is drawn in one pass. */
+typedef struct camber_paint {
+    float width_px; /* 0: nothing is drawn. gap_px + 2 width_px with a gap, else this, is at most the stroke's width */
+    camber_color color;
+    float gap_px;                         /* 0: none; else the room between two bands of this width each */
+    float blur_px;                        /* 0: none; else edges fade over so much more than a pixel, inwards */
+    float translate_x_px, translate_y_px; /* where it is drawn, from where its polyline lies */
+    const camber_dash *dash;              /* NULL: none; else of a mesh with arc lengths */
+    float dash_unit_px;                   /* that the dash's lengths are given in. 0: 1 */
+    /* Shares of its line's length, of a mesh with arc lengths: from the one to the other it is not drawn. What is
+     * trimmed at an end takes the cap too. trim_end not above trim_start: it is whole. */
+    float trim_start, trim_end;
+    const camber_ramp *ramp; /* NULL: none; else of a mesh with arc lengths: color is multiplied by it */
+    /* NULL: none; else of a mesh with arc lengths: in place of the colour, whose
+     * alpha it takes. It is as high as the stroke is wide, a gap with it, its top to the right of the line's direction,
+     * and follows upon itself from where the line begins. */
+    const camber_image *image;
+    float image_px; /* along the line, that one takes. 0: as many as keep the image's shape */
+} camber_paint;
+
 /* The whole picture in one colour, or in one image side by side. */
 typedef struct camber_fill {
     camber_color color;
-    uint32_t pattern;          /* 0: none; else one of the pass's images, counted from 1, with the colour's alpha */
+    const camber_image *image; /* NULL: none; else in place of the colour, whose alpha it takes */
     float width_px, height_px; /* of one image in the picture. 0: as it is */
     float x_px, y_px;          /* where the top left corner of one lies in the picture */
     double bearing_deg;        /* as a camera's, of the map that the images lie on */
@@ -562,7 +562,7 @@ typedef enum camber_coverage {
 
 typedef enum camber_pass_kind {
     CAMBER_PASS_LINES = 0, /* draws polylines of a mesh, in order */
-    CAMBER_PASS_FILL,      /* fills the picture; takes fill, images and opacity, and nothing else of the pass */
+    CAMBER_PASS_FILL,      /* fills the picture; takes fill and opacity, and nothing else of the pass */
 } camber_pass_kind;
 
 typedef struct camber_pass {
@@ -572,12 +572,6 @@ typedef struct camber_pass {
     size_t polyline_count;      /* 0: to the last */
     const camber_paint *paints; /* paint_count; a row at or past it is not drawn */
     size_t paint_count;
-    const camber_dash *dashes; /* dash_count, of a mesh with arc lengths. NULL: none */
-    size_t dash_count;
-    const camber_ramp *ramps; /* ramp_count, of a mesh with arc lengths. NULL: none */
-    size_t ramp_count;
-    const camber_image *images; /* image_count. NULL: none */
-    size_t image_count;
     camber_fill fill;
     camber_overlap overlap;
     float opacity; /* of all that is drawn, put onto the picture as one layer. 0: 1, and no layer */
@@ -616,7 +610,7 @@ typedef bool camber_rows_fn(void *user, const uint8_t *rgba, uint32_t first_row,
 /* Draws a frame and hands its rows over.
  * rows may be NULL: the frame is drawn and finished, not read back. stats may be NULL.
  * Returns CAMBER_ERROR_ARGUMENT (a size or a pitch out of range, meshes of cameras with different pitches, a dash, a
- * ramp or an image that is none, dashes, ramps, trims or patterns of a mesh without arc lengths),
+ * ramp or an image that is none, dashes, ramps, trims or images of a mesh without arc lengths),
  * CAMBER_ERROR_LIMIT (more rows of strokes and paints, or images of one pass, than textures hold, or in OpenCL images
  * of one frame than a buffer), CAMBER_ERROR_DEVICE (a shader or a kernel does not build, or GL or OpenCL reported an
  * error), CAMBER_ERROR_MEMORY, CAMBER_ERROR_IO (rows returned false). */

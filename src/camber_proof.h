@@ -1,7 +1,8 @@
-/* camber: meshes and stages in host memory, the CPU twin, and overdraw: what proofs and exporters need.
+/* camber: meshes and stages in host memory, the CPU twin, and overdraw, for proofs and exporters.
  *
- * The rules of camber.h hold here too. A mesh that is read back, or made by the twin, which needs no device, is the
- * same bytes: src/validate and `camber validate` hold one against the other.
+ * The rules of camber.h hold here too. The CPU twin is C code that makes on the host what the kernels make on the
+ * device. It needs no device, and gives the same bytes as a mesh that is read back. src/validate and `camber validate`
+ * compare the two.
  */
 #ifndef CAMBER_PROOF_H
 #define CAMBER_PROOF_H
@@ -24,10 +25,11 @@ typedef struct camber_record {
     uint32_t last; /* row << 8 | flags: CAMBER_POINT_* and CAMBER_RECORD_* there */
 } camber_record;
 
-/* How far along its polyline a record lies, in a mesh with arc lengths: the arc length over all of the polyline's
- * points, those of a network also where the camera leaves points out or cuts. */
+/* How far along its polyline a record lies, in a mesh with arc lengths. The arc length goes over all points of the
+ * polyline, in a network also over those that the camera leaves out or cuts away. */
 typedef struct camber_arc_length {
-    float along_px, total_px; /* from its first point, and to its last */
+    float along_px; /* from the polyline's first point to the record */
+    float total_px; /* from its first point to its last */
 } camber_arc_length;
 
 /* A vertex as the vertex shader makes it from records. A segment runs from A to B, u is its direction, L its length.
@@ -82,24 +84,31 @@ struct camber_mesh_data {
     uint32_t *indices;
 };
 
-/* Whether the three indices from one on are a triangle that is drawn. Of strips every index begins three, and the
- * triangles at odd ones have their first two corners in the other order. */
+/* Returns whether the three indices from first_index on are a triangle that is drawn. In a strip each index begins
+ * three of them, and the triangles at odd indices have their first two corners in the other order. */
 CAMBER_API bool camber_mesh_data_draws(const camber_mesh_data *data, size_t first_index);
 
+/* Reads a mesh from the device. camber_mesh_data_destroy frees what it gives.
+ * Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_DEVICE. */
 CAMBER_API camber_status camber_mesh_read(camber_mesh *mesh, camber_mesh_data *data);
-/* The CPU twin: the same bytes as camber_mesh_tessellate where the device rounds correctly. Needs no device. */
+/* Tessellates on the host, by the CPU twin. It gives the same bytes as camber_mesh_tessellate and camber_mesh_read
+ * where the device rounds correctly.
+ * Returns what camber_mesh_tessellate does, but for CAMBER_ERROR_DEVICE. */
 CAMBER_API camber_status camber_mesh_data_tessellate(camber_context *context, const camber_polylines *polylines,
                                                      const camber_tessellation_desc *desc, camber_mesh_data *data);
 CAMBER_API void camber_mesh_data_destroy(camber_mesh_data *data);
 
 /* ---- Networks: what a camera makes of them ---------------------------------------------------------- */
 
-/* The CPU twin: the polylines that camber_mesh_tessellate would make the same mesh of, an entry each. Of desc only the
- * strokes matter. */
+/* Projects a network on the host, by the CPU twin. It gives one polyline for each entry: those of which
+ * camber_mesh_tessellate makes the mesh that camber_mesh_tessellate_network would make.
+ * Only the strokes of desc matter.
+ * Returns CAMBER_ERROR_ARGUMENT (a camera as camber_mesh_tessellate_network refuses it), CAMBER_ERROR_LIMIT,
+ * CAMBER_ERROR_MEMORY. */
 CAMBER_API camber_status camber_network_project(const camber_network *network, const camber_camera *camera,
                                                 const camber_tessellation_desc *desc, camber_polylines **polylines);
-/* The same polylines with each piece by itself and without entries of which nothing is seen; a ring that is cut begins
- * at a cut. */
+/* Projects a network on the host as camber_network_project does, with each stretch of a line that the camera sees
+ * as a polyline of its own. Entries of which nothing is seen have none. A ring that is cut begins at a cut. */
 CAMBER_API camber_status camber_network_project_lines(const camber_network *network, const camber_camera *camera,
                                                       const camber_tessellation_desc *desc, camber_lines *lines);
 
@@ -115,16 +124,17 @@ typedef struct camber_point_stages {
     uint64_t first_index;  /* and its indices */
 } camber_point_stages;
 
-/* Calls make these; camber_stages_destroy frees them. */
+/* The points of a tessellation. camber_stages_destroy frees them. */
 typedef struct camber_stages {
     camber_context *context;     /* which allocated the array. NULL: nothing is there */
     camber_point_stages *points; /* point_count, in input order; rings have their first point again at the end */
     size_t point_count;
 } camber_stages;
 
-/* Reads the stages of the last tessellation. Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_DEVICE. */
+/* Reads the stages of the last tessellation from the device.
+ * Returns CAMBER_ERROR_MEMORY, CAMBER_ERROR_DEVICE. */
 CAMBER_API camber_status camber_mesh_read_stages(camber_mesh *mesh, camber_stages *stages);
-/* The CPU twin's. */
+/* Makes the stages on the host, by the CPU twin. Returns what camber_mesh_data_tessellate does. */
 CAMBER_API camber_status camber_stages_tessellate(camber_context *context, const camber_polylines *polylines,
                                                   const camber_tessellation_desc *desc, camber_stages *stages);
 CAMBER_API void camber_stages_destroy(camber_stages *stages);
@@ -135,37 +145,42 @@ CAMBER_API void camber_stages_destroy(camber_stages *stages);
  * camber_drawing_stages_destroy frees it. */
 typedef struct camber_drawing_stages {
     camber_context *context; /* which allocated the arrays. NULL: nothing is there */
-    /* shape: what each record of the passes, in drawing order, ends, rounded up to sixteens for each part of a mesh:
-     * segment_words floats and bits that tiles and pixels are drawn from, of what is drawn, and the tiles of its box, a
-     * byte each: the first one's column, its row, the last one's column, its row. Where the last column lies before the
-     * first, nothing is drawn. What lies along lines is measured where passes have gaps, blurs, dashes, trims or ramps;
-     * a frame that is pitched has a shape's words of its plane too. */
+    /* Stage setup writes the segment that ends at each record of the passes, in drawing order. The number of segments
+     * is rounded up to sixteens for each part of a mesh. A segment has segment_words floats and bits, which tiles and
+     * pixels are drawn from. A segment that is not drawn has undefined words.
+     * Its box is four bytes, in tiles: the column and the row of the first one, the column and the row of the last one.
+     * Where the last column lies before the first, nothing is drawn.
+     * Arc lengths are there where passes have gaps, blurs, dashes, trims, ramps or images. A frame that is pitched has
+     * words of the plane for each segment too. */
     float *segments;    /* segment_words * segment_count */
     uint32_t *boxes;    /* segment_count */
-    float *arc_lengths; /* measure_words * segment_count. NULL: nothing lies along lines, or beside them */
+    float *arc_lengths; /* arc_length_words * segment_count. NULL: no pass has any of these */
     float *planes;      /* plane_words * segment_count. NULL: not pitched */
-    size_t segment_count, segment_words, measure_words, plane_words;
-    /* count and total: where the list of each tile begins, columns * rows + 1, row by row. */
+    size_t segment_count, segment_words, arc_length_words, plane_words;
+    /* Stages bin_count and bin_scan find where the list of each tile begins: columns * rows + 1 numbers, row by row. */
     uint32_t *starts;
     uint32_t columns, rows;
-    uint32_t *lists; /* fill: the shapes of each tile in drawing order */
-    uint8_t *rgba;   /* cover: width * height pixels, premultiplied */
+    uint32_t *lists; /* of stage bin_scatter: the segments of each tile in drawing order */
+    uint8_t *rgba;   /* of stage rasterize: width * height pixels, premultiplied */
     uint32_t width, height;
 } camber_drawing_stages;
 
-/* Draws the frame. Returns what camber_renderer_render returns, CAMBER_ERROR_LIMIT also where it takes several slices.
- * The renderer draws in OpenCL. */
+/* Draws the first area of a frame and reads the stages from the device.
+ * renderer is one that draws in OpenCL.
+ * Returns what camber_renderer_render returns, and CAMBER_ERROR_LIMIT also where the frame takes several slices. */
 CAMBER_API camber_status camber_renderer_read_stages(camber_renderer *renderer, const camber_frame *frame,
                                                      camber_drawing_stages *stages);
-/* The CPU twin's, from the records that the device has: the same bytes, but for shapes that are not drawn. */
+/* Makes the stages on the host, by the CPU twin, from the records that the device has. They are the same bytes as those
+ * of camber_renderer_read_stages, but for segments that are not drawn. The parameters and what it returns are the same.
+ */
 CAMBER_API camber_status camber_drawing_stages_rasterize(camber_renderer *renderer, const camber_frame *frame,
                                                          camber_drawing_stages *stages);
 CAMBER_API void camber_drawing_stages_destroy(camber_drawing_stages *stages);
 
 /* ---- Overdraw: what the GPU does for a mesh, counted on it ----------------------------------------- */
 
-/* Consecutive indices of a mesh, as camber_mesh_read numbers them: of triangles whole triangles, of strips a part of
- * one or several whole ones, from an even index on. */
+/* Consecutive indices of a mesh, as camber_mesh_read numbers them. A range of triangles has whole ones. A range of
+ * strips has a part of one strip, or several whole ones, and begins at an even index. */
 typedef struct camber_index_range {
     uint64_t first_index, index_count;
 } camber_index_range;
@@ -177,7 +192,8 @@ typedef struct camber_overdraw_desc {
     size_t paint_count;
     const camber_index_range *ranges; /* range_count, each counted by itself. NULL: the mesh's polylines */
     size_t range_count;
-    uint8_t *map; /* width * height: takes in how many ranges a pixel is repeated, up to 255. NULL: not wanted */
+    /* Takes width * height numbers: in how many ranges a pixel is repeated, up to 255. NULL: they are not wanted. */
+    uint8_t *map;
 } camber_overdraw_desc;
 
 typedef struct camber_overdraw {
@@ -186,8 +202,9 @@ typedef struct camber_overdraw {
     uint64_t repeated_pixels; /* with coverage from more than one fragment of a range, once a range */
 } camber_overdraw;
 
-/* Counts with the stencil and additive blending, two draw calls a range. Returns what camber_renderer_render returns.
- */
+/* Counts the pixels that the GPU draws for a mesh, and those that it draws again.
+ * Returns what camber_renderer_render returns, and CAMBER_ERROR_ARGUMENT where the renderer does not draw in GL.
+ * It counts with the stencil and additive blending, and takes two draw calls a range. */
 CAMBER_API camber_status camber_renderer_count_overdraw(camber_renderer *renderer, const camber_overdraw_desc *desc,
                                                         camber_overdraw *overdraw);
 

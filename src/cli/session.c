@@ -158,7 +158,7 @@ static void warm_up(const camber_opener *opener) {
     const camber_camera camera = {
         .x = 8, .y = 8, .scale_px = 1, .width = 16, .height = 16, .pitch_deg = opener->pitch_deg};
     const camber_stroke stroke = {.width_px = 3};
-    const camber_paint paint = {.width_px = 3, .color = {0, 0, 0, 1}, .dash = rich};
+    const camber_paint paint = {.width_px = 3, .color = {0, 0, 0, 1}, .dash = rich ? &dash : NULL};
     const camber_tessellation_desc tessellation = {
         .strokes = &stroke, .stroke_count = 1, .method = camber_session_method(session), .has_arc_length = rich};
     camber_network *network = NULL;
@@ -166,7 +166,7 @@ static void warm_up(const camber_opener *opener) {
     if (camber_network_create(context, &lines, &network) == CAMBER_OK &&
         camber_mesh_create(session->device, session->renderer, &mesh) == CAMBER_OK &&
         camber_mesh_tessellate_network(mesh, network, &camera, &tessellation) == CAMBER_OK && draws) {
-        const camber_pass pass = {.mesh = mesh, .paints = &paint, .paint_count = 1, .dashes = &dash, .dash_count = 1};
+        const camber_pass pass = {.mesh = mesh, .paints = &paint, .paint_count = 1};
         const camber_frame frame = {.width = 16,
                                     .height = 16,
                                     .passes = &pass,

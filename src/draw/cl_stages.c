@@ -47,7 +47,7 @@ static camber_status read_stages(camber_renderer *renderer, const camber_frame *
         .context = renderer->share.device->context,
         .segments = r.stages.segments,
         .segment_words = CAMBER_SEGMENT_WORDS,
-        .measure_words = CAMBER_SEGMENT_ARC_LENGTHS,
+        .arc_length_words = CAMBER_SEGMENT_ARC_LENGTHS,
         .plane_words = CAMBER_PLANE_WORDS,
         .boxes = r.stages.boxes,
         .arc_lengths = r.stages.arc_lengths,

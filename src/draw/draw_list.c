@@ -22,54 +22,21 @@ static const float FAR_BEYOND = 1e9f;
 
 /* ---- Checks ---- */
 
-static camber_status check_images(camber_context *context, const camber_pass *pass) {
-    for (size_t i = 0; i < pass->image_count; i++)
-        if (!camber_image_is_valid(pass->images + i))
-            return camber_fail(context, CAMBER_ERROR_ARGUMENT,
-                               "image %zu: %u x %u px; give 1 to %d a side, and rows that do not overlap", i,
-                               pass->images[i].width, pass->images[i].height, CAMBER_IMAGE_SIDE_MAX);
-    assert(pass->fill.pattern <= pass->image_count);
-    return CAMBER_OK;
-}
-
-static camber_status check_patterns(camber_context *context, const camber_pass *pass) {
-    for (size_t i = 0; i < pass->dash_count; i++)
-        if (!camber_dash_is_valid(pass->dashes + i))
-            return camber_fail(context, CAMBER_ERROR_ARGUMENT,
-                               "dash %zu: %zu lengths; give up to %d of 0 and more, and one above 0", i,
-                               pass->dashes[i].count, CAMBER_DASH_LENGTHS_MAX);
-    for (size_t i = 0; i < pass->ramp_count; i++)
-        if (!camber_ramp_is_valid(pass->ramps + i))
-            return camber_fail(context, CAMBER_ERROR_ARGUMENT,
-                               "ramp %zu: %zu stops; give 1 to %d in ascending places, and finite colours", i,
-                               pass->ramps[i].count, CAMBER_RAMP_STOPS_MAX);
-    return CAMBER_OK;
-}
-
 /* Dashes, ramps, images and trims go by lengths along the line. */
-static camber_status check_paints(camber_context *context, const camber_pass *pass) {
+static camber_status check_pass(camber_context *context, const camber_pass *pass) {
+    assert(pass->paint_count == 0 || pass->paints);
+    if (pass->kind != CAMBER_PASS_LINES)
+        return CAMBER_OK;
     const bool has_arc_length = pass->mesh->mesh_info.has_arc_length || pass->mesh->empty;
     for (size_t i = 0; i < pass->paint_count; i++) {
         const camber_paint *paint = pass->paints + i;
-        assert(paint->dash <= pass->dash_count && paint->ramp <= pass->ramp_count &&
-               paint->pattern <= pass->image_count);
-        const char *what = paint->pattern ? "patterns" : paint->dash ? "dashes" : paint->ramp ? "ramps" : "trims";
+        const char *what = paint->image ? "images" : paint->dash ? "dashes" : paint->ramp ? "ramps" : "trims";
         const bool trims = paint->trim_end > paint->trim_start;
-        if (!has_arc_length && (paint->dash || paint->ramp || paint->pattern || trims))
+        if (!has_arc_length && (paint->dash || paint->ramp || paint->image || trims))
             return camber_fail(context, CAMBER_ERROR_ARGUMENT,
                                "%s of a mesh without arc lengths; tessellate it with has_arc_length", what);
     }
     return CAMBER_OK;
-}
-
-static camber_status check_pass(camber_context *context, const camber_pass *pass) {
-    assert(pass->paint_count == 0 || pass->paints);
-    camber_status status = check_images(context, pass);
-    if (status == CAMBER_OK && pass->kind == CAMBER_PASS_LINES)
-        status = check_patterns(context, pass);
-    if (status == CAMBER_OK && pass->kind == CAMBER_PASS_LINES)
-        status = check_paints(context, pass);
-    return status;
 }
 
 static camber_status check_frame(camber_context *context, const camber_frame *frame) {
@@ -91,7 +58,6 @@ static camber_status check_frame(camber_context *context, const camber_frame *fr
 typedef struct row_maker {
     camber_draw_list *list;
     const camber_pass *pass;
-    size_t first_image;      /* number of the pass's first image */
     const camber_ramp *ramp; /* the last one that was looked at, and whether it has translucent colours */
     bool is_translucent;
 } row_maker;
@@ -126,7 +92,7 @@ static bool is_drawn(const camber_pass *pass, size_t row) {
 static unsigned features_of(const camber_paint *paint) {
     return (paint->gap_px > 0.0f ? CAMBER_FEATURE_GAP : 0u) | (paint->blur_px > 0.0f ? CAMBER_FEATURE_BLUR : 0u) |
            (paint->dash ? CAMBER_FEATURE_DASH : 0u) | (paint->trim_end > paint->trim_start ? CAMBER_FEATURE_TRIM : 0u) |
-           (paint->ramp ? CAMBER_FEATURE_RAMP : 0u) | (paint->pattern ? CAMBER_FEATURE_IMAGE : 0u);
+           (paint->ramp ? CAMBER_FEATURE_RAMP : 0u) | (paint->image ? CAMBER_FEATURE_IMAGE : 0u);
 }
 
 static void set_trim(const camber_paint *paint, float trim[2]) {
@@ -136,13 +102,26 @@ static void set_trim(const camber_paint *paint, float trim[2]) {
 }
 
 static camber_status set_ramp(row_maker *m, const camber_ramp *ramp, camber_row_paint *row) {
+    const camber_status status = camber_side_table_add_ramp(&m->list->side_table, ramp, &row->first_stop);
+    if (status != CAMBER_OK)
+        return status;
     if (m->ramp != ramp) {
         m->ramp = ramp;
         m->is_translucent = is_translucent(ramp);
     }
     row->has_translucent_ramp = m->is_translucent;
     row->stop_count = (uint32_t)ramp->count;
-    return camber_side_table_add_ramp(&m->list->side_table, ramp, &row->first_stop);
+    return CAMBER_OK;
+}
+
+static camber_status set_image(camber_draw_list *list, const camber_paint *paint, camber_row_paint *row) {
+    size_t number;
+    const camber_status status = camber_image_set_add(&list->images, paint->image, &number);
+    if (status != CAMBER_OK)
+        return status;
+    const camber_image_use use =
+        camber_image_use_on_line(paint->image, number, 2.0 * (double)row->half_width_px, (double)paint->image_px);
+    return add_image_use(list, &use, &row->image_use);
 }
 
 static camber_status make_row(row_maker *m, size_t number, camber_row_paint *row) {
@@ -154,21 +133,17 @@ static camber_status make_row(row_maker *m, size_t number, camber_row_paint *row
                               .half_gap_px = paint->gap_px > 0.0f ? 0.5f * paint->gap_px : -1.0f,
                               .blur_px = fmaxf(paint->blur_px, 0.0f),
                               .translate_px = {paint->translate_x_px, paint->translate_y_px},
-                              .color = paint->pattern ? white : paint->color,
+                              .color = paint->image ? white : paint->color,
                               .features = features_of(paint)};
     row->color.a = paint->color.a;
     set_trim(paint, row->trim);
     if (paint->dash)
-        status = camber_side_table_add_dash(&m->list->side_table, pass->dashes + paint->dash - 1, paint->dash_unit_px,
+        status = camber_side_table_add_dash(&m->list->side_table, paint->dash, paint->dash_unit_px,
                                             pass->mesh->host_rows[number].cap == CAMBER_CAP_ROUND, &row->dashes);
     if (paint->ramp && status == CAMBER_OK)
-        status = set_ramp(m, pass->ramps + paint->ramp - 1, row);
-    if (paint->pattern && status == CAMBER_OK) {
-        const camber_image_use use =
-            camber_image_use_on_line(pass->images + paint->pattern - 1, m->first_image + paint->pattern - 1,
-                                     2.0 * (double)row->half_width_px, (double)paint->pattern_px);
-        status = add_image_use(m->list, &use, &row->image_use);
-    }
+        status = set_ramp(m, paint->ramp, row);
+    if (paint->image && status == CAMBER_OK)
+        status = set_image(m->list, paint, row);
     return status;
 }
 
@@ -292,28 +267,31 @@ static bool fades(const camber_pass *pass) {
     return pass->opacity > 0.0f && pass->opacity < 1.0f;
 }
 
+static camber_status set_fill_image(camber_draw_list *list, const camber_fill *fill, camber_fill_paint *paint) {
+    size_t number;
+    camber_status status = camber_image_set_add(&list->images, fill->image, &number);
+    if (status != CAMBER_OK)
+        return status;
+    const camber_image_use mean = camber_image_use_as_mean(fill->image, number);
+    const camber_image_use use =
+        camber_image_use_in_fill(fill->image, number, (double)fill->width_px, (double)fill->height_px);
+    paint->color.r = paint->color.g = paint->color.b = 1.0f;
+    status = add_image_use(list, &mean, &paint->mean_use);
+    return status == CAMBER_OK ? add_image_use(list, &use, &paint->image_use) : status;
+}
+
 /* A fill's opacity is in its colour: it needs no layer. */
-static camber_status add_fill(row_maker *m) {
-    const camber_fill *fill = &m->pass->fill;
-    camber_draw_list *list = m->list;
+static camber_status add_fill(camber_draw_list *list, const camber_pass *pass) {
+    const camber_fill *fill = &pass->fill;
     camber_draw_command command = {
-        .fill = {fill->color, fill->pattern != 0, 0, 0, fill->x_px, fill->y_px, fill->bearing_deg}};
+        .fill = {fill->color, fill->image != NULL, 0, 0, fill->x_px, fill->y_px, fill->bearing_deg}};
     camber_fill_paint *paint = &command.fill;
     camber_status status = CAMBER_OK;
-    paint->color.a = fill->color.a * (m->pass->opacity > 0.0f ? m->pass->opacity : 1.0f);
+    paint->color.a = fill->color.a * (pass->opacity > 0.0f ? pass->opacity : 1.0f);
     if (!(paint->color.a > 0.0f))
         return CAMBER_OK;
-    if (paint->has_image) {
-        const camber_image *image = m->pass->images + fill->pattern - 1;
-        const size_t number = m->first_image + fill->pattern - 1;
-        const camber_image_use mean = camber_image_use_as_mean(image, number);
-        const camber_image_use use =
-            camber_image_use_in_fill(image, number, (double)fill->width_px, (double)fill->height_px);
-        paint->color.r = paint->color.g = paint->color.b = 1.0f;
-        status = add_image_use(list, &mean, &paint->mean_use);
-        if (status == CAMBER_OK)
-            status = add_image_use(list, &use, &paint->image_use);
-    }
+    if (paint->has_image)
+        status = set_fill_image(list, fill, paint);
     return status == CAMBER_OK ? add_command(list, &command) : status;
 }
 
@@ -487,8 +465,8 @@ camber_status camber_draw_list_build(camber_draw_list *list, const camber_frame 
     camber_status status = check_frame(list->context, frame);
     if (status == CAMBER_OK)
         status = find_pitch(list->context, frame, &pitch_deg);
-    list->command_count = list->row_count = list->use_count = list->image_count = 0;
-    list->group_count = 0;
+    list->command_count = list->row_count = list->use_count = list->group_count = 0;
+    camber_image_set_clear(&list->images);
     camber_side_table_clear(&list->side_table);
     if (status != CAMBER_OK)
         return status;
@@ -496,19 +474,14 @@ camber_status camber_draw_list_build(camber_draw_list *list, const camber_frame 
     list->view = view_of(frame, pitch_deg);
     row_maker m = {.list = list};
     for (size_t i = 0; i < frame->pass_count && status == CAMBER_OK; i++) {
-        const camber_pass *before = m.pass;
         m.pass = frame->passes + i;
-        /* Passes mostly share one array of images, whose numbers are the same then. */
-        if (!before || before->images != m.pass->images || before->image_count != m.pass->image_count) {
-            m.first_image = list->image_count;
-            list->image_count += m.pass->image_count;
-        }
-        status = m.pass->kind == CAMBER_PASS_LINES ? add_lines(&m) : add_fill(&m);
+        status = m.pass->kind == CAMBER_PASS_LINES ? add_lines(&m) : add_fill(list, m.pass);
     }
     return status;
 }
 
 void camber_draw_list_free(camber_draw_list *list) {
+    camber_image_set_free(&list->images);
     camber_side_table_free(&list->side_table);
     camber_free(list->context, list->image_uses);
     camber_free(list->context, list->rows);

@@ -74,7 +74,7 @@ typedef struct camber_draw_list {
     camber_row_paint *rows;
     camber_image_use *image_uses;
     size_t command_count, command_capacity, row_count, row_capacity, use_count, use_capacity;
-    size_t image_count; /* of the frame: numbers of image uses lie below it */
+    camber_image_set images; /* of the frame, each once: numbers of image uses are theirs */
     uint32_t group_count;
     camber_side_table side_table;
     float thinnest_px; /* width of the thinnest paint. INFINITY: none */

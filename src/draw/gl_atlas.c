@@ -183,7 +183,7 @@ camber_status camber_atlas_hold(camber_renderer *renderer, const camber_draw_com
             status = try_to_hold(renderer, command, &is_full);
         if (status == CAMBER_OK && is_full && is_largest)
             return camber_fail(renderer->share.device->context, CAMBER_ERROR_LIMIT,
-                               "the patterns of a pass take more than %d x %d px; draw fewer images in fewer sizes",
+                               "the images of a pass take more than %d x %d px; draw fewer images in fewer sizes",
                                (int)TEXTURE_WIDTH, (int)renderer->gl.atlas.height);
     }
     return status;
@@ -198,7 +198,7 @@ void camber_atlas_bind(camber_renderer *renderer) {
 
 camber_status camber_atlas_begin(camber_renderer *renderer) {
     camber_atlas *atlas = &renderer->gl.atlas;
-    const size_t count = renderer->list.use_count ? renderer->list.image_count : 0;
+    const size_t count = renderer->list.use_count ? renderer->list.images.count : 0;
     if (!camber_grow(renderer->share.device->context, &atlas->hashes, &atlas->hash_capacity, count,
                      sizeof *atlas->hashes))
         return CAMBER_ERROR_MEMORY;

@@ -5,10 +5,74 @@
 #include <math.h>
 #include <string.h>
 
-bool camber_image_is_valid(const camber_image *image) {
+/* ---- The images of a frame ---- */
+
+enum { FIRST_SLOTS = 16 };
+
+void camber_image_set_clear(camber_image_set *set) {
+    if (set->count)
+        memset(set->slots, 0, set->slot_count * sizeof *set->slots);
+    set->count = 0;
+}
+
+void camber_image_set_free(camber_image_set *set) {
+    camber_free(set->context, set->slots);
+    camber_free(set->context, set->images);
+}
+
+/* The slot that has the image, or the free one that it goes to. */
+static uint32_t *find_slot(const camber_image_set *set, const camber_image *image) {
+    size_t at = (size_t)camber_hash(CAMBER_HASH_START, &image, sizeof image) & (set->slot_count - 1);
+    while (set->slots[at] && set->images[set->slots[at] - 1] != image)
+        at = (at + 1) & (set->slot_count - 1);
+    return set->slots + at;
+}
+
+/* Makes room for one image more, so that at most half of the slots are in use. */
+static camber_status grow_set(camber_image_set *set) {
+    if (!camber_grow(set->context, &set->images, &set->capacity, set->count + 1, sizeof *set->images))
+        return CAMBER_ERROR_MEMORY;
+    if (2 * (set->count + 1) < set->slot_count)
+        return CAMBER_OK;
+    const size_t slot_count = set->slot_count ? 2 * set->slot_count : FIRST_SLOTS;
+    uint32_t *slots = camber_alloc_zero(set->context, slot_count, sizeof *slots);
+    if (!slots)
+        return CAMBER_ERROR_MEMORY;
+    camber_free(set->context, set->slots);
+    set->slots = slots;
+    set->slot_count = slot_count;
+    for (size_t i = 0; i < set->count; i++)
+        *find_slot(set, set->images[i]) = (uint32_t)i + 1;
+    return CAMBER_OK;
+}
+
+static bool is_valid(const camber_image *image) {
     return image->rgba && image->width >= 1 && image->width <= CAMBER_IMAGE_SIDE_MAX && image->height >= 1 &&
            image->height <= CAMBER_IMAGE_SIDE_MAX &&
            (image->stride_bytes == 0 || image->stride_bytes >= 4 * (size_t)image->width);
+}
+
+camber_status camber_image_set_add(camber_image_set *set, const camber_image *image, size_t *number) {
+    /* Rows that follow each other mostly have the same image. */
+    if (set->count && set->images[set->count - 1] == image) {
+        *number = set->count - 1;
+        return CAMBER_OK;
+    }
+    if (set->count && *find_slot(set, image)) {
+        *number = *find_slot(set, image) - 1;
+        return CAMBER_OK;
+    }
+    if (!is_valid(image))
+        return camber_fail(set->context, CAMBER_ERROR_ARGUMENT,
+                           "an image of %u x %u px; give 1 to %d a side, and rows that do not overlap", image->width,
+                           image->height, CAMBER_IMAGE_SIDE_MAX);
+    const camber_status status = grow_set(set);
+    if (status != CAMBER_OK)
+        return status;
+    *number = set->count;
+    set->images[set->count++] = image;
+    *find_slot(set, image) = (uint32_t)set->count;
+    return CAMBER_OK;
 }
 
 /* ---- Sizes ---- */

@@ -20,7 +20,21 @@ typedef struct camber_image_size {
     bool tiled;             /* beyond its upper edge lies its lower one */
 } camber_image_size;
 
-bool camber_image_is_valid(const camber_image *image);
+/* The images of a frame, each once, numbered in the order in which they are added. */
+typedef struct camber_image_set {
+    camber_context *context;
+    const camber_image **images; /* count, of the caller */
+    size_t count, capacity;
+    uint32_t *slots;   /* numbers + 1, hashed by pointer; 0: free */
+    size_t slot_count; /* a power of two, above 2 * count */
+} camber_image_set;
+
+void camber_image_set_clear(camber_image_set *set);
+void camber_image_set_free(camber_image_set *set);
+/* Gives the number of an image, which is added unless the set has it. Returns CAMBER_ERROR_ARGUMENT where it is none
+ * that camber.h allows, CAMBER_ERROR_MEMORY. */
+camber_status camber_image_set_add(camber_image_set *set, const camber_image *image, size_t *number);
+
 /* The use of an image by a line that is so wide, over a length of line (0: as the image's shape has it). */
 camber_image_use camber_image_use_on_line(const camber_image *image, size_t number, double stroke_px, double length_px);
 /* The use of an image by a fill, over so many px (0: as many as the image has). */

@@ -42,7 +42,7 @@ camber_status camber_renderer_create(camber_device *device, camber_surface *surf
     if (!made)
         return CAMBER_ERROR_MEMORY;
     made->share = (camber_share){.device = device, .surface = surface};
-    made->list.context = made->list.side_table.context = device->context;
+    made->list.context = made->list.side_table.context = made->list.images.context = device->context;
     camber_status status = in_cl ? camber_raster_create(device, &made->raster) : CAMBER_OK;
     if (status == CAMBER_OK && surface)
         status = open_gl(made, full.sharing);

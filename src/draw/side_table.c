@@ -45,7 +45,7 @@ static double period_of(const camber_dash *dash) {
     return sum * (dash->count % 2 ? 2.0 : 1.0);
 }
 
-bool camber_dash_is_valid(const camber_dash *dash) {
+static bool is_dash(const camber_dash *dash) {
     if (dash->count == 0 || dash->count > CAMBER_DASH_LENGTHS_MAX)
         return false;
     for (size_t i = 0; i < dash->count; i++)
@@ -84,6 +84,10 @@ static void put_period(const camber_dash *dash, double unit_px, double period_px
 camber_status camber_side_table_add_dash(camber_side_table *table, const camber_dash *dash, float unit_px,
                                          bool is_round, camber_side_dashes *dashes) {
     if (table->dash != dash || memcmp(&table->dash_unit_px, &unit_px, sizeof unit_px) != 0) {
+        if (!is_dash(dash))
+            return camber_fail(table->context, CAMBER_ERROR_ARGUMENT,
+                               "a dash of %zu lengths; give up to %d of 0 and more, and one above 0", dash->count,
+                               CAMBER_DASH_LENGTHS_MAX);
         const double unit = unit_px > 0.0f ? (double)unit_px : 1.0, period_px = period_of(dash) * unit;
         camber_side_dashes made = {.count = (uint32_t)texels_of(dash), .period_px = (float)period_px};
         float *texels = NULL;
@@ -102,7 +106,7 @@ camber_status camber_side_table_add_dash(camber_side_table *table, const camber_
 
 /* ---- Ramps: two texels a stop, where it lies and its premultiplied colour ---- */
 
-bool camber_ramp_is_valid(const camber_ramp *ramp) {
+static bool is_ramp(const camber_ramp *ramp) {
     if (ramp->count == 0 || ramp->count > CAMBER_RAMP_STOPS_MAX)
         return false;
     float before = -FLT_MAX;
@@ -140,6 +144,10 @@ camber_status camber_side_table_add_ramp(camber_side_table *table, const camber_
         *first = there->first;
         return CAMBER_OK;
     }
+    if (!is_ramp(ramp))
+        return camber_fail(table->context, CAMBER_ERROR_ARGUMENT,
+                           "a ramp of %zu stops; give 1 to %d in ascending places, and finite colours", ramp->count,
+                           CAMBER_RAMP_STOPS_MAX);
     if (!camber_grow(table->context, &table->ramps, &table->ramp_capacity, table->ramp_count + 1, sizeof *table->ramps))
         return CAMBER_ERROR_MEMORY;
     const camber_status status = add_texels(table, 2 * ramp->count, first, &texels);

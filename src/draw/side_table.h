@@ -41,13 +41,10 @@ void camber_side_table_free(camber_side_table *table);
 float *camber_side_table_add(camber_side_table *table, size_t texels);
 
 /* Adds a dash whose lengths are given in this unit, or a ramp, unless the table has it, and says where it lies. Return
- * CAMBER_ERROR_LIMIT where the table is full, CAMBER_ERROR_MEMORY. */
+ * CAMBER_ERROR_ARGUMENT where it is none that camber.h allows, CAMBER_ERROR_LIMIT where the table is full,
+ * CAMBER_ERROR_MEMORY. */
 camber_status camber_side_table_add_dash(camber_side_table *table, const camber_dash *dash, float unit_px,
                                          bool is_round, camber_side_dashes *dashes);
 camber_status camber_side_table_add_ramp(camber_side_table *table, const camber_ramp *ramp, uint32_t *first);
-
-/* Whether a dash or a ramp is one that camber.h allows. */
-bool camber_dash_is_valid(const camber_dash *dash);
-bool camber_ramp_is_valid(const camber_ramp *ramp);
 
 #endif

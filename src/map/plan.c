@@ -104,8 +104,9 @@ static void find_ramp(camber_plan *plan, camber_plan_layer *layer) {
     layer->translucent_ramp = from->ramp.translucent;
     if (!ramp->count)
         return;
-    plan->ramps[plan->ramp_count] = (camber_ramp){ramp->stops, ramp->count};
-    layer->ramp = (uint32_t)++plan->ramp_count;
+    camber_ramp *made = plan->ramps + plan->ramp_count++;
+    *made = (camber_ramp){ramp->stops, ramp->count};
+    layer->ramp = made;
 }
 
 static void add_layer(camber_plan *plan, const set_table *table, const camber_style_layer *layer,
@@ -207,20 +208,23 @@ static camber_layer_paint line_or_border(const camber_plan_layer *layer, const c
     return own;
 }
 
-static camber_paint paint_of(const camber_plan_layer *layer, const camber_layer_paint *whole, double ratio) {
+/* Rows are compared by their paints' bytes, so those between the fields are 0 too. */
+static void put_paint(const camber_plan_layer *layer, const camber_layer_paint *whole, double ratio,
+                      camber_paint *paint) {
     const camber_layer_paint own = line_or_border(layer, whole);
     const double widest_px = own.gap_width > 0.0 ? WIDEST_PX / 3.0 : WIDEST_PX; /* the most for one rail */
+    memset(paint, 0, sizeof *paint);
     if (!(own.width * ratio > 0.0 && own.color.a > 0.0f && (float)own.layer_opacity > 0.0f))
-        return (camber_paint){0};
-    return (camber_paint){.width_px = (float)fmin(own.width * ratio, widest_px),
-                          .color = own.color,
-                          .gap_px = (float)fmin(own.gap_width * ratio, widest_px),
-                          .blur_px = (float)fmin(own.blur * ratio, WIDEST_PX),
-                          .translate_x_px = layer->translate_px[0],
-                          .translate_y_px = layer->translate_px[1],
-                          .trim_start = (float)whole->trim[0],
-                          .trim_end = (float)whole->trim[1],
-                          .ramp = layer->ramp};
+        return;
+    paint->width_px = (float)fmin(own.width * ratio, widest_px);
+    paint->color = own.color;
+    paint->gap_px = (float)fmin(own.gap_width * ratio, widest_px);
+    paint->blur_px = (float)fmin(own.blur * ratio, WIDEST_PX);
+    paint->translate_x_px = layer->translate_px[0];
+    paint->translate_y_px = layer->translate_px[1];
+    paint->trim_start = (float)whole->trim[0];
+    paint->trim_end = (float)whole->trim[1];
+    paint->ramp = layer->ramp;
 }
 
 static size_t dash_slot(const camber_plan *plan, const camber_layer_dashes *dashes) {
@@ -228,7 +232,7 @@ static size_t dash_slot(const camber_plan *plan, const camber_layer_dashes *dash
     const uint64_t hash = camber_hash(CAMBER_HASH_START, dashes->lengths, size_bytes);
     size_t at = (size_t)(hash ^ hash >> 32) & (plan->dash_slot_count - 1);
     for (; plan->dash_slots[at]; at = (at + 1) & (plan->dash_slot_count - 1)) {
-        const camber_layer_dashes *other = plan->dash_lengths + plan->dash_slots[at] - 1;
+        const camber_layer_dashes *other = &plan->dashes[plan->dash_slots[at] - 1]->from;
         if (other->count == dashes->count && memcmp(other->lengths, dashes->lengths, size_bytes) == 0)
             break;
     }
@@ -247,32 +251,34 @@ static bool grow_dash_slots(camber_plan *plan) {
     plan->dash_slots = slots;
     plan->dash_slot_count = count;
     for (size_t i = 0; i < plan->dash_count; i++)
-        slots[dash_slot(plan, plan->dash_lengths + i)] = (uint32_t)i + 1;
+        slots[dash_slot(plan, &plan->dashes[i]->from)] = (uint32_t)i + 1;
     return true;
 }
 
-/* The number of a dash among the plan's, from 1; 0 where memory ran out. */
-static uint32_t intern_dash(camber_plan *plan, const camber_layer_dashes *dashes) {
-    if (!grow_dash_slots(plan))
-        return 0;
-    uint32_t *slot = plan->dash_slots + dash_slot(plan, dashes);
-    if (*slot)
-        return *slot;
-    if (!camber_grow(plan->context, &plan->dash_lengths, &plan->dash_capacity, plan->dash_count + 1,
-                     sizeof *plan->dash_lengths))
-        return 0;
-    plan->dash_lengths[plan->dash_count++] = *dashes;
-    return *slot = (uint32_t)plan->dash_count;
+static camber_plan_dash *copy_dash(camber_context *context, const camber_layer_dashes *dashes) {
+    camber_plan_dash *made = camber_alloc(context, 1, sizeof *made);
+    if (!made)
+        return NULL;
+    made->from = *dashes;
+    made->dash = (camber_dash){made->from.lengths, made->from.count};
+    return made;
 }
 
-/* Makes the list of dashes that passes take, now that the lengths do not move any more. */
-static camber_status list_dashes(camber_plan *plan) {
-    plan->dashes = camber_alloc(plan->context, plan->dash_count, sizeof *plan->dashes);
-    if (!plan->dashes)
-        return CAMBER_ERROR_MEMORY;
-    for (size_t i = 0; i < plan->dash_count; i++)
-        plan->dashes[i] = (camber_dash){plan->dash_lengths[i].lengths, plan->dash_lengths[i].count};
-    return CAMBER_OK;
+/* Finds the plan's dash of these lengths, or adds it. NULL: memory ran out. */
+static const camber_dash *intern_dash(camber_plan *plan, const camber_layer_dashes *dashes) {
+    if (!grow_dash_slots(plan))
+        return NULL;
+    uint32_t *slot = plan->dash_slots + dash_slot(plan, dashes);
+    if (*slot)
+        return &plan->dashes[*slot - 1]->dash;
+    if (!camber_grow(plan->context, &plan->dashes, &plan->dash_capacity, plan->dash_count + 1, sizeof *plan->dashes))
+        return NULL;
+    camber_plan_dash *made = copy_dash(plan->context, dashes);
+    if (!made)
+        return NULL;
+    plan->dashes[plan->dash_count++] = made;
+    *slot = (uint32_t)plan->dash_count;
+    return &made->dash;
 }
 
 /* The width at the whole zoom below, scaled with the map: other engines draw dashes and patterns of that width up to
@@ -285,34 +291,36 @@ static float whole_zoom_px(const camber_plan_layer *layer, const camber_view *vi
 }
 
 typedef struct pattern_choice {
-    bool patterned; /* by the style */
-    uint32_t image; /* 0: one that is not there */
-    float one_px;   /* along the line */
+    bool patterned;            /* by the style */
+    const camber_image *image; /* NULL: one that is not there */
+    float one_px;              /* along the line */
 } pattern_choice;
 
 /* Chooses the pattern. With one, only the opacity of the colour counts, and dashes do not. */
 static pattern_choice choose_pattern(camber_plan *plan, const camber_plan_layer *layer, const camber_view *view,
                                      const camber_feature_view *feature, camber_layer_paint *paint) {
     pattern_choice choice = {0};
-    float aspect;
-    choice.patterned = camber_plan_patterns_find(&plan->patterns, layer->look.layer, floor(layer->look.zoom), feature,
-                                                 &choice.image, &aspect);
+    const camber_sprite_image *found;
+    choice.patterned =
+        camber_plan_patterns_find(&plan->patterns, layer->look.layer, floor(layer->look.zoom), feature, &found);
     if (!choice.patterned)
         return choice;
     paint->color.a = (float)paint->opacity;
-    if (choice.image)
-        choice.one_px = aspect * whole_zoom_px(layer, view, feature);
+    if (found) {
+        choice.image = &found->image;
+        choice.one_px = (float)found->width / (float)found->height * whole_zoom_px(layer, view, feature);
+    }
     return choice;
 }
 
 static void put_pattern(const camber_plan_layer *layer, const pattern_choice *choice, camber_paint *paint) {
     if (!choice->image)
-        *paint = (camber_paint){0};
+        memset(paint, 0, sizeof *paint);
     if (layer->border || !(paint->width_px > 0.0f))
         return;
-    paint->pattern = choice->image;
-    paint->ramp = 0;
-    paint->pattern_px = choice->one_px;
+    paint->image = choice->image;
+    paint->ramp = NULL;
+    paint->image_px = choice->one_px;
 }
 
 /* A limit of 1 or less bevels every turn; 0 would mean the default. */
@@ -371,20 +379,20 @@ static bool fill_tuple(camber_plan *plan, const camber_plan_set *set, const camb
         camber_layer_paint paint = camber_layer_look_paint(&layer->look, feature);
         camber_paint *made = table->tuple + layer->slot;
         const pattern_choice pattern = choose_pattern(plan, layer, view, feature, &paint);
-        *made = paint_of(layer, &paint, view->ratio);
+        put_paint(layer, &paint, view->ratio, made);
         if (pattern.patterned)
             put_pattern(layer, &pattern, made);
         else if (paint.dashes.count && made->width_px > 0.0f) {
             made->dash = intern_dash(plan, &paint.dashes);
             made->dash_unit_px = whole_zoom_px(layer, view, feature);
-            *failed |= made->dash == 0;
+            *failed |= !made->dash;
         }
         const float width_px = fmaxf(table->stroke.width_px, whole_width(made));
         table->stroke = stroke_of(&paint, view->ratio);
         table->stroke.width_px = width_px;
         table->stroke.round_limit = round_limit_that_shows(&table->stroke);
         *key = paint.sort_key;
-        plan->has_arc_length |= made->dash || made->ramp || made->pattern || made->trim_end > made->trim_start;
+        plan->has_arc_length |= made->dash || made->ramp || made->image || made->trim_end > made->trim_start;
         if (made->width_px > 0.0f)
             plan->translate_px = fmaxf(plan->translate_px, hypotf(made->translate_x_px, made->translate_y_px));
     }
@@ -621,8 +629,6 @@ camber_status camber_plan_create(const camber_features *features, const camber_v
     for (size_t s = 0; s < plan->set_count && status == CAMBER_OK; s++)
         status = match_set(features, view, plan, plan->sets + s, &rows);
     if (status == CAMBER_OK)
-        status = list_dashes(plan);
-    if (status == CAMBER_OK)
         status = list_entries(features, plan, &rows.by_class);
 done:
     camber_free(context, rows.by_class.keys);
@@ -635,9 +641,10 @@ done:
 void camber_plan_destroy(camber_plan *plan) {
     camber_free(plan->context, plan->ramps);
     camber_plan_patterns_free(&plan->patterns);
+    for (size_t i = 0; i < plan->dash_count; i++)
+        camber_free(plan->context, plan->dashes[i]);
     camber_free(plan->context, plan->dashes);
     camber_free(plan->context, plan->dash_slots);
-    camber_free(plan->context, plan->dash_lengths);
     camber_free(plan->context, plan->entries);
     camber_free(plan->context, plan->pair_keys);
     camber_free(plan->context, plan->pair_rows);

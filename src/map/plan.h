@@ -26,9 +26,9 @@ typedef struct camber_plan_layer {
     camber_layer_look below; /* at the whole zoom below, of a layer with dashes or a pattern */
     float translate_px[2];
     size_t set;
-    size_t slot;   /* which of the set's layers it is */
-    bool border;   /* of the layer that comes next; it is the same in the style */
-    uint32_t ramp; /* of the plan, + 1; 0: none */
+    size_t slot;             /* which of the set's layers it is */
+    bool border;             /* of the layer that comes next; it is the same in the style */
+    const camber_ramp *ramp; /* of the plan. NULL: none */
     bool translucent_ramp;
     size_t next; /* layer of the set */
 } camber_plan_layer;
@@ -38,6 +38,11 @@ typedef struct camber_plan_layer {
 typedef struct camber_plan_entry {
     uint32_t polyline, pair;
 } camber_plan_entry;
+
+typedef struct camber_plan_dash {
+    camber_dash dash; /* the lengths below */
+    camber_layer_dashes from;
+} camber_plan_dash;
 
 typedef struct camber_plan {
     camber_context *context;
@@ -51,9 +56,8 @@ typedef struct camber_plan {
     size_t paint_count, paint_capacity;
     camber_stroke *strokes; /* by row: the widest of its paints, with both rails and the gap between them */
     size_t row_count, stroke_capacity;
-    float translate_px;                /* the farthest */
-    camber_layer_dashes *dash_lengths; /* dash_count */
-    camber_dash *dashes;               /* dash_count, of them */
+    float translate_px;        /* the farthest */
+    camber_plan_dash **dashes; /* dash_count, each once; paints point at them */
     size_t dash_count, dash_capacity;
     uint32_t *dash_slots; /* their numbers, hashed; dash_slot_count is a power of two */
     size_t dash_slot_count;

@@ -1,7 +1,7 @@
 /* Chooses the images that a plan draws with, and lays backgrounds that are images onto the map.
  *
- * Input: the style's pattern properties and the sprites. Output: the list of images in use, each once, and fills that
- * are drawn between layers.
+ * Input: the style's pattern properties and the sprites. Output: the images of lines, and fills that are drawn between
+ * layers.
  */
 #include "map/plan_patterns.h"
 
@@ -24,45 +24,17 @@ static void note_missing_image(void *user, const char *name) {
 
 void camber_plan_patterns_free(camber_plan_patterns *patterns) {
     camber_free(patterns->context, patterns->fills);
-    camber_free(patterns->context, patterns->numbers);
-    camber_free(patterns->context, patterns->images);
-}
-
-static camber_image image_of(const camber_sprites *sprites, size_t number) {
-    const camber_sprite_image *image = sprites->images + number;
-    const camber_sprite_sheet *sheet = sprites->sheets + image->sheet;
-    return (camber_image){sheet->rgba + 4 * ((size_t)sheet->width * image->y + image->x), image->width, image->height,
-                          4 * (size_t)sheet->width};
-}
-
-/* Finds the number of a sprite's image among those that are drawn, from 1; 0 where memory ran out. Styles draw few
- * images, so the search is linear. */
-static uint32_t intern(camber_plan_patterns *patterns, size_t number) {
-    for (size_t i = 0; i < patterns->count; i++)
-        if (patterns->numbers[i] == number)
-            return (uint32_t)i + 1;
-    if (!camber_grow(patterns->context, &patterns->images, &patterns->image_capacity, patterns->count + 1,
-                     sizeof *patterns->images) ||
-        !camber_grow(patterns->context, &patterns->numbers, &patterns->number_capacity, patterns->count + 1,
-                     sizeof *patterns->numbers)) {
-        patterns->failed = true;
-        return 0;
-    }
-    patterns->images[patterns->count] = image_of(patterns->sprites, number);
-    patterns->numbers[patterns->count++] = number;
-    return (uint32_t)patterns->count;
 }
 
 bool camber_plan_patterns_find(camber_plan_patterns *patterns, const camber_style_layer *layer, double zoom,
-                               const camber_feature_view *feature, uint32_t *image, float *aspect) {
+                               const camber_feature_view *feature, const camber_sprite_image **image) {
     const camber_style_images names = {find_image, note_missing_image, patterns};
     uint32_t found;
-    *image = 0;
-    *aspect = 1.0f;
+    *image = NULL;
     if (patterns->failed || !camber_style_layer_pattern(layer, zoom, feature, &names, &found))
         return false;
-    if (found && (*image = intern(patterns, found - 1)))
-        *aspect = (float)patterns->images[*image - 1].width / (float)patterns->images[*image - 1].height;
+    if (found)
+        *image = patterns->sprites->images + found - 1;
     return true;
 }
 
@@ -78,14 +50,12 @@ static camber_color blend_over(camber_color top, camber_color below) {
 
 /* Lays images onto the map, from the world's north-western corner, in their own size at the whole zoom below; up to
  * the next whole zoom they grow with the map. */
-static void place_images(const camber_plan_patterns *patterns, const camber_view *view, uint32_t image,
-                         camber_fill *fill) {
-    const camber_sprite_image *from = patterns->sprites->images + patterns->numbers[image - 1];
-    const double css_px = view->scale_px / (512.0 * exp2(floor(camber_view_style_zoom(view)))) / from->pixel_ratio;
-    const double width = fmax(from->width * css_px, 1e-3), height = fmax(from->height * css_px, 1e-3);
+static void place_images(const camber_sprite_image *image, const camber_view *view, camber_fill *fill) {
+    const double css_px = view->scale_px / (512.0 * exp2(floor(camber_view_style_zoom(view)))) / image->pixel_ratio;
+    const double width = fmax(image->width * css_px, 1e-3), height = fmax(image->height * css_px, 1e-3);
     const double x = view->x * view->scale_px, y = view->y * view->scale_px;
     const double dx = floor(x / width) * width - x, dy = floor(y / height) * height - y;
-    fill->pattern = image;
+    fill->image = &image->image;
     fill->width_px = (float)width;
     fill->height_px = (float)height;
     fill->x_px = (float)(dx * view->cosine + dy * view->sine + 0.5 * view->width);
@@ -97,14 +67,13 @@ void camber_plan_patterns_add_background(camber_plan_patterns *patterns, const c
                                          const camber_view *view, size_t layers_so_far, camber_color *below) {
     const camber_layer_paint paint = camber_style_layer_paint(layer, camber_view_style_zoom(view), NULL);
     camber_fill fill = {.color = paint.color};
-    uint32_t image;
-    float aspect;
+    const camber_sprite_image *image;
     const bool patterned =
-        camber_plan_patterns_find(patterns, layer, floor(camber_view_style_zoom(view)), NULL, &image, &aspect);
+        camber_plan_patterns_find(patterns, layer, floor(camber_view_style_zoom(view)), NULL, &image);
     if (patterned) {
         fill.color.a = image ? (float)paint.opacity : 0.0f;
         if (image)
-            place_images(patterns, view, image, &fill);
+            place_images(image, view, &fill);
     }
     if (!(fill.color.a > 0.0f))
         return;

@@ -16,19 +16,16 @@ typedef struct camber_plan_patterns {
     camber_sprites *sprites; /* NULL: not read */
     bool failed;             /* no memory */
     bool unread;             /* a pattern was asked for, and no sprites are read */
-    camber_image *images;    /* count: the images that are drawn, each once */
-    size_t *numbers;         /* count: their numbers among the sprites' images */
-    size_t count, image_capacity, number_capacity;
     camber_plan_fill *fills;
     size_t fill_count, fill_capacity;
 } camber_plan_patterns;
 
 void camber_plan_patterns_free(camber_plan_patterns *patterns);
 
-/* Finds the image of a layer for a feature, from 1, and the ratio of its width to its height. false: the layer has
- * no pattern; 0: it is not drawn. Sets failed where memory runs out. */
+/* Finds the image of a layer for a feature; NULL: it is not drawn. Returns false where the layer has no pattern. Sets
+ * failed where memory runs out. */
 bool camber_plan_patterns_find(camber_plan_patterns *patterns, const camber_style_layer *layer, double zoom,
-                               const camber_feature_view *feature, uint32_t *image, float *aspect);
+                               const camber_feature_view *feature, const camber_sprite_image **image);
 
 /* Adds a background: to the colour below everything where nothing else is drawn so far, else as a fill before the
  * layer that comes next. */

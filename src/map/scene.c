@@ -136,14 +136,15 @@ static size_t find_runs(const numbering *n, layer_run *runs, size_t *layer_count
 
 /* Lines that were cut do not know where their polylines begin, so patterns are dropped, and a gradient becomes the
  * colour of its middle. */
-static void forget_progress(const camber_plan *plan, camber_paint *paint) {
+static void forget_progress(camber_paint *paint) {
     if (paint->ramp) {
-        const camber_ramp *ramp = plan->ramps + paint->ramp - 1;
         const float alpha = paint->color.a;
-        paint->color = ramp->stops[ramp->count / 2].color;
+        paint->color = paint->ramp->stops[paint->ramp->count / 2].color;
         paint->color.a *= alpha;
     }
-    paint->dash = paint->ramp = paint->pattern = 0;
+    paint->dash = NULL;
+    paint->ramp = NULL;
+    paint->image = NULL;
     paint->trim_start = paint->trim_end = 0.0f;
 }
 
@@ -159,7 +160,7 @@ static void put_paints(const numbering *n, const layer_run *run, camber_paint *p
         for (size_t k = first_of(n, set); k < end_of(n, set); k++) {
             paints[k] = paint_of(n, layer, k);
             if (!n->by_pair)
-                forget_progress(n->plan, paints + k);
+                forget_progress(paints + k);
         }
     }
 }
@@ -188,13 +189,7 @@ static camber_status make_passes(camber_context *context, const numbering *n, si
                                         .polyline_count = runs[i].end_polyline - runs[i].first_polyline,
                                         .paints = paints,
                                         .paint_count = runs[i].end_paint,
-                                        .dashes = n->plan->dashes,
-                                        .dash_count = n->plan->dash_count,
-                                        .images = n->plan->patterns.images,
-                                        .image_count = n->plan->patterns.count,
                                         .overlap = runs[i].overlap,
-                                        .ramps = n->plan->ramps,
-                                        .ramp_count = n->plan->ramp_count,
                                         .opacity = runs[i].opacity};
         if (runs[i].fill) {
             list->passes[i].kind = CAMBER_PASS_FILL;

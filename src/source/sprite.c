@@ -100,6 +100,8 @@ static camber_status add_image(index_reader *r, const char *name, const json_t *
         return camber_fail(context, CAMBER_ERROR_INPUT,
                            "%s: /%.64s: %u x %u px at %u, %u lie beside its sheet of %u x %u px; get the sprite again",
                            r->path, name, image.width, image.height, image.x, image.y, sheet->width, sheet->height);
+    image.image = (camber_image){sheet->rgba + 4 * ((size_t)sheet->width * image.y + image.x), image.width,
+                                 image.height, 4 * (size_t)sheet->width};
     if (!camber_grow(context, &sprites->images, &sprites->image_capacity, sprites->image_count + 1,
                      sizeof *sprites->images))
         return CAMBER_ERROR_MEMORY;

@@ -14,6 +14,7 @@ typedef struct camber_sprite_image {
     size_t sheet;
     uint32_t x, y, width, height; /* px of the sheet, all on it */
     double pixel_ratio;           /* px of the sheet a CSS px */
+    camber_image image;           /* these px, as a paint takes them */
     bool sdf;                     /* the alpha is a distance; as a pattern it is drawn as it stands */
 } camber_sprite_image;
 

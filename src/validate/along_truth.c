@@ -40,14 +40,14 @@ static foot foot_of(const camber_along_desc *d, double x, double y) {
 /* How far along the line the nearest dash is. */
 static double dash_distance(const camber_along_desc *d, double along) {
     const double unit = d->paint->dash_unit_px > 0.0f ? (double)d->paint->dash_unit_px : 1;
-    const size_t count = d->dash->count * (d->dash->count % 2 ? 2 : 1);
+    const size_t count = d->paint->dash->count * (d->paint->dash->count % 2 ? 2 : 1);
     double period = 0, nearest = INFINITY;
     for (size_t i = 0; i < count; i++)
-        period += (double)d->dash->lengths[i % d->dash->count] * unit;
+        period += (double)d->paint->dash->lengths[i % d->paint->dash->count] * unit;
     for (double at = period * (floor(along / period) - 1); at < along + 2 * period; at += period) {
         double from = at;
         for (size_t i = 0; i < count; i++) {
-            const double to = from + (double)d->dash->lengths[i % d->dash->count] * unit;
+            const double to = from + (double)d->paint->dash->lengths[i % d->paint->dash->count] * unit;
             if (i % 2 == 0)
                 nearest = fmin(nearest, fmax(fmax(from - along, along - to), 0));
             from = to;
@@ -106,7 +106,7 @@ static void add_sample(const camber_along_desc *d, double total, double x, doubl
     if (share <= 0)
         return;
     if (d->paint->ramp)
-        color_at(d->ramp, progress, color);
+        color_at(d->paint->ramp, progress, color);
     const camber_color c = d->paint->color;
     const double by[] = {(double)c.r, (double)c.g, (double)c.b, 1};
     for (int i = 0; i < 4; i++)

@@ -9,9 +9,7 @@ typedef struct camber_along_desc {
     const float *points; /* count pairs of x, y px */
     size_t count;
     camber_cap cap;
-    const camber_paint *paint;
-    const camber_dash *dash; /* where the paint names one; the ends of dashes are those of the line */
-    const camber_ramp *ramp; /* where the paint names one */
+    const camber_paint *paint; /* the ends of its dashes are those of the line */
 } camber_along_desc;
 
 double camber_along_length(const float *points, size_t count);

@@ -33,11 +33,11 @@ static const struct {
 } rows[] = {
     {"a gap", CAMBER_CAP_BUTT, {.width_px = 3, .gap_px = 4, WHITE}, {0.6, 0.002, 0.0005}},
     {"a blur", CAMBER_CAP_BUTT, {.width_px = 10, .blur_px = 3, WHITE}, {1.2, 0.001, 0.0005}},
-    {"dashes", CAMBER_CAP_BUTT, {.width_px = 5, .dash = 1, WHITE}, {0.7, 0.004, 0.0005}},
-    {"round dashes", CAMBER_CAP_ROUND, {.width_px = 5, .dash = 2, WHITE}, {2.4, 0.004, 0.0005}},
+    {"dashes", CAMBER_CAP_BUTT, {.width_px = 5, .dash = dashes, WHITE}, {0.7, 0.004, 0.0005}},
+    {"round dashes", CAMBER_CAP_ROUND, {.width_px = 5, .dash = dashes + 1, WHITE}, {2.4, 0.004, 0.0005}},
     {"a trim", CAMBER_CAP_ROUND, {.width_px = 7, .trim_start = 0.31f, .trim_end = 0.62f, WHITE}, {0.7, 0.004, 0.0005}},
-    {"a ramp", CAMBER_CAP_BUTT, {.width_px = 8, .ramp = 1, WHITE}, {0.3, 0.002, 0.0005}},
-    {"a translucent ramp", CAMBER_CAP_BUTT, {.width_px = 8, .ramp = 2, WHITE}, {0.3, 0.002, 0.0005}},
+    {"a ramp", CAMBER_CAP_BUTT, {.width_px = 8, .ramp = ramps, WHITE}, {0.3, 0.002, 0.0005}},
+    {"a translucent ramp", CAMBER_CAP_BUTT, {.width_px = 8, .ramp = ramps + 1, WHITE}, {0.3, 0.002, 0.0005}},
 };
 
 /* Red, then alpha. */
@@ -62,9 +62,7 @@ static void make_truth(size_t number, float truth[2 * PIXELS]) {
         const camber_along_desc desc = {.points = points + 2 * offsets[i],
                                         .count = offsets[i + 1] - offsets[i],
                                         .cap = rows[number].cap,
-                                        .paint = paint,
-                                        .dash = paint->dash ? dashes + paint->dash - 1 : NULL,
-                                        .ramp = paint->ramp ? ramps + paint->ramp - 1 : NULL};
+                                        .paint = paint};
         camber_along_add(&desc, window, rgba);
     }
     for (size_t i = 0; i < PIXELS && rgba; i++) {
@@ -82,13 +80,7 @@ static camber_status draw(camber_context *context, const camber_drawing_path *pa
         .points = points, .point_count = offsets[LINES], .offsets = offsets, .polyline_count = LINES};
     const camber_tessellation_desc tessellation = {
         .strokes = &stroke, .stroke_count = 1, .method = method, .has_arc_length = true};
-    const camber_pass pass = {.mesh = path->mesh,
-                              .paints = paint,
-                              .paint_count = 1,
-                              .dashes = dashes,
-                              .dash_count = 2,
-                              .ramps = ramps,
-                              .ramp_count = 2};
+    const camber_pass pass = {.mesh = path->mesh, .paints = paint, .paint_count = 1};
     const camber_frame frame = {.width = SIDE_PX, .height = SIDE_PX, .passes = &pass, .pass_count = 1};
     camber_polylines *polylines = NULL;
     camber_status status = camber_polylines_create(context, &desc, &polylines);

@@ -106,7 +106,7 @@ static bool shapes_differ(const camber_drawing_stages *got, const camber_drawing
                           camber_finding *finding) {
     return words_differ("setup", got->segments, expected->segments, expected->segment_words, expected, finding) ||
            (expected->arc_lengths && words_differ("measures", got->arc_lengths, expected->arc_lengths,
-                                                  expected->measure_words, expected, finding)) ||
+                                                  expected->arc_length_words, expected, finding)) ||
            (expected->planes &&
             words_differ("plane", got->planes, expected->planes, expected->plane_words, expected, finding));
 }

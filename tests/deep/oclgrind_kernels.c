@@ -198,16 +198,23 @@ static bool take_rows(void *user, const uint8_t *rgba, uint32_t first_row, uint3
     return true;
 }
 
+static const uint8_t texels[4 * 5 * 3] = {9, 0, 0, 9, 40, 50, 60, 200};
+static const camber_image small_image = {texels, 5, 3, 0};
+
 /* Ways to draw a row that plain frames do not have. */
 static camber_paint rich_paint(int row, float width_px) {
+    static const float lengths[] = {4, 3, 0, 2};
+    static const camber_dash dash = {lengths, 4};
+    static const camber_ramp_stop stops[] = {{0.1f, {1, 0, 0, 1}}, {0.5f, {0, 1, 0, 0}}, {0.5f, {0, 1, 1, 1}}};
+    static const camber_ramp ramp = {stops, 3};
     camber_paint paint = {.width_px = 0.4f * width_px, .color = {0.1f * (float)row, 0, 1, row % 2 ? 0.5f : 1}};
     paint.gap_px = row % 3 == 0 ? 0.2f * width_px : 0;
     paint.blur_px = row % 4 == 1 ? 2 : 0;
-    paint.dash = row % 3 == 1;
+    paint.dash = row % 3 == 1 ? &dash : NULL;
     paint.trim_start = 0.2f;
     paint.trim_end = row % 5 == 2 ? 0.6f : 0;
-    paint.ramp = row % 3 == 2;
-    paint.pattern = row % 4 == 3;
+    paint.ramp = row % 3 == 2 ? &ramp : NULL;
+    paint.image = row % 4 == 3 ? &small_image : NULL;
     return paint;
 }
 
@@ -217,10 +224,6 @@ static bool draw(camber_device *device, camber_context *context, const camber_ma
                  const camber_stroke *strokes, picture pictures[PICTURES]) {
     const camber_polylines_desc desc = camber_made_scene_polylines(s);
     const camber_tessellation_desc strips = {.strokes = strokes, .stroke_count = ROWS, .has_arc_length = true};
-    static const float lengths[] = {4, 3, 0, 2};
-    static const camber_ramp_stop stops[] = {{0.1f, {1, 0, 0, 1}}, {0.5f, {0, 1, 0, 0}}, {0.5f, {0, 1, 1, 1}}};
-    const camber_dash dash = {lengths, 4};
-    const camber_ramp ramp = {stops, 3};
     camber_paint paints[3][ROWS];
     camber_polylines *polylines = NULL;
     camber_renderer *renderer = NULL;
@@ -237,21 +240,9 @@ static bool draw(camber_device *device, camber_context *context, const camber_ma
     const camber_pass passes[] = {{.mesh = mesh, .paints = paints[0], .paint_count = ROWS},
                                   {.kind = CAMBER_PASS_FILL, .fill = {.color = {0, 1, 0, 0.3f}}},
                                   {.mesh = mesh, .paints = paints[1], .paint_count = ROWS, .opacity = 0.5f}};
-    static const uint8_t texels[4 * 5 * 3] = {9, 0, 0, 9, 40, 50, 60, 200};
-    const camber_image image = {texels, 5, 3, 0};
-    const camber_pass rich_passes[] = {{.kind = CAMBER_PASS_FILL,
-                                        .fill = {.color = {0, 0, 0, 1}, .pattern = 1, .bearing_deg = 30},
-                                        .images = &image,
-                                        .image_count = 1},
-                                       {.mesh = mesh,
-                                        .paints = paints[2],
-                                        .paint_count = ROWS,
-                                        .dashes = &dash,
-                                        .dash_count = 1,
-                                        .ramps = &ramp,
-                                        .ramp_count = 1,
-                                        .images = &image,
-                                        .image_count = 1}};
+    const camber_pass rich_passes[] = {
+        {.kind = CAMBER_PASS_FILL, .fill = {.color = {0, 0, 0, 1}, .image = &small_image, .bearing_deg = 30}},
+        {.mesh = mesh, .paints = paints[2], .paint_count = ROWS}};
     camber_frame frame = {.width = PICTURE_WIDTH, .height = PICTURE_HEIGHT, .passes = passes, .pass_count = 3};
     good = good && camber_renderer_render(renderer, &frame, take_rows, pictures[0], NULL) == CAMBER_OK;
     frame.pitch_deg = 75;

@@ -45,20 +45,20 @@ static void make_images(drawing *d, bool noise) {
 
 enum { SCENES = 5, WAYS = 12 };
 
-static camber_paint paint_of(size_t way, float width_px) {
-    camber_paint p = {.width_px = 0.9f * width_px, .color = {1, 1, 1, 1}, .pattern = 1 + (uint32_t)way % IMAGES};
-    p.pattern_px = way == 1 ? 37.3f : way == 7 ? 3 : 0;
+static camber_paint paint_of(const drawing *d, size_t way, float width_px) {
+    camber_paint p = {.width_px = 0.9f * width_px, .color = {1, 1, 1, 1}, .image = d->images + way % IMAGES};
+    p.image_px = way == 1 ? 37.3f : way == 7 ? 3 : 0;
     if (way == 2 || way == 9) {
         p.width_px = 0.3f * width_px;
         p.gap_px = 0.3f * width_px;
     }
     p.blur_px = way == 4 ? 2.5f : 0;
-    p.dash = way == 6 || way == 9;
-    p.ramp = way == 8;
+    p.dash = way == 6 || way == 9 ? &dash : NULL;
+    p.ramp = way == 8 ? &ramp : NULL;
     p.trim_end = way == 5 ? 0.3f : 0;
     p.translate_x_px = way == 3 ? 1.7f : 0;
     if (way == 11)
-        p.pattern = 0;
+        p.image = NULL;
     return p;
 }
 
@@ -74,17 +74,17 @@ static drawing *begin_drawing(int which, size_t first_way) {
     scene_strokes(d->strokes);
     fills[which](&d->lines, &seed);
     for (size_t i = 0; i < CAMBER_KERNEL_ROWS; i++) {
-        d->paints[0][i] = paint_of((first_way + i) % WAYS, d->strokes[i].width_px);
-        d->paints[1][i] = paint_of((first_way + 3 * i + 5) % WAYS, 0.5f * d->strokes[i].width_px);
+        d->paints[0][i] = paint_of(d, (first_way + i) % WAYS, d->strokes[i].width_px);
+        d->paints[1][i] = paint_of(d, (first_way + 3 * i + 5) % WAYS, 0.5f * d->strokes[i].width_px);
     }
     d->passes[0].fill = (camber_fill){.color = {0, 0, 0, 1},
-                                      .pattern = 1 + (uint32_t)first_way % IMAGES,
+                                      .image = d->images + first_way % IMAGES,
                                       .width_px = 13.3f,
                                       .height_px = 21,
                                       .x_px = 5.5f,
                                       .y_px = -3,
                                       .bearing_deg = 20};
-    d->passes[2].fill = (camber_fill){.color = {0, 0, 0, 0.4f}, .pattern = 2, .x_px = 100};
+    d->passes[2].fill = (camber_fill){.color = {0, 0, 0, 0.4f}, .image = d->images + 1, .x_px = 100};
     d->frame.passes = d->passes;
     d->frame.pass_count = 4;
     return d;
@@ -108,12 +108,6 @@ static picture draw_with(const fixture *e, camber_renderer *renderer, drawing *d
         pass->mesh = mesh;
         pass->paints = d->paints[i / 2];
         pass->paint_count = i % 2 ? CAMBER_KERNEL_ROWS : 0;
-        pass->dashes = &dash;
-        pass->dash_count = 1;
-        pass->ramps = &ramp;
-        pass->ramp_count = 1;
-        pass->images = d->images;
-        pass->image_count = IMAGES;
     }
     picture p = picture_draw(renderer, &d->frame);
     camber_mesh_destroy(mesh);
@@ -148,14 +142,14 @@ static void compare_with_twin(const fixture *e, const drawing *d, camber_mesh *m
     for (uint32_t i = ROWS; i < ALL; i++) {
         bool is_opaque;
         const camber_fill *fill = &d->passes[2 * (i - ROWS)].fill;
-        const camber_image *image = d->images + fill->pattern - 1;
-        camber_image_use uses[] = {camber_image_use_in_fill(image, 0, (double)fill->width_px, (double)fill->height_px),
-                                   camber_image_use_as_mean(image, 0)};
+        camber_image_use uses[] = {
+            camber_image_use_in_fill(fill->image, 0, (double)fill->width_px, (double)fill->height_px),
+            camber_image_use_as_mean(fill->image, 0)};
         const camber_draw_list list = {.image_uses = uses};
         const camber_fill_paint paint = {fill->color, true, 0, 1, fill->x_px, fill->y_px, fill->bearing_deg};
         brush_ext[i].features = CAMBER_FEATURE_IMAGE;
         assert_int_equal(camber_cl_images_add_fill(&images, &list, &paint, &brush_ext[i].image, &is_opaque), CAMBER_OK);
-        assert_int_equal(is_opaque, fill->pattern % 2);
+        assert_int_equal(is_opaque, (fill->image - d->images) % 2 == 0);
     }
     const size_t count = mesh->polyline_count;
     const camber_raster_input runs[] = {
@@ -278,14 +272,14 @@ static void test_hostile(void **state) {
         drawing *d = begin_drawing(2, i);
         memcpy(d->images, images, sizeof images);
         d->passes[0].fill = (camber_fill){.color = {0, 0, 0, 1},
-                                          .pattern = 1 + (uint32_t)i % 2,
+                                          .image = d->images + i % 2,
                                           .width_px = size,
                                           .height_px = 30,
                                           .x_px = i % 2 ? size : 0,
                                           .bearing_deg = i % 3 ? 0 : 1e9};
         for (size_t k = 0; k < CAMBER_KERNEL_ROWS; k++) {
-            d->paints[0][k].pattern = d->paints[1][k].pattern = 1 + (uint32_t)(i + k) % 2;
-            d->paints[0][k].pattern_px = size;
+            d->paints[0][k].image = d->paints[1][k].image = d->images + (i + k) % 2;
+            d->paints[0][k].image_px = size;
         }
         picture p = draw_with(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], d),
                 q = draw_with(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], d);

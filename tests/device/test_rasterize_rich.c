@@ -34,11 +34,11 @@ static camber_paint paint_of(size_t way, float width_px) {
     camber_paint p = {.width_px = gap ? 0.3f * width_px : 0.9f * width_px, .color = {hue[0], hue[1], hue[2], 1}};
     p.gap_px = gap ? 0.4f * width_px : 0;
     p.blur_px = way == 2 ? 0.2f * width_px : way == 3 ? 1.5f : way == 10 ? 6 : 0;
-    p.dash = way >= 4 && way < 10 ? 1 + (uint32_t)way % DASHES : way == 14 ? 1 : 0;
+    p.dash = way >= 4 && way < 10 ? dashes + way % DASHES : way == 14 ? dashes : NULL;
     p.dash_unit_px = way == 5 ? 2.5f : 0;
     p.trim_start = way == 6 || way == 11 ? 0.35f : 0;
     p.trim_end = way == 6 ? 0.7f : way == 7 ? 0.2f : way == 11 ? 1 : 0;
-    p.ramp = way >= 12 ? 1 + (uint32_t)way % RAMPS : 0;
+    p.ramp = way >= 12 ? ramps + way % RAMPS : NULL;
     p.translate_y_px = way == 4 ? 2.5f : 0;
     if (p.ramp)
         p.color = (camber_color){1, 1, 1, 1};
@@ -81,10 +81,6 @@ static picture draw_with(const fixture *e, camber_renderer *renderer, drawing *d
         pass->mesh = mesh;
         pass->paints = d->paints[i];
         pass->paint_count = CAMBER_KERNEL_ROWS;
-        pass->dashes = dashes;
-        pass->dash_count = DASHES;
-        pass->ramps = ramps;
-        pass->ramp_count = RAMPS;
     }
     d->frame.passes = d->passes;
     d->frame.pass_count = 2;
@@ -106,7 +102,7 @@ static camber_brush_ext more_of(size_t way, float width_px, float tail[4 * TAIL_
     m.trim_from = p.trim_start;
     m.trim_to = p.trim_end;
     if (p.dash) {
-        m.period = p.dash == 2 ? 1.3f : 12;
+        m.period = p.dash == dashes + 1 ? 1.3f : 12;
         m.round_dashes = way % 2;
         m.first_dash = (uint32_t)*tail_count;
         m.dash_count = 3;
@@ -116,12 +112,13 @@ static camber_brush_ext more_of(size_t way, float width_px, float tail[4 * TAIL_
         }
     }
     if (p.ramp) {
-        const camber_ramp *ramp = ramps + p.ramp - 1;
+        const camber_ramp *ramp = p.ramp;
+        const bool is_striped = ramp == ramps + RAMPS - 1;
         m.first_stop = (uint32_t)*tail_count;
-        m.stop_count = (uint32_t)(p.ramp == RAMPS ? STRIPES_MANY : ramp->count); /* more than are looked at */
+        m.stop_count = (uint32_t)(is_striped ? STRIPES_MANY : ramp->count); /* more than are looked at */
         for (size_t i = 0; i < m.stop_count; i++) {
             const camber_color c = ramp->stops[i % ramp->count].color;
-            const float place = p.ramp == RAMPS ? (float)i / STRIPES_MANY : ramp->stops[i].place;
+            const float place = is_striped ? (float)i / STRIPES_MANY : ramp->stops[i].place;
             const float texels[8] = {place, 0, 0, 0, c.r * c.a, c.g * c.a, c.b * c.a, c.a};
             memcpy(tail + 4 * *tail_count, texels, sizeof texels);
             *tail_count += 2;

@@ -33,14 +33,15 @@ static void compare(const camber_drawing_stages *got, const camber_drawing_stage
     REQUIRE(got->segment_count == expected->segment_count);
     REQUIRE(!got->arc_lengths == !expected->arc_lengths && !got->planes == !expected->planes);
     for (size_t i = 0; i < expected->segment_count; i++) {
-        const size_t word = expected->segment_words * i, measure = expected->measure_words * i,
+        const size_t word = expected->segment_words * i, measure = expected->arc_length_words * i,
                      plane = expected->plane_words * i;
         REQUIRE(got->boxes[i] == expected->boxes[i]);
         if (!is_drawn(got->boxes[i]))
             continue;
         require_equal_words(got->segments + word, expected->segments + word, expected->segment_words);
         if (expected->arc_lengths)
-            require_equal_words(got->arc_lengths + measure, expected->arc_lengths + measure, expected->measure_words);
+            require_equal_words(got->arc_lengths + measure, expected->arc_lengths + measure,
+                                expected->arc_length_words);
         if (expected->planes)
             require_equal_words(got->planes + plane, expected->planes + plane, expected->plane_words);
     }

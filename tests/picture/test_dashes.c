@@ -81,7 +81,7 @@ static void test_straight(void **state) {
                                    2,
                                    {width, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0},
                                    (camber_method)method,
-                                   {.width_px = width, .color = {1, 1, 1, 1}, .dash = 1},
+                                   {.width_px = width, .color = {1, 1, 1, 1}},
                                    .dash = patterns[i]};
                 check(*state, &d, 3, 24);
             }
@@ -91,12 +91,9 @@ static void test_bent(void **state) {
     for (size_t i = 0; i < 3; i++)
         for (int method = 0; method < 3; method++)
             for (int line = 0; line < 2; line++) {
-                const drawing d = {line ? ALONG_CURVED : ALONG_BENT,
-                                   line ? 9 : 4,
-                                   {5, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0},
-                                   (camber_method)method,
-                                   {.width_px = 5, .color = {1, 1, 1, 1}, .dash = 1},
-                                   .dash = patterns[i]};
+                const drawing d = {line ? ALONG_CURVED : ALONG_BENT,           line ? 9 : 4,
+                                   {5, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0}, (camber_method)method,
+                                   {.width_px = 5, .color = {1, 1, 1, 1}},     .dash = patterns[i]};
                 check(*state, &d, 6, 255); /* at corners, the bisector says whose dash a pixel is */
             }
 }
@@ -108,12 +105,9 @@ static void test_round(void **state) {
     for (size_t i = 0; i < 2; i++)
         for (int method = 0; method < 3; method++)
             for (int line = 0; line < 2; line++) {
-                const drawing d = {line ? ALONG_STRAIGHT : ALONG_CURVED,
-                                   line ? 2 : 9,
-                                   {6, CAMBER_JOIN_ROUND, CAMBER_CAP_ROUND, 0},
-                                   (camber_method)method,
-                                   {.width_px = 6, .color = {1, 1, 1, 1}, .dash = 1},
-                                   .dash = round[i]};
+                const drawing d = {line ? ALONG_STRAIGHT : ALONG_CURVED,        line ? 2 : 9,
+                                   {6, CAMBER_JOIN_ROUND, CAMBER_CAP_ROUND, 0}, (camber_method)method,
+                                   {.width_px = 6, .color = {1, 1, 1, 1}},      .dash = round[i]};
                 check(*state, &d, 6, 90);
             }
 }
@@ -125,7 +119,7 @@ static void test_fine(void **state) {
                        2,
                        {6, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0},
                        CAMBER_METHOD_STRIP,
-                       {.width_px = 6, .color = {1, 1, 1, 1}, .dash = 1},
+                       {.width_px = 6, .color = {1, 1, 1, 1}},
                        .dash = {fine, 2}};
     picture p = along_draw(*state, &d);
     assert_true(fabs(picture_value(&p, 47, 43, 3) - 0.25) <= 0.006);

@@ -68,8 +68,6 @@ typedef struct drawing {
     camber_stroke stroke;
     camber_method method;
     camber_paint paint;
-    const camber_image *images;
-    size_t image_count;
     uint32_t largest_piece_px;
 } drawing;
 
@@ -81,8 +79,7 @@ static camber_mesh *make_mesh(fixture *s, const drawing *d, bool has_arc_length)
 
 static picture draw(fixture *s, const drawing *d) {
     camber_mesh *mesh = make_mesh(s, d, true);
-    const camber_pass pass = {
-        .mesh = mesh, .paints = &d->paint, .paint_count = 1, .images = d->images, .image_count = d->image_count};
+    const camber_pass pass = {.mesh = mesh, .paints = &d->paint, .paint_count = 1};
     picture p = picture_draw(
         fixture_any(s),
         &(camber_frame){
@@ -119,9 +116,9 @@ static spot find_spot(const drawing *d, double x, double y) {
 /* Compares the pixels that lie in the line, two widths from its joints. */
 static void check(fixture *s, const drawing *d, double mean_bound, double most_bound) {
     picture p = draw(s, d);
-    const camber_image *image = d->images + d->paint.pattern - 1;
+    const camber_image *image = d->paint.image;
     const double whole = 2.0 * (double)camber_paint_half_width(&d->paint);
-    const double one = d->paint.pattern_px > 0 ? (double)d->paint.pattern_px : whole * image->width / image->height;
+    const double one = d->paint.image_px > 0 ? (double)d->paint.image_px : whole * image->width / image->height;
     double sum = 0, most = 0;
     size_t count = 0;
     for (uint32_t k = 0; k < SIDE * SIDE; k++) {
@@ -151,9 +148,7 @@ static drawing drawing_of(const float *points, size_t count, float width_px, con
     return (drawing){.points = points,
                      .count = count,
                      .stroke = {width_px, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0},
-                     .paint = {.width_px = width_px, .color = {1, 1, 1, 1}, .pattern = 1},
-                     .images = &s->image,
-                     .image_count = 1};
+                     .paint = {.width_px = width_px, .color = {1, 1, 1, 1}, .image = &s->image}};
 }
 
 static void test_straight(void **state) {
@@ -166,7 +161,7 @@ static void test_straight(void **state) {
                 drawing d = drawing_of(kind ? slanted : level, 2, 20, &s);
                 d.method = (camber_method)method;
                 check(*state, &d, 1, 6);
-                d.paint.pattern_px = 33.3f;
+                d.paint.image_px = 33.3f;
                 check(*state, &d, 1, 6);
             }
 }
@@ -192,7 +187,7 @@ static void test_corner(void **state) {
     for (int join = 0; join < 3; join++) {
         drawing d = drawing_of(bent, 3, 24, &s);
         d.stroke.join = (camber_join)join;
-        d.paint.pattern_px = 150;
+        d.paint.image_px = 150;
         picture p = draw(*state, &d);
         for (uint32_t y = 1; y < SIDE; y++)
             for (uint32_t x = 1; x < SIDE; x++) {
@@ -249,9 +244,7 @@ static void test_neighbours(void **state) {
     }
     for (uint32_t i = 0; i < 9; i++) { /* all of them come into the texture */
         drawing d = drawing_of(slanted, 2, 9 + (float)(i % 2) * 14, sheets);
-        d.images = images;
-        d.image_count = 9;
-        d.paint.pattern = i + 1;
+        d.paint.image = images + i;
         picture p = draw(*state, &d);
         for (size_t k = 0; k < SIDE * SIDE; k++) {
             assert_int_equal(p.rgba[4 * k + (i == 4 ? 0 : 1)], p.rgba[4 * k + 3]);
@@ -308,7 +301,7 @@ static void test_many(void **state) {
     for (size_t i = 0; i < COUNT; i++) {
         images[i] = (camber_image){rgba + 4 * i, PX, PX, 0};
         strokes[i] = (camber_stroke){600, CAMBER_JOIN_ROUND, CAMBER_CAP_BUTT, 0};
-        all[i] = (camber_paint){.width_px = 600, .color = {1, 1, 1, 1}, .pattern = (uint32_t)i + 1};
+        all[i] = (camber_paint){.width_px = 600, .color = {1, 1, 1, 1}, .image = images + i};
         paints[i][i] = all[i];
         camber_made_scene_point(&lines, 0, 48);
         camber_made_scene_point(&lines, SIDE, 48);
@@ -317,13 +310,8 @@ static void test_many(void **state) {
     camber_mesh *mesh =
         fixture_mesh(s, fixture_any(s), &lines, &(camber_tessellation_desc){strokes, COUNT, 0, 0, true});
     for (size_t i = 0; i < COUNT; i++)
-        passes[i] = (camber_pass){.mesh = mesh,
-                                  .first_polyline = i,
-                                  .polyline_count = 1,
-                                  .paints = paints[i],
-                                  .paint_count = COUNT,
-                                  .images = images,
-                                  .image_count = COUNT};
+        passes[i] = (camber_pass){
+            .mesh = mesh, .first_polyline = i, .polyline_count = 1, .paints = paints[i], .paint_count = COUNT};
     camber_frame frame = {.width = SIDE, .height = SIDE, .passes = passes, .pass_count = COUNT};
     for (int round = 0; round < 2; round++) {
         picture p = picture_draw(fixture_any(s), &frame);
@@ -372,7 +360,7 @@ static void test_fill_color(void **state) {
     make_sheet(&s, 2, 2, SMOOTH);
     drawing d = drawing_of(level, 2, 10, &s);
     d.paint.color = (camber_color){1, 0, 0, 1};
-    d.paint.pattern = 0;
+    d.paint.image = NULL;
     camber_mesh *mesh = make_mesh(*state, &d, true);
     const camber_pass line = {.mesh = mesh, .paints = &d.paint, .paint_count = 1};
     const camber_pass overlay = {.kind = CAMBER_PASS_FILL, .fill = {.color = {0, 1, 0, 0.5f}}},
@@ -388,8 +376,9 @@ static void test_fill_color(void **state) {
     camber_mesh_destroy(mesh);
 }
 
-static void check_fill(fixture *s, const camber_image *image, camber_fill fill_as, uint32_t piece_px) {
-    const camber_pass pass = {.kind = CAMBER_PASS_FILL, .images = image, .image_count = 1, .fill = fill_as};
+static void check_fill(fixture *s, camber_fill fill_as, uint32_t piece_px) {
+    const camber_image *image = fill_as.image;
+    const camber_pass pass = {.kind = CAMBER_PASS_FILL, .fill = fill_as};
     picture p = fill(s, &pass, 1, piece_px);
     const double w = fill_as.width_px > 0 ? (double)fill_as.width_px : image->width;
     const double h = fill_as.height_px > 0 ? (double)fill_as.height_px : image->height;
@@ -417,12 +406,11 @@ static void test_fill_images(void **state) {
     sheet s;
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
         make_sheet(&s, sizes[i][0], sizes[i][1], i % 2 ? CLEAR : SMOOTH);
-        check_fill(*state, &s.image, (camber_fill){.color = {0, 0, 0, 1}, .pattern = 1}, 0);
-        check_fill(*state, &s.image, (camber_fill){.color = {0, 0, 0, 0.4f}, .pattern = 1, .x_px = 3.3f, .y_px = -1.7f},
-                   41);
-        check_fill(*state, &s.image,
+        check_fill(*state, (camber_fill){.color = {0, 0, 0, 1}, .image = &s.image}, 0);
+        check_fill(*state, (camber_fill){.color = {0, 0, 0, 0.4f}, .image = &s.image, .x_px = 3.3f, .y_px = -1.7f}, 41);
+        check_fill(*state,
                    (camber_fill){.color = {0, 0, 0, 1},
-                                 .pattern = 1,
+                                 .image = &s.image,
                                  .width_px = 2.5f * (float)sizes[i][0],
                                  .height_px = 1.75f * (float)sizes[i][1],
                                  .x_px = 30,
@@ -432,9 +420,7 @@ static void test_fill_images(void **state) {
     }
     make_sheet(&s, 64, 64, CHECKED);
     const camber_pass fine = {.kind = CAMBER_PASS_FILL,
-                              .images = &s.image,
-                              .image_count = 1,
-                              .fill = {.color = {0, 0, 0, 1}, .pattern = 1, .width_px = 13, .height_px = 9}};
+                              .fill = {.color = {0, 0, 0, 1}, .image = &s.image, .width_px = 13, .height_px = 9}};
     picture p = fill(*state, &fine, 1, 0);
     for (size_t k = 0; k < SIDE * SIDE; k++)
         assert_in_range(p.rgba[4 * k], 110, 145);
@@ -459,7 +445,7 @@ static void test_pitched_line(void **state) {
     make_sheet(&made, 4, 4, SMOOTH);
     const drawing d = drawing_of(slanted, 2, 40, &made);
     camber_mesh *mesh = make_mesh(s, &d, true);
-    const camber_pass pass = {.mesh = mesh, .paints = &d.paint, .paint_count = 1, .images = d.images, .image_count = 1};
+    const camber_pass pass = {.mesh = mesh, .paints = &d.paint, .paint_count = 1};
     picture p =
         picture_draw(fixture_any(s),
                      &(camber_frame){.width = SIDE, .height = SIDE, .passes = &pass, .pass_count = 1, .pitch_deg = 60});
@@ -490,9 +476,8 @@ static void test_pitched_fill(void **state) {
         make_sheet(&made, fine ? 64 : 4, fine ? 64 : 4, fine ? CHECKED : SMOOTH);
         const camber_pass pass = {
             .kind = CAMBER_PASS_FILL,
-            .images = &made.image,
-            .image_count = 1,
-            .fill = {.color = {0, 0, 0, 1}, .pattern = 1, .width_px = 32, .height_px = 32, .x_px = 5, .y_px = 9}};
+            .fill = {
+                .color = {0, 0, 0, 1}, .image = &made.image, .width_px = 32, .height_px = 32, .x_px = 5, .y_px = 9}};
         picture p = picture_draw(fixture_any(s), &(camber_frame){.width = SIDE,
                                                                  .height = SIDE,
                                                                  .passes = &pass,
@@ -525,16 +510,15 @@ static void test_misuse(void **state) {
     drawing d = drawing_of(level, 2, 8, &made);
     const camber_image bad[] = {{made.rgba, 0, 4, 0}, {made.rgba, 4, 16385, 0}, {NULL, 4, 4, 0}, {made.rgba, 4, 4, 12}};
     camber_mesh *mesh = make_mesh(s, &d, true), *unmeasured = make_mesh(s, &d, false);
-    camber_pass pass = {
-        .mesh = unmeasured, .paints = &d.paint, .paint_count = 1, .images = &made.image, .image_count = 1};
+    camber_pass pass = {.mesh = unmeasured, .paints = &d.paint, .paint_count = 1};
     const camber_frame frame = {.width = SIDE, .height = SIDE, .passes = &pass, .pass_count = 1};
     assert_int_equal(camber_renderer_render(fixture_any(s), &frame, NULL, NULL, NULL), CAMBER_ERROR_ARGUMENT);
     assert_story(&s->h, "arc lengths");
     pass.mesh = mesh;
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-        pass.images = bad + i;
+        d.paint.image = bad + i;
         assert_int_equal(camber_renderer_render(fixture_any(s), &frame, NULL, NULL, NULL), CAMBER_ERROR_ARGUMENT);
-        assert_story(&s->h, "image 0");
+        assert_story(&s->h, "an image of");
     }
     camber_mesh_destroy(unmeasured);
     camber_mesh_destroy(mesh);
@@ -569,10 +553,7 @@ static void test_memory(void **state) {
     for (uint32_t i = 0; i < 20; i++) {
         make_sheet(made + i, 11 + i, 9, CLEAR);
         images[i] = made[i].image;
-        passes[i] = (camber_pass){.kind = CAMBER_PASS_FILL,
-                                  .images = images,
-                                  .image_count = 20,
-                                  .fill = {.color = {0, 0, 0, 1}, .pattern = i + 1}};
+        passes[i] = (camber_pass){.kind = CAMBER_PASS_FILL, .fill = {.color = {0, 0, 0, 1}, .image = images + i}};
     }
     const camber_frame frame = {.width = SIDE, .height = SIDE, .passes = passes, .pass_count = 20};
     attempt all = {s, &frame};

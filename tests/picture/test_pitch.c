@@ -157,14 +157,10 @@ static picture draw(const fixture *s, camber_renderer *renderer, const figure *f
     const camber_tessellation_desc desc = {
         .strokes = &stroke, .stroke_count = 1, .method = l->method, .has_arc_length = l->dash.count > 0};
     camber_mesh *mesh = fixture_mesh(s, renderer, &lines, &desc);
-    const camber_paint paint = {
-        .width_px = f->width_px, .color = {1, 1, 1, l->alpha > 0 ? l->alpha : 1}, .dash = l->dash.count > 0};
-    const camber_pass pass = {.mesh = mesh,
-                              .paints = &paint,
-                              .paint_count = 1,
-                              .dashes = &l->dash,
-                              .dash_count = l->dash.count > 0,
-                              .overlap = l->overlap};
+    const camber_paint paint = {.width_px = f->width_px,
+                                .color = {1, 1, 1, l->alpha > 0 ? l->alpha : 1},
+                                .dash = l->dash.count > 0 ? &l->dash : NULL};
+    const camber_pass pass = {.mesh = mesh, .paints = &paint, .paint_count = 1, .overlap = l->overlap};
     const camber_frame frame = {.width = WIDE,
                                 .height = HIGH,
                                 .passes = &pass,

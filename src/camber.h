@@ -612,7 +612,7 @@ typedef struct camber_frame {
     camber_coverage coverage;
     /* The picture is drawn in several areas where a side is longer than this. 0: the largest
      * target, or less where that would take more than 64 MB; a layer that is united takes 128 MB more. */
-    uint32_t largest_piece_px;
+    uint32_t largest_area_px;
     /* The angle at which the plane of the polylines is seen: 0 is straight from above, 85 is the most. Meshes of a
      * network bring the pitch of their camera (camber_camera.pitch_deg), and a frame of them may leave this 0. Frames
      * of fills, and of meshes of polylines, set it.
@@ -624,7 +624,7 @@ typedef struct camber_frame {
 
 typedef struct camber_frame_stats {
     size_t draw_calls;
-    size_t pieces;  /* areas that the picture was drawn in */
+    size_t areas;   /* that the picture was drawn in */
     double draw_ms; /* clear, draw and finish; for a frame that overlaps others, the time that its calls take */
     double read_ms;
     camber_stage_times times; /* of CAMBER_RASTERIZER_OPENCL's stages, on the device's queue */

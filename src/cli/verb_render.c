@@ -84,7 +84,7 @@ static int print_json(const job *j) {
         {"vertices", mesh.vertex_count},
         {"triangles", mesh.triangle_count},
         {"draw_calls", j->times.frame.draw_calls},
-        {"pieces", j->times.frame.pieces},
+        {"pieces", j->times.frame.areas},
         {"peak_rss_bytes", camber_peak_rss_bytes()},
     };
     for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)

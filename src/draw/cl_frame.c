@@ -12,9 +12,9 @@ enum { AREA_PX = 16 * 1024 * 1024, AREA_SIDE_PX = CAMBER_TILE_PX * CAMBER_TILES_
 static camber_raster_area first_area(const camber_renderer *renderer, const camber_frame *frame) {
     const camber_device *device = renderer->share.device;
     uint32_t side = AREA_SIDE_PX;
-    if (frame->largest_piece_px && frame->largest_piece_px < side)
-        side = frame->largest_piece_px < CAMBER_TILE_PX ? CAMBER_TILE_PX
-                                                        : frame->largest_piece_px / CAMBER_TILE_PX * CAMBER_TILE_PX;
+    if (frame->largest_area_px && frame->largest_area_px < side)
+        side = frame->largest_area_px < CAMBER_TILE_PX ? CAMBER_TILE_PX
+                                                       : frame->largest_area_px / CAMBER_TILE_PX * CAMBER_TILE_PX;
     if (camber_raster_widest(renderer->raster) < side)
         side = camber_raster_widest(renderer->raster);
     const uint32_t width = frame->width < side ? frame->width : side;
@@ -74,7 +74,7 @@ static camber_status draw_across(camber_renderer *renderer, const camber_raster_
             to->draw ? to->draw(renderer, scene, &area, to->user) : camber_raster_draw(renderer->raster, scene, &area);
         const double drawn = camber_now_ms();
         stats->draw_ms += drawn - begin;
-        stats->pieces++;
+        stats->areas++;
         add_times(renderer, stats);
         if (status == CAMBER_OK && to->rows)
             status = take_area(renderer, &area, to);

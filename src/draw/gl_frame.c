@@ -31,8 +31,8 @@ void camber_gl_release(camber_renderer *renderer, bool is_current) {
 static void set_area_size(const camber_renderer *renderer, camber_flight *flight) {
     const camber_frame *frame = &flight->frame;
     uint32_t side = renderer->share.surface->info.largest_target_px;
-    if (frame->largest_piece_px && frame->largest_piece_px < side)
-        side = frame->largest_piece_px;
+    if (frame->largest_area_px && frame->largest_area_px < side)
+        side = frame->largest_area_px;
     const uint32_t width = frame->width < side ? frame->width : side;
     const uint32_t fitting = (uint32_t)AREA_PX / (width ? width : 1);
     const uint32_t rows = fitting < side ? fitting : side;
@@ -76,7 +76,7 @@ static camber_status draw_area(camber_renderer *renderer, camber_flight *flight,
         gl->Flush();
     else
         gl->Finish();
-    flight->stats.pieces++;
+    flight->stats.areas++;
     return status == CAMBER_OK ? camber_gl_check(renderer, "drawing") : status;
 }
 

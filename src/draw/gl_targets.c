@@ -19,7 +19,7 @@ static camber_status check_target(camber_renderer *renderer, GLsizei width, GLsi
     const camber_status status = camber_gl_check(renderer, what);
     if (status == CAMBER_OK && complete != GL_FRAMEBUFFER_COMPLETE)
         return camber_fail(renderer->share.device->context, CAMBER_ERROR_DEVICE,
-                           "%s: not complete (0x%x) on %s; draw smaller pieces, or update its driver", what, complete,
+                           "%s: not complete (0x%x) on %s; draw smaller areas, or update its driver", what, complete,
                            renderer->share.surface->info.renderer);
     return status;
 }

@@ -235,7 +235,7 @@ static camber_status draw(camber_context *context, camber_renderer *renderer, ca
                                 .passes = passes,
                                 .pass_count = 3,
                                 .coverage = (camber_coverage)(n / 3 % 2),
-                                .largest_piece_px = pieces[n % 5]};
+                                .largest_area_px = pieces[n % 5]};
     if (status == CAMBER_OK)
         status = camber_renderer_render(renderer, &frame, take_rows, a, NULL);
     camber_polylines_destroy(polylines);

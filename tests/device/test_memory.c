@@ -649,12 +649,12 @@ static void make_passes(drawn_lines *e, const camber_stroke strokes[CAMBER_KERNE
     e->passes[4].paints = e->plain;
 }
 
-static picture draw(drawn_lines *e, uint32_t largest_piece_px) {
+static picture draw(drawn_lines *e, uint32_t largest_area_px) {
     return picture_draw(e->renderer, &(camber_frame){.width = SIDE_PX,
                                                      .height = SIDE_PX,
                                                      .passes = e->passes,
                                                      .pass_count = PASSES,
-                                                     .largest_piece_px = largest_piece_px});
+                                                     .largest_area_px = largest_area_px});
 }
 
 static camber_overdraw count(drawn_lines *e, uint8_t *map) {

@@ -210,7 +210,7 @@ static void compare_areas(const fixture *e, double pitch_deg) {
         d.frame.pitch_deg = pitch_deg;
         picture whole = draw_with(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], &d, 3, CAMBER_METHOD_STRIP);
         for (size_t i = 0; i < sizeof sides / sizeof *sides; i++) {
-            d.frame.largest_piece_px = sides[i];
+            d.frame.largest_area_px = sides[i];
             picture p = draw_with(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], &d, 3, CAMBER_METHOD_STRIP);
             picture_assert_same(&whole, &p);
             picture_free(&p);
@@ -339,7 +339,7 @@ static void test_steps(void **state) {
     camber_scene_add_rings(&d.lines, &(uint64_t){5});
     for (int i = 0; i < 2; i++) {
         camber_mesh *mesh = make_mesh(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], &d, CAMBER_METHOD_STRIP);
-        d.frame.largest_piece_px = i ? 96 : 0;
+        d.frame.largest_area_px = i ? 96 : 0;
         const camber_frame *frame = end_drawing(&d, mesh, 2);
         picture whole = picture_draw(e->on.renderer[CAMBER_FIXTURE_OPENCL], frame), p = whole;
         p.rgba = malloc(4 * (size_t)p.width * p.height);

@@ -245,10 +245,10 @@ static void test_areas(void **state) {
         if (k == sizeof sides / sizeof *sides) {
             picture_free(&whole);
             d->frame.pitch_deg = 60;
-            d->frame.largest_piece_px = 0;
+            d->frame.largest_area_px = 0;
             whole = draw_with(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], d);
         }
-        d->frame.largest_piece_px = sides[k % (sizeof sides / sizeof *sides)];
+        d->frame.largest_area_px = sides[k % (sizeof sides / sizeof *sides)];
         picture p = draw_with(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], d);
         picture_assert_same(&whole, &p);
         picture_free(&p);

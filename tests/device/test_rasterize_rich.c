@@ -313,12 +313,12 @@ static void test_areas(void **state) {
     for (int i = 0; i < 2; i++) {
         picture whole = draw_with(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], &d, CAMBER_METHOD_STRIP);
         for (size_t k = 0; k < sizeof sides / sizeof *sides; k++) {
-            d.frame.largest_piece_px = sides[k];
+            d.frame.largest_area_px = sides[k];
             picture p = draw_with(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], &d, CAMBER_METHOD_STRIP);
             picture_assert_same(&whole, &p);
             picture_free(&p);
         }
-        d.frame.largest_piece_px = 0;
+        d.frame.largest_area_px = 0;
         compare_in_slices(e, &d, &whole);
         picture_free(&whole);
         for (size_t k = 0; k < CAMBER_KERNEL_ROWS; k++)

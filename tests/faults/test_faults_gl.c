@@ -61,8 +61,8 @@ static camber_status draw(drawn_lines *e) {
                                              {.width_px = 9, .color = {0, 1, 0, 1}},
                                              {.width_px = 9, .color = {0, 0, 1, 1}}};
     static const camber_paint overlay[ROWS] = {{.width_px = 7, .color = {0, 0, 0, 0.5f}},
-                                            {.width_px = 7, .color = {0, 0, 0, 0.5f}},
-                                            {.width_px = 7, .color = {0, 0, 0, 0.5f}}};
+                                               {.width_px = 7, .color = {0, 0, 0, 0.5f}},
+                                               {.width_px = 7, .color = {0, 0, 0, 0.5f}}};
     static const camber_paint mixed[ROWS] = {{.width_px = 5, .color = {1, 1, 0, 0.4f}},
                                              {.width_px = 5, .color = {0, 1, 1, 0.4f}},
                                              {.width_px = 5, .color = {1, 0, 1, 0.7f}}};
@@ -92,7 +92,7 @@ static camber_status draw(drawn_lines *e) {
                                 .background = {1, 1, 1, 1},
                                 .passes = passes,
                                 .pass_count = 4,
-                                .largest_piece_px = PIECE_PX};
+                                .largest_area_px = PIECE_PX};
     e->rows = 0;
     if (status == CAMBER_OK && e->counts)
         return count(e, solid);

@@ -176,7 +176,7 @@ static camber_status draw(camber_renderer *renderer, camber_mesh *mesh, desk *d)
                                 .background = {1, 1, 1, 1},
                                 .passes = passes,
                                 .pass_count = 3,
-                                .largest_piece_px = PIECE_PX};
+                                .largest_area_px = PIECE_PX};
     taker t = {d, 0};
     camber_status status = camber_renderer_render(renderer, &frame, take_rows, &t, NULL);
     if (status != CAMBER_OK)

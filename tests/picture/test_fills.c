@@ -40,7 +40,7 @@ static picture draw(const fixture *s, camber_renderer *renderer, drawing *d, uin
     camber_mesh *mesh = fixture_mesh(s, renderer, &d->lines, &desc);
     for (size_t i = 0; i < d->frame.pass_count; i++)
         d->passes[i].mesh = d->passes[i].paints ? mesh : NULL;
-    d->frame.largest_piece_px = piece_px;
+    d->frame.largest_area_px = piece_px;
     picture p = picture_draw(renderer, &d->frame);
     camber_mesh_destroy(mesh);
     return p;

@@ -27,19 +27,19 @@ static camber_mesh *make_mesh(fixture *s, camber_renderer *renderer) {
     return mesh;
 }
 
-static camber_frame frame_of(const camber_pass *pass, uint32_t largest_piece_px) {
+static camber_frame frame_of(const camber_pass *pass, uint32_t largest_area_px) {
     return (camber_frame){.width = SIDE,
                           .height = SIDE,
                           .background = {1, 1, 1, 1},
                           .passes = pass,
                           .pass_count = 1,
-                          .largest_piece_px = largest_piece_px};
+                          .largest_area_px = largest_area_px};
 }
 
-static void begin(camber_renderer *renderer, camber_mesh *mesh, uint32_t largest_piece_px) {
+static void begin(camber_renderer *renderer, camber_mesh *mesh, uint32_t largest_area_px) {
     camber_paint own = paint;
     camber_pass pass = {.mesh = mesh, .paints = &own, .paint_count = 1};
-    camber_frame frame = frame_of(&pass, largest_piece_px);
+    camber_frame frame = frame_of(&pass, largest_area_px);
     assert_int_equal(camber_renderer_begin(renderer, &frame), CAMBER_OK);
     /* They are the caller's again. */
     own = (camber_paint){.width_px = 1};
@@ -70,20 +70,20 @@ static void assert_same(const picture *a, const picture *b) {
 }
 
 /* Frames in turn from two meshes, one or two of them in flight, whole or in pieces. */
-static void run_frames(fixture *s, camber_renderer *renderer, size_t in_flight, uint32_t largest_piece_px) {
+static void run_frames(fixture *s, camber_renderer *renderer, size_t in_flight, uint32_t largest_area_px) {
     enum { FRAMES = 5 };
     camber_mesh *meshes[2] = {make_mesh(s, renderer), make_mesh(s, renderer)};
     for (int n = 0; n < FRAMES + (int)in_flight - 1; n++) {
         if (n < FRAMES) {
             fill(s, meshes[n % 2], n);
-            begin(renderer, meshes[n % 2], largest_piece_px);
+            begin(renderer, meshes[n % 2], largest_area_px);
         }
         const int ready = n - (int)in_flight + 1;
         if (ready < 0)
             continue;
         camber_frame_stats stats = {0};
         picture got = end(renderer, &stats), wanted;
-        assert_int_equal(stats.pieces, largest_piece_px ? 9 : 1);
+        assert_int_equal(stats.areas, largest_area_px ? 9 : 1);
         assert_true((stats.draw_calls >= 1) != draws_in_cl() && stats.draw_ms > 0);
         if (n + 1 < FRAMES + (int)in_flight - 1 && in_flight > 1) {
             picture_free(&got); /* camber_renderer_render waits for none in flight: the last one is looked at */

@@ -68,7 +68,7 @@ typedef struct drawing {
     camber_stroke stroke;
     camber_method method;
     camber_paint paint;
-    uint32_t largest_piece_px;
+    uint32_t largest_area_px;
 } drawing;
 
 static camber_mesh *make_mesh(fixture *s, const drawing *d, bool has_arc_length) {
@@ -83,7 +83,7 @@ static picture draw(fixture *s, const drawing *d) {
     picture p = picture_draw(
         fixture_any(s),
         &(camber_frame){
-            .width = SIDE, .height = SIDE, .passes = &pass, .pass_count = 1, .largest_piece_px = d->largest_piece_px});
+            .width = SIDE, .height = SIDE, .passes = &pass, .pass_count = 1, .largest_area_px = d->largest_area_px});
     camber_mesh_destroy(mesh);
     return p;
 }
@@ -260,7 +260,7 @@ static void test_composed(void **state) {
     make_sheet(&s, 8, 4, SMOOTH);
     drawing whole = drawing_of(bent, 3, 18, &s), part = whole;
     picture p = draw(*state, &whole);
-    part.largest_piece_px = 37;
+    part.largest_area_px = 37;
     picture q = draw(*state, &part);
     const difference pieces = picture_compare(&p, &q);
     assert_in_range(pieces.most, 0, 2);
@@ -347,7 +347,7 @@ static picture fill(fixture *s, const camber_pass *passes, size_t count, uint32_
                                                         .passes = passes,
                                                         .pass_count = count,
                                                         .background = {0, 0, 1, 1},
-                                                        .largest_piece_px = piece_px});
+                                                        .largest_area_px = piece_px});
 }
 
 static void assert_color(const picture *p, uint32_t at, const char *wanted) {
@@ -483,7 +483,7 @@ static void test_pitched_fill(void **state) {
                                                                  .passes = &pass,
                                                                  .pass_count = 1,
                                                                  .pitch_deg = pitch_deg,
-                                                                 .largest_piece_px = 60});
+                                                                 .largest_area_px = 60});
         for (uint32_t k = 0; k < SIDE * SIDE; k++) {
             double ground[2], depth, wanted[4];
             if (!ground_of(pitch_deg, k, ground, &depth))

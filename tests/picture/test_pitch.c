@@ -143,7 +143,7 @@ typedef struct look {
     camber_method method;
     camber_overlap overlap;
     camber_dash dash;
-    uint32_t largest_piece_px;
+    uint32_t largest_area_px;
     float alpha; /* 0: 1 */
 } look;
 
@@ -165,7 +165,7 @@ static picture draw(const fixture *s, camber_renderer *renderer, const figure *f
                                 .height = HIGH,
                                 .passes = &pass,
                                 .pass_count = 1,
-                                .largest_piece_px = l->largest_piece_px,
+                                .largest_area_px = l->largest_area_px,
                                 .pitch_deg = l->pitch_deg};
     picture p = picture_draw(renderer, &frame);
     camber_mesh_destroy(mesh);
@@ -277,7 +277,7 @@ static void test_pieces(void **state) {
             for (int flattened = 0; flattened < 2; flattened++) {
                 look l = {.pitch_deg = PITCHES[i], .alpha = flattened ? 0.5f : 1};
                 picture whole = draw(s, fixture_any(s), FIGURES + f, &l);
-                l.largest_piece_px = 37;
+                l.largest_area_px = 37;
                 picture pieces = draw(s, fixture_any(s), FIGURES + f, &l);
                 picture_assert_same(&whole, &pieces);
                 picture_free(&pieces);

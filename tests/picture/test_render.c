@@ -188,13 +188,13 @@ static void test_pieces(void **state) {
             picture whole = picture_draw(s->on.renderer[i], &frame);
             const uint32_t sides[] = {64, 61, 100, 299, 300, 70000, 17};
             for (size_t k = 0; k < sizeof sides / sizeof *sides; k++) {
-                frame.largest_piece_px = sides[k];
+                frame.largest_area_px = sides[k];
                 picture pieces = picture_draw(s->on.renderer[i], &frame);
                 camber_frame_stats stats = {0};
                 assert_int_equal(camber_renderer_render(s->on.renderer[i], &frame, NULL, NULL, &stats), CAMBER_OK);
                 /* Areas are whole tiles of the kernels, 32 px. */
                 const uint32_t side = !draws_in_cl() ? sides[k] : sides[k] < 32 ? 32 : sides[k] / 32 * 32;
-                assert_int_equal(stats.pieces, ((300 + side - 1) / side) * ((200 + side - 1) / side));
+                assert_int_equal(stats.areas, ((300 + side - 1) / side) * ((200 + side - 1) / side));
                 assert_int_equal(pieces.calls, (200 + side - 1) / side);
                 picture_assert_same(&whole, &pieces);
                 picture_free(&pieces);
@@ -242,7 +242,7 @@ static void test_sizes(void **state) {
     fixture *s = *state;
     static const uint32_t bad[][2] = {{0, 1}, {1, 0}, {65536, 1}, {1, 65536}, {0, 0}, {0xffffffffu, 0xffffffffu}};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-        camber_frame_stats stats = {.pieces = 77};
+        camber_frame_stats stats = {.areas = 77};
         int left = 2;
         s->h.errors = 0;
         assert_int_equal(camber_renderer_render(fixture_any(s),
@@ -250,7 +250,7 @@ static void test_sizes(void **state) {
                                                 &left, &stats),
                          CAMBER_ERROR_ARGUMENT);
         assert_story(&s->h, "; ");
-        assert_int_equal(stats.pieces, 77);
+        assert_int_equal(stats.areas, 77);
         assert_int_equal(left, 2);
     }
     /* The longest sides, where a picture is many pieces wide or high. */
@@ -268,14 +268,14 @@ static void test_rows_refused(void **state) {
     fixture *s = *state;
     for (int after = 1; after < 4; after++) {
         int left = after;
-        camber_frame_stats stats = {.pieces = 77};
-        const camber_frame frame = {.width = 50, .height = 100, .largest_piece_px = 32}; /* four bands */
+        camber_frame_stats stats = {.areas = 77};
+        const camber_frame frame = {.width = 50, .height = 100, .largest_area_px = 32}; /* four bands */
         assert_int_equal(camber_renderer_render(fixture_any(s), &frame, refuse_rows, &left, &stats), CAMBER_ERROR_IO);
         assert_int_equal(left, 0); /* not called again */
-        assert_int_equal(stats.pieces, 77);
+        assert_int_equal(stats.areas, 77);
     }
     int left = 5;
-    const camber_frame frame = {.width = 50, .height = 100, .largest_piece_px = 32};
+    const camber_frame frame = {.width = 50, .height = 100, .largest_area_px = 32};
     assert_int_equal(camber_renderer_render(fixture_any(s), &frame, refuse_rows, &left, NULL), CAMBER_OK);
 }
 

@@ -104,7 +104,7 @@ static void compare_frames(const fixture *s, camber_surface *surface, camber_ren
     for (size_t i = 0; i < FRAMES; i++) {
         d.frame.width = frames[i].width;
         d.frame.height = frames[i].height;
-        d.frame.largest_piece_px = frames[i].piece_px;
+        d.frame.largest_area_px = frames[i].piece_px;
         d.frame.background = frames[i].background;
         drawn[i] = NULL;
         assert_int_equal(

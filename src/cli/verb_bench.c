@@ -161,6 +161,7 @@ static json_t *summary_json(const summary *s) {
 static int print_json(const job *j) {
     const camber_session *session = j->session;
     const camber_polylines_stats lines = camber_polylines_get_stats(camber_input_polylines(&j->input));
+    (void)camber_mesh_count_joins(j->mesh); /* a failure is logged, and the counts are 0 */
     const camber_mesh_info mesh = camber_mesh_get_info(j->mesh);
     json_t *object =
         json_pack("{s:s, s:I, s:I, s:I}", "method", camber_method_get_name(mesh.method), "width", (json_int_t)j->width,
@@ -208,6 +209,7 @@ static int print_text(const job *j) {
         (options->output && strcmp(options->output, "-") == 0) || (options->dump && strcmp(options->dump, "-") == 0);
     FILE *file = taken ? stderr : stdout;
     const camber_polylines_stats lines = camber_polylines_get_stats(camber_input_polylines(&j->input));
+    (void)camber_mesh_count_joins(j->mesh); /* a failure is logged, and the counts are 0 */
     const camber_mesh_info mesh = camber_mesh_get_info(j->mesh);
     const camber_device_info device = camber_device_get_info(session->device);
     if (session->surface)

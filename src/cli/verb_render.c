@@ -59,6 +59,7 @@ static int print_json(const job *j) {
     (void)camber_scene_project(j->input.scene); /* counts are 0 where memory for them ran out */
     const camber_scene_info scene = camber_scene_get_info(j->input.scene);
     const camber_polylines_stats lines = camber_polylines_get_stats(camber_input_polylines(&j->input));
+    (void)camber_mesh_count_joins(j->mesh); /* a failure is logged, and the counts are 0 */
     const camber_mesh_info mesh = camber_mesh_get_info(j->mesh);
     json_t *object =
         json_pack("{s:o, s:I, s:I, s:o, s:f, s:f, s:f, s:f, s:f, s:s, s:s}", "output",
@@ -107,6 +108,7 @@ static int print_json(const job *j) {
 
 /* Prints the counts; kernels have no draw calls. */
 static void print_counts(const job *j, const camber_scene_info *scene) {
+    (void)camber_mesh_count_joins(j->mesh); /* a failure is logged, and the counts are 0 */
     const camber_mesh_info mesh = camber_mesh_get_info(j->mesh);
     const size_t calls = j->times.frame.draw_calls;
     char drawn[64] = "drawn by OpenCL kernels";

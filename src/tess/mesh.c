@@ -84,7 +84,7 @@ void camber_mesh_set_counts(camber_mesh *mesh, camber_mesh_info counts, size_t s
 
 /* Counts joins and triangles from the join words on the device, unless that has been done. Few callers want them, so
  * that this waits until one asks. */
-static camber_status count_joins(camber_mesh *mesh) {
+camber_status camber_mesh_count_joins(camber_mesh *mesh) {
     camber_mesh_info counts = mesh->mesh_info;
     camber_status status = CAMBER_OK;
     size_t segments = 0;
@@ -98,8 +98,7 @@ static camber_status count_joins(camber_mesh *mesh) {
     return status;
 }
 
-camber_mesh_info camber_mesh_get_info(camber_mesh *mesh) {
-    (void)count_joins(mesh); /* a failure is logged, and the counts stay 0 */
+camber_mesh_info camber_mesh_get_info(const camber_mesh *mesh) {
     return mesh->mesh_info;
 }
 
@@ -197,7 +196,7 @@ static camber_status read_part(camber_mesh *mesh, camber_mesh_part *part, camber
 
 camber_status camber_mesh_read(camber_mesh *mesh, camber_mesh_data *data) {
     camber_context *context = mesh->device->context;
-    camber_status status = count_joins(mesh);
+    camber_status status = camber_mesh_count_joins(mesh);
     camber_mesh_data made = {.context = context, .info = mesh->mesh_info};
     if (status != CAMBER_OK)
         return status;

@@ -357,6 +357,7 @@ static void test_seams(void **state) {
     camber_polylines *polylines = scene_polylines(s->context, &lines);
     for (int method = 0; method < 2; method++) {
         drawing d = drawing_make(s, polylines, 12, (camber_method)method);
+        assert_int_equal(camber_mesh_count_joins(d.mesh), CAMBER_OK);
         const camber_mesh_info info = camber_mesh_get_info(d.mesh);
         assert_int_equal(info.tight_joins + info.split_joins, 0);
         const camber_overdraw sum = count_ranges(&d, NULL, 0, NULL);

@@ -245,6 +245,7 @@ static void test_draws_a_dot(void **state) {
             camber_lines_destroy(&lines);
             assert_true(compare(b, k % 3, network, &camera, &desc) > 0);
             assert_int_equal(camber_mesh_tessellate_network(b->meshes[0], network, &camera, &desc), CAMBER_OK);
+            assert_int_equal(camber_mesh_count_joins(b->meshes[0]), CAMBER_OK);
             assert_true(camber_mesh_get_info(b->meshes[0]).triangle_count > 0);
         }
         camber_network_destroy(network);

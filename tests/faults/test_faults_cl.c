@@ -290,11 +290,13 @@ static void test_read_again(void **state) {
     }
     assert_int_equal(camber_mesh_tessellate(mesh, s.polylines, &s.desc), CAMBER_OK);
     cl_fault_arm(2, 2, CL_OUT_OF_HOST_MEMORY); /* the second map of the first part */
+    assert_int_equal(camber_mesh_count_joins(mesh), CAMBER_ERROR_MEMORY);
     camber_mesh_info info = camber_mesh_get_info(mesh);
     cl_fault_disarm();
     assert_story(&s.h, "clEnqueueMapBuffer");
     assert_int_equal(info.vertex_count, s.wanted.info.vertex_count);
     assert_int_equal(info.joins + info.triangle_count, 0);
+    assert_int_equal(camber_mesh_count_joins(mesh), CAMBER_OK);
     info = camber_mesh_get_info(mesh);
     assert_int_equal(info.joins, s.wanted.info.joins);
     assert_int_equal(info.triangle_count, s.wanted.info.triangle_count);

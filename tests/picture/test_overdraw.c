@@ -197,6 +197,7 @@ static void test_layers_of_one(void **state) {
         assert_true(made.sum.repeated_pixels >= BAR_DRAWN && made.sum.repeated_pixels <= made.sum.drawn_pixels);
         if (method != CAMBER_METHOD_STRIP) {
             /* The same triangles, 40 at a time: never a full channel. */
+            assert_int_equal(camber_mesh_count_joins(mesh), CAMBER_OK);
             const size_t triangles = camber_mesh_get_info(mesh).triangle_count;
             uint64_t sum = 0;
             for (size_t first = 0; first < triangles; first += 40) {

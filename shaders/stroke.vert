@@ -68,7 +68,8 @@ const float PAD_PX = 0.75, NO_LIMIT_PX = 3.0e38;
 const uint FIRST = 2u, RING = 8u, BREAK = 16u, START = 32u; // of a record
 const uint AFTER_FIRST = 1u << 26u, BEFORE_LAST = 1u << 27u; // of a join
 const uint SENTINEL = 0u, DOT = 1u, CUT = 3u, TIGHT = 4u, SPLIT = 5u; // kinds of joins
-const uint ROUND = 0u, BUTT = 1u, SQUARE = 2u, MITER = 3u, SPLIT_ROUND = 5u, SPLIT_MITER = 7u; // camber_end
+const uint ROUND = 0u, BUTT = 1u, SQUARE = 2u, MITER = 3u, SPLIT_ROUND = 5u, SPLIT_BEVEL = 6u,
+           SPLIT_MITER = 7u; // camber_end
 const float ALWAYS_PX = -1e30;
 
 struct Record {
@@ -118,7 +119,8 @@ uint end_of(uint join) {
     uint end = join >> 16u & 7u;
 #if PITCHED && METHOD != 0
     // With kite and fan the triangles say what belongs to a segment; here they do not.
-    end = kind_of(join) > CUT ? (end == ROUND ? SPLIT_ROUND : 10u - end) : end;
+    uint split_end = end == ROUND ? SPLIT_ROUND : end == MITER ? SPLIT_MITER : SPLIT_BEVEL;
+    end = kind_of(join) > CUT ? split_end : end;
 #endif
     return end;
 }

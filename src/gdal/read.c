@@ -373,21 +373,6 @@ static void add_stats(camber_features *features, const reader *self) {
     sum->antimeridian_splits += self->stats.antimeridian_splits;
 }
 
-/* Merges and weighs the file's lines, from first_polyline on. */
-static camber_status merge_and_weigh(camber_features *features, const camber_source_desc *desc, size_t first_polyline) {
-    const double start_ms = camber_now_ms();
-    camber_status status = CAMBER_OK;
-    if (!desc->keep_apart)
-        status = camber_features_merge(features, first_polyline,
-                                       features->style->directed ? CAMBER_MERGE_DIRECTED : CAMBER_MERGE_ANY);
-    const double merged_ms = camber_now_ms();
-    if (status == CAMBER_OK)
-        status = camber_features_set_importance(features, first_polyline);
-    features->times.merge_ms += merged_ms - start_ms;
-    features->times.weigh_ms += camber_now_ms() - merged_ms;
-    return status;
-}
-
 /* One attempt; on failure the set is as before but for spare classes. */
 static camber_status read_once(camber_features *features, const camber_source_desc *desc, bool *unsorted) {
     reader self = {
@@ -409,7 +394,7 @@ static camber_status read_once(camber_features *features, const camber_source_de
     close_reader(&self);
     features->times.file_ms += camber_now_ms() - start_ms;
     if (status == CAMBER_OK)
-        status = merge_and_weigh(features, desc, polylines);
+        status = camber_features_merge_and_weigh(features, polylines, !desc->keep_apart, CAMBER_MERGE_ANY);
     if (status == CAMBER_OK) {
         add_stats(features, &self);
         warn_of_losses(&self);

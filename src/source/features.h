@@ -98,6 +98,10 @@ typedef enum camber_merge_rule {
     CAMBER_MERGE_STRAIGHT, /* where two ends go on almost straight, whatever else meets there */
 } camber_merge_rule;
 
+/* Merges the lines of first_polyline and after it, if merges, and weighs their points; counts the time of both. Where
+ * the style goes by directions, ANY is DIRECTED. */
+camber_status camber_features_merge_and_weigh(camber_features *features, size_t first_polyline, bool merges,
+                                              camber_merge_rule rule);
 /* Merges lines of first_polyline and after it. */
 camber_status camber_features_merge(camber_features *features, size_t first_polyline, camber_merge_rule rule);
 /* Sets the importance of the points of first_polyline and of those after it. */

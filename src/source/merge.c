@@ -273,3 +273,18 @@ done:
     camber_free(context, m.partner);
     return status;
 }
+
+camber_status camber_features_merge_and_weigh(camber_features *features, size_t first_polyline, bool merges,
+                                              camber_merge_rule rule) {
+    const double start_ms = camber_now_ms();
+    const bool directed = rule == CAMBER_MERGE_ANY && features->style->directed;
+    camber_status status = CAMBER_OK;
+    if (merges)
+        status = camber_features_merge(features, first_polyline, directed ? CAMBER_MERGE_DIRECTED : rule);
+    const double merged_ms = camber_now_ms();
+    if (status == CAMBER_OK)
+        status = camber_features_set_importance(features, first_polyline);
+    features->times.merge_ms += merged_ms - start_ms;
+    features->times.weigh_ms += camber_now_ms() - merged_ms;
+    return status;
+}

@@ -236,15 +236,10 @@ done:
 /* Merges and weighs the lines that one source added. They are not merged where dashes or line-progress begin anew
  * with each feature, or where the style wants overlapping ends to darken each other. */
 static camber_status merge_and_weigh(camber_features *features, size_t first_polyline) {
-    const double start_ms = camber_now_ms();
-    camber_status status = CAMBER_OK;
-    if (!features->style->directed && !features->style->accumulates && !features->progress)
-        status = camber_features_merge(features, first_polyline, CAMBER_MERGE_STRAIGHT);
-    const double merged_ms = camber_now_ms();
-    if (status == CAMBER_OK)
-        status = camber_features_set_importance(features, first_polyline);
-    features->times.merge_ms += merged_ms - start_ms;
-    features->times.weigh_ms += camber_now_ms() - merged_ms;
+    const camber_style *style = features->style;
+    const bool merges = !style->directed && !style->accumulates && !features->progress;
+    const camber_status status =
+        camber_features_merge_and_weigh(features, first_polyline, merges, CAMBER_MERGE_STRAIGHT);
     features->stats.features = features->feature_count;
     features->stats.polylines = features->polyline_count;
     features->stats.points = features->point_count;

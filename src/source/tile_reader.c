@@ -342,21 +342,6 @@ static void warn_of_losses(const input *self, const camber_mvt_stats *stats) {
                    stats->skipped_features);
 }
 
-static camber_status merge_and_weigh(const input *self, size_t first_polyline) {
-    camber_features *features = self->features;
-    const double start_ms = camber_now_ms();
-    camber_status status = CAMBER_OK;
-    if (!self->desc->keep_apart)
-        status = camber_features_merge(features, first_polyline,
-                                       features->style->directed ? CAMBER_MERGE_DIRECTED : CAMBER_MERGE_ANY);
-    const double merged_ms = camber_now_ms();
-    if (status == CAMBER_OK)
-        status = camber_features_set_importance(features, first_polyline);
-    features->times.merge_ms += merged_ms - start_ms;
-    features->times.weigh_ms += camber_now_ms() - merged_ms;
-    return status;
-}
-
 camber_status camber_features_read_tile_file(camber_features *features, const camber_source_desc *desc) {
     input self = {.context = features->context, .features = features, .desc = desc};
     const camber_features_mark before = camber_features_get_mark(features);
@@ -373,7 +358,8 @@ camber_status camber_features_read_tile_file(camber_features *features, const ca
     camber_free(self.context, self.addresses);
     features->times.file_ms += camber_now_ms() - start_ms;
     if (status == CAMBER_OK)
-        status = merge_and_weigh(&self, before.polyline_count);
+        status =
+            camber_features_merge_and_weigh(features, before.polyline_count, !self.desc->keep_apart, CAMBER_MERGE_ANY);
     if (status != CAMBER_OK) {
         camber_features_reset(features, &before);
         return status;

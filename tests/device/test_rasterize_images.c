@@ -196,13 +196,7 @@ static void test_twin(void **state) {
 enum { PIXELS_PAST_8 = 300 };
 static void compare_with_gl(const fixture *e, drawing *d, const char *what, size_t way, double bound) {
     picture a = draw_with(e, fixture_gl(e), d), b = draw_with(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], d);
-    const difference apart = picture_compare(&a, &b);
-    printf("# %-24s %2zu %.4f of 255 on average, %d at most, %zu pixels past 8\n", what, way, apart.mean, apart.most,
-           apart.past_8);
-    assert_true(apart.drawn > 0 && apart.mean < bound);
-    assert_true(apart.past_8 <= apart.drawn / PIXELS_PAST_8);
-    picture_free(&a);
-    picture_free(&b);
+    picture_assert_near(&a, &b, what, way, bound, PIXELS_PAST_8);
 }
 
 static void test_gl(void **state) {

@@ -198,13 +198,7 @@ enum { PIXELS_PAST_8 = 1000 };
 static void compare_with_gl(const fixture *e, drawing *d, const char *what, size_t way) {
     picture a = draw_with(e, fixture_gl(e), d, CAMBER_METHOD_STRIP),
             b = draw_with(e, e->on.renderer[CAMBER_FIXTURE_OPENCL], d, CAMBER_METHOD_STRIP);
-    const difference apart = picture_compare(&a, &b);
-    printf("# %-24s %2zu %.4f of 255 on average, %d at most, %zu pixels past 8\n", what, way, apart.mean, apart.most,
-           apart.past_8);
-    assert_true(apart.drawn > 0 && apart.mean < (d->passes[1].opacity > 0 ? 0.3 : 0.2));
-    assert_true(apart.past_8 <= apart.drawn / PIXELS_PAST_8);
-    picture_free(&a);
-    picture_free(&b);
+    picture_assert_near(&a, &b, what, way, d->passes[1].opacity > 0 ? 0.3 : 0.2, PIXELS_PAST_8);
 }
 
 static void test_gl(void **state) {

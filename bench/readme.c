@@ -191,7 +191,7 @@ static void put_fly(const page *p) {
     const json_t *row;
     if (json_array_size(rows_of(p, "fly")) == 0)
         return;
-    fputs("### A fly-through\n\n| drawn by | half within, ms | 99 of 100 within | scene | tessellate | draw | read "
+    fputs("### A fly-through\n\n| drawn by | median, ms | 99 of 100 within | scene | tessellate | draw | read "
           "back |\n"
           "|---|---|---|---|---|---|---|\n",
           p->to);

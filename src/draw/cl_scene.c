@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* How far back a brush of the same colour is looked for. */
-enum { INKS_BACK = 16 };
+enum { BRUSHES_BACK = 16 };
 
 void camber_cl_tables_free(camber_cl_tables *t) {
     camber_free(t->context, t->images.held);
@@ -20,14 +20,14 @@ void camber_cl_tables_free(camber_cl_tables *t) {
 /* Gives the number of a brush: that of an equal one from brush first on, or of a new one. */
 static camber_status use_brush(camber_cl_tables *t, size_t first, const camber_brush *brush,
                                const camber_brush_ext *brush_ext, uint32_t *number) {
-    for (size_t i = t->brush_count; i > first && i + INKS_BACK > t->brush_count; i--)
+    for (size_t i = t->brush_count; i > first && i + BRUSHES_BACK > t->brush_count; i--)
         if (memcmp(t->brushes + i - 1, brush, sizeof *brush) == 0 &&
             memcmp(t->brush_ext + i - 1, brush_ext, sizeof *brush_ext) == 0) {
             *number = (uint32_t)(i - 1);
             return CAMBER_OK;
         }
     if (!camber_grow(t->context, &t->brushes, &t->brush_capacity, t->brush_count + 1, sizeof *t->brushes) ||
-        !camber_grow(t->context, &t->brush_ext, &t->more_capacity, t->brush_count + 1, sizeof *t->brush_ext))
+        !camber_grow(t->context, &t->brush_ext, &t->ext_capacity, t->brush_count + 1, sizeof *t->brush_ext))
         return CAMBER_ERROR_MEMORY;
     *number = (uint32_t)t->brush_count;
     t->is_rich = t->is_rich || brush_ext->features || brush->mode == CAMBER_BRUSH_MASKED;
@@ -82,7 +82,7 @@ static camber_brush brush_of_command(camber_cl_tables *t, const camber_draw_comm
     return brush;
 }
 
-/* Adds the table of a command, whose brushes are found from first_ink on. */
+/* Adds the table of a command, whose brushes are found from first_brush on. */
 static camber_status add_rows(camber_cl_tables *t, const camber_draw_list *list, const camber_draw_command *command) {
     const size_t count = command->mesh->row_count, first_brush = t->brush_count;
     const bool is_united = command->composite == CAMBER_COMPOSITE_UNION;
@@ -180,10 +180,10 @@ static camber_status add_fill(camber_cl_tables *t, const camber_draw_list *list,
 /* ---- The scene ---- */
 
 static camber_status add_commands(camber_cl_tables *t, const camber_draw_list *list) {
-    const camber_brush no_ink = {0};
+    const camber_brush no_brush = {0};
     const camber_brush_ext no_more = {0};
     uint32_t number;
-    camber_status status = use_brush(t, 0, &no_ink, &no_more, &number); /* there is one, also where nothing is drawn */
+    camber_status status = use_brush(t, 0, &no_brush, &no_more, &number); /* there is one, also where nothing is drawn */
     for (size_t i = 0; i < list->command_count && status == CAMBER_OK; i++) {
         const camber_draw_command *command = list->commands + i;
         status = command->mesh ? add_lines(t, list, command) : add_fill(t, list, &command->fill);

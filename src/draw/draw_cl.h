@@ -60,7 +60,7 @@ typedef struct camber_cl_tables {
     camber_brush *brushes;
     camber_brush_ext *brush_ext; /* as many as brushes */
     camber_raster_input *inputs;
-    size_t row_count, row_capacity, brush_count, brush_capacity, more_capacity, input_count, input_capacity;
+    size_t row_count, row_capacity, brush_count, brush_capacity, ext_capacity, input_count, input_capacity;
     bool is_rich; /* a brush has features */
     camber_cl_images images;
     uint32_t layers;     /* so far */

@@ -1,4 +1,5 @@
-/* Surfaces: one file a back end (surface_egl.c, surface_osmesa.c), and nothing else knows that it exists. */
+/* Surfaces: one file a back end (surface_egl.c, surface_osmesa.c). Drawing knows none of them: it calls through
+ * camber_gl and camber_surface_ops. */
 #ifndef CAMBER_GL_SURFACE_H
 #define CAMBER_GL_SURFACE_H
 

@@ -1,6 +1,7 @@
 /* The bounds that the pixels of plain strokes are held to, in 255ths and in shares of the pixels that an edge crosses;
- * those of features along lines stand in the rows of check_along.c. Measured with Mesa's llvmpipe, with a quarter on top. The known faults of a scene are in its row: ends of
- * lines whose last segments are shorter than a pixel, and lines that lie over themselves, each part anti-aliased. */
+ * those of features along lines stand in the rows of check_along.c. Measured with Mesa's llvmpipe, with a quarter on
+ * top. The known faults of a scene are in its row: ends of lines whose last segments are shorter than a pixel, and
+ * lines that lie over themselves, each part anti-aliased. */
 #include "validate/checks.h"
 
 #include <math.h>

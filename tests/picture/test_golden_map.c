@@ -104,6 +104,7 @@ static void test_moves(void **state) {
     assert_int_equal(polylines_of(map, mesh), entries);
     view.longitude = 180; /* copies of the world need another network; nothing is seen of it */
     assert_int_equal(camber_scene_move(map, &view), CAMBER_OK);
+    assert_int_equal(camber_scene_project(map), CAMBER_OK); /* the mesh holds another network */
     assert_int_equal(polylines_of(map, mesh), 0);
     view.zoom = 100;
     assert_int_equal(camber_scene_move(map, &view), CAMBER_ERROR_ARGUMENT);

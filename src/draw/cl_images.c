@@ -23,10 +23,12 @@ static bool are_opaque(const uint8_t *texels, size_t count) {
 
 /* Adds texels to the side table: *words is where, *first the number of the first one. */
 static camber_status add_texels(camber_side_table *table, size_t count, size_t *first, float **words) {
-    if (table->count + count > CAMBER_SIDE_TABLE_MAX)
-        return camber_fail(table->context, CAMBER_ERROR_LIMIT,
-                           "the images of a frame take more than %d texels; draw fewer images in fewer sizes",
-                           4 * CAMBER_SIDE_TABLE_MAX);
+    if (table->count + count > CAMBER_SIDE_TABLE_MAX) {
+        camber_fail(table->context, CAMBER_ERROR_LIMIT,
+                    "the images of a frame take more than %d texels; draw fewer images in fewer sizes",
+                    4 * CAMBER_SIDE_TABLE_MAX);
+        return CAMBER_ERROR_LIMIT;
+    }
     *first = table->count;
     *words = camber_side_table_add(table, count);
     return *words ? CAMBER_OK : CAMBER_ERROR_MEMORY;

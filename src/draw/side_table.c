@@ -26,10 +26,12 @@ float *camber_side_table_add(camber_side_table *table, size_t texels) {
 }
 
 static camber_status add_texels(camber_side_table *table, size_t texels, uint32_t *first, float **added) {
-    if (table->count + texels > CAMBER_SIDE_TABLE_MAX)
-        return camber_fail(table->context, CAMBER_ERROR_LIMIT,
-                           "the dashes and ramps of a frame take more than %d texels; draw fewer of them",
-                           (int)CAMBER_SIDE_TABLE_MAX);
+    if (table->count + texels > CAMBER_SIDE_TABLE_MAX) {
+        camber_fail(table->context, CAMBER_ERROR_LIMIT,
+                    "the dashes and ramps of a frame take more than %d texels; draw fewer of them",
+                    (int)CAMBER_SIDE_TABLE_MAX);
+        return CAMBER_ERROR_LIMIT;
+    }
     *first = (uint32_t)table->count;
     *added = camber_side_table_add(table, texels);
     return *added ? CAMBER_OK : CAMBER_ERROR_MEMORY;

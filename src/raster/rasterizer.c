@@ -102,7 +102,7 @@ static camber_status make_segments(camber_raster *raster, const camber_raster_sc
         status = part ? camber_part_ensure_made(mesh, part) : CAMBER_OK;
         if (status != CAMBER_OK)
             break;
-        const cl_mem records = part ? part->buffers[CAMBER_BUFFER_RECORDS].mem : raster->buffers[BUFFER_FILL];
+        cl_mem records = part ? part->buffers[CAMBER_BUFFER_RECORDS].mem : raster->buffers[BUFFER_FILL];
         const camber_kernel_arg arguments[] = {
             CAMBER_ARG_BUFFER(records), BUFFER(BUFFER_ROWS),        BUFFER(BUFFER_SEGMENTS), BUFFER(BUFFER_BOXES),
             CAMBER_ARG_VALUE(args),     BUFFER(BUFFER_ARC_LENGTHS), BUFFER(BUFFER_PLANES)};

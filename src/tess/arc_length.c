@@ -47,7 +47,7 @@ camber_status camber_part_sum_arc_lengths(camber_mesh *mesh, camber_mesh_part *p
         return status;
     const camber_source_line_buffers *c = &part->source_line;
     const bool beside = mesh->has_offsets;
-    const cl_mem sums = beside ? c->lengths : part->lengths;
+    cl_mem sums = beside ? c->lengths : part->lengths;
     const camber_kernel_arg args[] = {CAMBER_ARG_BUFFER(beside ? c->x : part->x),
                                       CAMBER_ARG_BUFFER(beside ? c->y : part->y),
                                       CAMBER_ARG_BUFFER(beside ? c->info : part->info), CAMBER_ARG_BUFFER(sums),

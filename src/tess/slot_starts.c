@@ -35,23 +35,23 @@ camber_status camber_slot_starts_map(const camber_mesh *mesh, const camber_mesh_
     return status;
 }
 
-void camber_slot_starts_unmap(camber_slot_starts *o) {
-    unmap(o->mesh, o->part->offsets, o->offsets);
-    unmap(o->mesh, o->part->info, o->info);
-    unmap(o->mesh, o->part->joins, o->joins);
-    o->joins = o->info = o->offsets = NULL;
+void camber_slot_starts_unmap(camber_slot_starts *starts) {
+    unmap(starts->mesh, starts->part->offsets, starts->offsets);
+    unmap(starts->mesh, starts->part->info, starts->info);
+    unmap(starts->mesh, starts->part->joins, starts->joins);
+    starts->joins = starts->info = starts->offsets = NULL;
 }
 
-uint32_t camber_slot_starts_before(camber_slot_starts *o, size_t slot) {
-    const size_t chunk_slots = o->mesh->device->point_chunk, chunk = slot / chunk_slots;
-    if (slot < o->at || chunk * chunk_slots > o->at) {
-        o->at = chunk * chunk_slots;
-        o->sum = o->offsets[chunk - o->first_chunk];
+uint32_t camber_slot_starts_before(camber_slot_starts *starts, size_t slot) {
+    const size_t chunk_slots = starts->mesh->device->point_chunk, chunk = slot / chunk_slots;
+    if (slot < starts->at || chunk * chunk_slots > starts->at) {
+        starts->at = chunk * chunk_slots;
+        starts->sum = starts->offsets[chunk - starts->first_chunk];
     }
-    for (; o->at < slot; o->at++) {
-        const size_t word = o->at - o->first + 1;
-        o->sum += camber_join_counts(o->joins[word], o->joins[word - 1], o->info[word],
-                                     (camber_u32)o->mesh->mesh_info.method);
+    for (; starts->at < slot; starts->at++) {
+        const size_t word = starts->at - starts->first + 1;
+        starts->sum += camber_join_counts(starts->joins[word], starts->joins[word - 1], starts->info[word],
+                                          (camber_u32)starts->mesh->mesh_info.method);
     }
-    return o->sum;
+    return starts->sum;
 }

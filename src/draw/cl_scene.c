@@ -183,7 +183,8 @@ static camber_status add_commands(camber_cl_tables *t, const camber_draw_list *l
     const camber_brush no_brush = {0};
     const camber_brush_ext no_more = {0};
     uint32_t number;
-    camber_status status = use_brush(t, 0, &no_brush, &no_more, &number); /* there is one, also where nothing is drawn */
+    camber_status status =
+        use_brush(t, 0, &no_brush, &no_more, &number); /* there is one, also where nothing is drawn */
     for (size_t i = 0; i < list->command_count && status == CAMBER_OK; i++) {
         const camber_draw_command *command = list->commands + i;
         status = command->mesh ? add_lines(t, list, command) : add_fill(t, list, &command->fill);
